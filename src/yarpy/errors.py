@@ -1,0 +1,71 @@
+"""Every error that yarpy raises, in one tree.
+
+    YarpError
+    |-- AddressError (ValueError)        a name, address or carrier string that cannot be used
+    |-- UnknownName (LookupError)        no name service knows this port
+    |-- UnknownPlugin (LookupError)      no installed carrier, type, monitor or command of that name
+    |-- NoNameServer (ConnectionError)   no name server answers
+    |-- PortClosed (RuntimeError)        the port was closed or interrupted meanwhile
+    |-- LinkClosed (ConnectionError)     the other side of a connection went away
+    |-- Timeout (TimeoutError)           nothing came in the time given
+    |-- DecodeError (ValueError)         bytes or text that are not what they claim to be
+    |   `-- Truncated                    ... because they end too early
+    |-- LocalProtocolError               we asked for the impossible (a reply where none can go)
+    `-- RemoteProtocolError              the peer broke the rules: its link closes, the port lives
+
+Rules: a message says what happened and what to do next; names come in quotes, as typed.
+"""
+
+from __future__ import annotations
+
+
+class YarpError(Exception):
+    """The root: `except yarpy.YarpError` catches whatever this library raises on purpose."""
+
+
+class AddressError(YarpError, ValueError):
+    """A port name, host:port or carrier string that cannot be used."""
+
+
+class UnknownName(YarpError, LookupError):
+    """No name service knows the port."""
+
+
+class UnknownPlugin(YarpError, LookupError):
+    """No installed plug-in has that name."""
+
+
+class NoNameServer(YarpError, ConnectionError):
+    """No name server answers."""
+
+
+class PortClosed(YarpError, RuntimeError):
+    """The port was closed or interrupted before or during the call."""
+
+
+class LinkClosed(YarpError, ConnectionError):
+    """The other side of a connection went away."""
+
+
+class Timeout(YarpError, TimeoutError):
+    """Nothing came in the time given."""
+
+
+class DecodeError(YarpError, ValueError):
+    """Bytes or text that are not what they claim to be."""
+
+
+class Truncated(DecodeError):
+    """The bytes end before the value does; `need` is how many bytes it takes at least."""
+
+    def __init__(self, message: str, need: int = 0) -> None:
+        super().__init__(message)
+        self.need = need
+
+
+class LocalProtocolError(YarpError):
+    """This side asked for something the connection cannot do."""
+
+
+class RemoteProtocolError(YarpError):
+    """The peer broke the rules of its protocol; its link is closed."""

@@ -1,0 +1,123 @@
+"""Name -> plug-in: the one place where carriers, types, monitors and commands are looked up.
+
+Rules: our plug-ins and those of strangers come the same way, from packaging entry points (groups
+`yarpy.carriers`, `yarpy.types`, `yarpy.monitors`, `yarpy.commands`). Nothing registers itself by
+being imported. A lookup loads only what it needs; a plug-in that fails to load is an error that
+names its distribution.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from yarpy.errors import UnknownPlugin
+
+# What ships with yarpy is listed here as well as in pyproject.toml: a lookup of `tcp` must not cost
+# a scan of every installed distribution (tens of milliseconds), and works from a bare source tree.
+SHIPPED: Final[dict[str, dict[str, str]]] = {
+    "carriers": {
+        "tcp": "yarpy.carriers.tcp:Tcp",
+        "fast_tcp": "yarpy.carriers.tcp:FastTcp",
+        "udp": "yarpy.carriers.udp:Udp",
+        "mcast": "yarpy.carriers.mcast:Mcast",
+        "text": "yarpy.carriers.text:Text",
+        "text_ack": "yarpy.carriers.text:TextAck",
+        "unix_stream": "yarpy.carriers.unix_stream:UnixStream",
+        "local": "yarpy.carriers.local:Local",
+        "name_ser": "yarpy.carriers.name_ser:NameSer",
+    },
+}
+
+
+class Registry:
+    """Plug-ins of one kind by name. `kind` is `carriers`, `types`, `monitors` or `commands`."""
+
+    def __init__(self, kind: str, shipped: Mapping[str, str] | None = None) -> None:
+        self.kind = kind
+        self._shipped = dict(SHIPPED.get(kind, {}) if shipped is None else shipped)
+        self._loaded: dict[str, Any] = {}
+        self._foreign: dict[str, Any] | None = None
+        self._lock = threading.RLock()  # two acceptors may meet an unknown protocol at once
+
+    def add(self, name: str, plugin: Any) -> None:
+        """Put a plug-in in by hand (a test, a notebook); it wins over installed ones."""
+        with self._lock:
+            self._loaded[name] = plugin
+
+    def names(self) -> list[str]:
+        """Every name that `load` would find, ours first."""
+        with self._lock:
+            return list(dict.fromkeys([*self._shipped, *self._entries(), *self._loaded]))
+
+    def load(self, name: str) -> Any:
+        """The plug-in called `name`. Raises UnknownPlugin with the nearest match."""
+        try:
+            return self._loaded[name]
+        except KeyError:
+            pass
+        with self._lock:
+            if name in self._shipped:
+                plugin = _resolve(self._shipped[name])
+            else:
+                entry = self._entries().get(name)
+                if entry is None:
+                    raise UnknownPlugin(self._advice(name))
+                plugin = self._load_entry(entry)
+            self._loaded[name] = plugin
+            return plugin
+
+    def __iter__(self) -> Iterator[Any]:
+        """Every plug-in that loads; asking for one of the others by name tells why."""
+        for name in self.names():
+            try:
+                yield self.load(name)
+            except UnknownPlugin:
+                continue
+
+    def _entries(self) -> dict[str, Any]:
+        if self._foreign is None:
+            from importlib.metadata import entry_points
+
+            self._foreign = {
+                entry.name: entry
+                for entry in entry_points(group=f"yarpy.{self.kind}")
+                if entry.name not in self._shipped
+            }
+        return self._foreign
+
+    def _load_entry(self, entry: Any) -> Any:
+        try:
+            return entry.load()
+        except Exception as error:
+            owner = entry.dist.name if entry.dist is not None else "an installed package"
+            raise UnknownPlugin(
+                f'"{entry.name}" of {owner} is installed but cannot be loaded '
+                f"({type(error).__name__}: {error}); repair or uninstall {owner}"
+            ) from error
+
+    def _advice(self, name: str) -> str:
+        from difflib import get_close_matches
+
+        known = self.names()
+        near = get_close_matches(name, known, n=1)
+        hint = f'did you mean "{near[0]}"? ' if near else ""
+        singular = self.kind.removesuffix("s")
+        return (
+            f'no {singular} "{name}": {hint}known are {", ".join(known) or "none"}; '
+            f"others come with a package that has the entry point group yarpy.{self.kind}"
+        )
+
+
+def _resolve(target: str) -> Any:
+    from importlib import import_module
+
+    module, _, attribute = target.partition(":")
+    return getattr(import_module(module), attribute)
+
+
+carriers: Final = Registry("carriers")
+types: Final = Registry("types")
+monitors: Final = Registry("monitors")
+commands: Final = Registry("commands")
