@@ -1,0 +1,51 @@
+"""Free port numbers on the loopback, for servers that a test starts.
+
+Rules: numbers come from below the kernel's range for outgoing connections, so that no outgoing
+connection of another process takes one between the look and the bind; a number is handed out once
+per process; a block is free for TCP and for UDP.
+"""
+
+import random
+import socket
+from pathlib import Path
+
+_LOWEST = 20_000
+_HIGHEST = 32_000
+_given: set[int] = set()
+
+
+def free_port() -> int:
+    """One port number that nobody uses, for TCP and for UDP."""
+    return free_block(1)
+
+
+def free_block(size: int) -> int:
+    """The first of `size` consecutive free port numbers (a name server hands out the others)."""
+    for _ in range(1000):
+        first = random.randrange(_LOWEST, _ceiling() - size)
+        block = range(first, first + size)
+        if _given.isdisjoint(block) and all(_is_free(number) for number in block):
+            _given.update(block)
+            return first
+    raise OSError(f"no {size} consecutive free ports between {_LOWEST} and {_ceiling()}")
+
+
+def _ceiling() -> int:
+    """First number that outgoing connections may take; a fixed one where nobody tells."""
+    try:
+        lowest_outgoing = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text().split()[0])
+    except (OSError, ValueError, IndexError):
+        return _HIGHEST
+    # A host whose outgoing range covers everything leaves no better choice than luck.
+    return lowest_outgoing if lowest_outgoing > _LOWEST + 2000 else _HIGHEST
+
+
+def _is_free(number: int) -> bool:
+    for kind in (socket.SOCK_STREAM, socket.SOCK_DGRAM):
+        with socket.socket(socket.AF_INET, kind) as probe:
+            try:
+                # All addresses: a C++ server binds 0.0.0.0 whatever it is told.
+                probe.bind(("", number))
+            except OSError:
+                return False
+    return True

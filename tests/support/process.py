@@ -1,0 +1,215 @@
+"""Start a program, read what it says while it runs, and leave nothing of it behind.
+
+Rules: output is read by threads of ours, so that a chatty program never blocks on a full pipe;
+waiting always has an end, and its error shows what the program had said; `stop` ends the program
+and everything it started, by process id, also when the test failed or the interpreter exits.
+"""
+
+import atexit
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import threading
+import time
+import weakref
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Literal, Self
+
+_running: weakref.WeakSet["Process"] = weakref.WeakSet()
+
+
+class Process:
+    """A running program with captured output. Use as a context manager, or call `stop`."""
+
+    def __init__(
+        self,
+        args: Sequence[str | os.PathLike[str]],
+        *,
+        env: Mapping[str, str] | None = None,
+        cwd: str | os.PathLike[str] | None = None,
+    ) -> None:
+        self.args = [os.fspath(arg) for arg in args]
+        self.lines: list[tuple[str, str]] = []  # ("out" | "err", text without line end)
+        self._changed = threading.Condition()
+        self._open_streams = 2
+        self._popen = subprocess.Popen(
+            self.args,
+            env=None if env is None else dict(env),
+            cwd=cwd,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            # A session of its own: one signal reaches the children that did not leave it.
+            start_new_session=True,
+        )
+        _running.add(self)
+        for kind in ("out", "err"):
+            threading.Thread(
+                target=self._collect, args=(kind,), name=f"{kind} of {self.pid}", daemon=True
+            ).start()
+
+    @property
+    def pid(self) -> int:
+        return self._popen.pid
+
+    @property
+    def returncode(self) -> int | None:
+        """Exit code, None while the program runs (negative: the signal that ended it)."""
+        return self._popen.poll()
+
+    @property
+    def stdout(self) -> str:
+        """What the program has written so far to its standard output."""
+        return self._text("out")
+
+    @property
+    def stderr(self) -> str:
+        return self._text("err")
+
+    def write(self, text: str) -> None:
+        """Put text on the program's standard input, as it is."""
+        assert self._popen.stdin is not None
+        self._popen.stdin.write(text.encode("utf-8", "surrogateescape"))
+        self._popen.stdin.flush()
+
+    def write_line(self, text: str = "") -> None:
+        """Type a line on the program's standard input."""
+        self.write(text + "\n")
+
+    def end_input(self) -> None:
+        """Close the program's standard input, as ^D does."""
+        assert self._popen.stdin is not None
+        with contextlib.suppress(BrokenPipeError):
+            self._popen.stdin.close()
+
+    def wait_line(
+        self,
+        pattern: str,
+        *,
+        timeout: float = 10.0,
+        count: int = 1,
+        stream: Literal["out", "err", "any"] = "any",
+    ) -> re.Match[str]:
+        """The match of the `count`-th line that contains `pattern`, said before or from now on.
+
+        AssertionError with everything the program said when it ends or `timeout` seconds pass.
+        """
+        deadline = time.monotonic() + timeout
+        seen, found = 0, 0
+        with self._changed:
+            while True:
+                for kind, line in self.lines[seen:]:
+                    if stream in (kind, "any") and (match := re.search(pattern, line)):
+                        found += 1
+                        if found == count:
+                            return match
+                seen = len(self.lines)
+                left = deadline - time.monotonic()
+                if self._open_streams == 0:
+                    raise AssertionError(f"{self} ended without saying {pattern!r}{self._said()}")
+                if left <= 0:
+                    raise AssertionError(f"{self} did not say {pattern!r} in time{self._said()}")
+                self._changed.wait(left)
+
+    def wait(self, timeout: float = 10.0) -> int:
+        """Wait for the end, and for the last words; the exit code."""
+        deadline = time.monotonic() + timeout
+        try:
+            code = self._popen.wait(timeout)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"{self} still runs after {timeout} s{self._said()}") from None
+        with self._changed:
+            # A grandchild may hold the pipes open: what it says later is not waited for.
+            while self._open_streams and (left := min(deadline - time.monotonic(), 1.0)) > 0:
+                if not self._changed.wait(left):
+                    break
+        return code
+
+    def signal(self, number: int) -> None:
+        """Send a signal to the program alone."""
+        self._popen.send_signal(number)
+
+    def kill(self) -> None:
+        """End the program and all it started at once, as a crash would (SIGKILL)."""
+        for pid in (*descendants(self.pid), self.pid):
+            _send(pid, signal.SIGKILL)
+        self._popen.wait(10)
+
+    def stop(self, patience: float = 2.0) -> None:
+        """End the program and all it started: ask, wait `patience` seconds, then kill."""
+        # The children are listed first: when their parent is gone nobody knows whose they were.
+        family = [*descendants(self.pid), self.pid]
+        if self._popen.poll() is None:
+            self._popen.terminate()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._popen.wait(patience)
+        for pid in family:
+            if pid != self.pid or self._popen.poll() is None:
+                _send(pid, signal.SIGKILL)
+        self._popen.wait(10)
+        self.end_input()
+        _running.discard(self)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def __repr__(self) -> str:
+        return f"{Path(self.args[0]).name} {' '.join(self.args[1:])} (pid {self.pid})"
+
+    def _collect(self, kind: str) -> None:
+        pipe = self._popen.stdout if kind == "out" else self._popen.stderr
+        assert pipe is not None
+        with pipe:
+            for raw in pipe:
+                line = raw.decode("utf-8", "surrogateescape").rstrip("\r\n")
+                with self._changed:
+                    self.lines.append((kind, line))
+                    self._changed.notify_all()
+        with self._changed:
+            self._open_streams -= 1
+            self._changed.notify_all()
+
+    def _text(self, wanted: str) -> str:
+        with self._changed:
+            return "".join(line + "\n" for kind, line in self.lines if kind == wanted)
+
+    def _said(self) -> str:
+        return "; it said:" + "".join(f"\n  {kind}| {line}" for kind, line in self.lines)
+
+
+def descendants(pid: int) -> list[int]:
+    """Process ids of the children, grandchildren ... of `pid`, the deepest first (Linux)."""
+    children: dict[int, list[int]] = {}
+    for child, parent in _parents():
+        children.setdefault(parent, []).append(child)
+
+    def walk(parent: int) -> Iterator[int]:
+        for child in children.get(parent, ()):
+            yield from walk(child)
+            yield child
+
+    return list(walk(pid))
+
+
+def _parents() -> Iterator[tuple[int, int]]:
+    for entry in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            # The second field, the name in brackets, may itself hold blanks and brackets.
+            yield int(entry.parent.name), int(entry.read_text().rpartition(")")[2].split()[1])
+
+
+def _send(pid: int, number: int) -> None:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.kill(pid, number)
+
+
+@atexit.register
+def _stop_all() -> None:
+    for process in list(_running):
+        process.stop(patience=0.5)
