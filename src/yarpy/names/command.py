@@ -1,0 +1,405 @@
+"""What a name server answers: the command language, without any connection.
+
+    register query unregister list runners set get check route gc help     the registry
+    announce subscribe unsubscribe topic untopic type                      topics and rules
+
+Rules: a command is a Bottle, the reply either *old style* (text lines ended by `*** end of
+message`) or one Bottle; which of them depends on the verb, on a leading `bot` and on a `(format
+json)` that HTTP adds, never on the connection (nameserver spec 2.1, 2.2). Unknown verbs get the
+end line alone. Nothing a stranger sends raises; what is refused is said in the reply.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from yarpy.contact import Contact
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+from yarpy.errors import AddressError, DecodeError
+from yarpy.names.line import END, PREFIX, registration_line
+from yarpy.names.store import NameStore
+from yarpy.names.topology import Action, Subscription, Topology, undecorate
+
+HELP_HEADING = "Here are some ways to use the name server:"
+HELP = (
+    "+ help",
+    "+ list [$prefix]",
+    "+ register $portname",
+    "+ register $portname $carrier $ipAddress $portNumber",
+    "  (if you want a field set automatically, write '...')",
+    "+ unregister $portname",
+    "+ query $portname",
+    "+ set $portname $property $value",
+    "+ get $portname $property",
+    "+ check $portname $property",
+    "+ route $port1 $port2",
+    "+ runners",
+    "  (to get a list of the yarprun ports)",
+)
+
+# What may be asked by multicast: anybody in the network can send a datagram in anybody's name.
+READING = frozenset({"query", "list", "runners", "get", "check", "route", "help"})
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """What to send back, and what else follows from a command.
+
+    `lines`: an old style reply with its end line; empty for a Bottle style one, which is in
+    `bottle`. `events`: Bottles for everybody connected to the server's output. `actions`:
+    connections to make or break in the background, in this order for each pair of ports.
+    """
+
+    lines: tuple[str, ...] = ()
+    bottle: Bottle | None = None
+    events: tuple[Bottle, ...] = ()
+    actions: tuple[Action, ...] = ()
+
+    def text_lines(self) -> tuple[str, ...]:
+        """The lines for a text connection, either style, without their ends."""
+        return self.lines if self.bottle is None else (self.bottle.to_text(),)
+
+    def to_bytes(self) -> bytes:
+        """The same with CR LF: what C++ sends even on binary connections, for old style."""
+        text = "".join(f"{line}\r\n" for line in self.text_lines())
+        return text.encode("utf-8", "surrogateescape")
+
+    def message(self) -> Bottle:
+        """For a binary connection: an old style reply becomes a Bottle of one string.
+
+        C++ sends raw text there, which no binary reader can digest (nameserver spec 1.3).
+        """
+        if self.bottle is not None:
+            return self.bottle
+        return Bottle(["".join(f"{line}\r\n" for line in self.lines)])
+
+    def first(self) -> Bottle:
+        """The Bottle, or the first line read as one: what HTTP turns into JSON."""
+        if self.bottle is not None:
+            return self.bottle
+        return Bottle.from_text(self.lines[0])
+
+
+class NameService:
+    """A name store and a topology that speak. Any thread may call; one command runs at a time.
+
+    `lock` is held meanwhile. Hold it yourself to look at `store` or `topology`.
+    """
+
+    def __init__(self, store: NameStore, topology: Topology) -> None:
+        self.store = store
+        self.topology = topology
+        self.lock = threading.RLock()  # a registration changes store, pools and rules together
+        self._subscriber: dict[str, Callable[[list[Any]], Reply]] = {
+            "subscribe": self._subscribe,
+            "unsubscribe": self._unsubscribe,
+            "announce": self._announce,
+            "topic": self._topic,
+            "untopic": self._untopic,
+            "type": self._type,
+        }
+        self._registry: dict[str, Callable[[list[Any], bool, str], Reply]] = {
+            "query": self._query,
+            "register": self._register,
+            "unregister": self._unregister,
+            "list": self._list,
+            "runners": self._runners,
+            "set": self._set,
+            "get": self._get,
+            "check": self._check,
+            "route": self._route,
+            "gc": self._gc,
+            "help": self._help,
+        }
+
+    def answer(self, command: Sequence[Any], peer_host: str = "") -> Reply:
+        """The reply to a command that came from `peer_host` ("" when that is not known)."""
+        words, nested = without_request(command)
+        verb = plain_text(words[0]) if words else ""
+        with self.lock:
+            subscriber = self._subscriber.get(verb)
+            if subscriber is not None:
+                try:
+                    return subscriber(words)
+                except AddressError as error:
+                    return Reply(bottle=Bottle([Vocab("fail"), str(error)]))
+            if verb == "NAME_SERVER":
+                del words[0]
+            if words and plain_text(words[0]) == "bot":
+                del words[0]
+                nested = True
+            registry = self._registry.get(plain_text(words[0])) if words else None
+            if registry is None:
+                return _old(())
+            try:
+                return registry(words, nested, peer_host)
+            except AddressError as error:
+                return _old([f"error {error}"])
+
+    def answer_text(self, line: str | bytes, peer_host: str = "") -> Reply:
+        """The reply to a line of text."""
+        try:
+            command = Bottle.from_text(line)
+        except DecodeError:
+            command = Bottle()
+        return self.answer(command, peer_host)
+
+    def answer_multicast(self, line: str) -> str | None:
+        """The first line of the reply, for discovery; None for what may not be asked that way."""
+        try:
+            command = Bottle.from_text(line.removeprefix(PREFIX))
+        except DecodeError:
+            return None
+        words = command[1:] if command and plain_text(command[0]) == "bot" else command
+        if not words or plain_text(words[0]) not in READING:
+            return None
+        return self.answer(command).text_lines()[0]
+
+    # --- registry
+
+    def _query(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        network, name = split_network(undecorate(_word(words, 1))[1])
+        return _found(self.store.query(name, network), nested)
+
+    def _register(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        number = words[4] if len(words) > 4 else 0
+        name = _word(words, 1)
+        removed = self.store.unregister(name)
+        events, actions = self._gone(removed)
+        try:
+            contact = self.store.register(
+                name,
+                _word(words, 2),
+                _word(words, 3),
+                number if isinstance(number, int) and not isinstance(number, bool) else 0,
+                _word(words, 5),
+                peer,
+            )
+        except AddressError as error:
+            return _old([f"error {error}"], events, actions)
+        if contact.carrier != "mcast":
+            events.append(Bottle([Vocab("add"), contact.name]))
+        if nested:
+            return _old(_broken(port_bottle(contact)), events, actions)
+        return _old([registration_line(contact)], events, actions)
+
+    def _unregister(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        removed = self.store.unregister(_word(words, 1))
+        events, actions = self._gone(removed)
+        if nested:
+            return _old(_broken(_UNKNOWN), events, actions)
+        return _old(["old"] * (len(removed) - 1), events, actions)
+
+    def _list(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        return _all(self.store.contacts(_word(words, 1)), nested)
+
+    def _runners(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        return _all(self.store.having("yarprun", "true"), nested)
+
+    def _set(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        name, key = _word(words, 1), _word(words, 2)
+        values = self.store.assign(name, key, [plain_text(value) for value in words[3:]])
+        return _property(name, key, values, nested)
+
+    def _get(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        name, key = _word(words, 1), _word(words, 2)
+        return _property(name, key, self.store.values(name, key), nested)
+
+    def _check(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        name, key = _word(words, 1), _word(words, 2)
+        values = self.store.values(name, key)
+        if values is None:
+            return _old(())
+        value = words[3] if len(words) > 3 else ""
+        present = "true" if plain_text(value) in values else "false"
+        items = ["port", name, "property", key, "value", value, "present"]
+        return _old([f"{_unquoted(items)} {present}"])
+
+    def _route(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        source, destination = _word(words, 1), _word(words, 2)
+        items = ["port", source, "route", destination, "=", f"tcp:/{destination}"]
+        return _old([_unquoted(items)])
+
+    def _gc(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        self.topology.collect(self.store.__contains__)
+        return _old(["garbage collection done."])
+
+    def _help(self, words: list[Any], nested: bool, peer: str) -> Reply:
+        if nested:
+            return Reply(bottle=Bottle(HELP))
+        return _old([HELP_HEADING, *HELP])
+
+    def _gone(self, removed: Iterable[Contact]) -> tuple[list[Bottle], list[Action]]:
+        events, actions = [], []
+        for contact in removed:
+            actions += self.topology.vanish(contact.name)
+            if contact.carrier != "mcast":
+                events.append(Bottle([Vocab("del"), contact.name]))
+        return events, actions
+
+    # --- topics and rules
+
+    def _announce(self, words: list[Any]) -> Reply:
+        name = _word(words, 1)
+        if len(words) > 2 and not (isinstance(words[2], int) and words[2]):
+            self.topology.complain(name)
+            return _ok()
+        return _ok(self.topology.announce(name))
+
+    def _subscribe(self, words: list[Any]) -> Reply:
+        if len(words) > 2:
+            known = self.store.__contains__
+            source, destination, mode = _word(words, 1), _word(words, 2), _word(words, 3)
+            return _ok(self.topology.subscribe(source, destination, mode, known))
+        name = undecorate(_word(words, 1))[1]
+        reply = Bottle(["subscriptions"])
+        reply += [self._rule(rule) for rule in self.topology.subscriptions(name)]
+        return Reply(bottle=reply)
+
+    def _rule(self, rule: Subscription) -> Bottle:
+        item = Bottle(["subscription", Bottle(["src", rule.source_text])])
+        item.append(Bottle(["dest", rule.destination_text]))
+        if rule.mode:
+            item.append(Bottle(["mode", rule.mode]))
+        sides = [int(name in self.topology.topics) for name in (rule.source, rule.destination)]
+        if any(sides):
+            item.append(Bottle(["topic", *sides]))
+        return item
+
+    def _unsubscribe(self, words: list[Any]) -> Reply:
+        self.topology.unsubscribe(_word(words, 1), _word(words, 2))
+        return _ok()
+
+    def _topic(self, words: list[Any]) -> Reply:
+        if len(words) < 2:
+            return Reply(bottle=Bottle(sorted(self.topology.topics)))
+        return _ok(self.topology.declare(_word(words, 1), _word(words, 2)))
+
+    def _untopic(self, words: list[Any]) -> Reply:
+        self.topology.undeclare(_word(words, 1))
+        return _ok()
+
+    def _type(self, words: list[Any]) -> Reply:
+        family, name = _word(words, 1), _word(words, 2)
+        if family != "yarp" or len(words) < 3:
+            return Reply(bottle=Bottle([Vocab("fail")]))
+        if len(words) > 3:
+            self.topology.describe(name, _word(words, 3))
+            return _ok()
+        structure = self.topology.structures.get(name)
+        if structure is None:
+            return Reply(bottle=Bottle([Vocab("fail")]))
+        return Reply(bottle=Bottle(["type", family, name, structure]))
+
+
+# --- reading commands
+
+
+def without_request(command: Sequence[Any]) -> tuple[list[Any], bool]:
+    """The words of a command, and whether HTTP asked for JSON.
+
+    HTTP appends what it knows of the request as `(key value)` lists: `(format json)`,
+    `(REQUEST_URI ...)`, the user's variables. Where C++ takes them for arguments we do not
+    (nameserver spec 9.5).
+    """
+    words = list(command)
+    keys = {plain_text(item[0]) for item in words if _is_pair(item)}
+    if not keys & {"format", "REQUEST_URI"}:
+        return words, False
+    json = any(
+        _is_pair(item) and list(map(plain_text, item)) == ["format", "json"] for item in words
+    )
+    while words and isinstance(words[-1], list):
+        del words[-1]
+    return words, json
+
+
+def split_network(name: str) -> tuple[str | None, str]:
+    """`/net=127/x` asks for /x at an address beginning with 127.
+
+    >>> split_network("/net=127/x"), split_network("/x")
+    (('127', '/x'), (None, '/x'))
+    """
+    if name[:5] not in ("/net=", "/NET="):
+        return None, name
+    network, slash, rest = name[5:].partition("/")
+    return network, slash + rest
+
+
+def _is_pair(item: Any) -> bool:
+    return isinstance(item, list) and len(item) == 2
+
+
+def _word(words: Sequence[Any], place: int) -> str:
+    return plain_text(words[place]) if place < len(words) else ""
+
+
+# --- building replies
+
+_UNKNOWN = Bottle(["port", Bottle(["error", -2, "port not known"])])
+
+
+def port_bottle(contact: Contact) -> Bottle:
+    """`port (name N) (ip H) (port_number P) (carrier C)`."""
+    return Bottle(
+        [
+            "port",
+            Bottle(["name", contact.name]),
+            Bottle(["ip", contact.host]),
+            Bottle(["port_number", contact.port]),
+            Bottle(["carrier", contact.carrier]),
+        ]
+    )
+
+
+def _old(
+    lines: Iterable[str], events: Sequence[Bottle] = (), actions: Sequence[Action] = ()
+) -> Reply:
+    return Reply((*lines, END), None, tuple(events), tuple(actions))
+
+
+def _ok(actions: Sequence[Action] = ()) -> Reply:
+    return Reply(bottle=Bottle([Vocab("ok")]), actions=tuple(actions))
+
+
+def _found(contact: Contact | None, nested: bool) -> Reply:
+    if nested:
+        return Reply(bottle=Bottle(_UNKNOWN) if contact is None else port_bottle(contact))
+    return _old(() if contact is None else [registration_line(contact)])
+
+
+def _all(contacts: Iterable[Contact], nested: bool) -> Reply:
+    if nested:
+        return Reply(bottle=Bottle(["ports", *map(port_bottle, contacts)]))
+    return _old(map(registration_line, contacts))
+
+
+def _property(name: str, key: str, values: list[str] | None, nested: bool) -> Reply:
+    if nested:
+        return Reply(bottle=Bottle(map(_value, values or ())))
+    if values is None:
+        return _old(())
+    return _old([_unquoted(["port", name, "property", key, "=", *values])])
+
+
+def _value(text: str) -> Any:
+    """A stored property as the value it is the text of; what is no single value stays text."""
+    try:
+        parsed = Bottle.from_text(text)
+    except DecodeError:
+        return text
+    return parsed[0] if len(parsed) == 1 else text
+
+
+def _unquoted(items: list[Any]) -> str:
+    return Bottle(items).to_text().replace('"', "")
+
+
+def _broken(bottle: Bottle) -> list[str]:
+    """A Bottle reply forced into lines, one for each element, as C++ does for `bot register`."""
+    return [_unquoted(item if isinstance(item, list) else [item]) for item in bottle]

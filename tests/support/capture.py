@@ -1,0 +1,59 @@
+"""Recorded dialogues with C++ YARP 3.9.1: `tests/golden/captures/NAME.json`.
+
+Rules: a capture is a list of steps, each the bytes of one side. Its `variable` field says which
+bytes are the machine's or the moment's; `masked` blanks them on both sides of a comparison.
+"""
+
+import json
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+CAPTURES = Path(__file__).parents[1] / "golden" / "captures"
+
+_RANGE = re.compile(r"step (\d+) bytes (\d+)\.\.(\d+)")
+
+
+@dataclass(frozen=True)
+class Step:
+    """What one side sent before the other did."""
+
+    index: int
+    sender: str
+    """`a` dialled, `b` answered."""
+    data: bytes
+    connection: int
+    """The dialogue's connections one after the other, from 0."""
+
+
+@dataclass(frozen=True)
+class Capture:
+    name: str
+    steps: list[Step]
+    variable: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
+    """Step -> ranges of bytes that differ from run to run."""
+
+    def masked(self, step: Step, data: bytes) -> bytes:
+        """`data` with the variable ranges of `step` blanked, for comparing with its bytes."""
+        blank = bytearray(data)
+        for start, end in self.variable.get(step.index, ()):
+            end = min(end, len(blank))
+            blank[start:end] = b"?" * max(0, end - start)
+        return bytes(blank)
+
+
+def load_capture(name: str) -> Capture:
+    """Read one capture."""
+    raw: dict[str, Any] = json.loads((CAPTURES / f"{name}.json").read_text())
+    variable: dict[int, list[tuple[int, int]]] = {}
+    for text in raw.get("variable", []):
+        match = _RANGE.match(text)
+        if match:
+            step, start, end = map(int, match.groups())
+            variable.setdefault(step, []).append((start, end))
+    steps = [
+        Step(index, item["from"], bytes.fromhex(item["hex"]), item.get("conn", 0))
+        for index, item in enumerate(raw["steps"])
+    ]
+    return Capture(raw["name"], steps, variable)
