@@ -1,0 +1,144 @@
+"""Peer: yarpy itself, `--carrier tcp` (acknowledged) or `fast_tcp`.
+
+The server's process also holds the name server. Writers are Ports, readers BufferedPorts.
+"""
+
+import os
+import threading
+
+import numpy as np
+from peer import main, ready
+from workload import IMAGE_SIDE, KILOBYTE_TEXT, NUMBER, READERS
+
+import yarpy
+
+PREFIX = f"/bench{os.getpid()}"
+
+
+def serve_ports(**reading):
+    names = yarpy.NameServer().__enter__()
+    inlet = yarpy.BufferedPort(PREFIX + "/there", **reading)
+    outlet = yarpy.Port(PREFIX + "/back")
+    ready(environment=names.environment, inlet=inlet.name, outlet=outlet.name)
+    return inlet, outlet
+
+
+def client_ports(options, **reading):
+    os.environ.update(options.at["environment"])
+    outlet = yarpy.Port(PREFIX + "/out")
+    inlet = yarpy.BufferedPort(PREFIX + "/in", **reading)
+    outlet.connect(options.at["inlet"], options.carrier)
+    yarpy.connect(options.at["outlet"], inlet.name, options.carrier)
+    return outlet, inlet
+
+
+def serve_stream(options):
+    inlet, outlet = serve_ports()
+    for message in inlet:
+        outlet.write(message.value)
+
+
+def stream(options):
+    outlet, inlet = client_ports(options)
+
+    def exchange(index):
+        outlet.write([index, NUMBER])
+        assert inlet.read().value[0] == index
+
+    return exchange
+
+
+def serve_rpc(options):
+    with (
+        yarpy.NameServer() as names,
+        yarpy.RpcServer(PREFIX + "/service", lambda *request: request) as service,
+    ):
+        ready(environment=names.environment, inlet=service.name)
+        threading.Event().wait()
+
+
+def rpc(options):
+    os.environ.update(options.at["environment"])
+    client = yarpy.RpcClient(options.at["inlet"])
+
+    def exchange(index):
+        assert client.call(index, NUMBER)[0] == index
+
+    return exchange
+
+
+def serve_large(options):
+    inlet, outlet = serve_ports()
+    for message in inlet:
+        outlet.write(message.value)
+
+
+def large(options):
+    outlet, inlet = client_ports(options)
+    image = np.zeros((IMAGE_SIDE, IMAGE_SIDE), np.uint8)
+
+    def exchange(index):
+        outlet.write(image)
+        assert inlet.read().value.width == IMAGE_SIDE
+
+    return exchange
+
+
+def serve_flood(options):
+    inlet, outlet = serve_ports(strict=True)
+    for message in inlet:
+        value = message.value
+        if value[0] == 0:
+            outlet.write(value)
+
+
+def flood(options):
+    outlet, inlet = client_ports(options)
+
+    def burst(count):
+        for index in reversed(range(count)):
+            outlet.write([index, NUMBER])
+        inlet.read()
+
+    return burst
+
+
+def serve_fan(options):
+    with yarpy.NameServer() as names:
+        readers = [yarpy.BufferedPort(f"{PREFIX}/reader{i}") for i in range(READERS)]
+        outlet = yarpy.Port(PREFIX + "/back")
+        ready(
+            environment=names.environment,
+            readers=[reader.name for reader in readers],
+            outlet=outlet.name,
+        )
+        while True:
+            for reader in readers:
+                index = reader.read().value[0]
+            outlet.write([index, NUMBER])
+
+
+def fan(options):
+    os.environ.update(options.at["environment"])
+    outlet, inlet = yarpy.Port(PREFIX + "/out"), yarpy.BufferedPort(PREFIX + "/in")
+    for reader in options.at["readers"]:
+        outlet.connect(reader, options.carrier)
+    yarpy.connect(options.at["outlet"], inlet.name)
+
+    def exchange(index):
+        outlet.write([index, KILOBYTE_TEXT])
+        assert inlet.read().value[0] == index
+
+    return exchange
+
+
+if __name__ == "__main__":
+    main(
+        {
+            "stream": (serve_stream, stream),
+            "rpc": (serve_rpc, rpc),
+            "large": (serve_large, large),
+            "flood": (serve_flood, flood),
+            "fan": (serve_fan, fan),
+        }
+    )

@@ -1,0 +1,91 @@
+"""From samples to a table: medians, tails and ratios that a noisy machine does not spoil.
+
+A ratio compares the medians of the same round, where the peers ran one after the other, and the
+middle one of these ratios counts: a disturbance that lasts a while hits both sides of it.
+"""
+
+import statistics
+from collections.abc import Iterator, Mapping, Sequence
+
+from workload import GOALS, WORKLOADS, Goal, Workload
+
+# results[workload][peer] = one list of samples per round: nanoseconds, or messages per second
+Samples = Sequence[Sequence[float]]
+Results = Mapping[str, Mapping[str, Samples]]
+
+
+def medians(samples: Samples) -> list[float]:
+    """The median of each round."""
+    return [statistics.median(one) for one in samples]
+
+
+def quantile(values: Sequence[float], part: float) -> float:
+    """The smallest value that at least `part` (0 to 1) of the values do not exceed."""
+    ordered = sorted(values)
+    return ordered[max(0, -int(-part * len(ordered) // 1) - 1)]
+
+
+def ratio(mine: Samples, other: Samples) -> float:
+    """How many times as much as `other`: the middle of the rounds' ratios."""
+    pairs = zip(medians(mine), medians(other), strict=False)
+    return statistics.median(a / b for a, b in pairs)
+
+
+def summary(samples: Samples, workload: Workload) -> dict[str, float]:
+    """What the JSON file keeps of a peer, in the workload's unit."""
+    scale = 1.0 if workload.more_is_better else 1e-3
+    everything = [value for one in samples for value in one]
+    by_round = medians(samples)
+    return {
+        "median": statistics.median(everything) * scale,
+        "p99": quantile(everything, 0.01 if workload.more_is_better else 0.99) * scale,
+        "lowest_round": min(by_round) * scale,
+        "highest_round": max(by_round) * scale,
+        "rounds": len(by_round),
+        "samples": len(everything),
+    }
+
+
+def goal_ratio(goal: Goal, results: Results) -> tuple[float, bool] | None:
+    """The measured ratio and whether it reaches the goal; None if one of the two did not run."""
+    peers = results.get(goal.workload, {})
+    if goal.peer not in peers or goal.against not in peers:
+        return None
+    measured = ratio(peers[goal.peer], peers[goal.against])
+    if WORKLOADS[goal.workload].more_is_better:
+        return measured, measured >= goal.factor
+    return measured, measured <= goal.factor
+
+
+def table(results: Results) -> Iterator[str]:
+    """The lines of the report: one block per workload, then the goals."""
+    for name, peers in results.items():
+        workload = WORKLOADS[name]
+        yield ""
+        cores = f"{workload.cores} core" + "s" * (workload.cores > 1)
+        yield f"{name}: {workload.title} [{workload.unit}, {cores}]"
+        tail = "" if workload.more_is_better else "p99"
+        yield f"  {'peer':18}{'median':>11}{tail:>11}{'medians of rounds':>25}{'x raw':>9}"
+        for peer, samples in peers.items():
+            row = summary(samples, workload)
+            spread = f"{_number(row['lowest_round'])} - {_number(row['highest_round'])}"
+            compared = f"{ratio(samples, peers['raw']):9.2f}" if "raw" in peers else ""
+            tail = "" if workload.more_is_better else _number(row["p99"])
+            yield f"  {peer:18}{_number(row['median']):>11}{tail:>11}{spread:>25}{compared}"
+    reached = [(goal, goal_ratio(goal, results)) for goal in GOALS]
+    if any(outcome for _, outcome in reached):
+        yield ""
+        yield "goals: ratio of medians, paired by round"
+    for goal, outcome in reached:
+        if outcome is not None:
+            sign = ">=" if WORKLOADS[goal.workload].more_is_better else "<="
+            verdict = "reached" if outcome[1] else "missed"
+            pair = f"{goal.peer} / {goal.against}"
+            yield (
+                f"  {goal.workload:8}{pair:32}{outcome[0]:7.2f}"
+                f"   goal {sign} {goal.factor:<5g} {verdict}"
+            )
+
+
+def _number(value: float) -> str:
+    return f"{value:,.0f}" if value >= 1000 else f"{value:.1f}"

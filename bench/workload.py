@@ -1,0 +1,83 @@
+"""What is measured, how often, and what yarpy wants to reach.
+
+Rules: every peer carries the same information (an integer and a float, 1 kB, or a 1 MiB image) in
+the way that is natural for it, packs it anew for each message and looks into what it received.
+Runs under CPython 3.10 too, because the C++ peer does.
+"""
+
+from dataclasses import dataclass, replace
+
+READERS = 50
+KILOBYTE_TEXT = "x" * 1000
+IMAGE_SIDE = 1024  # pixels; a mono image of 1 MiB
+NUMBER = 1.5
+
+
+@dataclass(frozen=True)
+class Workload:
+    """`count` samples of `unit` per round after `warmup` that are thrown away.
+
+    `cores` is 2 where the client and the server have a processor core each: every message wakes a
+    sleeping core up, as on a robot that has time to spare. It is 1 where they share one: then only
+    work and thread switches count. Left to the system, placement changes from run to run and with
+    it the result, by a factor of ten.
+    """
+
+    function: str
+    """What the peers call it; two workloads may differ in the cores alone."""
+    title: str
+    unit: str
+    warmup: int
+    count: int
+    cores: int = 2
+
+    @property
+    def more_is_better(self) -> bool:
+        return self.unit == "messages/s"
+
+    def quick(self) -> "Workload":
+        return replace(self, warmup=max(self.warmup // 2, 5), count=max(self.count // 5, 20))
+
+
+_STREAM = Workload("stream", "small message there and back, two streams", "us", 500, 4000)
+_RPC = Workload("rpc", "small request and its reply, one connection", "us", 500, 4000)
+_LARGE = Workload("large", "1 MiB image there and back, two streams", "us", 30, 200)
+
+WORKLOADS = {
+    "stream": _STREAM,
+    "stream-1-core": replace(_STREAM, cores=1),
+    "rpc": _RPC,
+    "rpc-1-core": replace(_RPC, cores=1),
+    "large": _LARGE,
+    "large-1-core": replace(_LARGE, cores=1),
+    "flood": Workload(
+        "flood", "small messages one way, until the last is read", "messages/s", 2000, 30000
+    ),
+    "fan": Workload("fan", f"1 kB to {READERS} readers, until all have read it", "us", 30, 200),
+}
+
+
+@dataclass(frozen=True)
+class Goal:
+    """`peer` shall need at most (or, for a rate, reach at least) `factor` times `against`."""
+
+    workload: str
+    peer: str
+    against: str
+    factor: float
+
+
+GOALS = (
+    Goal("stream", "yarpy-tcp", "raw", 1.3),
+    Goal("stream", "yarpy-tcp", "zmq", 1.0),
+    Goal("stream", "yarpy-tcp", "zenoh", 1.0),
+    Goal("stream", "yarpy-tcp", "cpp-tcp", 0.75),
+    Goal("stream", "yarpy-tcp", "cpp-latency-test", 0.75),
+    Goal("stream", "yarpy-spin", "raw", 1.0),
+    Goal("rpc", "yarpy-tcp", "cpp-tcp", 0.85),
+    Goal("rpc", "yarpy-tcp", "cpp-latency-test", 0.85),
+    Goal("large", "yarpy-tcp", "cpp-tcp", 0.35),
+    Goal("large", "yarpy-tcp", "raw", 1.3),
+    Goal("flood", "yarpy-tcp", "cpp-tcp", 5.0),
+    Goal("flood", "yarpy-tcp", "cpp-fast_tcp", 1.5),
+)
