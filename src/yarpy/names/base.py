@@ -1,0 +1,71 @@
+"""What a port needs of a name service. Ports are written against this and nothing else.
+
+Rules: a client may be used from any thread. `NoNameServer` means that nobody answered; a name
+that nobody knows is None, not an error.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+from yarpy.contact import Contact
+
+# A class with a method called `list` cannot spell this type inside its body.
+Contacts = list[Contact]
+Strings = list[str]
+
+
+@runtime_checkable
+class NameClient(Protocol):
+    """A name service as seen by its users.
+
+    `allocates`: whether `register` hands out port numbers. If not, listen first on a number of the
+    system's choice and register with host and port. With or without, a registration that names
+    host and port is kept as it is.
+    """
+
+    @property
+    def allocates(self) -> bool: ...
+
+    def register(
+        self,
+        name: str,
+        carrier: str | None = None,
+        host: str | None = None,
+        port: int | None = None,
+        type_: str | None = None,
+    ) -> Contact:
+        """Put `name` in and learn the complete contact; what is None the service fills in.
+
+        name: `...` asks for a temporary name. Whoever had the name before loses it.
+        Raises AddressError when the service refuses, NoNameServer when nobody answers.
+        """
+        ...
+
+    def unregister(self, name: str) -> None:
+        """Take `name` out; unknown names are ignored."""
+        ...
+
+    def query(self, name: str) -> Contact | None:
+        """Where `name` is, or None when the service does not know it."""
+        ...
+
+    def announce(self, name: str, ok: bool = True) -> None:
+        """Say that `name` listens now (persistent connections start), or does not answer."""
+        ...
+
+    def set(self, name: str, key: str, *values: str | int | float) -> Strings:
+        """Replace the values of a property; returns them as stored, [] for an unknown name."""
+        ...
+
+    def get(self, name: str, key: str) -> Strings:
+        """The values of a property, sorted; [] for an unknown name or key."""
+        ...
+
+    def list(self, prefix: str | None = None) -> Contacts:
+        """All ports, or those at and below `prefix`, by name."""
+        ...
+
+    def close(self) -> None:
+        """Let go of connections; the client may be used again."""
+        ...

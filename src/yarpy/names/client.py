@@ -1,0 +1,342 @@
+"""The client of a YARP name server, ours or that of C++.
+
+Rules: plain blocking sockets with a timeout; safe to use from any thread, connections are lent to
+one command at a time. Old style commands go over `NAME_SERVER` lines, several over one connection,
+each behind its own 12 bytes of prefix. What C++ answers with a Bottle (`bot ...`, `subscribe`,
+`topic` ...) goes over `CONNACK`, whose replies end visibly. A connection that turns out dead (the
+server was restarted) is replaced once before NoNameServer is raised; every command may be repeated
+without harm. Source: nameserver spec 1.1, 1.2, 5.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import threading
+import time
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, TypeVar
+
+from yarpy.contact import Contact
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.errors import AddressError, LinkClosed, NoNameServer, RemoteProtocolError
+from yarpy.names.base import Contacts, Strings
+from yarpy.names.line import END, PREFIX, parse_registration
+
+IDLE = 10.0  # seconds after which an unused connection is not trusted any more
+SPARE = 2  # connections kept for the next command
+LARGEST = 64 << 20  # bytes of one whole reply
+
+_ACK = "<ACK>"
+_BOTTLE_VERBS = frozenset({"announce", "subscribe", "unsubscribe", "topic", "untopic", "type"})
+
+Prepare = Callable[[socket.socket], None]
+_T = TypeVar("_T")
+
+
+class _Gone(Exception):
+    """The connection ended before a reply; a new one may do better."""
+
+
+class _Line:
+    """One connection that has greeted: `lines` for NAME_SERVER, `acked` for CONNACK."""
+
+    def __init__(self, connection: socket.socket, kind: Literal["lines", "acked"]) -> None:
+        self.connection = connection
+        self.kind = kind
+        self.used = time.monotonic()
+        self.process = os.getpid()
+        self._buffer = bytearray()
+
+    def send(self, data: bytes) -> None:
+        try:
+            self.connection.sendall(data)
+        except TimeoutError:
+            raise
+        except OSError as error:
+            raise _Gone(str(error)) from error
+
+    def line(self) -> str:
+        """The next line without its end."""
+        start = 0
+        while (end := self._buffer.find(b"\n", start)) < 0:
+            start = len(self._buffer)
+            if start > LARGEST:
+                raise RemoteProtocolError(f"a name server's line of more than {LARGEST} bytes")
+            try:
+                data = self.connection.recv(65_536)
+            except TimeoutError:
+                raise
+            except OSError as error:
+                raise _Gone(str(error)) from error
+            if not data:
+                raise _Gone("it closed the connection")
+            self._buffer += data
+        text = bytes(self._buffer[:end]).rstrip(b"\r")
+        del self._buffer[: end + 1]
+        return text.decode("utf-8", "surrogateescape")
+
+    @property
+    def clean(self) -> bool:
+        """Whether nothing is left over from the last command."""
+        return not self._buffer
+
+    def close(self) -> None:
+        with contextlib.suppress(OSError):
+            self.connection.close()
+
+
+class YarpNameClient:
+    """A `NameClient` that asks the name server at `host`:`port`.
+
+    timeout: seconds for connecting and for each part of a reply.
+    own_host: what to register where `register` is not told a host (`YARP_IP`); normally "", and
+    the server takes the address it sees.
+    prepare: called with each new connection before anything else (the proof of auth.conf).
+    """
+
+    allocates = True
+
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        timeout: float = 10.0,
+        *,
+        own_host: str = "",
+        prepare: Prepare | None = None,
+    ) -> None:
+        self.host = host
+        self.port = port
+        self.timeout = timeout
+        self.own_host = own_host
+        self._prepare = prepare
+        self._idle: list[_Line] = []
+        self._lock = threading.Lock()  # guards the list only, never held across I/O
+
+    # --- the NameClient
+
+    def register(
+        self,
+        name: str,
+        carrier: str | None = None,
+        host: str | None = None,
+        port: int | None = None,
+        type_: str | None = None,
+    ) -> Contact:
+        words: list[str | int] = ["register", name]
+        extra = (carrier, host or self.own_host or None, port or None, type_ or None)
+        if any(item is not None for item in extra):
+            words += [carrier or "...", extra[1] or "..."]
+            words.append(port or -1)  # what C++ sends for "any"
+            if type_:
+                words.append(type_)
+        lines = self.command(*words)
+        contact = parse_registration(lines[0]) if lines else None
+        if contact is None:
+            reason = lines[0].removeprefix("error ") if lines else "it gave no reason"
+            raise AddressError(f'the name server at {self._where} refused "{name}": {reason}')
+        return contact
+
+    def unregister(self, name: str) -> None:
+        self.command("unregister", name)
+
+    def query(self, name: str) -> Contact | None:
+        lines = self.command("query", name)
+        return parse_registration(lines[0]) if lines else None
+
+    def announce(self, name: str, ok: bool = True) -> None:
+        if ok:
+            self.command("announce", name)
+        else:
+            self.command("announce", name, 0)
+
+    def set(self, name: str, key: str, *values: str | int | float) -> Strings:
+        return list(map(plain_text, self.request(["bot", "set", name, key, *values])))
+
+    def get(self, name: str, key: str) -> Strings:
+        return list(map(plain_text, self.request(["bot", "get", name, key])))
+
+    def list(self, prefix: str | None = None) -> Contacts:
+        lines = self.command("list", prefix) if prefix else self.command("list")
+        return [contact for contact in map(parse_registration, lines) if contact is not None]
+
+    def close(self) -> None:
+        with self._lock:
+            idle, self._idle = self._idle, []
+        for line in idle:
+            line.close()
+
+    def __enter__(self) -> YarpNameClient:
+        return self
+
+    def __exit__(self, *details: object) -> None:
+        self.close()
+
+    # --- any command
+
+    def command(self, *words: str | int | float) -> Strings:
+        """The lines of an old style reply, without the end line; for `announce` none.
+
+        Raises AddressError for what has a Bottle as its reply (use `request`) and would wait
+        for an end line that never comes.
+        """
+        verb = str(words[0]) if words else ""
+        if not words or verb == "bot" or (verb in _BOTTLE_VERBS and verb != "announce"):
+            raise AddressError(f'"{verb or "nothing"}" is answered with a Bottle: use request()')
+        text = Bottle(words).to_text()
+        return self._ask("lines", lambda line: _old_style(line, text))
+
+    def request(self, command: Sequence[Any]) -> Bottle:
+        """Ask anything and get one Bottle: `bot ...`, `subscribe`, `topic`, `type` ...
+
+        An old style reply comes as a Bottle of its lines, without the end line.
+        """
+        text = Bottle(command).to_text()
+        return self._ask("acked", lambda line: _acknowledged(line, text))
+
+    def connect(self) -> socket.socket:
+        """A bare connection to the server: it lives as long as the server does.
+
+        Raises NoNameServer.
+        """
+        return self._open("lines").connection
+
+    def alive(self) -> bool:
+        """Whether something listens at the server's address."""
+        try:
+            line = self._open("lines")
+        except NoNameServer:
+            return False
+        line.close()
+        return True
+
+    @property
+    def local_address(self) -> str:
+        """The address of this computer that leads to the server. Raises NoNameServer."""
+        from yarpy.names.address import plain_host
+
+        line = self._open("lines")
+        try:
+            return plain_host(str(line.connection.getsockname()[0]))
+        finally:
+            line.close()
+
+    # --- inside
+
+    @property
+    def _where(self) -> str:
+        return Contact(host=self.host, port=self.port).address
+
+    def _ask(self, kind: Literal["lines", "acked"], talk: Callable[[_Line], _T]) -> _T:
+        line = self._borrow(kind)
+        if line is not None:
+            try:
+                return self._talk(line, talk)
+            except _Gone:
+                pass  # the server was restarted since; that is no news yet
+        try:
+            return self._talk(self._open(kind), talk)
+        except _Gone as error:
+            raise self._nobody(f"hung up: {error}") from error
+
+    def _talk(self, line: _Line, talk: Callable[[_Line], _T]) -> _T:
+        try:
+            reply = talk(line)
+        except TimeoutError as error:
+            line.close()
+            raise self._nobody(f"did not answer within {self.timeout:g} s") from error
+        except BaseException:
+            line.close()
+            raise
+        self._give_back(line)
+        return reply
+
+    def _open(self, kind: Literal["lines", "acked"]) -> _Line:
+        try:
+            connection = socket.create_connection((self.host, self.port), self.timeout)
+        except (OSError, UnicodeError) as error:
+            raise self._nobody(str(error)) from error
+        line = _Line(connection, kind)
+        try:
+            with contextlib.suppress(OSError):
+                connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            if self._prepare is not None:
+                self._prepare(connection)
+            if kind == "acked":
+                line.send(b"CONNACK admin\r\n")
+                line.line()  # "Welcome admin"
+        except (_Gone, OSError, LinkClosed, RemoteProtocolError) as error:
+            line.close()
+            raise self._nobody(str(error)) from error
+        except BaseException:
+            line.close()
+            raise
+        return line
+
+    def _borrow(self, kind: str) -> _Line | None:
+        now, process = time.monotonic(), os.getpid()
+        stale = []
+        found = None
+        with self._lock:
+            for line in reversed(self._idle):
+                # A fork shares the socket; two processes in one dialogue would mix their replies.
+                if now - line.used > IDLE or line.process != process:
+                    stale.append(line)
+                elif found is None and line.kind == kind:
+                    found = line
+            gone = {id(line) for line in (*stale, found)}
+            self._idle = [line for line in self._idle if id(line) not in gone]
+        for line in stale:
+            line.close()
+        return found
+
+    def _give_back(self, line: _Line) -> None:
+        line.used = time.monotonic()
+        with self._lock:
+            if line.clean and len(self._idle) < SPARE:
+                self._idle.append(line)
+                return
+        line.close()
+
+    def _nobody(self, reason: str) -> NoNameServer:
+        return NoNameServer(
+            f"no name server answers at {self._where} ({reason}): start one with `yarpy server`, "
+            "or say where it is with YARPY_SERVER=HOST:PORT or `yarpy conf HOST PORT`, "
+            "or look for one with `yarpy detect --write`"
+        )
+
+
+def _old_style(line: _Line, command: str) -> list[str]:
+    line.send(_encode(f"{PREFIX}{command}\n"))
+    lines: list[str] = []
+    size = 0
+    while (text := line.line()) != END:
+        if text.startswith("[") and not lines:
+            return []  # [ok] to an announce
+        size += len(text) + 2
+        if size > LARGEST:
+            raise RemoteProtocolError(f"a name server's reply of more than {LARGEST} bytes")
+        lines.append(text)
+    return lines
+
+
+def _acknowledged(line: _Line, command: str) -> Bottle:
+    line.send(_encode(f"d\r\n{command}\r\n"))
+    lines: list[str] = []
+    size = 0
+    while (text := line.line()) != _ACK:
+        size += len(text) + 2
+        if size > LARGEST:
+            raise RemoteProtocolError(f"a name server's reply of more than {LARGEST} bytes")
+        lines.append(text)
+    if lines and lines[-1] == END:
+        return Bottle(lines[:-1])
+    return Bottle.from_text("\n".join(lines))
+
+
+def _encode(text: str) -> bytes:
+    # A newline inside a string is escaped in Bottle text, so one command is one line.
+    return text.encode("utf-8", "surrogateescape")

@@ -1,0 +1,93 @@
+"""Several name services used as one, in order of preference.
+
+Rules (nameserver spec 6.5): a port is registered in all, the first one completes the address and
+the others get it complete; a query goes through them until one knows the name; everything else is
+asked of the first. The first one must answer, the others may be away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from yarpy.contact import Contact
+from yarpy.errors import AddressError, NoNameServer
+from yarpy.names.base import Contacts, NameClient, Strings
+
+
+def _warn(message: str, *arguments: object) -> None:
+    import logging  # 5 ms that most programs need not spend at import
+
+    logging.getLogger("yarpy.names").warning(message, *arguments)
+
+
+class SeveralNames:
+    """A `NameClient` made of others."""
+
+    def __init__(self, clients: Sequence[NameClient]) -> None:
+        if not clients:
+            raise AddressError("SeveralNames needs at least one name client")
+        self.clients = tuple(clients)
+
+    @property
+    def allocates(self) -> bool:
+        return self.clients[0].allocates
+
+    def register(
+        self,
+        name: str,
+        carrier: str | None = None,
+        host: str | None = None,
+        port: int | None = None,
+        type_: str | None = None,
+    ) -> Contact:
+        contact = self.clients[0].register(name, carrier, host, port, type_)
+        for client in self.clients[1:]:
+            try:
+                client.register(contact.name, contact.carrier, contact.host, contact.port, type_)
+            except (NoNameServer, AddressError) as error:
+                _warn('"%s" is not registered everywhere: %s', contact.name, error)
+        return contact
+
+    def unregister(self, name: str) -> None:
+        missing: NoNameServer | None = None
+        for client in reversed(self.clients):
+            try:
+                client.unregister(name)
+            except NoNameServer as error:
+                missing = error
+                if client is not self.clients[0]:
+                    _warn('"%s" is not unregistered everywhere: %s', name, error)
+                    missing = None
+        if missing is not None:
+            raise missing
+
+    def query(self, name: str) -> Contact | None:
+        """Where `name` is; NoNameServer if a service was away and no other knew the name."""
+        missing: NoNameServer | None = None
+        for client in self.clients:
+            try:
+                contact = client.query(name)
+            except NoNameServer as error:
+                missing = missing or error
+                continue
+            if contact is not None:
+                return contact
+        if missing is not None:
+            raise missing
+        return None
+
+    def announce(self, name: str, ok: bool = True) -> None:
+        self.clients[0].announce(name, ok)
+
+    def set(self, name: str, key: str, *values: str | int | float) -> Strings:
+        return self.clients[0].set(name, key, *values)
+
+    def get(self, name: str, key: str) -> Strings:
+        return self.clients[0].get(name, key)
+
+    def list(self, prefix: str | None = None) -> Contacts:
+        return self.clients[0].list(prefix)
+
+    def close(self) -> None:
+        for client in self.clients:
+            client.close()
