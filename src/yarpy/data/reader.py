@@ -1,0 +1,231 @@
+"""Read the binary spelling of a Bottle.
+
+    i32 code    256 for mixed elements, 256 + tag when all elements have that tag
+    i32 count
+    elements    i32 tag + payload when mixed, payload only otherwise
+
+Rules: a count or length is checked against the bytes that are there before memory is taken for it.
+Only DecodeError and Truncated come out. Bytes after the end are nobody's business here. A C++
+reader looks only at the low byte of the first code, so does this one. (Protocol of YARP 3.x.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from struct import Struct, unpack_from
+from struct import error as struct_error
+from typing import Any, Final
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.property import Property
+from yarpy.data.value import (
+    BLOB,
+    DICT,
+    FIXED,
+    FLOAT32,
+    FLOAT64,
+    INT8,
+    INT16,
+    INT32,
+    INT64,
+    LIST,
+    MAX_DEPTH,
+    STRING,
+    UNIT_MASK,
+    VOCAB32,
+    Buffer,
+    Float32,
+    Int8,
+    Int16,
+    Int64,
+    vocab_of,
+)
+from yarpy.errors import DecodeError, Truncated
+
+#: Messages up to this size are copied once: slicing bytes is much cheaper than slicing views.
+_SMALL: Final = 1 << 16
+
+_read_i32 = Struct("<i").unpack_from
+_read_pair = Struct("<ii").unpack_from
+_read_i64 = Struct("<q").unpack_from
+_read_f64 = Struct("<d").unpack_from
+_read_f32 = Struct("<f").unpack_from
+_read_i16 = Struct("<h").unpack_from
+
+
+def read_bottle(view: Buffer) -> Bottle:
+    """The Bottle at the start of `view`; Truncated or DecodeError if there is none."""
+    size = len(view)
+    if size < 8:
+        raise Truncated(f"a Bottle takes at least 8 bytes, here are {size}", 8)
+    buffer = bytes(view) if size <= _SMALL else memoryview(view)
+    code, count = _read_pair(buffer)
+    items = Bottle()
+    try:
+        _read_items(buffer, 8, code & UNIT_MASK, count, 0, items)
+    except struct_error:
+        raise Truncated(f"the Bottle goes on beyond its {size} bytes", size + 1) from None
+    return items
+
+
+def _read_items(
+    buffer: bytes | memoryview, pos: int, kind: int, count: int, depth: int, items: list[Any]
+) -> int:
+    """Append `count` elements to `items`; gives the position after them."""
+    if count <= 0:
+        if count < 0:
+            raise DecodeError(f"a list with {count} elements at byte {pos - 4}")
+        return pos
+    if kind:
+        return _read_uniform(buffer, pos, kind, count, items)
+    size = len(buffer)
+    if count * 5 > size - pos:
+        raise _too_short(pos, count, 5, size)
+    add = items.append
+    last_pair = size - 8
+    for _ in range(count):
+        if pos > last_pair:
+            pos = _read_tiny(buffer, pos, items)
+            continue
+        tag, word = _read_pair(buffer, pos)
+        if tag == INT32:
+            add(word)
+            pos += 8
+        elif tag == STRING:
+            end = pos + 8 + word
+            if word < 0 or end > size:
+                raise _bad_length(pos + 4, word, size)
+            add(str(buffer[pos + 8 : end], "utf-8", "surrogateescape"))
+            pos = end
+        elif tag == FLOAT64:
+            add(_read_f64(buffer, pos + 4)[0])
+            pos += 12
+        elif tag == VOCAB32:
+            add(vocab_of(word))
+            pos += 8
+        elif LIST <= tag < 2 * DICT:
+            if depth >= MAX_DEPTH:
+                raise DecodeError(f"lists nested more than {MAX_DEPTH} deep")
+            inner = Bottle()
+            if tag & DICT:
+                count_in = _read_i32(buffer, pos + 8)[0]
+                pos = _read_items(buffer, pos + 12, word & UNIT_MASK, count_in, depth + 1, inner)
+                add(Property.from_bottle(inner))
+            else:
+                pos = _read_items(buffer, pos + 8, tag & UNIT_MASK, word, depth + 1, inner)
+                add(inner)
+        elif tag == BLOB:
+            end = pos + 8 + word
+            if word < 0 or end > size:
+                raise _bad_length(pos + 4, word, size)
+            add(bytes(buffer[pos + 8 : end]))
+            pos = end
+        elif tag == INT64:
+            add(_int64(_read_i64(buffer, pos + 4)[0]))
+            pos += 12
+        elif tag == FLOAT32:
+            add(_float32(_read_f32(buffer, pos + 4)[0]))
+            pos += 8
+        elif tag in (INT8, INT16):
+            pos = _read_tiny(buffer, pos, items)
+        else:
+            raise _unknown_tag(tag, pos)
+    return pos
+
+
+def _read_tiny(buffer: bytes | memoryview, pos: int, items: list[Any]) -> int:
+    """One element that may end less than 8 bytes after its start."""
+    tag = _read_i32(buffer, pos)[0]
+    if tag == INT8:
+        if pos + 4 >= len(buffer):
+            raise Truncated("the Bottle ends inside a number", pos + 5)
+        items.append(_int8(_signed(buffer[pos + 4])))
+        return pos + 5
+    if tag == INT16:
+        items.append(_int16(_read_i16(buffer, pos + 4)[0]))
+        return pos + 6
+    if tag not in FIXED and tag not in (STRING, BLOB) and not LIST <= tag < 2 * DICT:
+        raise _unknown_tag(tag, pos)
+    raise Truncated("the Bottle ends inside an element", pos + 8)
+
+
+def _read_uniform(
+    buffer: bytes | memoryview, pos: int, kind: int, count: int, items: list[Any]
+) -> int:
+    """`count` > 0 elements that all have the tag `kind` and therefore carry none."""
+    size = len(buffer)
+    fixed = FIXED.get(kind)
+    if fixed is not None:
+        letter, width = fixed
+        end = pos + count * width
+        if end > size:
+            raise _too_short(pos, count, width, size)
+        values = unpack_from(f"<{count}{letter}", buffer, pos)
+        if kind in (INT32, FLOAT64):
+            items.extend(values)
+        else:
+            items.extend(map(_FROM_FIXED[kind], values))
+        return end
+    if kind != STRING and kind != BLOB:
+        raise _unknown_tag(kind, pos)
+    if count * 4 > size - pos:
+        raise _too_short(pos, count, 4, size)
+    for _ in range(count):
+        length = _read_i32(buffer, pos)[0]
+        start = pos + 4
+        pos = start + length
+        if length < 0 or pos > size:
+            raise _bad_length(start - 4, length, size)
+        if kind == STRING:
+            items.append(str(buffer[start:pos], "utf-8", "surrogateescape"))
+        else:
+            items.append(bytes(buffer[start:pos]))
+    return pos
+
+
+def _signed(byte: int) -> int:
+    return byte - 256 if byte > 127 else byte
+
+
+def _int8(value: int) -> Int8:
+    return int.__new__(Int8, value)
+
+
+def _int16(value: int) -> Int16:
+    return int.__new__(Int16, value)
+
+
+def _int64(value: int) -> int:
+    # What needs 64 bits anyway may be a plain int: it is sent as 64 bits again.
+    return int.__new__(Int64, value) if -0x80000000 <= value <= 0x7FFFFFFF else value
+
+
+def _float32(value: float) -> Float32:
+    return float.__new__(Float32, value)
+
+
+_FROM_FIXED: Final[dict[int, Callable[[Any], Any]]] = {
+    VOCAB32: vocab_of,
+    INT64: _int64,
+    INT8: _int8,
+    INT16: _int16,
+    FLOAT32: _float32,
+}
+
+
+def _unknown_tag(tag: int, pos: int) -> DecodeError:
+    return DecodeError(f"unknown element tag {tag} at byte {pos}: not a Bottle of YARP 3.x")
+
+
+def _too_short(pos: int, count: int, width: int, size: int) -> Truncated:
+    return Truncated(
+        f"a list announces {count} elements at byte {pos - 4}, only {size - pos} bytes follow",
+        pos + count * width,
+    )
+
+
+def _bad_length(pos: int, length: int, size: int) -> DecodeError:
+    if length < 0:
+        return DecodeError(f"a length of {length} at byte {pos}")
+    need = pos + 4 + length
+    return Truncated(f"{length} bytes announced at byte {pos}, only {size - pos - 4} follow", need)

@@ -1,0 +1,301 @@
+"""The text spelling of a Bottle, as C++ YARP reads and prints it to the letter.
+
+    word "two words" 12 0x1f 3.5 [voc] true (a list) {1 2 255}
+
+Rules: reading works on bytes and never complains: what is unfinished or unbalanced vanishes. The
+single exception is nesting beyond MAX_DEPTH, a DecodeError. Printing chooses the form that reads
+back; the words `null`, `inf` and `nan` are printed bare although they come back as something else,
+and a negative NaN prints as `-nan.0`, because that is what peers do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from math import copysign, isfinite, isnan
+from typing import Any, Final
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.property import text_of
+from yarpy.data.value import (
+    MAX_DEPTH,
+    Float32,
+    Int8,
+    Int16,
+    Int64,
+    Vocab,
+    vocab_code,
+    vocab_of,
+)
+from yarpy.errors import DecodeError
+
+_INT64_MAX: Final = 0x7FFFFFFFFFFFFFFF
+
+#: Everything the tokeniser has to look at: an escape, a quote, a bracket or a separator.
+_MARK = re.compile(rb'\\.|["(){}]|[, \t\r\n]', re.DOTALL)
+
+#: Leading zeros, signs and x, then digits: anything else makes a token a word.
+_NUMBER = re.compile(rb"([0+\-xX]*)([0-9.eE+\-a-fA-F]*)")
+_C_INT = re.compile(rb"([+-]?)(?:0[xX]([0-9a-fA-F]+)|(0[0-7]*)|([1-9][0-9]*))")
+_C_FLOAT = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_C_HEX_FLOAT = re.compile(rb"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)")
+_ESCAPE = re.compile(rb"\\(.?)", re.DOTALL)
+_ESCAPED: Final = {b"n": b"\n", b"r": b"\r", b"0": b"\0"}
+
+_BARE = re.compile(r"[A-Za-z_][A-Za-z_0-9.\-]*")
+_QUOTED: Final = str.maketrans({"\n": "\\n", "\r": "\\r", "\0": "\\0", "\\": "\\\\", '"': '\\"'})
+
+
+# ---------------------------------------------------------------------------------- reading
+
+
+def parse_text(text: str | bytes) -> list[Any]:
+    """The elements that a line of text stands for; DecodeError only for hundreds of brackets."""
+    data = text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
+    return _parse(data, 0)
+
+
+def balanced(text: str | bytes) -> bool:
+    """Are all quotes and brackets of this text closed? If not, a text peer sends more lines."""
+    data = text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
+    quoted = False
+    round_depth = curly_depth = 0
+    for mark in _MARK.finditer(data):
+        char = mark.group()
+        if char == b'"':
+            quoted = not quoted
+        elif not quoted:
+            round_depth += (char == b"(") - (char == b")")
+            curly_depth += (char == b"{") - (char == b"}")
+    return not (quoted or round_depth or curly_depth)
+
+
+def _parse(data: bytes, depth: int) -> list[Any]:
+    if depth > MAX_DEPTH:
+        raise DecodeError(f"text with lists nested more than {MAX_DEPTH} deep")
+    return [_classify(token, depth) for token in tokens(data)]
+
+
+def tokens(data: bytes) -> list[bytes]:
+    """The tokens of a text, still with their quotes, brackets and escapes."""
+    found = []
+    start = 0
+    quoted = False
+    round_depth = curly_depth = 0
+    data += b" "  # the last token needs an end, a last backslash something to take
+    for mark in _MARK.finditer(data):
+        char = mark.group()
+        if char == b'"':
+            quoted = not quoted
+        elif quoted:
+            continue
+        elif char == b"(":
+            round_depth += 1
+        elif char == b")":
+            round_depth -= 1
+        elif char == b"{":
+            curly_depth += 1
+        elif char == b"}":
+            curly_depth -= 1
+        elif len(char) == 1 and not round_depth and not curly_depth:
+            end = mark.start()
+            if end > start:
+                found.append(data[start:end])
+            start = end + 1
+    return found
+
+
+def _classify(token: bytes, depth: int) -> Any:
+    first = token[:1]
+    if first in b"0123456789+-.in":
+        number = _number(token)
+        if number is not None:
+            return number
+        if token == b"null":
+            return Vocab("null")
+    elif first == b"(":
+        return Bottle(_parse(token[1:-1], depth + 1))
+    elif first == b"[":
+        return vocab_of(vocab_code(token[1:-1]))
+    elif first == b"{":
+        return bytes(map(_byte, tokens(token[1:-1])))
+    elif first == b'"':
+        return _unescape(token[1:-1])
+    word = _unescape(token)
+    if word == "true":
+        return True
+    if word == "false":
+        return False
+    return word
+
+
+def _unescape(word: bytes) -> str:
+    if b"\\" in word:
+        word = _ESCAPE.sub(lambda match: _ESCAPED.get(match[1], match[1]), word)
+    return word.decode("utf-8", "surrogateescape")
+
+
+def _byte(token: bytes) -> int:
+    """One byte of a blob: the low bits of what the token is worth as an integer."""
+    if token == b"null":
+        return ord("n")
+    first = token[:1]
+    if first == b"[":
+        return vocab_code(token[1:-1]) & 0xFF
+    if first in b"0123456789+-.in":
+        number = _number(token)
+        if isinstance(number, float):
+            # beyond 32 bits the processor answers with a value whose low bits are zero
+            return int(number) & 0xFF if -0x80000000 <= number < 0x80000000 else 0
+        if number is not None:
+            return number & 0xFF
+    if first not in b'"({' and _unescape(token) == "true":
+        return 0x31
+    return 0
+
+
+def _number(token: bytes) -> int | float | None:
+    """The number a token stands for; None if it is a word."""
+    if token.isdigit() and token[:1] != b"0" and len(token) < 19:
+        return int(token)
+    if token == b"inf" or token == b"-inf" or token == b"nan":
+        return float(token)
+    match = _NUMBER.fullmatch(token)
+    if match is None or token == b".":
+        return None
+    lead, rest = match.groups()
+    if lead.count(b"+") + lead.count(b"-") > 1 or rest.count(b".") > 1:
+        return None
+    marker = max(lead.rfind(b"x"), lead.rfind(b"X"))
+    if marker >= 0:
+        if len(token) - marker - 1 > 8:
+            return None
+        return _c_float(token) if b"." in rest else _c_int(token)
+    if rest.strip(b"0123456789.eE+-"):
+        return None
+    if b"." in rest or b"e" in rest or b"E" in rest:
+        return _c_float(token)
+    return _c_int(token)
+
+
+def _c_int(token: bytes) -> int:
+    """strtoll with base 0: as far as it goes, a leading 0 means octal, saturating at 64 bits."""
+    match = _C_INT.match(token)
+    if match is None:
+        return 0
+    sign, hexadecimal, octal, decimal = match.groups()
+    if decimal:
+        # (the interpreter refuses to convert thousands of digits)
+        value = int(decimal) if len(decimal) < 20 else _INT64_MAX + 1
+    else:
+        value = int(hexadecimal, 16) if hexadecimal else int(octal, 8)
+    if sign == b"-":
+        return max(-value, -_INT64_MAX - 1)
+    return min(value, _INT64_MAX)
+
+
+def _c_float(token: bytes) -> float:
+    """strtod, and 0.0 unless all of the token is a number."""
+    if _C_FLOAT.fullmatch(token):
+        return float(token)
+    if _C_HEX_FLOAT.fullmatch(token):
+        return float.fromhex(token.decode("ascii"))
+    return 0.0
+
+
+# ---------------------------------------------------------------------------------- printing
+
+
+def print_text(items: Sequence[Any], depth: int = 0) -> str:
+    """The text of a list of elements, without brackets around it."""
+    if depth > MAX_DEPTH:
+        raise ValueError(f"lists nested more than {MAX_DEPTH} deep cannot be sent: flatten them")
+    return " ".join([_print(item, depth) for item in items])
+
+
+def plain_text(value: Any) -> str:
+    """A value on its own as text: without quotes or brackets, which is how keys are compared."""
+    if isinstance(value, Vocab):
+        return _print_vocab(value).strip("[]")
+    if isinstance(value, str):
+        return str.__str__(value)
+    if isinstance(value, (list, tuple)):
+        return print_text(value)
+    if value is None:
+        return ""
+    if isinstance(value, dict):
+        return text_of(value)
+    if isinstance(value, (bytes, bytearray, memoryview)):
+        return _print_bytes(value)
+    return _print(value, 0)
+
+
+def _print(value: Any, depth: int) -> str:
+    show = _PRINTERS.get(type(value))
+    if show is not None:
+        return show(value)
+    if isinstance(value, (list, tuple)):
+        return f"({print_text(value, depth + 1)})"
+    if isinstance(value, dict):
+        return f"({text_of(value, depth + 1)})"
+    for kind in (Vocab, str, int, float, bytes, bytearray):
+        if isinstance(value, kind):
+            return _PRINTERS[kind](value)
+    from yarpy.data.reader import read_bottle
+    from yarpy.data.writer import list_blocks
+
+    return print_text(read_bottle(b"".join(list_blocks([value]))), depth)
+
+
+def _print_str(value: str) -> str:
+    if _BARE.fullmatch(value) and value != "true" and value != "false":
+        return value
+    return f'"{value.translate(_QUOTED)}"'
+
+
+def _print_int(value: int) -> str:
+    return int.__repr__(value)
+
+
+def _print_float(value: float) -> str:
+    text = f"{value:.21g}"
+    if "." in text or "e" in text:
+        return text
+    if isfinite(value):
+        return text + ".0"
+    return "-nan.0" if isnan(value) and copysign(1.0, value) < 0 else text
+
+
+def _print_bool(value: bool) -> str:
+    return "true" if value else "false"
+
+
+def _print_vocab(value: Vocab) -> str:
+    # a Vocab object may hold the codes that otherwise arrive as booleans
+    if value.code == 0 or value.code == 0x31:
+        return _print_bool(value.code != 0)
+    return f"[{str.__str__(value)}]"
+
+
+def _print_bytes(value: Iterable[int]) -> str:
+    return " ".join(map(str, bytes(value)))
+
+
+def _print_blob(value: Iterable[int]) -> str:
+    return "{" + _print_bytes(value) + "}"
+
+
+_PRINTERS: Final[dict[type, Callable[[Any], str]]] = {
+    str: _print_str,
+    int: _print_int,
+    float: _print_float,
+    bool: _print_bool,
+    Vocab: _print_vocab,
+    Int8: _print_int,
+    Int16: _print_int,
+    Int64: _print_int,
+    Float32: _print_float,
+    bytes: _print_blob,
+    bytearray: _print_blob,
+    memoryview: _print_blob,
+}

@@ -1,0 +1,169 @@
+"""Where does a message end that carries its length only inside itself?
+
+Replies and some messages come without any length. A Walker finds their end in a buffer that is
+still growing, without building objects. Rules: no byte is looked at twice, nothing is allocated for
+what a header announces, and what cannot be a message is refused at the first wrong byte.
+"""
+
+from __future__ import annotations
+
+from struct import Struct
+
+from yarpy.data.value import (
+    BLOB,
+    DICT,
+    FIXED,
+    LIST,
+    MAX_DEPTH,
+    STRING,
+    UNIT_MASK,
+    Buffer,
+)
+from yarpy.errors import DecodeError
+
+_read_i32 = Struct("<i").unpack_from
+_read_pair = Struct("<ii").unpack_from
+_read_sound = Struct("<10i").unpack_from
+
+_WIDTH = {tag: width for tag, (_, width) in FIXED.items()}
+
+
+class Walker:
+    """Finds the end of one Bottle (or of a Sound, which only looks like one).
+
+    Call `advance` with everything received so far, again and again, until `done`. Every call gives
+    the number of bytes that the message has at least; more than are there means: come back when
+    there are so many. Once `done`, it is the length of the message. DecodeError if it is none, or
+    longer than `limit` bytes.
+    """
+
+    __slots__ = ("_begun", "_kinds", "_left", "_owed", "_pos", "done", "limit")
+
+    def __init__(self, limit: int = 1 << 30) -> None:
+        self.limit = limit
+        self.done = False
+        self._begun = False
+        self._pos = 0
+        # One entry per list that is open: the tag of its elements (0: each has its own), and how
+        # many are to come. `_owed` is what all of these take at the least.
+        self._kinds: list[int] = []
+        self._left: list[int] = []
+        self._owed = 0
+
+    def advance(self, view: Buffer) -> int:
+        """Look at what is new in `view`, which holds the message from its first byte."""
+        size = len(view)
+        if self.done:
+            return self._pos
+        if not self._begun:
+            if size < 8:
+                return 8
+            code, count = _read_pair(view, 0)
+            if code == LIST and count == 4:
+                if size < 12:
+                    return 12
+                if _read_i32(view, 8)[0] == 0:
+                    return self._sound(view, size)
+            self._begun = True
+            self._pos = 8
+            self._open(code & UNIT_MASK, count)
+        return self._walk(view, size)
+
+    def _walk(self, view: Buffer, size: int) -> int:
+        kinds, left = self._kinds, self._left
+        pos = self._pos
+        while kinds:
+            if not left[-1]:
+                kinds.pop()
+                left.pop()
+                continue
+            kind = kinds[-1]
+            if kind == 0:
+                start = pos + 4
+                if start > size:
+                    return self._wait(pos, 0)
+                kind = _read_i32(view, pos)[0]
+            else:
+                start = pos
+            width = _WIDTH.get(kind)
+            if width is not None:
+                if kinds[-1]:  # all of them at once
+                    self._owed -= left[-1] * width
+                    pos += left[-1] * width
+                    left[-1] = 0
+                else:
+                    self._owed -= 5
+                    pos = start + width
+                    left[-1] -= 1
+                continue
+            if kind in (STRING, BLOB):
+                least = 5 if start != pos else 4
+                if start + 4 > size:
+                    return self._wait(pos, start + 4 - pos - least)
+                length = _read_i32(view, start)[0]
+                if length < 0:
+                    raise DecodeError(f"a length of {length} at byte {start}")
+                self._owed -= least
+                pos = start + 4 + length
+                left[-1] -= 1
+                self._check(pos)
+                continue
+            if not LIST <= kind < 2 * DICT:
+                raise DecodeError(
+                    f"unknown element tag {kind} at byte {pos}: not a Bottle of YARP 3.x"
+                )
+            if kind & DICT:
+                if start + 8 > size:
+                    return self._wait(pos, 7)
+                kind, count = _read_pair(view, start)
+                start += 4
+            else:
+                if start + 4 > size:
+                    return self._wait(pos, 3)
+                count = _read_i32(view, start)[0]
+            self._owed -= 5
+            left[-1] -= 1
+            pos = start + 4
+            self._pos = pos
+            self._open(kind & UNIT_MASK, count)
+        self._pos = pos
+        self._check(pos)
+        self.done = pos <= size
+        return pos
+
+    def _wait(self, pos: int, more: int) -> int:
+        """Stop at `pos`: at least what is owed is still to come, and `more` if that is known."""
+        self._pos = pos
+        self._check(pos)
+        return pos + self._owed + more
+
+    def _open(self, kind: int, count: int) -> None:
+        if count < 0:
+            raise DecodeError(f"a list with {count} elements at byte {self._pos - 4}")
+        if len(self._kinds) > MAX_DEPTH:
+            raise DecodeError(f"lists nested more than {MAX_DEPTH} deep")
+        if count and kind and kind not in _WIDTH and kind != STRING and kind != BLOB:
+            raise DecodeError(f"unknown list code {kind} at byte {self._pos - 8}")
+        self._kinds.append(kind)
+        self._left.append(count)
+        self._owed += count * (_WIDTH.get(kind, 4) if kind else 5)
+        self._check(self._pos)
+
+    def _check(self, pos: int) -> None:
+        if pos + self._owed > self.limit:
+            raise DecodeError(
+                f"the message has at least {pos + self._owed} bytes, more than the limit of "
+                f"{self.limit}"
+            )
+
+    def _sound(self, view: Buffer, size: int) -> int:
+        """A Sound announces a list of four and then has a 0 where no Bottle has one."""
+        if size < 40:
+            return 40
+        _, _, _, samples, one, channels, also, _, again, _ = _read_sound(view, 0)
+        if (one, also, again) != (1, 1, 1) or samples < 0 or channels < 0:
+            raise DecodeError("unknown element tag 0 at byte 8: not a Bottle of YARP 3.x")
+        self._pos = 40 + 2 * samples * channels
+        self._check(self._pos)
+        self.done = self._pos <= size
+        return self._pos
