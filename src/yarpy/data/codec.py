@@ -1,0 +1,313 @@
+"""Python values to payloads and back: the one interface of links and ports to this package.
+
+    encode(obj), encode_text(obj)                the two spellings of anything that can be sent
+    decode(view), decode_text(line)              the natural value of what came
+    decode_as(view, type_), decode_text_as(...)  ... or of the type that somebody wants
+    Walker                                       the end of a message that has no length
+
+    sent                                        as
+    list, tuple, Bottle                         Bottle
+    dict, Property                              Property
+    int, float, str, bool, bytes, Vocab ...     Value (a list of one that is never specialised)
+    None                                        the null Value, an empty message
+    Stamp, Vector, Matrix, Image, Sound ...     their own layout
+    numpy arrays                                see `yarpy.data.array`
+    anything with `to_wire() -> blocks`         what it says
+
+Rules: decoding raises DecodeError or Truncated, nothing else. Sending something unknown is a
+TypeError that says what can be sent. What is big stays where it is, on the way out and in.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from struct import Struct
+from typing import Any, Final, TypeVar, cast
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.property import Property, bottle_of, text_of
+from yarpy.data.reader import read_bottle
+from yarpy.data.stamp import Stamp
+from yarpy.data.text import parse_text, print_text
+from yarpy.data.value import (
+    FLOAT32,
+    FLOAT64,
+    GROUP_MASK,
+    LIST,
+    VOCAB32,
+    Blocks,
+    Buffer,
+    Float32,
+    Int8,
+    Int16,
+    Int64,
+    Vocab,
+)
+from yarpy.data.vector import Vector
+from yarpy.data.walker import Walker
+from yarpy.data.writer import list_blocks, value_blocks
+from yarpy.errors import DecodeError
+
+__all__ = [
+    "Walker",
+    "decode",
+    "decode_as",
+    "decode_text",
+    "decode_text_as",
+    "encode",
+    "encode_text",
+]
+
+T = TypeVar("T")
+
+_read_head = Struct("<ii").unpack_from
+_read_i32 = Struct("<i").unpack_from
+
+_MAT: Final = 0x0074616D
+_EMPTY: Final = Struct("<ii").pack(LIST, 0)
+
+
+# ---------------------------------------------------------------------------------- sending
+
+
+def encode(obj: Any) -> Blocks:
+    """The payload in the binary spelling: blocks that belong one after the other."""
+    kind = type(obj)
+    if kind is list or kind is tuple or kind is Bottle:
+        return list_blocks(obj)
+    to_wire = getattr(obj, "to_wire", None)
+    if to_wire is not None and kind is not type:
+        return cast(Blocks, to_wire())
+    if isinstance(obj, dict):
+        return list_blocks(bottle_of(obj))
+    if isinstance(obj, (list, tuple)):
+        return list_blocks(obj)
+    if obj is None:
+        return (_EMPTY,)
+    if hasattr(obj, "__array_interface__"):
+        from yarpy.data import array
+
+        numpy = sys.modules["numpy"]
+        if isinstance(obj, numpy.ndarray) and obj.ndim:
+            return array.blocks(obj)
+        return value_blocks(array.scalar(obj))
+    try:
+        return value_blocks(obj)
+    except TypeError:
+        raise TypeError(
+            f"a {kind.__name__} cannot be sent; lists, dicts, int, float, str, bool, bytes, Vocab, "
+            "numpy arrays, yarpy.data objects and anything with a method to_wire() can"
+        ) from None
+
+
+def encode_text(obj: Any) -> bytes:
+    """The payload in the text spelling: one line of Bottle text, without its end.
+
+    A Stamp has its own text. What has no binary Bottle form (Sound, PointCloud) is an empty line,
+    as it is from C++.
+    """
+    if isinstance(obj, (list, tuple)):
+        text = print_text(obj)
+    elif isinstance(obj, dict):
+        text = text_of(obj)
+    elif isinstance(obj, Stamp):
+        text = obj.to_text()
+    elif isinstance(obj, (str, int, float, bytes)):
+        text = print_text([obj])
+    else:
+        message = b"".join(encode(obj))
+        try:
+            text = print_text(read_bottle(message))
+        except DecodeError:
+            text = ""
+    return text.encode("utf-8", "surrogateescape")
+
+
+# ---------------------------------------------------------------------------------- receiving
+
+
+def decode(view: Buffer) -> Any:
+    """The natural value of a payload.
+
+    A Bottle; a single value if it was sent as one; a Vector over the received bytes for a list of
+    floats; an Image; a Sound. DecodeError or Truncated if it is none of these.
+    """
+    if len(view) < 12:
+        return read_bottle(view)
+    code, count = _read_head(view)
+    if code == LIST:
+        if count == 1:
+            tag = _read_i32(view, 8)[0]
+            bottle = read_bottle(view)
+            return bottle if tag & GROUP_MASK else bottle[0]
+        if count == 4 and len(view) >= 16:
+            tag, word = _read_head(view, 8)
+            if tag == VOCAB32 and word == _MAT:
+                from yarpy.data.image import Image, is_image
+
+                if is_image(view):
+                    return Image.from_wire(view)
+            elif tag == 0:
+                from yarpy.data.sound import Sound
+
+                return Sound.from_wire(view)
+    elif count and (code == LIST + FLOAT64 or code == LIST + FLOAT32):
+        return Vector.from_wire(view)
+    return read_bottle(view)
+
+
+def decode_text(line: bytes | str) -> Bottle:
+    """The Bottle of a line; text that is no Bottle is one with less in it."""
+    return Bottle(parse_text(line))
+
+
+def decode_as(view: Buffer, type_: type[T]) -> T:
+    """The payload as an object of `type_`; DecodeError that says what came instead.
+
+    `type_` is Bottle, list, tuple, Property, dict, str, int, float, bool, bytes, Vocab (and the odd
+    widths), a type of this package, numpy.ndarray, `object` for the natural value, or any class
+    with `from_wire(view)`. Numbers convert where nothing is lost in kind (int to float), a word is
+    accepted as a Vocab and a Vocab as a word, because YARP programs do not tell them apart.
+    """
+    convert = _CONVERTERS.get(type_)
+    if convert is not None:
+        return cast(T, convert(view))
+    from_wire = getattr(type_, "from_wire", None)
+    if from_wire is not None:
+        return cast(T, from_wire(view))
+    if type_ is object or type_ is Any:
+        return cast(T, decode(view))
+    if type_.__name__ == "ndarray" and type_.__module__ == "numpy":
+        return cast(T, _to_array(view))
+    for base in (Bottle, Property, Vocab, str, int, float, bytes, list, tuple, dict):
+        if issubclass(type_, base):
+            return cast(T, type_(_CONVERTERS[base](view)))
+    raise TypeError(
+        f"messages cannot be read as {type_.__name__}; give it a class method from_wire(view)"
+    )
+
+
+def decode_text_as(line: bytes | str, type_: type[T]) -> T:
+    """The line as an object of `type_`, as `decode_as` does."""
+    if type_ is Stamp:
+        return cast(T, Stamp.from_text(line))
+    bottle = decode_text(line)
+    if type_ is Bottle or type_ is object or type_ is Any:
+        return cast(T, bottle)
+    return decode_as(b"".join(list_blocks(bottle)), type_)
+
+
+def _single(view: Buffer, wanted: str) -> Any:
+    """The only element of a message."""
+    bottle = read_bottle(view)
+    if len(bottle) != 1:
+        raise DecodeError(f"expected {wanted}, got {_describe(bottle)}")
+    return bottle[0]
+
+
+def _describe(bottle: Bottle) -> str:
+    text = print_text(bottle[:12])
+    return f"a list of {len(bottle)}: {text[:80]}" if len(bottle) != 1 else text[:80]
+
+
+def _wrong(wanted: str, value: Any) -> DecodeError:
+    return DecodeError(f"expected {wanted}, got {_describe(Bottle([value]))}")
+
+
+def _to_str(view: Buffer) -> str:
+    value = _single(view, "a string")
+    if isinstance(value, str):
+        return str.__str__(value)
+    raise _wrong("a string", value)
+
+
+def _to_int(view: Buffer) -> int:
+    value = _single(view, "an integer")
+    if isinstance(value, int) and not isinstance(value, bool):
+        return int(value)
+    raise _wrong("an integer", value)
+
+
+def _to_float(view: Buffer) -> float:
+    value = _single(view, "a number")
+    if isinstance(value, (float, int)) and not isinstance(value, bool):
+        return float(value)
+    raise _wrong("a number", value)
+
+
+def _narrow(view: Buffer, kind: type[int]) -> int:
+    try:
+        return kind(_to_int(view))
+    except OverflowError as error:
+        raise DecodeError(f"expected an {kind.__name__}: {error}") from None
+
+
+def _to_bool(view: Buffer) -> bool:
+    value = _single(view, "true or false")
+    if isinstance(value, bool):
+        return value
+    raise _wrong("true or false", value)
+
+
+def _to_bytes(view: Buffer) -> bytes:
+    value = _single(view, "a blob")
+    if isinstance(value, bytes):
+        return value
+    raise _wrong("a blob", value)
+
+
+def _to_vocab(view: Buffer) -> Vocab:
+    value = _single(view, "a vocab")
+    if isinstance(value, str):
+        return Vocab(value)
+    raise _wrong("a vocab", value)
+
+
+def _to_vector(view: Buffer) -> Vector:
+    if len(view) >= 8:
+        code, count = _read_head(view)
+        if code in _VECTOR_CODES and (count or code != LIST):
+            return Vector.from_wire(view)
+    bottle = read_bottle(view)
+    if all(isinstance(item, (int, float)) and not isinstance(item, bool) for item in bottle):
+        return Vector(bottle)
+    raise DecodeError(f"expected a vector of numbers, got {_describe(bottle)}")
+
+
+_VECTOR_CODES: Final = frozenset(LIST + tag for tag in (1, 10, 17, 32, 64, 128))
+
+
+def _to_array(view: Buffer) -> Any:
+    """A numpy array, over the received bytes: from an Image, a Matrix, a Sound or a Vector."""
+    natural = decode(view)
+    if isinstance(natural, (Bottle, int, float)):
+        if len(view) >= 8 and _read_head(view) == (LIST, 3):
+            from yarpy.data.matrix import Matrix
+
+            return Matrix.from_wire(view).array
+        return _to_vector(view).array
+    array = getattr(natural, "array", None)
+    if array is None:
+        raise _wrong("an array", natural)
+    return array
+
+
+_CONVERTERS: Final[dict[Any, Callable[[Buffer], Any]]] = {
+    Bottle: read_bottle,
+    list: lambda view: list(read_bottle(view)),
+    tuple: lambda view: tuple(read_bottle(view)),
+    Property: Property.from_bytes,
+    dict: lambda view: dict(Property.from_bytes(view)),
+    str: _to_str,
+    int: _to_int,
+    float: _to_float,
+    bool: _to_bool,
+    bytes: _to_bytes,
+    Vocab: _to_vocab,
+    Int8: lambda view: _narrow(view, Int8),
+    Int16: lambda view: _narrow(view, Int16),
+    Int64: lambda view: _narrow(view, Int64),
+    Float32: lambda view: Float32(_to_float(view)),
+    Vector: _to_vector,
+}

@@ -1,0 +1,216 @@
+"""Image: a picture of any pixel type, as yarp::sig::Image sends it.
+
+    60 bytes: 256, 4, 9, 'mat', 9, pixel code, 257, 5, depth, size, quantum and orientation (int16
+    each), width, height, 12, size; then the rows, each padded to a multiple of `quantum` bytes
+
+Rules: the pixels are never copied on the way in, nor on the way out unless the rows of the array
+are not laid out as the wire wants them. `array` always begins with the top row, whichever way the
+sender stores it. (The same bytes are a Bottle: `[mat] [rgb] (3 48 8 4 3) {...}`.)
+"""
+
+from __future__ import annotations
+
+from struct import Struct
+from typing import TYPE_CHECKING, Any, Self
+
+from yarpy.data.pixel import NATURAL, Pixel, pixel, pixel_of
+from yarpy.data.value import Vocab
+from yarpy.errors import DecodeError, Truncated
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+_HEAD = Struct("<10ihh4i")
+_MAT = 0x0074616D
+
+#: row padding of images that C++ allocates, also meant by quantum 0
+QUANTUM = 8
+
+
+class Image:
+    """Width, height, a pixel code and the pixels.
+
+    `Image(array)` takes an array of shape (height, width) or (height, width, channels); the code
+    follows from its type (`mono`, `rgb`, `rgba`, `mo16`, `dec`, `rgb.` ...) unless it is given, as
+    in `Image(array, "bgr")`. `array` gives the pixels back, over the same memory.
+    """
+
+    __slots__ = ("_array", "_pixels", "code", "height", "quantum", "top_down", "width")
+
+    width: int
+    height: int
+    #: the pixel code; `code.code` is its integer, negative for anonymous pixels
+    code: Vocab
+    #: rows take a multiple of this many bytes
+    quantum: int
+    #: is the first row in memory the top row?
+    top_down: bool
+
+    def __init__(
+        self,
+        array: NDArray[Any],
+        code: str | int | None = None,
+        quantum: int = QUANTUM,
+        *,
+        top_down: bool = True,
+    ) -> None:
+        import numpy as np
+
+        given = np.asarray(array)
+        kind = _kind_of(given) if code is None else pixel_of(code)
+        if not 0 <= quantum <= 0x7FFF:
+            raise ValueError(f"a quantum of {quantum}: rows are padded to 1 to 32767 bytes")
+        shape = (*given.shape, 1) if given.ndim == 2 else given.shape
+        dtype = np.dtype(kind.dtype)
+        if len(shape) != 3 or shape[2] != kind.channels or given.dtype.newbyteorder("<") != dtype:
+            channels = f", {kind.channels}" if kind.channels > 1 else ""
+            raise ValueError(
+                f"an image of pixels {kind.name or kind.code!r} is an array of {dtype.name} and "
+                f"shape (height, width{channels}), not of {given.dtype} and shape {given.shape}"
+            )
+        self.height, self.width = shape[:2]
+        self.code = Vocab.from_code(kind.code)
+        self.quantum = quantum or QUANTUM
+        self.top_down = top_down
+        self._array: NDArray[Any] | None = None
+        rows = given if top_down else given[::-1]
+        self._pixels = _laid_out(rows, dtype, shape, _row_bytes(self.width, kind, self.quantum))
+
+    @classmethod
+    def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
+        """An Image over the bytes of a message; DecodeError if they are none."""
+        if len(view) < _HEAD.size:
+            raise Truncated(f"an Image has a header of {_HEAD.size} bytes", _HEAD.size)
+        if not is_image(view):
+            raise DecodeError("no Image: the header is another one")
+        head = _HEAD.unpack_from(view)
+        code, depth, quantum, flipped, width, height = head[5], head[8], *head[10:14]
+        if width < 0 or height < 0 or quantum < 0:
+            raise DecodeError(f"an Image of {width} times {height} with quantum {quantum}")
+        self = cls.__new__(cls)
+        self.width, self.height = width, height
+        self.code = Vocab.from_code(code)
+        self.quantum = quantum or QUANTUM
+        self.top_down = flipped == 0
+        self._array = None
+        if not width or not height:
+            self._pixels = memoryview(b"")
+            return self
+        kind = _received(code, depth)
+        # What C++ reads is what it computes; the size in the header is not looked at.
+        end = _HEAD.size + _row_bytes(width, kind, self.quantum) * height
+        if len(view) < end:
+            raise Truncated(f"this Image takes {end} bytes, here are {len(view)}", end)
+        self._pixels = memoryview(view)[_HEAD.size : end]
+        return self
+
+    def to_wire(self) -> tuple[bytes | memoryview, ...]:
+        """Header and pixels, two blocks; the pixels are the memory of the image itself."""
+        code, size = self.code.code, len(self._pixels)
+        known = pixel(code)
+        shape = self.width, self.height
+        head = _HEAD.pack(
+            *(256, 4, 9, _MAT, 9, code, 257, 5, known.depth if known else 0, size, self.quantum),
+            *(not self.top_down, *shape, 12, size),
+        )
+        return (head, self._pixels) if size else (head,)
+
+    @property
+    def array(self) -> NDArray[Any]:
+        """The pixels, shape (height, width) or (height, width, channels), top row first.
+
+        A view of the memory of the image: read-only if that is.
+        """
+        if self._array is None:
+            import numpy as np
+
+            kind = pixel(self.code.code) or Pixel(0, 0, "<u1")
+            shape: tuple[int, ...] = (self.height, self.width)
+            item = int(kind.dtype[-1])
+            strides: tuple[int, ...] = (_row_bytes(self.width, kind, self.quantum), kind.stride)
+            if kind.channels > 1:
+                shape += (kind.channels,)
+                strides += (item,)
+            array: NDArray[Any] = np.ndarray(shape, kind.dtype, self._pixels, 0, strides)
+            self._array = array if self.top_down else array[::-1]
+        return self._array
+
+    def __array__(
+        self, dtype: np.dtype[Any] | None = None, copy: bool | None = None
+    ) -> NDArray[Any]:
+        if dtype is not None and dtype != self.array.dtype:
+            return self.array.astype(dtype)
+        return self.array.copy() if copy else self.array
+
+    def __eq__(self, other: object) -> bool:
+        """The same pixels, however the rows are stored."""
+        if not isinstance(other, Image):
+            return NotImplemented
+        mine = (self.width, self.height, self.code.code)
+        if mine != (other.width, other.height, other.code.code):
+            return False
+        return bool((self.array == other.array).all())
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        name = str(self.code) or str(self.code.code)
+        return f"Image({self.width} x {self.height}, {name!r}, quantum={self.quantum})"
+
+
+#: the C++ name for an image that takes the pixel type of what it receives, which all do here
+FlexImage = Image
+
+
+def is_image(view: bytes | bytearray | memoryview) -> bool:
+    """Do these bytes begin with the header of an image?"""
+    if len(view) < _HEAD.size:
+        return False
+    head = _HEAD.unpack_from(view)
+    return head[:5] == (256, 4, 9, _MAT, 9) and head[6:8] == (257, 5) and head[14] == 12
+
+
+def _row_bytes(width: int, kind: Pixel, quantum: int) -> int:
+    return -(-width * kind.stride // quantum) * quantum
+
+
+def _received(code: int, depth: int) -> Pixel:
+    kind = pixel(code)
+    if kind is None:
+        raise DecodeError(f"an Image with the unknown pixel code {str(Vocab.from_code(code))!r}")
+    if kind.depth != depth:
+        raise DecodeError(
+            f"an Image of {kind.name or code!r} announces {depth} bytes for a pixel, "
+            f"it has {kind.depth}"
+        )
+    return kind
+
+
+def _kind_of(array: NDArray[Any]) -> Pixel:
+    channels = array.shape[2] if array.ndim == 3 else 1
+    name = NATURAL.get((array.dtype.str[1:], channels))
+    if name is None or array.ndim not in (2, 3):
+        raise ValueError(
+            f"no pixel code goes with an array of {array.dtype} and shape {array.shape}: give one"
+        )
+    return pixel_of(name)
+
+
+def _laid_out(
+    rows: NDArray[Any], dtype: np.dtype[Any], shape: tuple[int, ...], row_bytes: int
+) -> memoryview:
+    """The memory of `rows` if it is as the wire wants it, else a copy with padded rows."""
+    import numpy as np
+
+    if not rows.size:
+        return memoryview(b"")
+    height = shape[0]
+    pixel_bytes = shape[1] * shape[2] * dtype.itemsize
+    if rows.dtype == dtype and rows.flags.c_contiguous and row_bytes == pixel_bytes:
+        return memoryview(rows.data).cast("B")
+    padded = np.zeros((height, row_bytes), "u1")
+    strides = (row_bytes, shape[2] * dtype.itemsize, dtype.itemsize)
+    inner: NDArray[Any] = np.ndarray(shape, dtype, padded.data, 0, strides)
+    inner[...] = rows.reshape(shape)
+    return memoryview(padded.data).cast("B")

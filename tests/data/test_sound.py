@@ -1,0 +1,73 @@
+import struct
+
+import numpy as np
+import pytest
+from support.vectors import rows
+
+from yarpy.data.sound import Sound
+from yarpy.errors import DecodeError, Truncated
+
+(GOLDEN,) = (row for row in rows("types") if row["type"] == "sound")
+MESSAGE = bytes.fromhex(GOLDEN["binary"])
+
+
+def joined(sound):
+    return b"".join(sound.to_wire())
+
+
+def test_golden():
+    sound = Sound.from_wire(MESSAGE)
+    params = GOLDEN["params"]
+    assert (sound.length, sound.channels) == (params["samples"], params["channels"])
+    assert sound.frequency == params["frequency"]
+    assert sound.array.tolist() == [[0, 100, 200, 300], [-1, 99, 199, 299]]
+    assert sound.samples.dtype == np.int16
+    assert joined(sound) == MESSAGE
+    assert joined(Sound(sound.array, 8000)) == MESSAGE
+    assert Sound(sound.array, 8000) == sound != Sound(sound.array, 16000)
+    for size in range(len(MESSAGE)):
+        with pytest.raises(Truncated) as caught:
+            Sound.from_wire(MESSAGE[:size])
+        assert size < caught.value.need <= len(MESSAGE)
+
+
+def test_captured_reply():
+    message = bytes.fromhex(
+        "00010000040000000000000002000000010000000100000001000000020000000100000044ac00000500faff"
+    )
+    assert joined(Sound([5, -6], 44100)) == message
+    assert Sound.from_wire(message).array.tolist() == [[5, -6]]
+
+
+def test_takes_integers_of_any_width():
+    assert Sound(np.array([1, 2], "u1")).array.tolist() == [[1, 2]]
+    assert Sound([[1], [2]]).channels == 2
+    assert Sound([]).length == 0 and Sound.from_wire(joined(Sound([]))).length == 0
+    assert Sound(np.zeros((2, 3), ">i2")).array.dtype == "<i2"
+    with pytest.raises(OverflowError, match="16 bits"):
+        Sound([40000])
+    with pytest.raises(TypeError, match="int16"):
+        Sound([0.5])
+    with pytest.raises(ValueError, match="shape"):
+        Sound(np.zeros((1, 1, 1), "i2"))
+
+
+def test_memory():
+    samples = np.zeros((2, 4000), "i2")
+    head, data = Sound(samples).to_wire()
+    assert len(head) == 40 and np.shares_memory(np.frombuffer(data, "i2"), samples)
+    message = bytearray(MESSAGE)
+    sound = Sound.from_wire(message)
+    message[40] = 9
+    assert sound.array[0, 0] == 9
+    assert repr(sound) == "Sound(2 channels, 4 samples, 8000 per second)"
+    assert sound != "word"
+
+
+@pytest.mark.parametrize("at", [0, 4, 8, 12, 16, 20, 24, 32])
+@pytest.mark.parametrize("word", [-1, 77, 0x7FFFFFFF])
+def test_wrong_header(at, word):
+    message = bytearray(MESSAGE)
+    struct.pack_into("<i", message, at, word)
+    with pytest.raises(DecodeError):
+        Sound.from_wire(message)
