@@ -1,0 +1,270 @@
+"""Where the name servers are, read from the same files and variables as C++ YARP uses.
+
+Rules: functions of an environment mapping and a directory, so that nothing here depends on the
+process it runs in. Nothing is printed. Source: nameserver spec 6.1-6.5.
+
+    yarp_namespace.conf   the namespaces, as Bottle text; none means /root
+    yarp.conf             the address of the server of /root: `HOST PORT [MODE]`
+    _name.conf            the same for namespace /name
+
+`YARPY_SERVER=HOST:PORT` goes before every file and may list several, separated by commas.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from yarpy.errors import AddressError
+
+DEFAULT_PORT = 10000
+ROOT = "/root"
+MODES = ("yarp", "ros", "local")
+
+_UNSAFE = re.compile(r"[^0-9A-Za-z]")
+
+
+@dataclass(frozen=True, slots=True)
+class Server:
+    """One configured name server. `mode`: yarp, ros (a ROS master) or local (no server at all)."""
+
+    host: str
+    port: int
+    mode: str = "yarp"
+    namespace: str = ROOT
+    path: Path | None = None  # the file that says so; None: the environment does
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """What a program was told about name servers.
+
+    `servers` in order of preference, empty when the first namespace has no address: C++ programs
+    count as not configured then. `missing` are the namespaces without an address file.
+    """
+
+    servers: tuple[Server, ...]
+    missing: tuple[str, ...]
+    directory: Path
+
+    @property
+    def namespace(self) -> str:
+        """The namespace in use, for messages and for writing."""
+        if self.servers:
+            return self.servers[0].namespace
+        return self.missing[0] if self.missing else ROOT
+
+
+def configuration(environment: Mapping[str, str], directory: Path | None = None) -> Configuration:
+    """Everything the environment and the files in `directory` say about name servers.
+
+    Raises AddressError for an address that makes no sense, naming where it stands.
+    """
+    directory = conf_directory(environment) if directory is None else directory
+    listed = environment.get("YARPY_SERVER", "").strip()
+    if listed:
+        servers = tuple(
+            _parse_host_port(item.strip(), environment)
+            for item in listed.split(",")
+            if item.strip()
+        )
+        return Configuration(servers, (), directory)
+    found: list[Server] = []
+    missing: list[str] = []
+    for namespace in namespaces(environment, directory):
+        server = read_server(directory, namespace)
+        if server is None:
+            missing.append(namespace)
+        else:
+            found.append(server)
+        if missing and not found:
+            break
+    return Configuration(tuple(found), tuple(missing), directory)
+
+
+# --- directories and files
+
+
+def conf_directory(environment: Mapping[str, str], platform: str = sys.platform) -> Path:
+    """Where the configuration of this user lives."""
+    if "YARP_CONFIG_HOME" in environment:
+        return Path(environment["YARP_CONFIG_HOME"])
+    if environment.get("XDG_CONFIG_HOME"):
+        return Path(environment["XDG_CONFIG_HOME"], "yarp")
+    if platform == "win32" and environment.get("APPDATA"):
+        return Path(environment["APPDATA"], "yarp", "config")
+    home = Path(environment.get("HOME") or environment.get("USERPROFILE") or os.path.curdir)
+    if platform == "darwin":
+        return home / "Library" / "Preferences" / "yarp"
+    return home / ".config" / "yarp"
+
+
+def safe_name(name: str) -> str:
+    """A port or namespace name as part of a file name or of an environment variable.
+
+    >>> safe_name("/env/ns")
+    '_env_ns'
+    """
+    return _UNSAFE.sub("_", name)
+
+
+def namespace_file(directory: Path) -> Path:
+    return directory / "yarp_namespace.conf"
+
+
+def server_file(directory: Path, namespace: str) -> Path:
+    """The address file of a namespace."""
+    name = "yarp" if namespace == ROOT else safe_name(namespace)
+    return directory / f"{name}.conf"
+
+
+# --- namespaces
+
+
+def namespaces(environment: Mapping[str, str], directory: Path) -> list[str]:
+    """The namespaces in use, the current one first; `["/root"]` when nothing is said."""
+    from yarpy.data.bottle import Bottle
+
+    text = environment.get("YARP_NAMESPACE") or _read(namespace_file(directory))
+    found = [item if isinstance(item, str) else str(item) for item in Bottle.from_text(text)]
+    return [name for name in found if name] or [ROOT]
+
+
+def write_namespaces(directory: Path, names: Sequence[str]) -> Path:
+    """Store the namespaces as `yarp namespace` does; returns the file."""
+    from yarpy.data.bottle import Bottle
+
+    path = namespace_file(directory)
+    _write(path, Bottle(names).to_text())
+    return path
+
+
+# --- addresses
+
+
+def read_server(directory: Path, namespace: str = ROOT) -> Server | None:
+    """The stored address of a namespace, or None. Raises AddressError for an unusable file."""
+    path = server_file(directory, namespace)
+    try:
+        server = parse_server(_read(path))
+    except AddressError as error:
+        raise AddressError(f"{path}: {error}") from None
+    if server is None:
+        return None
+    return Server(server.host, server.port, server.mode, namespace, path)
+
+
+def write_server(directory: Path, server: Server) -> Path:
+    """Store an address where C++ YARP finds it too; returns the file."""
+    path = server_file(directory, server.namespace)
+    _write(path, f"{server.host} {server.port} {server.mode}\n")
+    return path
+
+
+def clear_server(directory: Path, namespace: str = ROOT) -> Path:
+    """Forget the stored address (`yarp conf --clean`): the file stays, empty."""
+    path = server_file(directory, namespace)
+    _write(path, "")
+    return path
+
+
+def parse_server(text: str) -> Server | None:
+    """The content of an address file: `HOST PORT [MODE]` or the ini form; None when not given.
+
+    >>> parse_server("127.0.0.1 10000").mode
+    'yarp'
+    """
+    if text.startswith("["):
+        words = _parse_section(text)
+    else:
+        words = [word for word in re.split(r'[ \t\r\n"]+', text) if word]
+    if len(words) < 2 or not words[0]:
+        return None
+    mode = words[2] if len(words) > 2 and words[2] else "yarp"
+    mode = "yarp" if mode == "//" else mode
+    if mode not in MODES:
+        raise AddressError(f'mode "{mode}" of a name server: known are {", ".join(MODES)}')
+    return Server(words[0], _number(words[1]), mode)
+
+
+def default_port(environment: Mapping[str, str]) -> int:
+    """The port of a name server nobody said otherwise about, and of multicast discovery."""
+    return _number(environment.get("YARP_PORT_RANGE", "")) or DEFAULT_PORT
+
+
+# --- ports
+
+
+def port_name(name: str, environment: Mapping[str, str]) -> str:
+    """The name under which a port opened as `name` is known: renamed, then prefixed.
+
+    `YARP_RENAME_cam=/eye` renames /cam; `YARP_PORT_PREFIX=/robot` goes before every name.
+    """
+    renamed = environment.get(f"YARP_RENAME{safe_name(name)}") or name
+    return environment.get("YARP_PORT_PREFIX", "") + renamed
+
+
+def port_number(name: str, environment: Mapping[str, str]) -> int:
+    """The TCP port that `YARP_PORTNUMBER_cam=N` gives to /cam, or 0."""
+    return _number(environment.get(f"YARP_PORTNUMBER{safe_name(name)}", ""))
+
+
+# --- inside
+
+
+def _parse_host_port(text: str, environment: Mapping[str, str]) -> Server:
+    """One item of YARPY_SERVER: `host:port`, `host`, `[ipv6]:port`."""
+    host, colon, port = text.rpartition(":")
+    if text.startswith("[") and text.endswith("]"):
+        host, colon, port = text, "", ""
+    elif not colon:
+        host, port = text, ""
+    number = _number(port) if colon else default_port(environment)
+    host = host.strip("[]")
+    if not host or not number:
+        raise AddressError(f'YARPY_SERVER="{text}": give HOST:PORT, for example 127.0.0.1:10000')
+    return Server(host, number)
+
+
+def _parse_section(text: str) -> list[str]:
+    """Host, port and mode of section [name]."""
+    fields: dict[str, str] = {}
+    section = ""
+    found = False
+    for line in text.splitlines():
+        if line.startswith("["):
+            section = line[1:].partition("]")[0].strip()
+            found = found or section == "name"
+            continue
+        words = re.split(r'[ \t"]+', line.partition("//")[0].strip())
+        if section == "name" and words[0] and not words[0].startswith("#"):
+            fields[words[0]] = words[1] if len(words) > 1 else ""
+    if not found:
+        raise AddressError("an address file that begins with [ needs a section [name]")
+    return [fields.get("host", ""), fields.get("port", ""), fields.get("mode", "")]
+
+
+def _number(text: str) -> int:
+    """A TCP port number; 0 for everything else."""
+    text = text.strip()
+    number = int(text) if text.isascii() and text.isdigit() and len(text) < 6 else 0
+    return number if number <= 65535 else 0
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text("utf-8", "surrogateescape")
+    except OSError:
+        return ""
+
+
+def _write(path: Path, text: str) -> None:
+    """Replace the file at once, so that nobody reads half an address."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    draft.write_text(text, "utf-8", "surrogateescape")
+    draft.replace(path)
