@@ -60,6 +60,19 @@ class Contact:
         return f"{carrier}://{self.address}/"
 
 
+@dataclass(slots=True)
+class Route:
+    """Who talks to whom over what: one connection. `port` is the accepting side's TCP port."""
+
+    source: str
+    target: str
+    carrier: str = "tcp"
+    port: int = 0
+
+    def __str__(self) -> str:
+        return f"{self.source} -> {self.target} ({self.carrier})"
+
+
 def parse_contact(text: str) -> Contact:
     """Read `/name`, `carrier://name`, `/host:port`, `carrier://host:port[/name]`, `host:port`.
 

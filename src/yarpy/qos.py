@@ -1,0 +1,90 @@
+"""Quality of service of one connection: its thread's scheduling and its packets' priority.
+
+Rules: values are checked here, applied to a thread or socket by whoever owns it. Packet priorities
+follow YARP's classes (LOW AF11, NORM 0, HIGH AF42, CRIT VA); the TOS byte is DSCP << 2.
+
+    >>> tos_of("HIGH"), tos_of("AF12"), tos_of(10)
+    (144, 48, 40)
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Final
+
+from yarpy.errors import LocalProtocolError
+
+DSCP: Final[dict[str, int]] = {
+    **{f"CS{n}": 8 * n for n in range(8)},
+    **{f"AF{n}{m}": 8 * n + 2 * m for n in range(1, 5) for m in range(1, 4)},
+    "VA": 44,
+    "EF": 46,
+}
+LEVELS: Final[dict[str, int]] = {"LOW": 10, "NORM": 0, "HIGH": 36, "CRIT": 44}
+POLICIES: Final[dict[str, int]] = {"SCHED_OTHER": 0, "SCHED_FIFO": 1, "SCHED_RR": 2}
+
+
+@dataclass(frozen=True, slots=True)
+class Sched:
+    """Scheduling of a thread: policy 0 (OTHER), 1 (FIFO), 2 (RR), priority 0, or 1..99."""
+
+    policy: int = -1
+    priority: int = -1
+
+
+def tos_of(value: str | int) -> int:
+    """The TOS byte of a level, a DSCP class name or a DSCP number. Raises ValueError."""
+    if isinstance(value, int):
+        if 0 <= value < 64:
+            return value << 2
+        raise ValueError(f"a DSCP number lies between 0 and 63, not {value}")
+    found = LEVELS.get(value.upper()[:4], DSCP.get(value.upper()))
+    if found is None:
+        raise ValueError(
+            f'"{value}" is no packet priority: use {", ".join(LEVELS)}, or a DSCP class like AF42'
+        )
+    return found << 2
+
+
+def policy_of(value: str | int) -> int:
+    """The number of a scheduling policy, given as a number or as SCHED_FIFO and the like."""
+    if isinstance(value, int):
+        return value
+    name = value.upper()
+    found = POLICIES.get(name, POLICIES.get(f"SCHED_{name}"))
+    if found is None:
+        raise ValueError(f'"{value}" is no scheduling policy: use {", ".join(POLICIES)}')
+    return found
+
+
+def schedule(thread: int, sched: Sched) -> None:
+    """Give the kernel thread with id `thread` (0: the caller) this scheduling.
+
+    Raises LocalProtocolError when the kernel refuses, or has no such thing.
+    """
+    if not hasattr(os, "sched_setscheduler"):
+        raise LocalProtocolError("this system does not let a program set thread priorities")
+    policy = max(sched.policy, 0)
+    priority = max(sched.priority, 0) if policy else 0
+    try:
+        os.sched_setscheduler(thread, policy, os.sched_param(priority))
+    except PermissionError as error:
+        raise LocalProtocolError(
+            "the system refuses real-time scheduling: run as root, grant CAP_SYS_NICE, or raise "
+            "the rtprio limit (ulimit -r)"
+        ) from error
+    except OSError as error:
+        raise LocalProtocolError(
+            f"policy {policy} does not take priority {priority}: 1..99 for FIFO and RR, 0 for OTHER"
+        ) from error
+
+
+def scheduled(thread: int) -> Sched:
+    """What the kernel really does with a thread; -1 where it does not say."""
+    if not hasattr(os, "sched_getscheduler"):
+        return Sched()
+    try:
+        return Sched(os.sched_getscheduler(thread), os.sched_getparam(thread).sched_priority)
+    except OSError:
+        return Sched()

@@ -1,0 +1,53 @@
+"""The optional proof, before any greeting, that both sides know the key of auth.conf.
+
+Rules: three messages of eight random bytes and an HMAC-SHA256 over all random bytes so far; the
+acceptor begins. Nothing is encrypted by it.
+"""
+
+from __future__ import annotations
+
+import hmac
+import secrets
+from collections.abc import Callable
+
+from yarpy.errors import RemoteProtocolError
+from yarpy.wire.effects import Steps
+from yarpy.wire.stream import ByteStream
+
+_NONCE = 8
+_MESSAGE = _NONCE + 32
+
+Random = Callable[[int], bytes]
+
+
+def _sign(key: bytes, nonces: bytes) -> bytes:
+    return hmac.digest(key, nonces, "sha256")
+
+
+def _check(message: bytes, key: bytes, nonces: bytes) -> bytes:
+    nonce, signature = message[:_NONCE], message[_NONCE:]
+    if not hmac.compare_digest(signature, _sign(key, nonces + nonce)):
+        raise RemoteProtocolError("the peer does not know our key; compare both sides' auth.conf")
+    return nonces + nonce
+
+
+def prove_acceptor(
+    stream: ByteStream, key: bytes, random: Random = secrets.token_bytes
+) -> Steps[None]:
+    """The accepting side of the exchange. Raises RemoteProtocolError if the keys differ."""
+    nonces = random(_NONCE)
+    stream.write(nonces + _sign(key, nonces))
+    nonces = _check(bytes((yield from stream.read_exact(_MESSAGE))), key, nonces)
+    last = random(_NONCE)
+    stream.write(last + _sign(key, nonces + last))
+
+
+def prove_initiator(
+    stream: ByteStream, key: bytes, random: Random = secrets.token_bytes
+) -> Steps[None]:
+    """The dialling side of the exchange. Raises RemoteProtocolError if the keys differ."""
+    nonces = _check(bytes((yield from stream.read_exact(_MESSAGE))), key, b"")
+    own = random(_NONCE)
+    nonces += own
+    stream.write(own + _sign(key, nonces))
+    _check(bytes((yield from stream.read_exact(_MESSAGE))), key, nonces)

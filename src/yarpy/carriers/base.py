@@ -1,0 +1,157 @@
+"""The plug-in contract: what a wire protocol is.
+
+Rules: a carrier is a state machine over a ByteStream - generators, no sockets, threads or clock.
+Its facts are class attributes; each method has a default that does what the plain binary carriers
+do, so a carrier overrides only what is different about it. The link drives it, in this order:
+
+    initiator                       acceptor
+    greet                     ->    (magic chosen) welcome
+    encode                    ->    parse or decode
+    expect_reply, expect_ack  <-    encode_reply, encode_ack
+
+The initiator of a *push* carrier sends the data; of a pull carrier (`push = False`) it receives it.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from yarpy.contact import Route, read_specifier, specifier
+from yarpy.data import codec
+from yarpy.errors import LocalProtocolError
+from yarpy.wire import framing
+from yarpy.wire.effects import Steps
+from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
+from yarpy.wire.stream import Buffer, ByteStream
+
+MAGIC_SIZE = 8  # bytes by which protocols are told apart
+
+
+class Carrier:
+    """One connection's protocol. Subclass it, set the facts, override what differs.
+
+    `route` says who talks to whom: `route.source` and `route.target` are port names,
+    `route.carrier` the carrier string with its modifiers. The acceptor fills in the source.
+    `lost` counts messages that the protocol itself had to drop; the link adds it to its drops.
+    """
+
+    name: ClassVar[str] = ""
+    magic: ClassVar[bytes] = b""  # what such a connection begins with (eight bytes, or fewer)
+    push: ClassVar[bool] = True
+    acks: bool = False  # the receiver confirms each message
+    replies: ClassVar[bool] = True
+    spelling: ClassVar[Spelling] = "binary"
+    escapes: ClassVar[bool] = True  # messages begin with a port command, so admin works
+    connectionless: ClassVar[bool] = False  # closing must be told to the peer some other way
+    broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
+
+    def __init__(self, route: Route) -> None:
+        self.route = route
+        self.lost = 0
+
+    @classmethod
+    def recognises(cls, first: bytes) -> int:
+        """How many of the `first` eight bytes say that this is our protocol; 0: it is not."""
+        return len(cls.magic) if cls.magic and first.startswith(cls.magic) else 0
+
+    # -- beginning --------------------------------------------------------------------------------
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        """The initiator's opening: magic, who we are, the peer's answer."""
+        stream.write(self.magic + self.sender())
+        return
+        yield
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        """The acceptor's answer; `first` are the eight bytes, already read."""
+        self.introduce((yield from framing.read_name(stream)))
+
+    def sender(self) -> bytes:
+        """Our name and modifiers as the binary carriers write them."""
+        return framing.encode_name(specifier(self.route.source, self.route.carrier))
+
+    def introduce(self, text: str) -> None:
+        """Take the name and modifiers that the peer gave itself."""
+        self.route.source, self.route.carrier = read_specifier(text, self.route.carrier)
+
+    # -- messages ---------------------------------------------------------------------------------
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        """Write one message."""
+        stream.write(*framing.encode(packet))
+
+    def parse(self, stream: ByteStream) -> Message | None:
+        """A message that is already in the stream's buffer, if it can be had without waiting."""
+        return None
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        """Read one message."""
+        return (yield from framing.read_message(stream))
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        """Write the message that ends the connection in good order, if there is one."""
+        stream.write(framing.QUIT)
+
+    # -- what comes back --------------------------------------------------------------------------
+
+    def encode_reply(self, stream: ByteStream, value: object) -> None:
+        """Write the reply to a message: the object itself, without framing."""
+        stream.write(*codec.encode(value))
+
+    def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
+        """Read a reply; None if the peer's acknowledgement shows that there is none."""
+        yield from stream.more(8)
+        if stream.buffer.startswith(framing.ACK, stream.head):
+            return None
+        return Message(CALL, (yield from framing.read_payload(stream)))
+
+    def encode_ack(self, stream: ByteStream) -> None:
+        """Write the acknowledgement of a message."""
+        stream.write(framing.ACK)
+
+    def expect_ack(self, stream: ByteStream) -> Steps[None]:
+        """Read one acknowledgement. A number n in it means that n more bytes follow."""
+        value = framing.parse_number((yield from stream.read_exact(8)))
+        if value > 0:
+            yield from stream.skip(min(value, stream.limit))
+
+    def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
+        """Write what a port command answers to a person; binary carriers say nothing."""
+
+
+class Indexed(Carrier):
+    """The carriers that put YARP's index before each message and know each other by a number.
+
+    `code` is that number: eight bytes with 7777 + code are the magic.
+    """
+
+    code: ClassVar[int] = -1
+
+    @classmethod
+    def recognises(cls, first: bytes) -> int:
+        value = framing.parse_number(first) - framing.BASE
+        return MAGIC_SIZE if value >= 0 and cls.matches(value) else 0
+
+    @classmethod
+    def matches(cls, value: int) -> bool:
+        """Only the low four bits tell carriers apart; bit 7 says that acknowledgements are
+        wanted."""
+        return value % 16 == cls.code % 16
+
+    def parse(self, stream: ByteStream) -> Message | None:
+        return framing.parse_plain(stream)
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        stream.write(framing.number(framing.BASE + self.code) + self.sender())
+        return
+        yield
+
+
+def refuse_reply(carrier: Carrier) -> LocalProtocolError:
+    """The error for asking a one-way carrier for a reply."""
+    return LocalProtocolError(
+        f'"{carrier.name}" carries no replies; connect with tcp to call "{carrier.route.target}"'
+    )
+
+
+__all__ = ["CALL", "QUIT", "Buffer", "Carrier", "Indexed", "Message", "Packet", "Route", "Steps"]

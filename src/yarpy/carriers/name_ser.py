@@ -1,0 +1,64 @@
+"""name_ser: the line protocol of name servers, `NAME_SERVER command`, spoken by every C++ client.
+
+Rules: after the eight bytes of magic four more (`VER `) are swallowed, then a line is a message;
+the twelve bytes that follow each line are swallowed too, whatever they are. No sender, no port
+commands.
+"""
+
+from __future__ import annotations
+
+from yarpy.carriers.base import Carrier
+from yarpy.contact import Route
+from yarpy.data import codec
+from yarpy.wire.effects import Steps
+from yarpy.wire.message import CALL, Lines, Message, Packet
+from yarpy.wire.stream import ByteStream
+
+_PREFIX = b"NAME_SERVER "
+MAX_LINE = 1 << 20
+
+
+class NameSer(Carrier):
+    """Lines for a name server."""
+
+    name = "name_ser"
+    magic = b"NAME_SER"
+    spelling = "text"
+    escapes = False
+
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        self._swallow = 4
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        return
+        yield
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        self.route.source = "anon"
+        return
+        yield
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        stream.write(_PREFIX + packet.line.replace(b'"', b"") + b"\r\n")
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        yield from stream.skip(self._swallow)
+        self._swallow = len(_PREFIX)
+        line = yield from stream.read_line(MAX_LINE)
+        return Message(CALL, line, spelling="text")
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        """Nothing ends this protocol but closing."""
+
+    def encode_reply(self, stream: ByteStream, value: object) -> None:
+        if isinstance(value, Lines):
+            stream.write(value.to_text())
+        else:
+            stream.write(codec.encode_text(value) + b"\r\n")
+
+    def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
+        return Message(CALL, (yield from stream.read_line(MAX_LINE)), spelling="text")
+
+    def encode_ack(self, stream: ByteStream) -> None:
+        """No acknowledgements."""

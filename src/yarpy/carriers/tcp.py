@@ -1,0 +1,44 @@
+"""tcp and fast_tcp: YARP's own protocols over a TCP stream, with and without acknowledgements.
+
+Rules: the acceptor answers the greeting with a YARP number holding its port, which is ignored.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from yarpy.carriers.base import Indexed
+from yarpy.wire import framing
+from yarpy.wire.effects import Steps
+from yarpy.wire.stream import ByteStream
+
+
+class FastTcp(Indexed):
+    """Messages follow one another; nothing comes back but replies."""
+
+    name = "fast_tcp"
+    code = 3
+
+    @classmethod
+    def matches(cls, value: int) -> bool:
+        return value % 16 == 3 and not value & 128
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        yield from super().greet(stream)
+        yield from stream.read_exact(8)
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        yield from super().welcome(stream, first)
+        stream.write(framing.number(self.route.port))
+
+
+class Tcp(FastTcp):
+    """The default: each message is acknowledged once the receiver has taken it."""
+
+    name = "tcp"
+    code: ClassVar[int] = 3 + 128
+    acks = True
+
+    @classmethod
+    def matches(cls, value: int) -> bool:
+        return value % 16 == 3 and bool(value & 128)

@@ -1,0 +1,112 @@
+"""text and text_ack: what a person types into telnet or netcat.
+
+Rules: a line with the port command, then, for data and admin, a line with the payload in Bottle
+text. A payload goes on over the next lines while a bracket or quote is open. `text_ack` answers
+each command with a line `<ACK>`.
+"""
+
+from __future__ import annotations
+
+from yarpy.carriers.base import Carrier
+from yarpy.contact import specifier
+from yarpy.data import codec
+from yarpy.data.text import balanced
+from yarpy.errors import RemoteProtocolError
+from yarpy.wire import framing
+from yarpy.wire.effects import Steps
+from yarpy.wire.message import Lines, Message, Packet
+from yarpy.wire.stream import ByteStream
+
+MAX_LINE = 1 << 24  # bytes of one payload spelled as text
+_END = b"\r\n"
+
+
+class Text(Carrier):
+    """`CONNECT name`, then lines."""
+
+    name = "text"
+    magic = b"CONNECT "
+    spelling = "text"
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        name = specifier(self.route.source, self.route.carrier)
+        stream.write(self.magic + name.encode() + _END)
+        self._welcomed = False
+        return
+        yield
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        line = yield from stream.read_line(framing.MAX_NAME)
+        self.introduce(line.decode("utf-8", "replace"))
+        stream.write(f"Welcome {self.route.source}".encode() + _END)
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        envelope = b" " + packet.envelope if packet.envelope else b""
+        stream.write(packet.key.encode() + envelope + _END + packet.line + _END)
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        command = yield from stream.read_line(framing.MAX_COMMAND)
+        message = framing.parse_command(command.decode("utf-8", "surrogateescape"))
+        message.spelling = "text"
+        if message.key in ("d", "D", "a"):
+            message.payload = yield from read_text(stream, min(stream.limit, MAX_LINE))
+        return message
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        stream.write(b"q" + _END)
+
+    def encode_reply(self, stream: ByteStream, value: object) -> None:
+        if isinstance(value, Lines):
+            stream.write(value.to_text())
+        else:
+            stream.write(codec.encode_text(value) + _END)
+
+    def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
+        if not self._welcomed:
+            # A C++ sender leaves the welcome unread; who waits for a reply must step over it.
+            self._welcomed = True
+            yield from stream.read_line(framing.MAX_NAME + 16)
+        line = yield from read_text(stream, min(stream.limit, MAX_LINE))
+        return None if line == b"<ACK>" else Message("d", line, spelling="text")
+
+    def encode_ack(self, stream: ByteStream) -> None:
+        stream.write(b"<ACK>" + _END)
+
+    def expect_ack(self, stream: ByteStream) -> Steps[None]:
+        line = yield from stream.read_line(MAX_LINE)
+        if line != b"<ACK>":
+            raise RemoteProtocolError(f"an acknowledgement was due, {line[:40]!r} came")
+
+    def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
+        for line in lines:
+            stream.write(line.encode("utf-8", "surrogateescape") + _END)
+
+
+class TextAck(Text):
+    """`CONNACK name`: the same with acknowledgements; the initiator reads the welcome."""
+
+    name = "text_ack"
+    magic = b"CONNACK "
+    acks = True
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        yield from super().greet(stream)
+        yield from stream.read_line(framing.MAX_NAME + 16)
+        self._welcomed = True
+
+    def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
+        """A reply line, or None: the acknowledgement is then still to be read."""
+        yield from stream.more(5)
+        if stream.buffer.startswith(b"<ACK>", stream.head):
+            return None
+        return (yield from super().expect_reply(stream))
+
+
+def read_text(stream: ByteStream, limit: int) -> Steps[bytes]:
+    """One payload: a line, and more lines while it has an open bracket or quote."""
+    text = yield from stream.read_line(limit)
+    while not balanced(text):
+        text += b"\n" + (yield from stream.read_line(limit))
+        if len(text) > limit:
+            raise RemoteProtocolError(f"a text message of more than {limit} bytes")
+    return text

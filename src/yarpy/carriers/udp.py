@@ -1,0 +1,93 @@
+"""udp: greets over TCP, then sends each message as datagrams with a checksum and a number.
+
+Rules: the acceptor opens a UDP socket and tells its port; the initiator sends from the UDP port
+with the number of its TCP port. Nothing comes back; a lost piece drops its message, which is
+counted.
+"""
+
+from __future__ import annotations
+
+from yarpy.carriers.base import Indexed
+from yarpy.contact import Route
+from yarpy.errors import RemoteProtocolError
+from yarpy.wire import framing
+from yarpy.wire.datagram import MAX_DATAGRAM, Assembler, split
+from yarpy.wire.effects import Open, Steps, Switch
+from yarpy.wire.message import Message, Packet
+from yarpy.wire.stream import ByteStream, DatagramStream
+
+
+class Datagrams(Indexed):
+    """What udp and mcast share: messages cut into datagrams."""
+
+    replies = False
+    connectionless = True
+    datagram_size = MAX_DATAGRAM
+
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        self._assembler: Assembler | None = None
+        self._whole = ByteStream(size=1)
+
+    def parse(self, stream: ByteStream) -> Message | None:
+        return None
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        stream.write(*split(framing.encode(packet), self.datagram_size))
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        assert isinstance(stream, DatagramStream)
+        if self._assembler is None:
+            self._assembler = Assembler(stream.limit)
+        while True:
+            whole = self._assembler.add((yield from stream.read_datagram()))
+            self.lost = self._assembler.lost
+            if whole is None:
+                continue
+            message = parse_whole(whole, stream.limit)
+            if message is not None:
+                return message
+            self._assembler.lost += 1
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        """Not told in datagrams: the closing side asks the peer's port by a text connection."""
+
+
+def parse_whole(data: bytes, limit: int) -> Message | None:
+    """The message that `data` is from end to end, or None."""
+    stream = ByteStream(limit, size=max(len(data), 1))
+    stream.feed(data)
+    stream.feed_eof()
+    message = framing.parse_plain(stream)
+    if message is not None:
+        return message
+    steps = framing.read_message(stream)
+    try:
+        next(steps)
+    except StopIteration as stop:
+        found: Message = stop.value
+        return found
+    except (RemoteProtocolError, ConnectionError):
+        pass
+    return None
+
+
+class Udp(Datagrams):
+    """Datagrams to one receiver."""
+
+    name = "udp"
+    code = 0
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        yield from super().greet(stream)
+        port = framing.parse_number((yield from stream.read_exact(8)))
+        if not 0 < port < 65536:
+            raise RemoteProtocolError(f"the peer offers UDP port {port}, which does not exist")
+        handle = yield Open("udp", listen=False, port=port)
+        yield Switch(handle, DatagramStream(stream.limit))
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        yield from super().welcome(stream, first)
+        handle = yield Open("udp", listen=True)
+        stream.write(framing.number(handle.port))
+        yield Switch(handle, DatagramStream(stream.limit))

@@ -1,0 +1,163 @@
+"""Driver: pumps a protocol's generators against a transport.
+
+Rules: the only place where bytes go from one to the other, and where foreign errors become ours.
+One thread at a time uses a driver; who that is, is the link's business. No protocol is known here.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
+from yarpy.transports.base import Transport
+from yarpy.transports.datagram import open_mcast, open_udp
+from yarpy.transports.inproc import InprocTransport, open_inproc
+from yarpy.transports.unix import open_unix
+from yarpy.wire.effects import Group, Open, Steps, Switch
+from yarpy.wire.stream import DEFAULT_LIMIT, ByteStream, ObjectStream
+
+T = TypeVar("T")
+
+
+class Driver:
+    """A transport and the stream in front of it."""
+
+    def __init__(
+        self,
+        transport: Transport,
+        limit: int = DEFAULT_LIMIT,
+        group: Callable[[str], tuple[str, int]] | None = None,
+    ) -> None:
+        self.transport = transport
+        self.stream = ByteStream(limit)
+        self.bytes_in = 0
+        self.bytes_out = 0
+        self._objects: InprocTransport | None = None
+        self._group = group
+
+    def run(self, steps: Steps[T], deadline: float | None = None) -> T:
+        """Run `steps` to its end, waiting for bytes as needed; what it wrote is sent.
+
+        `deadline` is a time of `time.monotonic`. Raises Timeout, LinkClosed, or what the steps
+        raise.
+        """
+        answer: Any = None
+        try:
+            while True:
+                effect = steps.send(answer)
+                if effect is None:
+                    self.flush()
+                    self.fill(deadline)
+                    answer = None
+                else:
+                    answer = self._perform(effect)
+        except StopIteration as stop:
+            self.flush()
+            value: T = stop.value
+            return value
+        finally:
+            if deadline is not None:
+                self.transport.limit_waiting(None)
+
+    def flush(self) -> None:
+        """Send what the protocol wrote."""
+        stream = self.stream
+        if stream.pending:
+            output = stream.take_output()
+            try:
+                self.transport.send(output)
+            except OSError as error:
+                raise closed(error) from error
+            if self._objects is None:
+                for piece in output:
+                    self.bytes_out += len(piece)
+
+    def fill(self, deadline: float | None = None) -> None:
+        """Wait for more bytes, or the end, and put them into the stream."""
+        try:
+            if deadline is not None:
+                left = deadline - time.monotonic()
+                if left <= 0:
+                    raise BlockingIOError
+                self.transport.limit_waiting(left)
+            if self._objects is not None:
+                self._fill_objects(self._objects)
+                return
+            count = self.transport.recv_into(self.stream.get_buffer())
+        except (BlockingIOError, TimeoutError) as error:
+            raise Timeout("the peer is silent") from error
+        except OSError as error:
+            if isinstance(error, YarpError):
+                raise
+            count = 0  # a reset is an end: what was not read of it is told by the stream
+        if count:
+            self.stream.buffer_updated(count)
+            self.bytes_in += count
+        else:
+            self.stream.feed_eof()
+
+    def try_fill(self) -> bool:
+        """Take bytes that are there already; False if there are none."""
+        if self._objects is not None:
+            try:
+                self._fill_objects(self._objects, wait=False)
+            except BlockingIOError:
+                return False
+            return True
+        try:
+            count = self.transport.try_recv_into(self.stream.get_buffer())
+        except OSError:
+            count = 0
+        if count < 0:
+            return False
+        if count:
+            self.stream.buffer_updated(count)
+            self.bytes_in += count
+        else:
+            self.stream.feed_eof()
+        return True
+
+    def _fill_objects(self, pipe: InprocTransport, wait: bool = True) -> None:
+        item = pipe.receive(wait)
+        assert isinstance(self.stream, ObjectStream)
+        if item is None:
+            self.stream.feed_eof()
+        else:
+            self.stream.feed_object(item[0])
+
+    def _perform(self, effect: object) -> Any:
+        transport = self.transport
+        if isinstance(effect, Switch):
+            self.flush()
+            handle = effect.handle
+            handle.ready()
+            transport.close()
+            self.transport, self.stream = handle, effect.stream
+            self._objects = handle if isinstance(handle, InprocTransport) else None
+            return None
+        if isinstance(effect, Group):
+            if self._group is None:
+                raise LocalProtocolError("this connection cannot choose a multicast group")
+            return self._group(transport.local[0])
+        if isinstance(effect, Open):
+            local, remote = transport.local, transport.remote
+            if effect.kind == "udp":
+                return open_udp(effect.listen, local, remote, effect.port)
+            if effect.kind == "mcast":
+                return open_mcast(effect.listen, local, effect.group, effect.port)
+            if effect.kind == "unix":
+                return open_unix(effect.listen, local, remote)
+            if effect.kind == "inproc":
+                return open_inproc(effect.listen, local, remote)
+        raise LocalProtocolError(f"{effect} is not something a connection can do")
+
+
+def closed(error: OSError) -> YarpError:
+    """Our error for what the operating system says about a connection."""
+    if isinstance(error, YarpError):
+        return error
+    if isinstance(error, BlockingIOError | TimeoutError):
+        return Timeout("the peer does not take what is sent")
+    return LinkClosed(f"the peer is gone ({error.strerror or error})")

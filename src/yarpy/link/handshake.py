@@ -1,0 +1,126 @@
+"""The two beginnings of a connection: dialling out, and answering who dialled in.
+
+Rules: a greeting has `PATIENCE` seconds. Which protocol an incoming connection speaks is decided
+by its first eight bytes: the longest magic wins. Bytes that nobody knows get a text that a person
+can use. With a key (auth.conf) both sides prove that they know it before anything else.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import Final
+
+from yarpy import registry
+from yarpy.carriers.auth import prove_acceptor, prove_initiator
+from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.contact import Contact, Route, base_carrier
+from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout, UnknownPlugin
+from yarpy.link.driver import Driver
+from yarpy.transports.tcp import TcpTransport, dial
+from yarpy.wire.stream import DEFAULT_LIMIT
+
+PATIENCE: Final = 10.0  # seconds for a whole greeting
+PROVING: Final = 2.0  # seconds for the key exchange, as C++
+
+UNKNOWN_PROTOCOL: Final = (
+    b"* Error. Protocol not found.\r\n"
+    b"* Hello. You appear to be trying to communicate with a YARP Port.\r\n"
+    b"* The first 8 bytes sent to a YARP Port are critical for identifying the\r\n"
+    b"* protocol you wish to speak.\r\n"
+    b"* The first 8 bytes you sent were not associated with any particular protocol.\r\n"
+    b'* If you are a human, try typing "CONNECT foo" followed by a <RETURN>.\r\n'
+    b'* The 8 bytes "CONNECT " correspond to a simple text-mode protocol.\r\n'
+    b"* Goodbye.\r\n"
+)
+
+
+def recognise(
+    first: bytes, carriers: Iterable[type[Carrier]] | None = None
+) -> type[Carrier] | None:
+    """The carrier whose magic matches most of the `first` eight bytes, or None."""
+    best, length = None, 0
+    for carrier in registry.carriers if carriers is None else carriers:
+        found = carrier.recognises(first)
+        if found > length:
+            best, length = carrier, found
+    return best
+
+
+def find_carrier(name: str) -> type[Carrier]:
+    """The carrier class of a carrier string. Raises UnknownPlugin with the nearest match."""
+    carrier: type[Carrier] = registry.carriers.load(base_carrier(name) or "tcp")
+    if not (isinstance(carrier, type) and issubclass(carrier, Carrier)):
+        raise UnknownPlugin(f'"{base_carrier(name)}" is installed, but is not a Carrier class')
+    return carrier
+
+
+def greet(
+    contact: Contact,
+    route: Route,
+    *,
+    key: bytes = b"",
+    group: Callable[[str], tuple[str, int]] | None = None,
+    limit: int = DEFAULT_LIMIT,
+    timeout: float = PATIENCE,
+) -> tuple[Driver, Carrier]:
+    """Dial `contact` and open the connection that `route` describes.
+
+    Raises UnknownPlugin, LinkClosed (nobody there, hung up), Timeout, RemoteProtocolError.
+    """
+    carrier = find_carrier(route.carrier)(route)
+    deadline = time.monotonic() + timeout
+    try:
+        transport = dial(contact.host, contact.port, timeout)
+    except TimeoutError as error:
+        raise Timeout(f"{contact.address} does not answer") from error
+    except OSError as error:
+        raise LinkClosed(
+            f"nobody answers at {contact.address} ({error.strerror or error})"
+        ) from error
+    driver = Driver(transport, limit, group)
+    try:
+        if key:
+            driver.run(prove_initiator(driver.stream, key), time.monotonic() + PROVING)
+        driver.run(carrier.greet(driver.stream), deadline)
+    except OSError as error:
+        driver.transport.close()
+        if isinstance(error, LinkClosed | Timeout):
+            raise
+        raise LinkClosed(f"cannot reach {contact.address} ({error.strerror or error})") from error
+    except BaseException:
+        driver.transport.close()
+        raise
+    return driver, carrier
+
+
+def welcome(
+    transport: TcpTransport,
+    target: str,
+    port: int,
+    *,
+    key: bytes = b"",
+    limit: int = DEFAULT_LIMIT,
+    carriers: Iterable[type[Carrier]] | None = None,
+) -> tuple[Driver, Carrier] | None:
+    """Answer whoever dialled the port called `target`; None if they hung up without a word.
+
+    Raises RemoteProtocolError for bytes that no carrier knows (the peer was told), LinkClosed,
+    Timeout.
+    """
+    driver = Driver(transport, limit)
+    deadline = time.monotonic() + PATIENCE
+    if key:
+        driver.run(prove_acceptor(driver.stream, key), time.monotonic() + PROVING)
+    try:
+        first = bytes(driver.run(driver.stream.read_exact(MAGIC_SIZE), deadline))
+    except LinkClosed:
+        return None
+    kind = recognise(first, carriers)
+    if kind is None:
+        driver.stream.write(UNKNOWN_PROTOCOL)
+        driver.flush()
+        raise RemoteProtocolError(f"no carrier begins with the bytes {first!r}")
+    carrier = kind(Route("", target, kind.name, port))
+    driver.run(carrier.welcome(driver.stream, first), deadline)
+    return driver, carrier

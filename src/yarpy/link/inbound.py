@@ -1,0 +1,327 @@
+"""Inbound: a connection that brings messages to a port; one thread, or the reader's own.
+
+Rules: the thread is the link, so its scheduling is the connection's. It welcomes, then reads,
+hands each message to the port, answers, acknowledges. Acknowledgements leave when there is nothing
+more to read at once, so a burst costs one send. A reader that is already waiting for the next
+message may take the turn and read the socket itself (`borrow`), which saves the hop between
+threads; the thread then looks in every few milliseconds and takes over as soon as the reader stays
+away.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from typing import TYPE_CHECKING, Any, Protocol
+
+from yarpy.data.bottle import Bottle
+from yarpy.errors import LinkClosed, Timeout, YarpError
+from yarpy.link.counter import Counter
+from yarpy.link.driver import Driver
+from yarpy.qos import Sched
+from yarpy.wire.message import CALL, DATA, QUIT, Message
+
+if TYPE_CHECKING:
+    from yarpy.carriers.base import Carrier
+    from yarpy.contact import Route
+    from yarpy.wire.effects import Steps
+
+log = logging.getLogger("yarpy.link")
+
+PARKED = 0.005  # seconds between looks while a reader has the turn
+PATIENCE = 0.02  # seconds a reader with the turn waits before it looks around
+MAX_UNSENT_ACKS = 64
+
+
+class Owner(Protocol):
+    """What a link needs of its port."""
+
+    name: str
+
+    def receive(self, link: Inbound, message: Message) -> None:
+        """Take a data message. May block; answers through `message.reply` if that is wanted."""
+
+    def administer(self, link: Inbound, message: Message) -> Bottle:
+        """Answer an administrative message."""
+
+    def command(self, link: Inbound, message: Message) -> list[str]:
+        """Carry out a port command (`/dest`, `!`, `~`, `*`, `?`); lines for a person to read."""
+
+    def reverse(self, link: Inbound) -> None:
+        """The peer wants to read: make its connection an output."""
+
+    def closed(self, link: Inbound, reason: str, quit_: bool) -> None:
+        """The link has ended. `quit_` tells that it ended in good order."""
+
+
+class Inbound:
+    """One connection into a port."""
+
+    def __init__(self, owner: Owner, driver: Driver, carrier: Carrier) -> None:
+        self.owner = owner
+        self.driver = driver
+        self.carrier = carrier
+        self.route: Route = carrier.route
+        self.counter = Counter(since=time.time())
+        self.thread: threading.Thread | None = None
+        self.sched = Sched()  # what somebody asked for; -1: nothing
+        self.tos = 0
+        self.wanted = False  # a reader would like the turn
+        self.visited = 0.0  # when a reader with the turn was last here
+        self._turn = threading.Lock()  # who may read: the thread, or a reader that borrowed it
+        self._steps: Steps[Message] | None = None
+        self._leaving = False  # the thread leaves the turn to a reader
+        self._unsent_acks = 0
+        self._answering: Message | None = None
+        self._closing = False
+        self._quit = False
+        self._reversed = False
+        self._woken = threading.Event()
+
+    @property
+    def closing(self) -> bool:
+        """Whether it is our side that ends the connection."""
+        return self._closing
+
+    # -- the thread -------------------------------------------------------------------------------
+
+    def serve(self) -> None:
+        """Read until the connection ends. Runs in the link's own thread."""
+        reason = ""
+        try:
+            while not self._quit and not self._reversed:
+                with self._turn:
+                    self._read_on()
+                if self._leaving and not self._quit:
+                    self._park()
+        except LinkClosed as error:
+            reason = str(error)
+        except YarpError as error:
+            reason = f"{error}"
+            self._tell(error)
+        except Exception as error:
+            reason = f"{type(error).__name__}: {error}"
+            log.exception("%s: connection %s fails on a defect", self.owner.name, self.route)
+        if self._reversed:
+            self.owner.reverse(self)
+            return
+        self._finish()
+        self.owner.closed(self, reason, self._quit)
+
+    def _read_on(self) -> None:
+        """Read and hand on until the link ends or a reader wants the turn."""
+        while not self._quit and not self._reversed:
+            message = self.advance(None)
+            if message.key == DATA or message.key == CALL:
+                # Decided before the reader can see the message: when it comes back, the turn is
+                # free or about to be.
+                self._leaving = self.wanted
+                self._deliver(message)
+                if self._leaving:
+                    return
+            else:
+                self._obey(message)
+
+    def _park(self) -> None:
+        """Leave reading to the port's reader while it keeps coming back."""
+        self._woken.clear()
+        self.visited = time.perf_counter()
+        while self._leaving and not self._closing:
+            self._woken.wait(PARKED)
+            if not self._turn.acquire(blocking=False):
+                continue  # the reader is waiting for data right now
+            try:
+                gone = time.perf_counter() - self.visited > PARKED
+                if not self.wanted or (gone and self._answering is None):
+                    self.wanted = self._leaving = False
+            finally:
+                self._turn.release()
+        self.wanted = self._leaving = False
+
+    # -- reading ----------------------------------------------------------------------------------
+
+    def advance(self, deadline: float | None) -> Message:
+        """The next message. The caller has the turn. Raises Timeout (what came is kept),
+        LinkClosed."""
+        driver = self.driver
+        carrier = self.carrier
+        while True:
+            stream = driver.stream
+            if self._steps is None and stream.waiting:
+                message = carrier.parse(stream)
+                if message is not None:
+                    break
+                self._steps = carrier.decode(stream)
+            if self._steps is not None:
+                try:
+                    next(self._steps)
+                except StopIteration as stop:
+                    self._steps = None
+                    message = stop.value
+                    break
+            if self._unsent_acks:
+                self._send_acks()
+            driver.fill(deadline)
+            if self._steps is None and not driver.stream.waiting:
+                self._steps = carrier.decode(driver.stream)  # meets the end, and says how
+        message.source = self.route.source
+        counter = self.counter
+        counter.count(time.perf_counter())
+        counter.bytes = driver.bytes_in
+        return message
+
+    def borrow(self) -> bool:
+        """Take the turn for a reader, if the link's thread is not reading itself."""
+        if not (self.wanted and self._leaving) or not self._turn.acquire(timeout=PATIENCE):
+            return False
+        if not (self.wanted and self._leaving) or self._closing:
+            self._turn.release()
+            return False
+        return True
+
+    def give_back(self) -> None:
+        """End of `borrow`."""
+        self.visited = time.perf_counter()
+        self._turn.release()
+
+    def fetch(self, deadline: float | None, spin: bool = False) -> Message | None:
+        """The next data message, read by a borrower; None when it should look around again."""
+        try:
+            while True:
+                if spin and not self.driver.stream.waiting and not self._spin(deadline):
+                    return None
+                message = self.advance(deadline)
+                if message.key == DATA or message.key == CALL:
+                    self.accept(message)
+                    return message
+                self._obey(message)
+                if self._quit or self._reversed:
+                    break
+        except Timeout:
+            return None
+        except YarpError:
+            pass  # the link's thread meets the same end at once, and tells of it
+        self.wanted = False
+        self._woken.set()
+        return None
+
+    def _spin(self, deadline: float | None) -> bool:
+        """Ask the socket again and again instead of sleeping; False when the time is over."""
+        if self._unsent_acks:
+            self._send_acks()
+        driver = self.driver
+        while True:
+            for _ in range(64):
+                if driver.try_fill():
+                    return True
+            if deadline is not None and time.monotonic() > deadline:
+                return False
+
+    # -- handing on -------------------------------------------------------------------------------
+
+    def accept(self, message: Message) -> None:
+        """Prepare a data message for the port: whether it can be answered, and that it must be
+        acked."""
+        if message.key == CALL and self.carrier.replies:
+            self._answering = message
+            message.answer = self._reply
+        else:
+            self._acknowledge()
+
+    def _deliver(self, message: Message) -> None:
+        if message.key == CALL and self.carrier.replies:
+            self._answering = message
+            message.answer = self._reply
+            self.owner.receive(self, message)
+            self.settle(message)
+        else:
+            self.owner.receive(self, message)
+            self._acknowledge()
+
+    def settle(self, message: Message) -> None:
+        """The port is done with `message`: if nobody answered a question, an empty answer goes."""
+        if self._answering is not message:
+            return
+        message.answer = None
+        self._answering = None
+        # Without any answer a C++ caller takes the acknowledgement for one and waits for ever. A
+        # person at a text prompt, and a name service, are told nothing rather than an empty line.
+        if self.carrier.spelling == "binary" and self.carrier.acks:
+            self._reply(Bottle())
+        else:
+            self._acknowledge()
+
+    def _reply(self, value: object) -> None:
+        self._answering = None
+        stream = self.driver.stream
+        self.carrier.encode_reply(stream, value)
+        if self.carrier.acks:
+            self.carrier.encode_ack(stream)
+        self._unsent_acks = 0
+        self.driver.flush()
+
+    def _acknowledge(self) -> None:
+        if self.carrier.acks:
+            self.carrier.encode_ack(self.driver.stream)
+            self._unsent_acks += 1
+            if self._unsent_acks >= MAX_UNSENT_ACKS:
+                self._send_acks()
+
+    def _send_acks(self) -> None:
+        self._unsent_acks = 0
+        self.driver.flush()
+
+    def _obey(self, message: Message) -> None:
+        """A port command that is not data."""
+        carrier, stream = self.carrier, self.driver.stream
+        if message.key == "a":
+            carrier.encode_reply(stream, self.owner.administer(self, message))
+        elif message.key == QUIT:
+            self._quit = True
+        elif message.key == "r":
+            self._reversed = True
+        else:
+            carrier.encode_lines(stream, self.owner.command(self, message))
+        if carrier.acks:
+            carrier.encode_ack(stream)
+        self.driver.flush()
+
+    # -- ending -----------------------------------------------------------------------------------
+
+    def close(self) -> None:
+        """End the connection from our side; its thread notices. Any thread may call."""
+        self._closing = True
+        self._woken.set()
+        self.driver.transport.interrupt()
+
+    def _tell(self, error: YarpError) -> None:
+        """The one log line for a connection that ends on an error."""
+        if not self._closing:
+            log.warning(
+                "%s: connection from %s over %s closed: %s",
+                self.owner.name,
+                self.route.source or self._where(),
+                self.route.carrier,
+                error,
+            )
+
+    def _where(self) -> str:
+        try:
+            host, port = self.driver.transport.remote
+        except OSError:
+            return "somebody"
+        return f"{host}:{port}"
+
+    def _finish(self) -> None:
+        try:
+            self.driver.flush()
+        except YarpError:
+            pass  # the last acknowledgements find nobody
+        self.driver.transport.close()
+
+    def snapshot(self) -> dict[str, Any]:
+        """Counters as plain numbers, with the protocol's and the kernel's own losses in `drops`."""
+        found: dict[str, Any] = self.counter.as_dict()
+        found["drops"] += self.carrier.lost + getattr(self.driver.transport, "dropped", 0)
+        return found

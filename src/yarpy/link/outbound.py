@@ -1,0 +1,394 @@
+"""Outbound: a connection that carries a port's messages away.
+
+Rules: sends in the caller's thread, or in its own when background writing is asked for. One lock,
+held for one message at a time. Acknowledgements are read late: up to `WINDOW` messages may be on
+their way unconfirmed, then a send waits. When messages follow each other without a pause, the
+first leaves at once and those behind it are gathered into one send; a short timer sends what a
+writer leaves behind.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from typing import TYPE_CHECKING, Any, Final
+
+from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
+from yarpy.link.counter import Counter
+from yarpy.qos import Sched, schedule
+from yarpy.wire.message import CALL, Message, Packet
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from yarpy.carriers.base import Carrier
+    from yarpy.contact import Route
+    from yarpy.link.driver import Driver
+    from yarpy.wire.effects import Steps
+
+WINDOW: Final = 256  # messages that may be unacknowledged before a send waits
+ASK_EVERY: Final = 32  # messages after which acknowledgements are looked for
+CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
+
+# Gathering. A writer that comes back within RUSH seconds, BURST times in a row, is flooding.
+RUSH: Final = 15e-6
+BURST: Final = 16
+GATHER_BYTES: Final = 1 << 15
+GATHER_SECONDS: Final = 200e-6
+
+
+class Outbound:
+    """One connection out of a port. `background` links send from a thread of their own."""
+
+    def __init__(self, driver: Driver, carrier: Carrier) -> None:
+        self.driver = driver
+        self.carrier = carrier
+        self.route: Route = carrier.route
+        self.counter = Counter(since=time.time())
+        self.unacknowledged = 0
+        self.broken = False
+        self.sched = Sched()  # what somebody asked for; -1: nothing
+        self.tos = 0
+        self.active = True  # of the multicast links of a port only one sends
+        self.thread: threading.Thread | None = None
+        self._lock = threading.Lock()  # one message at a time on the wire
+        self._acks: Steps[None] | None = None
+        self._queue: _Background | None = None
+        self._rush = 0
+        self._left = 0.0  # when the last send ended
+        self._gathered: list[Any] = []
+        self._gathered_size = 0
+        self._gathered_count = 0
+        self._gathered_since = 0.0
+        self._sweeper: _Sweeper | None = None
+
+    # -- sending ----------------------------------------------------------------------------------
+
+    def send(self, packet: Packet) -> None:
+        """Send one message. Returns once the kernel, or the gathering of a burst, has it.
+
+        Blocks while the peer is WINDOW acknowledgements behind. Raises LinkClosed.
+        """
+        if self._queue is not None:
+            self._queue.wait_put(packet)
+            return
+        with self._lock:
+            self._send(packet)
+
+    def offer(self, packet: Packet) -> bool:
+        """Send in the background unless the previous message is still going: then drop, and
+        count."""
+        if self._queue is None:
+            self.start_background()
+        assert self._queue is not None
+        return self._queue.put(packet)
+
+    def _send(self, packet: Packet) -> None:
+        if self.broken:
+            self.counter.drops += 1
+            raise LinkClosed(f'the connection to "{self.route.target}" is gone')
+        carrier, driver = self.carrier, self.driver
+        now = time.perf_counter()
+        try:
+            carrier.encode(driver.stream, packet)
+            if now - self._left > RUSH:
+                self._rush = 0
+                self._flush()
+            elif self._rush < BURST:
+                self._rush += 1
+                self._flush()
+            else:
+                self._gather(now)
+            if carrier.acks:
+                self.unacknowledged += 1
+                if self.unacknowledged % ASK_EVERY == 0:
+                    self._collect(wait=self.unacknowledged >= WINDOW)
+        except YarpError:
+            self.counter.drops += 1
+            self._break()
+            raise
+        counter = self.counter
+        counter.count(now)
+        counter.bytes = driver.bytes_out
+        self._left = time.perf_counter()
+
+    def _flush(self) -> None:
+        if self._gathered:
+            self._gathered += self.driver.stream.take_output()
+            joined = b"".join(self._gathered)
+            self._gathered, self._gathered_size, self._gathered_count = [], 0, 0
+            self.driver.stream.write(joined)
+        self.driver.flush()
+
+    def _gather(self, now: float) -> None:
+        """Keep the message for the next send of many, which comes soon."""
+        if self.carrier.connectionless or self.carrier.spelling == "object":
+            self._flush()
+            return
+        output = self.driver.stream.take_output()
+        if not self._gathered:
+            self._gathered_since = now
+            if self._sweeper is None:
+                self._sweeper = _Sweeper(self)
+            self._sweeper.watch()
+        # A gathered message must not alias memory that its writer may change before it leaves.
+        self._gathered += [bytes(piece) for piece in output]
+        self._gathered_size += sum(map(len, output))
+        self._gathered_count += 1
+        if self._gathered_size >= GATHER_BYTES or now - self._gathered_since >= GATHER_SECONDS:
+            self._flush()
+
+    def sweep(self) -> None:
+        """Send what a burst left behind."""
+        with self._lock:
+            if self._gathered and not self.broken:
+                try:
+                    self._flush()
+                except YarpError:
+                    self._break()
+
+    def start_background(self) -> None:
+        """Give the link a thread that sends; `send` and `offer` then only hand over."""
+        with self._lock:
+            if self._queue is None and not self.broken:
+                self._queue = _Background(self)
+                self.thread = threading.Thread(
+                    target=self._queue.run, name=f"yarpy {self.route}", daemon=True
+                )
+                self.thread.start()
+
+    def drain(self, timeout: float | None = None) -> bool:
+        """Wait until everything handed over was sent; False if `timeout` seconds were not
+        enough."""
+        done = self._queue.wait_empty(timeout) if self._queue is not None else True
+        self.sweep()
+        return done
+
+    # -- what comes back --------------------------------------------------------------------------
+
+    def call(self, packet: Packet, timeout: float | None = None) -> Message | None:
+        """Send a question and wait for its reply; None if the peer has none to give.
+
+        Raises Timeout (the link is then closed: a late reply must not answer the next question).
+        """
+        if not self.carrier.replies:
+            raise LocalProtocolError(
+                f'"{self.carrier.name}" carries no replies; connect to '
+                f'"{self.route.target}" with tcp'
+            )
+        assert packet.key == CALL or packet.key == "a"
+        deadline = None if timeout is None else time.monotonic() + timeout
+        self.drain(timeout)
+        with self._lock:
+            started = time.perf_counter()
+            driver = self.driver
+            try:
+                self._collect(wait=True)
+                self._send_question(packet)
+                reply = driver.run(self.carrier.expect_reply(driver.stream), deadline)
+                if self.carrier.acks:
+                    driver.run(self.carrier.expect_ack(driver.stream), deadline)
+            except Timeout:
+                self._break()
+                raise Timeout(
+                    f'"{self.route.target}" did not reply within {timeout} s; is its program stuck?'
+                ) from None
+            except YarpError:
+                self._break()
+                raise
+            now = time.perf_counter()
+            self.counter.count(now)
+            self.counter.bytes = driver.bytes_out
+            self.counter.measure(now - started)
+            if reply is not None:
+                reply.source = self.route.target
+            return reply
+
+    def _send_question(self, packet: Packet) -> None:
+        if self.broken:
+            raise LinkClosed(f'the connection to "{self.route.target}" is gone')
+        self.carrier.encode(self.driver.stream, packet)
+        self._flush()
+
+    def wait_acknowledged(self, timeout: float | None = None) -> None:
+        """Wait until the peer has taken every message. Raises Timeout, LinkClosed."""
+        self.drain(timeout)
+        with self._lock:
+            try:
+                deadline = None if timeout is None else time.monotonic() + timeout
+                self._collect(wait=True, all_=True, deadline=deadline)
+            except Timeout:
+                raise
+            except YarpError:
+                self._break()
+                raise
+
+    def _collect(self, wait: bool, all_: bool = False, deadline: float | None = None) -> None:
+        """Read acknowledgements: those that are there; with `wait`, until half the window is
+        free."""
+        target = 0 if all_ or (wait and self.unacknowledged < WINDOW) else WINDOW // 2
+        driver = self.driver
+        if self._gathered:
+            self._flush()
+        while self.unacknowledged > (target if wait else 0):
+            if self._acks is None:
+                self._acks = self.carrier.expect_ack(driver.stream)
+            try:
+                next(self._acks)
+            except StopIteration:
+                self._acks = None
+                self.unacknowledged -= 1
+                continue
+            if wait:
+                driver.fill(deadline)
+            elif not driver.try_fill():
+                break
+        if deadline is not None:
+            driver.transport.limit_waiting(None)
+
+    # -- ending -----------------------------------------------------------------------------------
+
+    def _break(self) -> None:
+        """The connection failed: what was never acknowledged is lost, and counted."""
+        if not self.broken:
+            self.broken = True
+            lost = self.unacknowledged if self.carrier.acks else self._gathered_count
+            self.counter.messages -= lost
+            self.counter.drops += lost
+            self.unacknowledged = self._gathered_count = 0
+            self._gathered = []
+            self.driver.transport.close()
+
+    def ended(self) -> bool:
+        """Whether the peer has hung up, found out without sending anything."""
+        if not self.broken and self.driver.transport.ended():
+            with self._lock:
+                self._break()
+        return self.broken
+
+    def close(self, quit_: bool = True) -> None:
+        """End the connection: say `q`, wait a moment for its acknowledgement, hang up."""
+        self.drain(CLOSE_PATIENCE)
+        if self._queue is not None:
+            self._queue.stop()
+        with self._lock:
+            if self.broken:
+                return
+            driver = self.driver
+            try:
+                if quit_:
+                    self.carrier.encode_quit(driver.stream)
+                    deadline = time.monotonic() + CLOSE_PATIENCE
+                    driver.flush()
+                    if self.carrier.acks:
+                        self.unacknowledged += 1
+                        self._collect(wait=True, all_=True, deadline=deadline)
+            except (YarpError, OSError):
+                lost = max(self.unacknowledged - 1, 0)
+                self.counter.messages -= lost
+                self.counter.drops += lost
+            self.broken = True
+            driver.transport.close()
+
+    def snapshot(self) -> dict[str, Any]:
+        """Counters as plain numbers."""
+        return {**self.counter.as_dict(), "unacknowledged": self.unacknowledged}
+
+
+class _Background:
+    """The queue and loop of a link's own sending thread: one message in flight, one waiting."""
+
+    def __init__(self, link: Outbound) -> None:
+        self._link = link
+        self._waiting: deque[Packet] = deque()
+        self._busy = False
+        self._stopped = False
+        self._changed = threading.Condition()  # writer and sender pass packets
+
+    def put(self, packet: Packet) -> bool:
+        """Take the packet if the link is idle; else count a drop."""
+        with self._changed:
+            if self._busy or self._waiting or self._stopped:
+                self._link.counter.drops += 1
+                return False
+            self._waiting.append(packet)
+            self._changed.notify_all()
+            return True
+
+    def wait_put(self, packet: Packet) -> None:
+        """Take the packet; wait while an earlier one has not begun to leave."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._waiting or self._stopped)
+            if self._stopped:
+                raise LinkClosed(f'the connection to "{self._link.route.target}" is gone')
+            self._waiting.append(packet)
+            self._changed.notify_all()
+
+    def wait_empty(self, timeout: float | None) -> bool:
+        """Wait until nothing waits or leaves."""
+        with self._changed:
+            return self._changed.wait_for(
+                lambda: self._stopped or not (self._waiting or self._busy), timeout
+            )
+
+    def stop(self) -> None:
+        """Let the thread end."""
+        with self._changed:
+            self._stopped = True
+            self._link.counter.drops += len(self._waiting)
+            self._waiting.clear()
+            self._changed.notify_all()
+
+    def run(self) -> None:
+        """Send what is put, until stopped."""
+        link = self._link
+        if link.sched.policy >= 0:
+            try:
+                schedule(0, link.sched)
+            except YarpError:
+                pass  # said when it was asked for; the link sends all the same
+        while True:
+            with self._changed:
+                self._busy = False
+                self._changed.notify_all()
+                self._changed.wait_for(lambda: bool(self._waiting) or self._stopped)
+                if self._stopped:
+                    return
+                packet = self._waiting.popleft()
+                self._busy = True
+                self._changed.notify_all()
+            try:
+                with link._lock:
+                    link._send(packet)
+            except YarpError:
+                self.stop()
+
+
+class _Sweeper:
+    """Sends what a burst left behind, if its writer does not come back to do so."""
+
+    def __init__(self, link: Outbound) -> None:
+        self._sweep: Callable[[], None] = link.sweep
+        self._link = link
+        self._wake = threading.Semaphore(0)
+        self._asleep = True
+        threading.Thread(target=self._run, name=f"yarpy sweep {link.route}", daemon=True).start()
+
+    def watch(self) -> None:
+        """Something was gathered."""
+        if self._asleep:
+            self._asleep = False
+            self._wake.release()
+
+    def _run(self) -> None:
+        while not self._link.broken:
+            if not self._wake.acquire(timeout=5.0):
+                continue
+            while True:
+                time.sleep(GATHER_SECONDS)
+                self._sweep()
+                if time.perf_counter() - self._link._left > 100 * GATHER_SECONDS:
+                    break
+            self._asleep = True
+            self._sweep()

@@ -1,0 +1,142 @@
+"""UDP and multicast sockets: each send is one datagram, each receive is one datagram.
+
+Rules: receive buffers are asked for generously, since what the kernel drops is lost. What it had to
+drop it counts (SO_RXQ_OVFL on Linux), and `dropped` tells.
+"""
+
+from __future__ import annotations
+
+import socket
+import struct
+import sys
+from collections.abc import Sequence
+
+from yarpy.transports.base import Address, SocketTransport
+from yarpy.wire.stream import Buffer
+
+RECEIVE_BUFFER = 1 << 23
+_SO_RXQ_OVFL = 40 if sys.platform.startswith("linux") else 0
+
+
+class DatagramTransport(SocketTransport):
+    """A UDP socket, connected or not."""
+
+    def __init__(self, sock: socket.socket, target: Address | None = None) -> None:
+        super().__init__(sock)
+        self._target = target
+        self._woken = False
+        self.dropped = 0  # datagrams the kernel threw away for want of room
+        for size in (RECEIVE_BUFFER, RECEIVE_BUFFER // 8):
+            try:
+                sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, size)
+                break
+            except OSError:
+                continue
+        if _SO_RXQ_OVFL:
+            sock.setsockopt(socket.SOL_SOCKET, _SO_RXQ_OVFL, 1)
+
+    @property
+    def remote(self) -> Address:
+        return self._target or ("", 0)
+
+    @property
+    def port(self) -> int:
+        return self.local[1]
+
+    def recv_into(self, view: memoryview) -> int:
+        if not _SO_RXQ_OVFL:
+            count = self._recv_into(view)
+        else:
+            count, ancillary, _, _ = self.sock.recvmsg_into([view], 64)
+            for level, kind, data in ancillary:
+                if level == socket.SOL_SOCKET and kind == _SO_RXQ_OVFL:
+                    (self.dropped,) = struct.unpack("=I", data)
+        return 0 if self._woken else count
+
+    def send(self, buffers: Sequence[Buffer]) -> None:
+        for datagram in buffers:
+            if self._target is None:
+                raise OSError("this datagram socket only receives")
+            self.sock.sendto(datagram, self._target)
+
+    def ended(self) -> bool:
+        return False
+
+    def interrupt(self) -> None:
+        self._woken = True
+        super().interrupt()
+        if self._target is None:
+            # An unconnected UDP socket does not notice a shutdown: an empty datagram wakes it.
+            try:
+                with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as waker:
+                    waker.sendto(b"", ("127.0.0.1", self.port))
+            except OSError:
+                pass
+
+
+def open_udp(listen: bool, local: Address, remote: Address, port: int) -> DatagramTransport:
+    """The UDP side of a connection that greeted over TCP from `local` to `remote`.
+
+    The initiator sends from the number of its TCP port, which the peer may have noted.
+    """
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        if listen:
+            sock.bind(("", 0))
+            return DatagramTransport(sock)
+        try:
+            sock.bind(("", local[1]))
+        except OSError:
+            sock.bind(
+                ("", 0)
+            )  # taken by somebody else; C++ does not check where datagrams are from
+        return DatagramTransport(sock, (remote[0], port))
+    except OSError:
+        sock.close()
+        raise
+
+
+def open_mcast(listen: bool, local: Address, group: str, port: int) -> DatagramTransport:
+    """Join a multicast group, or send to it, on the interface that has the address `local`."""
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        interface = socket.inet_aton(local[0])
+        if not listen:
+            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, interface)
+            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 1)
+            sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
+            return DatagramTransport(sock, (group, port))
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if hasattr(socket, "SO_REUSEPORT") and sys.platform == "darwin":
+            sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+        # Bound to the group itself, so that other traffic to this number stays out.
+        sock.bind((group if sys.platform != "win32" else "", port))
+        membership = socket.inet_aton(group) + interface
+        sock.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+        return McastReceiver(sock, group)
+    except OSError:
+        sock.close()
+        raise
+
+
+class McastReceiver(DatagramTransport):
+    """A member of a group; leaving it wakes the receiver with a short receive timeout."""
+
+    def __init__(self, sock: socket.socket, group: str) -> None:
+        super().__init__(sock)
+        self._group = group
+        super().limit_waiting(0.25)  # a datagram to wake us would go to the whole group
+
+    def limit_waiting(self, seconds: float | None) -> None:
+        """Keeps its own short limit."""
+
+    def recv_into(self, view: memoryview) -> int:
+        while not self._woken:
+            try:
+                return super().recv_into(view)
+            except BlockingIOError:
+                continue
+        return 0
+
+    def interrupt(self) -> None:
+        self._woken = True

@@ -1,0 +1,119 @@
+"""In-process pipes: Python objects handed from thread to thread.
+
+Rules: two ends meet by the pair of TCP port numbers over which they were introduced. Only ends of
+this process are in the meeting place, so a stranger's greeting finds nobody.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from queue import Empty, SimpleQueue
+
+from yarpy.errors import RemoteProtocolError
+from yarpy.transports.base import Address
+
+PATIENCE = 5.0  # seconds for the two ends to meet
+_END = object()
+
+
+class Meeting:
+    """Where ends wait for each other; one per process."""
+
+    def __init__(self) -> None:
+        self._waiting: dict[tuple[int, int], InprocTransport] = {}
+        self._lock = threading.Lock()  # initiator and acceptor are different threads
+
+    def leave(self, key: tuple[int, int], end: InprocTransport) -> None:
+        """Wait here for the other side."""
+        with self._lock:
+            self._waiting[key] = end
+
+    def find(self, key: tuple[int, int]) -> InprocTransport | None:
+        """The end that waits under `key`, once."""
+        with self._lock:
+            return self._waiting.pop(key, None)
+
+
+MEETING = Meeting()
+
+
+class InprocTransport:
+    """One end of a pipe of objects."""
+
+    def __init__(self, local: Address, remote: Address) -> None:
+        self.local = local
+        self.remote = remote
+        self.port = 0
+        self._inbox: SimpleQueue[object] = SimpleQueue()
+        self._peer: InprocTransport | None = None
+        self._timeout: float | None = None
+        self._ended = False
+        self._joined = threading.Event()
+
+    def join(self, peer: InprocTransport) -> None:
+        """Become the two ends of one pipe."""
+        self._peer, peer._peer = peer, self
+        self._joined.set()
+        peer._joined.set()
+
+    def ready(self) -> None:
+        """Wait until the other end has come. Raises TimeoutError if it does not."""
+        if not self._joined.wait(PATIENCE):
+            MEETING.find((self.local[1], self.remote[1]))
+            raise TimeoutError("no port of this process answered; the carrier local needs one")
+
+    def receive(self, wait: bool = True) -> tuple[object] | None:
+        """The next object in a one-element tuple; () is never sent; None is the end."""
+        try:
+            item = self._inbox.get(wait, self._timeout)
+        except Empty:
+            raise BlockingIOError("nothing has come") from None
+        if item is _END:
+            self._inbox.put(_END)
+            return None
+        return (item,)
+
+    def recv_into(self, view: memoryview) -> int:
+        raise TypeError("an in-process pipe carries objects, not bytes")
+
+    def try_recv_into(self, view: memoryview) -> int:
+        return -1
+
+    def send(self, buffers: Sequence[object]) -> None:
+        peer = self._peer
+        if peer is None or peer._ended or self._ended:
+            raise BrokenPipeError("the other end is closed")
+        for item in buffers:
+            peer._inbox.put(item)
+
+    def limit_waiting(self, seconds: float | None) -> None:
+        self._timeout = seconds
+
+    def set_dscp(self, tos: int) -> None:
+        """No packets, no priority."""
+
+    def ended(self) -> bool:
+        return self._peer is not None and self._peer._ended
+
+    def interrupt(self) -> None:
+        self._inbox.put(_END)
+
+    def close(self) -> None:
+        if not self._ended:
+            self._ended = True
+            if self._peer is not None:
+                self._peer._inbox.put(_END)
+
+
+def open_inproc(listen: bool, local: Address, remote: Address) -> InprocTransport:
+    """Our end of a pipe; the initiator waits in the meeting place, the acceptor finds it there."""
+    end = InprocTransport(local, remote)
+    if not listen:
+        MEETING.leave((local[1], remote[1]), end)
+        return end
+    peer = MEETING.find((remote[1], local[1]))
+    if peer is None:
+        raise RemoteProtocolError("the carrier local joins ports of one process; use unix_stream")
+    end.join(peer)
+    return end

@@ -1,0 +1,94 @@
+"""TCP: where every connection begins.
+
+Rules: TCP_NODELAY always (messages are sent whole); the listening socket takes every local address.
+"""
+
+from __future__ import annotations
+
+import select
+import socket
+import sys
+
+from yarpy.errors import AddressError
+from yarpy.transports.base import Address, SocketTransport
+
+CONNECT_TIMEOUT = 10.0  # seconds, as C++ YARP
+
+
+class TcpTransport(SocketTransport):
+    """A connected TCP socket."""
+
+    def __init__(self, sock: socket.socket) -> None:
+        super().__init__(sock)
+        if sock.family != getattr(socket, "AF_UNIX", None):
+            sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+
+def dial(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TcpTransport:
+    """Connect to a port. Raises OSError (ConnectionRefusedError, TimeoutError ...)."""
+    if not 0 < port < 65536:
+        raise AddressError(f"{host}:{port}: a TCP port number lies between 1 and 65535")
+    return TcpTransport(socket.create_connection((host, port), timeout))
+
+
+class TcpListener:
+    """A listening socket on all IPv4 addresses, `port` 0 for any free number.
+
+    `wait` watches it together with connections that have not said anything yet.
+    """
+
+    def __init__(self, port: int = 0, host: str = "") -> None:
+        self.sock = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        try:
+            if sys.platform != "win32":
+                self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            self.sock.bind((host, port))
+            self.sock.listen(1024)
+        except OSError:
+            self.sock.close()
+            raise
+        self.sock.setblocking(False)
+        self.port: int = self.sock.getsockname()[1]
+        self._closed = False
+
+    def accept(self) -> tuple[socket.socket, Address]:
+        """The next connection, without waiting. Raises BlockingIOError if there is none."""
+        sock, raw = self.sock.accept()
+        return sock, (str(raw[0]), int(raw[1]))
+
+    def wait(self, silent: dict[int, socket.socket], timeout: float | None) -> list[int]:
+        """File numbers among `silent` and our own that have something to read."""
+        own = self.sock.fileno()
+        if own < 0:
+            return []
+        if not hasattr(select, "poll"):  # Windows
+            ready, _, _ = select.select([own, *silent], [], [], timeout)
+            return list(ready)
+        poll = select.poll()
+        for number in (own, *silent):
+            poll.register(number, select.POLLIN)
+        return [number for number, _ in poll.poll(None if timeout is None else timeout * 1000)]
+
+    @property
+    def closed(self) -> bool:
+        """Whether `close` was called."""
+        return self._closed
+
+    def close(self) -> None:
+        """Stop listening and wake the thread that waits."""
+        if self._closed:
+            return
+        self._closed = True
+        try:
+            self.sock.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            # Not every system lets a listening socket be shut down: a call from us wakes it as
+            # well.
+            try:
+                socket.create_connection(("127.0.0.1", self.port), 1.0).close()
+            except OSError:
+                pass
+
+    def release(self) -> None:
+        """Give the number back; called by the thread that waited."""
+        self.sock.close()

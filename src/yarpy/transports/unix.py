@@ -1,0 +1,96 @@
+"""Unix sockets for two ports of one host that met over TCP.
+
+Rules: the path is made of the two TCP port numbers and lies in YARP's runtime directory, which both
+processes compute alike. The accepting side binds, waits for one peer, and removes the path.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import tempfile
+import time
+from pathlib import Path
+
+from yarpy.errors import LocalProtocolError
+from yarpy.transports.base import Address
+from yarpy.transports.tcp import TcpTransport
+
+PATIENCE = 5.0  # seconds for the two sides to meet
+
+
+def runtime_directory() -> Path:
+    """Where C++ YARP keeps its sockets: $YARP_RUNTIME_DIR, $XDG_RUNTIME_DIR/yarp, or below /tmp."""
+    own = os.environ.get("YARP_RUNTIME_DIR")
+    if own:
+        return Path(own)
+    shared = os.environ.get("XDG_RUNTIME_DIR")
+    if shared:
+        return Path(shared) / "yarp"
+    user = os.environ.get("USER") or str(os.getuid() if hasattr(os, "getuid") else "")
+    return Path(os.environ.get("TMPDIR") or tempfile.gettempdir()) / f"runtime-{user}" / "yarp"
+
+
+def open_unix(listen: bool, local: Address, remote: Address) -> UnixTransport:
+    """The Unix side of a connection that greeted over TCP from `local` to `remote`."""
+    if not hasattr(socket, "AF_UNIX"):
+        raise LocalProtocolError("this system has no Unix sockets; use the carrier tcp")
+    if local[0] != remote[0]:
+        raise LocalProtocolError(
+            f"unix_stream joins ports of one host, not {local[0]} and {remote[0]}; use tcp"
+        )
+    first, second = (local, remote) if listen else (remote, local)
+    directory = runtime_directory()
+    directory.mkdir(parents=True, exist_ok=True, mode=0o700)
+    return UnixTransport(str(directory / f"{first[1]}_{second[1]}.sock"), listen)
+
+
+class UnixTransport(TcpTransport):
+    """A Unix stream socket; connected once `ready` has returned."""
+
+    def __init__(self, path: str, listen: bool) -> None:
+        self._path = path
+        self._listen = listen
+        super().__init__(socket.socket(socket.AF_UNIX, socket.SOCK_STREAM))
+        if listen:
+            Path(path).unlink(missing_ok=True)
+            self.sock.bind(path)
+            self.sock.listen(1)
+
+    @property
+    def local(self) -> Address:
+        return self._path, 0
+
+    @property
+    def remote(self) -> Address:
+        return self._path, 0
+
+    def ready(self) -> None:
+        if self._listen:
+            listener = self.sock
+            try:
+                listener.settimeout(PATIENCE)
+                self.sock, _ = listener.accept()
+            finally:
+                listener.close()
+                Path(self._path).unlink(missing_ok=True)
+            self.sock.setblocking(True)
+        else:
+            deadline = time.monotonic() + PATIENCE
+            while True:
+                try:
+                    self.sock.connect(self._path)
+                    break
+                except (FileNotFoundError, ConnectionRefusedError):
+                    if time.monotonic() > deadline:
+                        raise
+                    time.sleep(0.01)  # the other side is about to listen
+        self._recv_into = self.sock.recv_into
+
+    def set_dscp(self, tos: int) -> None:
+        raise LocalProtocolError("a Unix socket has no packet priority; use tcp for that")
+
+    def close(self) -> None:
+        super().close()
+        if self._listen:
+            Path(self._path).unlink(missing_ok=True)

@@ -1,0 +1,49 @@
+"""What a protocol may ask of its driver besides bytes: the values that a `Steps` generator yields.
+
+Rules: plain values, no behaviour. `None` asks for more bytes; everything else is listed here. A
+connection greets over TCP; carriers that move elsewhere (UDP, multicast, Unix sockets, in-process)
+`Open` the new place, tell the peer about it, and `Switch` onto it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+
+if TYPE_CHECKING:
+    from yarpy.wire.stream import ByteStream
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Open:
+    """Open another way to the same peer; the driver sends back a handle with `.port` (0: none).
+
+    `kind` names the transport (`udp`, `mcast`, `unix`, `inproc`). `listen` is true on the side
+    that accepted the TCP connection. `group` and `port` say where: a multicast group, the peer's
+    UDP port.
+    """
+
+    kind: str
+    listen: bool
+    port: int = 0
+    group: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """Leave TCP: from here on this connection's bytes move by `handle`, buffered in `stream`."""
+
+    handle: Any
+    stream: ByteStream
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Ask for the multicast group of the sending port; the driver sends back `(address, port)`."""
+
+
+Effect: TypeAlias = Open | Switch | Group
+Steps: TypeAlias = Generator[Effect | None, Any, T]

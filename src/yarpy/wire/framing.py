@@ -1,0 +1,234 @@
+"""The framing that the binary carriers share: YARP numbers, the message index, port commands.
+
+Rules: pure. `encode` makes the buffers of one message, `read_message` reads one. The index of C++
+holds block lengths that its own reader only sums; ours believes the sum, except where it cannot be
+right (hand-made clients write what they like): then the payload itself is walked to find its end.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Final
+
+from yarpy.data.walker import Walker
+from yarpy.errors import RemoteProtocolError
+from yarpy.wire.effects import Steps
+from yarpy.wire.message import Message, Packet
+from yarpy.wire.stream import LARGE, Buffer, ByteStream
+
+BASE: Final = 7777  # what a carrier's code is added to in its first eight bytes
+MAX_NAME: Final = 1000
+MAX_COMMAND: Final = 1 << 16
+
+_NUMBER: Final = struct.Struct("<2si2s")
+_INT: Final = struct.Struct("<i")
+_TWO: Final = struct.Struct("<2i")
+
+
+def number(value: int) -> bytes:
+    """A YARP number: `YA`, a little-endian int32, `RP`.
+
+    >>> number(10).hex(" ")
+    '59 41 0a 00 00 00 52 50'
+    """
+    return _NUMBER.pack(b"YA", value, b"RP")
+
+
+def parse_number(data: Buffer) -> int:
+    """The value of a YARP number, or -1 if the eight bytes are none."""
+    start, value, end = _NUMBER.unpack(data)
+    return value if start == b"YA" and end == b"RP" and value >= 0 else -1
+
+
+INDEX: Final = number(10)
+ACK: Final = number(0)
+_FILLER: Final = b"\xff" * 8
+_PLAIN: Final = INDEX + b"\x02\x01" + _FILLER  # two blocks, as nearly every message has
+_PLAIN_SIZE: Final = len(_PLAIN) + 12  # + two lengths + the reply's length
+_HEAD_SIZE: Final = len(_PLAIN)
+
+# Port commands: eight bytes, with the key inside (`D`) or in a text that follows (envelopes, quit).
+_KEYS: Final = {key: b"\0\0\0\0~" + key.encode() + b"\0\1" for key in "Dda"}
+_HEADS: Final = {
+    key: (_PLAIN + _INT.pack(8), b"\0\0\0\0" + command) for key, command in _KEYS.items()
+}
+QUIT: Final = INDEX + b"\x01\x01" + _FILLER + _TWO.pack(10, 0) + b"\2\0\0\0~\0\0\1q\0"
+
+
+def encode_command(key: str, envelope: bytes = b"", text: bytes = b"") -> bytes:
+    """The port command that begins a message: eight bytes, then text with a NUL if there is any."""
+    if envelope:
+        text = b" " + envelope
+    if not text and key in _KEYS:
+        return _KEYS[key]
+    body = key.encode() + text + b"\0"
+    return _INT.pack(len(body)) + b"~\0\0\1" + body
+
+
+def encode(packet: Packet) -> list[Buffer]:
+    """One message: index, port command, payload. Small ones are one buffer, pixels stay in
+    place."""
+    framed = packet.framed
+    if framed is None:
+        blocks = packet.blocks
+        if len(blocks) == 1 and not packet.envelope:
+            # The common case, kept short: two blocks, the second is the payload.
+            payload = blocks[0]
+            head, command = _HEADS[packet.key]
+            start = head + _INT.pack(len(payload)) + command
+            framed = [start + payload] if len(payload) < LARGE else [start, payload]
+        else:
+            framed = _encode_blocks(encode_command(packet.key, packet.envelope), blocks)
+        packet.framed = framed
+    return framed
+
+
+def encode_text_command(key: str, text: bytes = b"") -> list[Buffer]:
+    """A message that is a port command alone (`q`, `/destination` ...)."""
+    return _encode_blocks(encode_command(key, text=text), ())
+
+
+def _encode_blocks(command: bytes, blocks: tuple[Buffer, ...]) -> list[Buffer]:
+    if len(blocks) > 200:  # the count is one byte; the reader does not care about borders
+        blocks = (b"".join(blocks),)
+    sizes = [len(command), *map(len, blocks)]
+    index = bytearray(INDEX)
+    index += bytes((len(sizes), 1)) + _FILLER
+    index += struct.pack(f"<{len(sizes)}i", *sizes) + b"\0\0\0\0" + command
+    out: list[Buffer] = []
+    for block in blocks:
+        if len(block) < LARGE:
+            index += block
+        else:
+            out += [bytes(index), block] if index else [block]
+            index = bytearray()
+    if index:
+        out.append(bytes(index))
+    return out
+
+
+def read_message(stream: ByteStream) -> Steps[Message]:
+    """Read one message. Eight bytes that are no index are skipped, as in C++, until one comes."""
+    while True:
+        if stream.tail - stream.head < _HEAD_SIZE:
+            yield from stream.more(8)
+            if not stream.buffer.startswith(INDEX, stream.head):
+                stream.head += 8
+                continue
+            yield from stream.more(_HEAD_SIZE)
+        if stream.buffer.startswith(_PLAIN, stream.head):
+            message = parse_plain(stream)
+            if message is not None:
+                return message
+        elif not stream.buffer.startswith(INDEX, stream.head):
+            stream.head += 8
+            continue
+        found = yield from _read_any(stream)
+        if found is not None:
+            return found
+
+
+def parse_plain(stream: ByteStream) -> Message | None:
+    """A whole message without envelope at the head of the stream's buffer, or None: look closer.
+
+    The hot path: nothing is waited for, no generator runs, the payload is copied out once.
+    """
+    head = stream.head
+    buffer = stream.buffer
+    start = head + _PLAIN_SIZE
+    if stream.tail < start + 8:
+        return None
+    command, size = _TWO.unpack_from(buffer, head + _HEAD_SIZE)
+    end = start + 8 + size
+    if command != 8 or not 8 <= size < LARGE or stream.tail < end:
+        return None
+    key = _CHARACTERS.get(buffer[start + 5])
+    if key is None or buffer[start + 4] != 0x7E:
+        return None
+    stream.head = end
+    return Message(key, bytes(buffer[start + 8 : end]))
+
+
+_CHARACTERS: Final = {ord(key): key for key in "Dda"}
+_DECODED: Final = ("D", "d", "a")
+
+
+def _read_any(stream: ByteStream) -> Steps[Message | None]:
+    """The general form of a message; None for a port command that is broken (C++ skips it)."""
+    head = yield from stream.read_exact(_HEAD_SIZE)
+    blocks, replies = head[8], head[9]
+    lengths = yield from stream.read_exact(4 * (blocks + replies))
+    sizes = struct.unpack(f"<{blocks}i", lengths[: 4 * blocks])
+    if any(size < 0 for size in sizes):
+        raise RemoteProtocolError("a message index with a negative block length")
+    total = sum(sizes)
+    if total > stream.limit:
+        raise RemoteProtocolError(
+            f"a message of {total} bytes is announced; the limit is {stream.limit} bytes"
+        )
+    command = yield from read_command(stream)
+    if command is None:
+        yield from stream.skip(total - 8)
+        return None
+    message, used = command
+    rest = total - used
+    if message.key not in _DECODED:
+        yield from stream.skip(rest)
+    elif rest >= 8:
+        message.payload = yield from stream.read_exact(rest)
+    else:
+        # No payload is that short: the index lies, the payload must tell where it ends.
+        message.payload = yield from read_payload(stream)
+    return message
+
+
+def read_command(stream: ByteStream) -> Steps[tuple[Message, int] | None]:
+    """A port command and how many bytes it took; None if it is not one."""
+    head = yield from stream.read_exact(8)
+    if head[4] != 0x7E:
+        return None
+    used = 8
+    if head[5]:
+        return Message(chr(head[5])), used
+    before = stream.head
+    line = yield from stream.read_line(MAX_COMMAND, end=0)
+    used += max(_INT.unpack_from(head)[0], 0) or stream.head - before
+    return parse_command(line.decode("utf-8", "replace")), used
+
+
+def parse_command(text: str) -> Message:
+    """A port command spelled as text: its first character is the key, the rest belongs to it.
+
+    For data the text from the third character on is the envelope.
+    """
+    key = text[:1]
+    if key in ("d", "D"):
+        return Message(key, envelope=text[2:].strip())
+    return Message(key, text=text[1:])
+
+
+def read_payload(stream: ByteStream) -> Steps[bytes | memoryview]:
+    """A payload that comes without a length, as replies do: walk it to its end."""
+    walker = Walker(stream.limit)
+    limit = stream.limit
+
+    def extent(view: memoryview) -> tuple[bytes, int] | int:
+        need = walker.advance(view)
+        if need > limit:
+            raise RemoteProtocolError(f"a payload of {need} bytes; the limit is {limit} bytes")
+        return (bytes(view[:need]), need) if walker.done else need
+
+    return (yield from stream.read_parsed(extent))
+
+
+def read_name(stream: ByteStream) -> Steps[str]:
+    """The sender's specifier: int32 length with its NUL, clamped to 1..1000 as C++ does."""
+    (length,) = _INT.unpack((yield from stream.read_exact(4)))
+    text = bytes((yield from stream.read_exact(max(1, min(length, MAX_NAME)))))
+    return text.partition(b"\0")[0].decode("utf-8", "replace")
+
+
+def encode_name(name: str) -> bytes:
+    """The sender's specifier as `read_name` reads it."""
+    text = name.encode("utf-8", "replace") + b"\0"
+    return _INT.pack(len(text)) + text

@@ -1,0 +1,177 @@
+"""Packet (going out) and Message (come in): one unit of what ports say to each other.
+
+Rules: a Packet encodes each spelling at most once, however many links it goes to. A Message keeps
+its payload as it arrived and decodes it when somebody looks, in the thread that looks; a message
+that is dropped is never parsed. This is the one file of the wire that knows the data room.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, TypeVar, overload
+
+from yarpy.data import codec
+from yarpy.errors import DecodeError, LocalProtocolError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from yarpy.data.stamp import Stamp
+    from yarpy.wire.stream import Buffer
+
+T = TypeVar("T")
+Spelling: TypeAlias = Literal["binary", "text", "object"]
+
+DATA: Final = "D"  # data, no reply wanted
+CALL: Final = "d"  # data, the sender reads a reply
+ADMIN: Final = "a"
+QUIT: Final = "q"
+
+_UNSET: Final = object()
+
+
+class Lines(tuple[str, ...]):
+    """A reply of plain text lines, as old name services give it: not a Bottle, and not quoted.
+
+    On binary connections it is a Bottle of one string.
+    """
+
+    __slots__ = ()
+
+    def to_wire(self) -> tuple[Buffer, ...]:
+        return codec.encode(["".join(f"{line}\r\n" for line in self)])
+
+    def to_text(self) -> bytes:
+        """The lines with their ends."""
+        text = "".join(f"{line}\r\n" for line in self)
+        return text.encode("utf-8", "surrogateescape")
+
+
+class Packet:
+    """What to send: an object, its envelope, and whether a reply is wanted.
+
+    `key` is the port command: `D` data, `d` data with a reply wanted, `a` administrative.
+    """
+
+    __slots__ = ("_blocks", "_line", "envelope", "framed", "key", "value")
+
+    def __init__(self, value: object, envelope: bytes = b"", key: str = DATA) -> None:
+        self.value = value
+        self.envelope = envelope
+        self.key = key
+        self._blocks: tuple[Buffer, ...] | None = None
+        self._line: bytes | None = None
+        self.framed: list[Buffer] | None = None  # kept by the framing that several carriers share
+
+    @property
+    def blocks(self) -> tuple[Buffer, ...]:
+        """The binary spelling, in pieces; large arrays are views of the user's memory."""
+        if self._blocks is None:
+            self._blocks = codec.encode(self.value)
+        return self._blocks
+
+    @property
+    def line(self) -> bytes:
+        """The text spelling, without a line end."""
+        if self._line is None:
+            self._line = codec.encode_text(self.value)
+        return self._line
+
+
+class Message:
+    """What came in. `value` is the natural Python object, `as_(Type)` the same bytes as that type.
+
+    `source` is the name of the sending port, `envelope` the text that travels beside the data,
+    `stamp` that text read as count and time. `reply(obj)` answers a sender that wants an answer.
+    """
+
+    __slots__ = ("_value", "answer", "envelope", "key", "payload", "source", "spelling", "text")
+
+    def __init__(
+        self,
+        key: str,
+        payload: Any = b"",
+        envelope: str = "",
+        spelling: Spelling = "binary",
+        text: str = "",
+    ) -> None:
+        self.key = key
+        self.payload = payload
+        self.envelope = envelope
+        self.spelling = spelling
+        self.text = text  # what followed the key of a port command: a destination, a word
+        self.source = ""
+        self.answer: Callable[[object], None] | None = None  # set by the link while a reply can go
+        self._value: object = _UNSET
+
+    @property
+    def value(self) -> Any:
+        """The payload as the natural Python object (Bottle, str, number, Image, Vector ...).
+
+        Raises DecodeError if the payload is not what it claims to be.
+        """
+        if self._value is _UNSET:
+            if self.spelling == "binary":
+                self._value = codec.decode(self.payload)
+            elif self.spelling == "text":
+                self._value = codec.decode_text(self.payload)
+            else:
+                self._value = self.payload
+        return self._value
+
+    @overload
+    def as_(self, type_: type[T]) -> T: ...
+    @overload
+    def as_(self, type_: object) -> Any: ...
+    def as_(self, type_: Any) -> Any:
+        """The payload as `type_` (Bottle, Property, dict, Vector, Image, Stamp, numpy.ndarray ...).
+
+        Arrays are views of the received bytes. Raises DecodeError if the payload is something else.
+        """
+        if self.spelling == "binary":
+            return codec.decode_as(self.payload, type_)
+        if self.spelling == "text":
+            return codec.decode_text_as(self.payload, type_)
+        payload: object = self.payload
+        if isinstance(type_, type) and type(payload) is type_:
+            return payload
+        return codec.decode_as(b"".join(codec.encode(payload)), type_)
+
+    @property
+    def stamp(self) -> Stamp | None:
+        """The envelope read as a Stamp, or None if it is none."""
+        from yarpy.data.stamp import Stamp
+
+        try:
+            return Stamp.from_text(self.envelope) if self.envelope else None
+        except DecodeError:
+            return None
+
+    @property
+    def wants_reply(self) -> bool:
+        """Whether the sender is waiting for a reply."""
+        return self.answer is not None
+
+    def reply(self, value: object) -> None:
+        """Answer the sender. Once, and only if it asked: `wants_reply` tells.
+
+        Raises LocalProtocolError otherwise, LinkClosed if the sender has gone.
+        """
+        answer = self.answer
+        if answer is None:
+            raise LocalProtocolError(
+                f'"{self.source}" does not wait for a reply: it sent plain data, went away, or was '
+                "answered already; call it with an RpcClient to get replies"
+            )
+        self.answer = None
+        answer(value)
+
+    def __repr__(self) -> str:
+        try:
+            value = repr(self.value)
+        except ValueError as error:
+            value = f"undecodable: {error}"
+        if len(value) > 100:
+            value = value[:97] + "..."
+        source = f" from {self.source}" if self.source else ""
+        envelope = f" [{self.envelope}]" if self.envelope else ""
+        return f"<Message{source}{envelope}: {value}>"

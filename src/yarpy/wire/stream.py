@@ -1,0 +1,314 @@
+"""ByteStream: the buffer between a transport and a protocol, with no I/O of its own.
+
+Rules: the driver side is `get_buffer / buffer_updated / feed_eof / take_output`, the protocol side
+`read_* / write`; the read methods are generators that yield None when they need more bytes. Small
+reads are copied out of one fixed buffer; a large read lands in a buffer of its own, which the
+message then keeps, so an image is received without a copy. That buffer grows with what arrives, not
+with what was announced, and is used again once nobody holds it.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable
+from typing import Final, TypeAlias, TypeVar
+
+from yarpy.errors import LinkClosed, RemoteProtocolError
+from yarpy.wire.effects import Steps
+
+Buffer: TypeAlias = bytes | bytearray | memoryview
+T = TypeVar("T")
+
+BUFFER_SIZE: Final = 1 << 16
+LARGE: Final = 1 << 14  # reads from here on get a buffer of their own
+FIRST_GRANT: Final = 1 << 24  # memory taken on the peer's word alone; beyond it must send first
+DEFAULT_LIMIT: Final = 1 << 30  # bytes per message, whatever the peer announces
+
+# References to a spare buffer while nobody else uses it: the list, the loop variable, the argument.
+_UNUSED: Final = 3
+
+
+class ByteStream:
+    """Bytes in, bytes out. `limit` is the largest message, in bytes, that is accepted.
+
+    `buffer`, `head` and `tail` are open to protocols that parse in place: `buffer[head:tail]` is
+    what has arrived and was not read; move `head` past what was used.
+    """
+
+    __slots__ = (
+        "_big",
+        "_big_filled",
+        "_eof",
+        "_output",
+        "_spare",
+        "_view",
+        "buffer",
+        "head",
+        "limit",
+        "tail",
+    )
+
+    def __init__(self, limit: int = DEFAULT_LIMIT, size: int = BUFFER_SIZE) -> None:
+        self.buffer = bytearray(size)
+        self._view = memoryview(self.buffer)
+        self.head = 0
+        self.tail = 0
+        self.limit = limit
+        self._eof = False
+        self._output: list[Buffer] = []
+        self._big: memoryview | None = None  # where a large read is landing
+        self._big_filled = 0
+        self._spare: list[bytearray] = []
+
+    # -- the driver's side ------------------------------------------------------------------------
+
+    def get_buffer(self) -> memoryview:
+        """Where the next bytes go; never empty."""
+        if self._big is not None:
+            return self._big[self._big_filled :]
+        if self.head == self.tail:
+            self.head = self.tail = 0
+        elif self.tail == len(self.buffer):
+            self._compact()
+        return self._view[self.tail :]
+
+    def buffer_updated(self, count: int) -> None:
+        """`count` bytes were put into what `get_buffer` returned."""
+        if self._big is not None:
+            self._big_filled += count
+        else:
+            self.tail += count
+
+    def feed(self, data: Buffer) -> None:
+        """Copy `data` in (tests, and bytes that were read before the stream existed)."""
+        rest = memoryview(data).cast("B")
+        while rest:
+            room = self.get_buffer()
+            if not room:
+                raise BufferError("the stream is full; let its reader run between feeds")
+            part = rest[: len(room)]
+            room[: len(part)] = part
+            self.buffer_updated(len(part))
+            rest = rest[len(part) :]
+
+    def feed_eof(self) -> None:
+        """The peer sends no more."""
+        self._eof = True
+
+    def take_output(self) -> list[Buffer]:
+        """What the protocol wrote since the last call, in order."""
+        output, self._output = self._output, []
+        return output
+
+    @property
+    def pending(self) -> bool:
+        """Whether there is output to take."""
+        return bool(self._output)
+
+    @property
+    def waiting(self) -> int:
+        """Bytes that arrived and were not read yet."""
+        return self.tail - self.head
+
+    # -- the protocol's side ----------------------------------------------------------------------
+
+    def write(self, *buffers: Buffer) -> None:
+        """Queue bytes for the peer. Large buffers are sent from where they are, not copied."""
+        self._output.extend(buffers)
+
+    def more(self, count: int) -> Steps[None]:
+        """Wait until `count` bytes (at most the buffer's size) lie between head and tail."""
+        while self.tail - self.head < count:
+            if self._eof:
+                self._ended()
+            if self.head + count > len(self.buffer):
+                self._compact()
+            yield None
+
+    def read_exact(self, count: int) -> Steps[bytes | memoryview]:
+        """Exactly `count` bytes; large ones as a view of a buffer that is theirs alone."""
+        if count > LARGE:
+            return (yield from self._read_large(count))
+        if self.tail - self.head < count:
+            yield from self.more(count)
+        start = self.head
+        self.head = start + count
+        return bytes(self._view[start : self.head])
+
+    def read_line(self, limit: int = 1 << 20, end: int = 0x0A) -> Steps[bytes]:
+        """One line by the text rules of YARP, without its end; `end` may be NUL instead of LF.
+
+        CR, LF and NUL are never part of a line; a backslash before the end joins the next line.
+        """
+        line = bytearray()
+        escaped = False
+        while True:
+            if self.head == self.tail:
+                yield from self.more(1)
+            stop = self.buffer.find(end, self.head, self.tail)
+            part = self.buffer[self.head : stop if stop >= 0 else self.tail]
+            self.head = self.tail if stop < 0 else stop + 1
+            line += part.translate(None, b"\r\n\0")
+            if len(line) > limit:
+                raise RemoteProtocolError(f"a line of more than {limit} bytes")
+            if stop >= 0:
+                escaped = (len(line) - len(line.rstrip(b"\\"))) % 2 == 1
+                if not escaped:
+                    return bytes(line)
+                del line[-1]
+
+    def read_parsed(self, parse: Callable[[memoryview], tuple[T, int] | int]) -> Steps[T]:
+        """What `parse` makes of the bytes that have arrived.
+
+        `parse` gets a view of them and returns `(value, bytes used)`, or how many bytes it needs.
+        """
+        while True:
+            with self._view[self.head : self.tail] as view:
+                result = parse(view)
+            if not isinstance(result, int):
+                value, used = result
+                self.head += used
+                return value
+            if result > len(self.buffer):
+                self._enlarge(result)
+            yield from self.more(result)
+
+    def skip(self, count: int) -> Steps[None]:
+        """Read and forget `count` bytes, holding none of them."""
+        while count > 0:
+            if self.head == self.tail:
+                yield from self.more(1)
+            step = min(count, self.tail - self.head)
+            self.head += step
+            count -= step
+
+    # -- inside -----------------------------------------------------------------------------------
+
+    def _ended(self) -> None:
+        if self.tail > self.head or self._big is not None:
+            raise LinkClosed("the peer closed the connection in the middle of a message")
+        raise LinkClosed("the peer closed the connection")
+
+    def _compact(self) -> None:
+        count = self.tail - self.head
+        self._view[:count] = self._view[self.head : self.tail]
+        self.head, self.tail = 0, count
+
+    def _enlarge(self, size: int) -> None:
+        """A buffer of at least `size` bytes, within the limit; grows by doubling."""
+        if size > self.limit:
+            raise RemoteProtocolError(f"a message of {size} bytes; the limit is {self.limit} bytes")
+        fresh = bytearray(min(max(size, 2 * len(self.buffer)), self.limit))
+        count = self.tail - self.head
+        fresh[:count] = self._view[self.head : self.tail]
+        self.buffer, self._view = fresh, memoryview(fresh)
+        self.head, self.tail = 0, count
+
+    def _read_large(self, count: int) -> Steps[memoryview]:
+        if count > self.limit:
+            raise RemoteProtocolError(
+                f"a message of {count} bytes is announced; the limit is {self.limit} bytes"
+            )
+        target = self._spare_buffer(min(count, FIRST_GRANT))
+        view = memoryview(target)
+        filled = min(self.tail - self.head, len(target))
+        view[:filled] = self._view[self.head : self.head + filled]
+        self.head += filled
+        while filled < count:
+            if filled == len(target):
+                view.release()
+                self._big = None
+                target.extend(bytes(min(len(target), count - filled)))
+                view = memoryview(target)
+            self._big, self._big_filled = view, filled
+            if self._eof:
+                self._ended()
+            yield None
+            filled = self._big_filled
+        self._big = None
+        return view
+
+    def _spare_buffer(self, size: int) -> bytearray:
+        """A buffer of `size` bytes: one of the last two if its message is gone, else a new one."""
+        for buffer in self._spare:
+            if len(buffer) == size and sys.getrefcount(buffer) == _UNUSED:
+                return buffer
+        fresh = bytearray(size)
+        self._spare = [*self._spare[-2:], fresh]
+        return fresh
+
+
+class ObjectStream(ByteStream):
+    """A stream whose items are whole Python objects: the in-process carrier passes references."""
+
+    __slots__ = ("_items",)
+
+    def __init__(self) -> None:
+        super().__init__(size=1)
+        self._items: list[object] = []
+
+    def feed_object(self, item: object) -> None:
+        """An object arrived."""
+        self._items.append(item)
+
+    def read_object(self) -> Steps[object]:
+        """The next object."""
+        while not self._items:
+            if self._eof:
+                self._ended()
+            yield None
+        return self._items.pop(0)
+
+    def write_object(self, item: object) -> None:
+        """Queue an object for the peer."""
+        self._output.append(item)  # type: ignore[arg-type]
+
+
+class DatagramStream(ByteStream):
+    """A stream that keeps the borders of datagrams: each feed is one, each write is one."""
+
+    __slots__ = ("_ready",)
+
+    def __init__(self, limit: int = DEFAULT_LIMIT) -> None:
+        super().__init__(limit)
+        self._ready: list[bytes] = []
+
+    def get_buffer(self) -> memoryview:
+        return self._view
+
+    def buffer_updated(self, count: int) -> None:
+        self._ready.append(bytes(self._view[:count]))
+
+    def feed(self, data: Buffer) -> None:
+        self._ready.append(bytes(data))
+
+    @property
+    def waiting(self) -> int:
+        return sum(map(len, self._ready))
+
+    def read_datagram(self) -> Steps[bytes]:
+        """The next datagram, whole."""
+        while not self._ready:
+            if self._eof:
+                self._ended()
+            yield None
+        return self._ready.pop(0)
+
+
+def run(steps: Steps[T], stream: ByteStream, feeds: Iterable[Buffer] = ()) -> T:
+    """Drive `steps` to its end with `feeds` as the peer's bytes, then end of stream. For tests."""
+    source = iter(feeds)
+    try:
+        effect = next(steps)
+        while True:
+            if effect is not None:
+                raise RemoteProtocolError(f"{effect} needs a driver")
+            data = next(source, None)
+            if data is None:
+                stream.feed_eof()
+            else:
+                stream.feed(data)
+            effect = steps.send(None)
+    except StopIteration as stop:
+        value: T = stop.value
+        return value
