@@ -1,0 +1,131 @@
+"""yarpy: YARP in Python. Named ports, plug-in wire protocols, no lock-in.
+
+    import yarpy
+
+    with yarpy.Port("/listener") as port:
+        for message in port:
+            print(message.value)
+
+Everything public is here; nothing is imported before it is used.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+_WHERE = {
+    "Port": "yarpy.port.port",
+    "BufferedPort": "yarpy.port.buffered",
+    "RpcServer": "yarpy.port.rpc",
+    "RpcClient": "yarpy.port.rpc",
+    "ConnectionEvent": "yarpy.port.event",
+    "Message": "yarpy.wire.message",
+    "Contact": "yarpy.contact",
+    "NameServer": "yarpy.services.name_server",
+    "LocalNames": "yarpy.names.local",
+    "YarpNameClient": "yarpy.names.client",
+    "Bottle": "yarpy.data.bottle",
+    "Property": "yarpy.data.property",
+    "Vocab": "yarpy.data.value",
+    "Int8": "yarpy.data.value",
+    "Int16": "yarpy.data.value",
+    "Int64": "yarpy.data.value",
+    "Float32": "yarpy.data.value",
+    "Stamp": "yarpy.data.stamp",
+    "Vector": "yarpy.data.vector",
+    "Matrix": "yarpy.data.matrix",
+    "Image": "yarpy.data.image",
+    "FlexImage": "yarpy.data.image",
+    "Sound": "yarpy.data.sound",
+    "PointCloud": "yarpy.data.pointcloud",
+    "connect": "yarpy.network",
+    "disconnect": "yarpy.network",
+    "is_connected": "yarpy.network",
+    "exists": "yarpy.network",
+    "query": "yarpy.network",
+    "ping": "yarpy.network",
+    "wait_for": "yarpy.network",
+    "admin": "yarpy.network",
+    "realtime": "yarpy.realtime",
+    "YarpError": "yarpy.errors",
+    "AddressError": "yarpy.errors",
+    "UnknownName": "yarpy.errors",
+    "UnknownPlugin": "yarpy.errors",
+    "NoNameServer": "yarpy.errors",
+    "PortClosed": "yarpy.errors",
+    "LinkClosed": "yarpy.errors",
+    "Timeout": "yarpy.errors",
+    "DecodeError": "yarpy.errors",
+    "Truncated": "yarpy.errors",
+    "LocalProtocolError": "yarpy.errors",
+    "RemoteProtocolError": "yarpy.errors",
+}
+
+__all__ = ["__version__", *_WHERE]
+
+if TYPE_CHECKING:
+    from yarpy.contact import Contact as Contact
+    from yarpy.data.bottle import Bottle as Bottle
+    from yarpy.data.image import FlexImage as FlexImage
+    from yarpy.data.image import Image as Image
+    from yarpy.data.matrix import Matrix as Matrix
+    from yarpy.data.property import Property as Property
+    from yarpy.data.sound import Sound as Sound
+    from yarpy.data.stamp import Stamp as Stamp
+    from yarpy.data.value import Float32 as Float32
+    from yarpy.data.value import Int8 as Int8
+    from yarpy.data.value import Int16 as Int16
+    from yarpy.data.value import Int64 as Int64
+    from yarpy.data.value import Vocab as Vocab
+    from yarpy.data.vector import Vector as Vector
+    from yarpy.errors import AddressError as AddressError
+    from yarpy.errors import DecodeError as DecodeError
+    from yarpy.errors import LinkClosed as LinkClosed
+    from yarpy.errors import LocalProtocolError as LocalProtocolError
+    from yarpy.errors import NoNameServer as NoNameServer
+    from yarpy.errors import PortClosed as PortClosed
+    from yarpy.errors import RemoteProtocolError as RemoteProtocolError
+    from yarpy.errors import Timeout as Timeout
+    from yarpy.errors import Truncated as Truncated
+    from yarpy.errors import UnknownName as UnknownName
+    from yarpy.errors import UnknownPlugin as UnknownPlugin
+    from yarpy.errors import YarpError as YarpError
+    from yarpy.names.client import YarpNameClient as YarpNameClient
+    from yarpy.names.local import LocalNames as LocalNames
+    from yarpy.network import admin as admin
+    from yarpy.network import connect as connect
+    from yarpy.network import disconnect as disconnect
+    from yarpy.network import exists as exists
+    from yarpy.network import is_connected as is_connected
+    from yarpy.network import ping as ping
+    from yarpy.network import query as query
+    from yarpy.network import wait_for as wait_for
+    from yarpy.port.buffered import BufferedPort as BufferedPort
+    from yarpy.port.event import ConnectionEvent as ConnectionEvent
+    from yarpy.port.port import Port as Port
+    from yarpy.port.rpc import RpcClient as RpcClient
+    from yarpy.port.rpc import RpcServer as RpcServer
+    from yarpy.realtime import realtime as realtime
+    from yarpy.services.name_server import NameServer as NameServer
+    from yarpy.wire.message import Message as Message
+
+
+def __getattr__(name: str) -> Any:
+    module = _WHERE.get(name)
+    if module is None:
+        if name == "aio":
+            from importlib import import_module
+
+            return import_module("yarpy.aio")
+        raise AttributeError(f"module 'yarpy' has no attribute {name!r}")
+    from importlib import import_module
+
+    value = getattr(import_module(module), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,267 @@
+"""The network as a whole: connect and disconnect any two ports, ask whether they exist, wait for
+them.
+
+Rules: everything is asked of the ports themselves, by the same messages that C++ tools send (core-3
+section 6); nothing here needs a port of its own. `names` None is the default name service.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from yarpy.contact import Contact, base_carrier, check_name, parse_contact
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+from yarpy.errors import (
+    AddressError,
+    LinkClosed,
+    LocalProtocolError,
+    Timeout,
+    UnknownName,
+)
+from yarpy.link.handshake import find_carrier
+from yarpy.names.base import NameClient
+from yarpy.names.default import DEFAULT
+from yarpy.port import probe
+from yarpy.port.wiring import unknown
+
+_POLL = 0.05  # seconds between looks while waiting
+
+
+def query(name: str, names: NameClient | None = None) -> Contact | None:
+    """Where the port `name` is, None if nobody knows. An address is its own answer.
+
+    Raises NoNameServer.
+    """
+    contact = parse_contact(name)
+    if contact.reachable:
+        return contact
+    return (names or DEFAULT.current()).query(contact.name)
+
+
+def _find(name: str, names: NameClient | None) -> Contact:
+    contact = query(name, names)
+    if contact is None:
+        raise unknown(name, names or DEFAULT.current())
+    return contact
+
+
+def admin(
+    name: str, *words: object, names: NameClient | None = None, timeout: float = 3.0
+) -> Bottle:
+    """The answer of the port `name` to an administrative message, e.g. `admin("/p", "ver")`.
+
+    Words that are commands may be strings. Raises UnknownName, LinkClosed, Timeout.
+    """
+    contact = _find(name, names)
+    try:
+        return probe.ask(contact, list(words), timeout=timeout)
+    except LinkClosed as error:
+        raise LinkClosed(
+            f'"{name}" is registered, but does not answer ({error}); if its program is gone, '
+            "`yarpy clean` removes the name"
+        ) from error
+
+
+class Route:
+    """Who is to be asked about a connection, and in which words (core-3 section 6.2)."""
+
+    def __init__(
+        self, source: str, target: str, carrier: str | None, names: NameClient | None
+    ) -> None:
+        self.source_text, self.target_text = source, target
+        from_, to = _end(source, "source"), _end(target, "destination")
+        self.topical = "topic" in (from_.carrier, to.carrier)
+        self.source, self.target = from_, to
+        if self.topical:
+            self.carrier = carrier or "tcp"
+            self.ask, self.peer, self.pull = "", "", False
+            return
+        here = from_ if from_.reachable else _find(from_.name, names)
+        there = to if to.reachable else _find(to.name, names)
+        constraint = ""
+        for contact in (here, there):
+            if not _competent(contact):
+                constraint = contact.carrier
+        explicit = carrier or _written(target) or _written(source)
+        if explicit and constraint and base_carrier(explicit) != base_carrier(constraint):
+            raise LocalProtocolError(f"conflict between {explicit} and {constraint}")
+        if explicit and constraint:
+            explicit = constraint + explicit[len(base_carrier(explicit)) :]
+        self.carrier = explicit or constraint or "tcp"
+        self.pull = not find_carrier(self.carrier).push
+        self.here, self.there = here, there
+        asked = there if self.pull else here
+        if not _competent(asked):
+            raise LocalProtocolError(
+                f'neither "{source}" nor "{target}" can be asked to make this connection: '
+                f"a {asked.carrier} endpoint takes no YARP commands"
+            )
+        self.asked = asked
+        self.peer = _route_name(from_ if self.pull else to)
+
+    def admin(self, *words: object) -> Bottle:
+        """Ask the port in charge. Raises LinkClosed when it does not answer."""
+        try:
+            return probe.ask(self.asked, list(words), timeout=10.0)
+        except (LinkClosed, Timeout) as error:
+            name = self.target_text if self.pull else self.source_text
+            raise LinkClosed(f"Cannot connect to port {name}: {error}") from error
+
+    def existing(self) -> str:
+        """The carrier of the connection that exists now, "" if there is none."""
+        listed = self.admin(Vocab("list"), Vocab("in" if self.pull else "out"), self.peer)
+        return plain_text(listed.find("carrier", "")) if listed else ""
+
+
+def _end(text: str, what: str) -> Contact:
+    contact = parse_contact(text)
+    if any(c.isspace() for c in text):
+        raise AddressError(f'"{text}": a port name contains no blanks')
+    if not contact.reachable:
+        try:
+            check_name(contact.name)
+        except AddressError as error:
+            raise AddressError(f"invalid {what} '{text}': {error}") from error
+    return contact
+
+
+def _written(text: str) -> str:
+    contact = parse_contact(text)
+    return (
+        contact.carrier
+        if ":/" in text and not contact.reachable
+        else (contact.carrier if "://" in text else "")
+    )
+
+
+def _route_name(contact: Contact) -> str:
+    return contact.name or f"/{contact.address}/"
+
+
+def _competent(contact: Contact) -> bool:
+    """Whether a port takes YARP commands; a camera's web server, registered by name, does not."""
+    return base_carrier(contact.carrier or "tcp") not in _FOREIGN
+
+
+_FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http"})
+
+
+def connect(
+    source: str,
+    target: str,
+    carrier: str | None = None,
+    *,
+    names: NameClient | None = None,
+    timeout: float | None = None,
+) -> str:
+    """Connect two ports; the connected port's own words are returned. An existing one is remade.
+
+    `source` or `target` may be `topic://name`. With `timeout`, wait for ports that are not there
+    yet. Raises UnknownName, UnknownPlugin, LinkClosed, LocalProtocolError (refused).
+    """
+    if carrier:
+        find_carrier(carrier)
+    deadline = None if timeout is None else time.monotonic() + timeout
+    while True:
+        try:
+            return _connect(source, target, carrier, names)
+        except (UnknownName, LinkClosed):
+            if deadline is None or time.monotonic() >= deadline:
+                raise
+        time.sleep(_POLL)
+
+
+def _connect(source: str, target: str, carrier: str | None, names: NameClient | None) -> str:
+    route = Route(source, target, carrier, names)
+    if route.topical:
+        ask_server(names, ["subscribe", _decorated(source, ""), _decorated(target, carrier or "")])
+        return "connection to topic added."
+    active = route.source if route.pull else route.target
+    address = f"/{active.address}" if active.reachable else active.name
+    reply = route.admin(Vocab("add"), f"{route.carrier}:/{address}")
+    text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
+    if not reply or reply[0] != 0:
+        raise LocalProtocolError(
+            f'"{source}" -> "{target}" over {route.carrier} was refused: {text or "no answer"}'
+        )
+    return text
+
+
+def _decorated(text: str, carrier: str) -> str:
+    contact = parse_contact(text)
+    return text if contact.carrier or not carrier else f"{carrier}:/{contact.name}"
+
+
+def disconnect(source: str, target: str, *, names: NameClient | None = None) -> bool:
+    """End the connection of two ports; False if there was none. Raises as `connect`."""
+    route = Route(source, target, None, names)
+    if route.topical:
+        ask_server(names, ["unsubscribe", source, target])
+        return True
+    reply = route.admin(Vocab("del"), route.peer)
+    return bool(reply) and reply[0] == 0
+
+
+def is_connected(
+    source: str, target: str, carrier: str | None = None, *, names: NameClient | None = None
+) -> bool:
+    """Whether two ports are connected (over `carrier`, if given)."""
+    try:
+        found = Route(source, target, None, names).existing()
+    except (UnknownName, LinkClosed):
+        return False
+    return bool(found) and carrier in (None, found)
+
+
+def exists(name: str, target: str | None = None, *, names: NameClient | None = None) -> bool:
+    """Whether the port `name` is known and answers; with `target`, whether the two are
+    connected."""
+    if target is not None:
+        return is_connected(name, target, names=names)
+    contact = query(name, names)
+    return contact is not None and probe.answers(contact)
+
+
+def ping(name: str, *, names: NameClient | None = None) -> list[str]:
+    """What the port says of itself and its connections. Raises UnknownName, LinkClosed."""
+    return probe.describe(_find(name, names))
+
+
+def wait_for(
+    name: str,
+    target: str | None = None,
+    timeout: float | None = None,
+    *,
+    names: NameClient | None = None,
+) -> bool:
+    """Wait until the port `name` exists (with `target`: until the two are connected).
+
+    False when `timeout` seconds were not enough.
+    """
+    deadline = None if timeout is None else time.monotonic() + timeout
+    condition: Callable[[], bool] = lambda: exists(name, target, names=names)  # noqa: E731
+    while not condition():
+        if deadline is not None and time.monotonic() >= deadline:
+            return False
+        time.sleep(_POLL)
+    return True
+
+
+def ask_server(names: NameClient | None, command: Sequence[Any]) -> Bottle:
+    """Ask the name server something that only a server knows (topics, subscriptions).
+
+    Raises LocalProtocolError where the names in use have no server, or it refuses.
+    """
+    client = names or DEFAULT.current()
+    client = getattr(client, "clients", [client])[0]
+    request = getattr(client, "request", None)
+    if request is None:
+        raise LocalProtocolError("topics and persistent connections need a name server")
+    reply: Bottle = request(list(command))
+    if reply and plain_text(reply[0]) == "fail":
+        raise LocalProtocolError(f"the name server refuses: {reply.to_text()}")
+    return reply

@@ -1,0 +1,215 @@
+"""Port commands: what connects and disconnects a port, in the words that telnet users see.
+
+Rules: every change of connections that somebody asks for, by admin message, port command or API,
+comes through `connect`, `disconnect_output` or `disconnect_input`; each returns the line C++ YARP
+says.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING
+
+from yarpy.contact import Contact, Route, base_carrier, modifier, parse_contact
+from yarpy.errors import AddressError, PortClosed, UnknownPlugin, YarpError
+from yarpy.link.handshake import find_carrier, greet
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
+from yarpy.port import probe, repair
+from yarpy.wire.message import Message
+
+if TYPE_CHECKING:
+    from yarpy.port.hub import Hub
+
+HELP = (
+    "This is a YARP port.  Here are the commands it responds to:",
+    "*       Gives a description of this port",
+    "d       Signals the beginning of input for the port's owner",
+    'do      The same as "d" except replies should be suppressed ("data-only")',
+    "q       Disconnects",
+    "r       Reverse connection type to be a reader",
+    "/port   Requests to send output to /port",
+    "!/port  Requests to stop sending output to /port",
+    "~/port  Requests to stop receiving input from /port",
+    "a       Signals the beginning of an administrative message",
+    "?       Gives this help",
+)
+NOT_UNDERSTOOD = (
+    "Port command not understood.",
+    "Type d to send data to the port's owner.",
+    "Type ? for help.",
+)
+
+
+class Refused(YarpError):
+    """A connection cannot be made; the text is C++'s line, `__cause__` knows more."""
+
+
+def obey(hub: Hub, link: Inbound, message: Message) -> list[str]:
+    """Carry out a port command that came over `link`; the lines to answer a person with."""
+    key, rest = message.key, message.text
+    if key == "/":
+        try:
+            return [connect(hub, "/" + rest)]
+        except Refused as error:
+            return [str(error)]
+    if key == "!":
+        return [disconnect_output(hub, rest)[1]]
+    if key == "~":
+        found, line = disconnect_input(hub, rest, asking=link)
+        return [line] if found != "self" else []
+    if key == "*":
+        return describe(hub)
+    if key in ("?", "h"):
+        return [*HELP]
+    return [*NOT_UNDERSTOOD]
+
+
+def describe(hub: Hub) -> list[str]:
+    """What a port says of itself and its connections."""
+    lines = [f"This is {hub.name} at tcp://{hub.contact.host}:{hub.port}/"]
+    for output in hub.outputs:
+        route = output.route
+        lines.append(
+            f"There is an output connection from {hub.name} to {route.target} using {route.carrier}"
+        )
+    if not hub.outputs:
+        lines.append("There are no outgoing connections")
+    for link in hub.inputs:
+        route = link.route
+        lines.append(
+            f"There is an input connection from {route.source} to {hub.name} using {route.carrier}"
+        )
+    if not hub.inputs:
+        lines.append("There are no incoming connections")
+    return lines
+
+
+def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
+    """Connect `hub` to the destination `text` (`/name`, `carrier://name`, `/host:port`).
+
+    An existing connection to the same port is replaced. Raises Refused.
+    """
+    try:
+        wanted = parse_contact(text)
+    except AddressError as error:
+        raise Refused(f"Do not know how to connect to {text}") from error
+    carrier = wanted.carrier or "tcp"
+    contact = _locate(hub, wanted)
+    if contact is None:
+        raise Refused(f"Do not know how to connect to {text}")
+    target = wanted.name or f"/{wanted.address}/"
+    if wanted.name:
+        for old in hub.outputs:
+            if old.route.target == wanted.name:
+                close_output(hub, old)
+    repair.give_up(hub, target)
+    try:
+        kind = find_carrier(carrier)
+    except UnknownPlugin as error:
+        raise Refused(f"Cannot connect to {text}") from error
+    log_taps = modifier(carrier, "log")
+    if log_taps not in (None, "in"):
+        raise Refused(f"Logger configured as log.{log_taps}, but only log.in is supported")
+    if kind.push and log_taps is None:
+        if not hub.admits_outputs:
+            raise Refused("Outputs not allowed")
+        if hub.rpc and any(modifier(link.route.carrier, "log") is None for link in hub.outputs):
+            raise Refused("RPC output already connected")
+    open_output(hub, contact, target, carrier, text)
+    line = f"Added connection from {hub.name} to {text}"
+    if log_taps == "in":
+        line += f"; {hub.name} will forward messages and replies (if any) to {target}"
+    return line
+
+
+def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str = "") -> None:
+    """Dial `contact` and take the connection in. Raises Refused."""
+    route = Route(hub.name, target, carrier, contact.port)
+    try:
+        driver, speaker = greet(contact, route, key=hub.key, group=hub.group, limit=hub.limit)
+    except (YarpError, OSError) as error:
+        raise Refused(f"Cannot connect to {text or target}") from error
+    if speaker.push:
+        try:
+            hub.add_output_link(Outbound(driver, speaker))
+        except PortClosed as error:
+            raise Refused(f"Cannot connect to {text or target}") from error
+    else:
+        # Who dials a pull carrier is the one that receives.
+        route.source, route.target = target, hub.name
+        threading.Thread(target=hub.run_input, args=(driver, speaker), daemon=True).start()
+
+
+def _locate(hub: Hub, wanted: Contact) -> Contact | None:
+    if wanted.reachable:
+        return wanted
+    if hub.names is None or not wanted.name.startswith("/"):
+        return None
+    try:
+        return hub.names.query(wanted.name)
+    except YarpError as error:
+        raise Refused(f"Cannot connect to {wanted.name}") from error
+
+
+def close_output(hub: Hub, link: Outbound) -> None:
+    """End one output in good order; a connectionless one by asking its receiver to drop us."""
+    known = hub.drop_output(link)
+    link.close()
+    if known and link.carrier.connectionless:
+        contact = _receiver(hub, link.route.target)
+        if contact is not None:
+            try:
+                probe.drop_input(contact, hub.name, secret_=hub.key)
+            except (YarpError, OSError):
+                pass  # gone already
+
+
+def _receiver(hub: Hub, target: str) -> Contact | None:
+    try:
+        return _locate(hub, parse_contact(target))
+    except YarpError:
+        return None
+
+
+def disconnect_output(hub: Hub, target: str) -> tuple[bool, str]:
+    """Remove the outputs to `target`; whether there were any, and the line that says so."""
+    repair.give_up(hub, target)
+    found = [link for link in hub.outputs if link.route.target == target]
+    for link in found:
+        close_output(hub, link)
+    if found:
+        return True, f"Removed connection from {hub.name} to {target}"
+    return False, f"Could not find an outgoing connection to {target}"
+
+
+def disconnect_input(
+    hub: Hub, source: str, asking: Inbound | None = None
+) -> tuple[bool | str, str]:
+    """Remove the inputs from `source`. One that asks to be removed itself goes last ("self")."""
+    found = [link for link in hub.inputs if link.route.source == source]
+    for link in found:
+        link.close()
+    if asking in found:
+        return "self", ""
+    for link in found:
+        if link.thread is not None and link.thread is not threading.current_thread():
+            link.thread.join(2.0)
+    if found:
+        return True, f"Removing connection from {source} to {hub.name}"
+    return False, f"Could not find an incoming connection from {source}"
+
+
+def joined(dest: str, carrier: str) -> str:
+    """Destination and carrier as one text, the way C++ puts them together."""
+    if not carrier:
+        return dest
+    bare = parse_contact(dest) if dest else None
+    if bare is not None and bare.carrier and not bare.reachable:
+        dest = bare.name
+    if bare is not None and bare.reachable:
+        return f"{carrier}://{bare.address}{bare.name}"
+    return f"{carrier}:/{dest}"
+
+
+__all__ = ["Refused", "base_carrier", "connect", "describe", "joined", "obey"]

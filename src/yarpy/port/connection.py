@@ -1,0 +1,45 @@
+"""Connection: what a user sees of a link in `port.inputs` and `port.outputs`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
+
+
+class Connection:
+    """One connection of a port: who, over what, and how it is doing.
+
+    `name` is the port at the other end, `carrier` the protocol with its modifiers.
+    """
+
+    __slots__ = ("_close", "_link", "carrier", "source", "target")
+
+    def __init__(self, link: Inbound | Outbound, close: Callable[[], None]) -> None:
+        self._link = link
+        self._close = close
+        self.source = link.route.source
+        self.target = link.route.target
+        self.carrier = link.route.carrier
+
+    @property
+    def name(self) -> str:
+        """The port at the other end."""
+        return self.source if isinstance(self._link, Inbound) else self.target
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        """Counters: messages, bytes, drops, rate (1/s), period, jitter, latency (s), since.
+
+        For every mode: messages sent = messages delivered + drops, counted where they happen.
+        """
+        return self._link.snapshot()
+
+    def close(self) -> None:
+        """End this connection."""
+        self._close()
+
+    def __repr__(self) -> str:
+        return f"<Connection {self.source} -> {self.target} ({self.carrier})>"

@@ -1,0 +1,372 @@
+"""Hub: a port without its reader - a name, a listening socket, and the links in and out.
+
+Rules: the tuples of links are replaced under `lock`, never changed, so who walks them needs no
+lock; no lock is held while user code runs or bytes move. Every end of a connection comes through
+`closed` or `drop_output`, once.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import socket
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from yarpy.carriers.base import Carrier
+from yarpy.contact import Contact, check_name
+from yarpy.data.bottle import Bottle
+from yarpy.data.property import Property
+from yarpy.errors import AddressError, LinkClosed, NoNameServer, PortClosed, Timeout, YarpError
+from yarpy.link.acceptor import Acceptor
+from yarpy.link.driver import Driver
+from yarpy.link.handshake import welcome
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
+from yarpy.names.address import local_addresses, outward_address
+from yarpy.names.base import NameClient
+from yarpy.names.configuration import port_name, port_number
+from yarpy.names.default import DEFAULT, secret
+from yarpy.port import admin, command, repair
+from yarpy.port.event import ConnectionEvent
+from yarpy.port.mailbox import Mailbox
+from yarpy.port.probe import is_alive
+from yarpy.registry import carriers
+from yarpy.transports.tcp import TcpTransport
+from yarpy.wire.message import Message
+from yarpy.wire.stream import DEFAULT_LIMIT
+
+log = logging.getLogger("yarpy.port")
+
+
+class Hub:
+    """A port's connections. `names` None: the default service; `register` False: no name service.
+
+    `admits_outputs` and `rpc` are what admin requests for outputs are checked against. `limit` is
+    the largest message in bytes. Raises AddressError (name unusable or in use), NoNameServer.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        mailbox: Mailbox,
+        names: NameClient | None = None,
+        *,
+        port: int = 0,
+        host: str = "",
+        type_: str = "",
+        admits_inputs: bool = True,
+        admits_outputs: bool = True,
+        rpc: bool = False,
+        limit: int = DEFAULT_LIMIT,
+        on_connection: Callable[[ConnectionEvent], None] | None = None,
+        register: bool = True,
+    ) -> None:
+        self.mailbox = mailbox
+        self.type = type_
+        self.admits_inputs = admits_inputs
+        self.admits_outputs = admits_outputs
+        self.rpc = rpc
+        self.limit = limit
+        self.on_connection = on_connection
+        self.properties = Property()
+        self.inputs: tuple[Inbound, ...] = ()
+        self.outputs: tuple[Outbound, ...] = ()
+        self.closing = False
+        self.interrupted = False
+        self.on_admin: Callable[[Message], object] | None = None
+        self.on_inputs: Callable[[], None] = lambda: None  # the reader looks at them again
+        self.lock = threading.Lock()  # replaces the tuples of links
+        self.group_name = ""  # the temporary name of our multicast group
+        self.key = secret()
+        self.registered = register and bool(name)
+        if name and not name.startswith(("...", "=")):
+            name = check_name(port_name(name, os.environ))
+        self.name = name
+        self.names = names
+        if register and name and names is None:
+            self.names = DEFAULT.current()
+        self._open(port or port_number(name, os.environ), host)
+
+    # -- opening ----------------------------------------------------------------------------------
+
+    def _open(self, port: int, host: str) -> None:
+        names = self.names if self.registered else None
+        if names is not None and names.allocates and not port:
+            self._refuse_taken(names)
+            contact = names.register(self.name, type_=self.type or None)
+            self.name = contact.name
+            try:
+                self._listen(contact.port)
+            except OSError:
+                # Somebody who never asked the name server listens on that number.
+                self._listen(0)
+                contact = names.register(
+                    self.name, "tcp", contact.host, self.port, self.type or None
+                )
+        else:
+            if names is not None:
+                self._refuse_taken(names)
+            try:
+                self._listen(port)
+            except OSError as error:
+                raise AddressError(
+                    f'"{self.name}" cannot listen on TCP port {port} ({error.strerror}); '
+                    "choose another number, or 0 for any free one"
+                ) from error
+            where = host or ("127.0.0.1" if names is not None else outward_address())
+            if names is not None:
+                contact = names.register(self.name, "tcp", where, self.port, self.type or None)
+            else:
+                self.name = self.name or f"/{where}_{self.port}"
+                contact = Contact("tcp", self.name, where, self.port)
+        self.contact = contact
+        self.name = contact.name
+        if names is not None:
+            self.describe(names)
+            repair.watch(self)
+        log.info("Port %s active at %s", self.name, f"tcp://{contact.address}/")
+
+    def _refuse_taken(self, names: NameClient) -> None:
+        """A name belongs to the living port that has it. C++ would take it away in silence."""
+        if not self.name.startswith("/"):
+            return
+        known = names.query(self.name)
+        if known is not None and known.carrier == "tcp" and is_alive(known, self.key):
+            raise AddressError(
+                f'"{self.name}" is in use by a port at {known.address}: close that program, or '
+                "choose another name"
+            )
+
+    def _listen(self, port: int) -> None:
+        self._acceptor = Acceptor(self.name, port, self._serve, speaks_first=bool(self.key))
+        self.port = self._acceptor.port
+
+    def describe(self, names: NameClient) -> None:
+        """Tell a name service what we are, and that we listen."""
+        known = [*carriers.names()]
+        names.set(self.name, "offers", *known)
+        names.set(self.name, "accepts", *known)
+        names.set(self.name, "ips", *local_addresses())
+        names.set(self.name, "process", os.getpid())
+        names.announce(self.name)
+
+    @property
+    def thread_id(self) -> int:
+        """The kernel's id of the thread that accepts connections."""
+        return self._acceptor.thread.native_id or -1
+
+    # -- connections in ---------------------------------------------------------------------------
+
+    def _serve(self, sock: socket.socket) -> None:
+        """The life of one accepted connection, in its own thread."""
+        transport = TcpTransport(sock)
+        peer = _peer(transport)
+        try:
+            found = welcome(transport, self.name, self.port, key=self.key, limit=self.limit)
+        except (YarpError, OSError) as error:
+            transport.close()
+            if not self.closing:
+                log.warning("%s: connection from %s refused: %s", self.name, peer, error)
+            return
+        if found is None:
+            transport.close()
+            return
+        self.run_input(*found)
+
+    def run_input(self, driver: Driver, carrier: Carrier) -> None:
+        """Serve an open connection as an input, in this thread, until it ends."""
+        link = Inbound(self, driver, carrier)
+        link.thread = threading.current_thread()
+        link.thread.name = f"yarpy {link.route}"
+        if link.route.source.startswith("/"):
+            self._displace(link.route.source)
+        with self.lock:
+            if self.closing:
+                driver.transport.close()
+                return
+            self.inputs = (*self.inputs, link)
+        self.on_inputs()
+        self.report(link, created=True)
+        link.serve()
+
+    def _displace(self, source: str) -> None:
+        """A new connection of the same sender replaces the old one."""
+        for old in self.inputs:
+            if old.route.source == source:
+                old.close()
+                if old.thread is not None and old.thread is not threading.current_thread():
+                    old.thread.join(2.0)
+
+    def receive(self, link: Inbound, message: Message) -> None:
+        self.mailbox.put(link, message)
+
+    def administer(self, link: Inbound, message: Message) -> Bottle:
+        try:
+            return admin.answer(self, message)
+        except YarpError as error:
+            return admin.failure(str(error))
+
+    def command(self, link: Inbound, message: Message) -> list[str]:
+        return command.obey(self, link, message)
+
+    def reverse(self, link: Inbound) -> None:
+        """The peer at the other end wants to read: its connection becomes an output of ours."""
+        route = link.route
+        route.source, route.target = self.name, route.source
+        self._forget_input(link)
+        output = Outbound(link.driver, link.carrier)
+        with self.lock:
+            self.outputs = (*self.outputs, output)
+        self.report(output, created=True)
+
+    def closed(self, link: Inbound, reason: str, quit_: bool) -> None:
+        if not self._forget_input(link):
+            return
+        self.report(link, created=False, reason=reason)
+        if not (quit_ or link.closing or self.closing):
+            repair.input_lost(self, link.route)
+
+    def _forget_input(self, link: Inbound) -> bool:
+        with self.lock:
+            known = link in self.inputs
+            self.inputs = tuple(item for item in self.inputs if item is not link)
+        self.on_inputs()
+        return known
+
+    # -- connections out --------------------------------------------------------------------------
+
+    def add_output_link(self, link: Outbound) -> None:
+        """Take a greeted connection as an output; one to the same port is replaced by it."""
+        with self.lock:
+            if self.closing:
+                link.driver.transport.close()
+                raise PortClosed(f'"{self.name}" was closed meanwhile')
+            self.outputs = (*self.outputs, link)
+            self._elect()
+        self.report(link, created=True)
+
+    def drop_output(self, link: Outbound, reason: str = "", lost: bool = False) -> bool:
+        """Forget an output. With `lost`, keep trying to connect it again."""
+        with self.lock:
+            known = link in self.outputs
+            self.outputs = tuple(item for item in self.outputs if item is not link)
+            self._elect()
+        if known:
+            self.report(link, created=False, reason=reason)
+            if lost and not self.closing and link.route.target.startswith("/"):
+                repair.output_lost(self, link.route)
+        return known
+
+    def _elect(self) -> None:
+        """Of the connections into one multicast group a single one sends."""
+        elected = False
+        for link in self.outputs:
+            if link.carrier.broadcast:
+                link.active = not elected
+                elected = True
+
+    def group(self, local_host: str) -> tuple[str, int]:
+        """The multicast group of this port: one for all its connections."""
+        if self.names is None:
+            return "224.3.1.1", 11000  # what C++ falls back to without a name server
+        contact = self.names.query(self.group_name) if self.group_name else None
+        if contact is None:
+            contact = self.names.register(
+                "...", "mcast", None, None if self.names.allocates else self.port
+            )
+            self.group_name = contact.name
+            if self.registered:
+                self.names.set(self.name, "owns", contact.name)
+        return contact.host, contact.port
+
+    # -- reports ----------------------------------------------------------------------------------
+
+    def report(self, link: Inbound | Outbound, created: bool, reason: str = "") -> None:
+        """Log a connection's coming or going and tell whoever wants to know."""
+        route = link.route
+        incoming = isinstance(link, Inbound)
+        peer = route.source if incoming else route.target
+        event = ConnectionEvent(
+            incoming, created, route.source, route.target, route.carrier, reason
+        )
+        log.log(logging.INFO if peer.startswith("/") else logging.DEBUG, "%s", event)
+        if self.on_connection is not None and peer.startswith("/"):
+            try:
+                self.on_connection(event)
+            except Exception:
+                log.exception("%s: the connection callback failed", self.name)
+
+    # -- ending -----------------------------------------------------------------------------------
+
+    def interrupt(self) -> None:
+        """Stop reading and writing; connections stay."""
+        self.interrupted = True
+        self.mailbox.interrupt()
+
+    def resume(self) -> None:
+        """Undo `interrupt`."""
+        self.interrupted = False
+        self.mailbox.resume()
+
+    def close(self) -> None:
+        """Close every connection in good order, then the port; the name is given back."""
+        with self.lock:
+            if self.closing:
+                return
+            self.closing = True
+        repair.forget(self)
+        self.mailbox.interrupt()
+        self._ask_senders_to_leave()
+        for output in self.outputs:
+            command.close_output(self, output)
+        for link in self.inputs:
+            link.close()
+        deadline = time.monotonic() + 3.0
+        for link in self.inputs:
+            if link.thread is not None and link.thread is not threading.current_thread():
+                link.thread.join(max(0.0, deadline - time.monotonic()))
+        self._acceptor.close()
+        if self.registered and self.names is not None:
+            try:
+                if self.group_name:
+                    self.names.unregister(self.group_name)
+                current = self.names.query(self.name)
+                if current is None or current.port == self.port:
+                    self.names.unregister(self.name)
+            except NoNameServer as error:
+                log.info("%s: the name stays registered: %s", self.name, error)
+
+    def _ask_senders_to_leave(self) -> None:
+        """Ports that send to us hear it from us, so that they do not take it for a failure."""
+        for link in self.inputs:
+            source = link.route.source
+            if source.startswith("/") and source != self.name:
+                try:
+                    repair.ask_to_disconnect(self, source)
+                except (LinkClosed, Timeout, YarpError, OSError):
+                    continue  # it will notice by itself
+
+    def snapshot(self) -> dict[str, Any]:
+        """Counters of every connection, and of the mailbox."""
+        return {
+            "name": self.name,
+            "inputs": [{**_route(link), **link.snapshot()} for link in self.inputs],
+            "outputs": [{**_route(link), **link.snapshot()} for link in self.outputs],
+            "waiting": self.mailbox.waiting,
+        }
+
+
+def _peer(transport: TcpTransport) -> str:
+    try:
+        host, port = transport.remote
+    except OSError:
+        return "somebody who left"
+    return f"{host}:{port}"
+
+
+def _route(link: Inbound | Outbound) -> dict[str, str]:
+    route = link.route
+    return {"source": route.source, "target": route.target, "carrier": route.carrier}

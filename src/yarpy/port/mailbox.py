@@ -1,0 +1,265 @@
+"""Mailboxes: what a port does with messages between their arrival and somebody's reading.
+
+Rules: `put` runs in the thread of the connection and may make it wait; `take` runs in the reader's.
+Messages of dropped turns are counted on the link that brought them. After `interrupt` everything
+that comes is dropped, and readers get PortClosed, until `resume`.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+from queue import Empty, SimpleQueue
+from typing import Final
+
+from yarpy.errors import PortClosed, YarpError
+from yarpy.link.inbound import Inbound
+from yarpy.wire.message import Message
+
+log = logging.getLogger("yarpy.port")
+
+FIFO_BYTES: Final = 1 << 28  # what a strict reader may be behind before its senders have to wait
+
+_STOP: Final = object()
+
+
+class Mailbox:
+    """The common part: a queue of tokens that wakes readers, and its stop and go."""
+
+    def __init__(self) -> None:
+        self.stopped = False
+        self.drops = 0
+        self._ready: SimpleQueue[object] = SimpleQueue()
+
+    def put(self, link: Inbound, message: Message) -> None:
+        """Take a message that came over `link`."""
+        raise NotImplementedError
+
+    def take(self, timeout: float | None = None) -> Message | None:
+        """The next message; None when `timeout` seconds are over. Raises PortClosed."""
+        try:
+            token = self._ready.get(True, timeout)
+        except (Empty, ValueError):
+            return None
+        if token is _STOP:
+            if self.stopped:
+                self._ready.put(_STOP)  # for the next reader
+                raise PortClosed("the port was closed or interrupted while reading")
+            return self.take(timeout)  # left over from an interrupt that was resumed
+        return self._next(token)
+
+    def poll(self) -> Message | None:
+        """A message that is already there, or None."""
+        if self._ready.empty():
+            return None
+        return self.take(0)
+
+    @property
+    def waiting(self) -> int:
+        """Messages that came and were not taken."""
+        return self._ready.qsize()
+
+    def interrupt(self) -> None:
+        """Drop what waits and what comes; readers get PortClosed."""
+        self.stopped = True
+        self._clear()
+        self._ready.put(_STOP)
+
+    def resume(self) -> None:
+        """Undo `interrupt`."""
+        self.stopped = False
+
+    def _next(self, token: object) -> Message | None:
+        raise NotImplementedError
+
+    def _clear(self) -> None:
+        while True:
+            try:
+                token = self._ready.get_nowait()
+            except Empty:
+                return
+            if token is not _STOP:
+                self._discard(token)
+
+    def _discard(self, token: object) -> None:
+        self.drops += 1
+
+    def _drop(self, link: Inbound) -> None:
+        self.drops += 1
+        link.counter.drops += 1
+
+
+class Latest(Mailbox):
+    """Only the newest message is kept; an older one that nobody took is dropped and counted."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._item: tuple[Inbound, Message] | None = None
+        self._lock = threading.Lock()  # several connections put, several readers take
+
+    def put(self, link: Inbound, message: Message) -> None:
+        with self._lock:
+            older, self._item = self._item, (link, message)
+        if self.stopped:
+            self._item = None
+            self._drop(link)
+        elif older is None:
+            self._ready.put(None)  # exactly one token while there is an item
+        else:
+            self._drop(older[0])
+
+    def _next(self, token: object) -> Message | None:
+        with self._lock:
+            item, self._item = self._item, None
+        return item[1] if item else None
+
+    def _discard(self, token: object) -> None:
+        with self._lock:
+            item, self._item = self._item, None
+        if item:
+            self._drop(item[0])
+
+
+class Fifo(Mailbox):
+    """Every message, in order. When a reader is too far behind, senders wait: nothing is lost."""
+
+    def __init__(self, limit: int = FIFO_BYTES) -> None:
+        super().__init__()
+        self._limit = limit
+        self._bytes = 0
+        self._room = threading.Condition()  # guards the byte count, and lets senders wait
+
+    def put(self, link: Inbound, message: Message) -> None:
+        size = len(message.payload) + 64 if message.spelling != "object" else 64
+        with self._room:
+            if self._bytes > self._limit:
+                self._room.wait_for(lambda: self._bytes <= self._limit or self.stopped)
+            self._bytes += size
+        if self.stopped:
+            self._free(size)
+            self._drop(link)
+            return
+        self._ready.put((size, link, message))
+
+    def _next(self, token: object) -> Message | None:
+        assert isinstance(token, tuple)
+        self._free(token[0])
+        message: Message = token[2]
+        return message
+
+    def _discard(self, token: object) -> None:
+        assert isinstance(token, tuple)
+        self._free(token[0])
+        self._drop(token[1])
+
+    def _free(self, size: int) -> None:
+        with self._room:
+            full = self._bytes > self._limit
+            self._bytes -= size
+            if full:
+                self._room.notify_all()
+
+    def interrupt(self) -> None:
+        super().interrupt()
+        with self._room:
+            self._room.notify_all()
+
+
+class _Offer:
+    """A message whose connection waits until the reader is done with it."""
+
+    __slots__ = ("done", "link", "message")
+
+    def __init__(self, link: Inbound, message: Message) -> None:
+        self.link = link
+        self.message = message
+        self.done = threading.Event()
+
+
+class Rendezvous(Mailbox):
+    """A plain port: each connection waits until its message was taken, and answered if it asks."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._pending: _Offer | None = None
+
+    def put(self, link: Inbound, message: Message) -> None:
+        if self.stopped:
+            self._drop(link)
+            return
+        offer = _Offer(link, message)
+        if message.answer is not None:
+            answer = message.answer
+
+            def reply(value: object) -> None:
+                try:
+                    answer(value)
+                finally:
+                    offer.done.set()
+
+            message.answer = reply
+        self._ready.put(offer)
+        offer.done.wait()
+
+    def take(self, timeout: float | None = None) -> Message | None:
+        self.settle()
+        return super().take(timeout)
+
+    def settle(self) -> None:
+        """The reader is done with the message it took last; unanswered questions get no answer."""
+        pending, self._pending = self._pending, None
+        if pending is not None:
+            pending.done.set()
+
+    def _next(self, token: object) -> Message | None:
+        assert isinstance(token, _Offer)
+        if token.message.answer is None:
+            token.done.set()
+        else:
+            self._pending = token
+        return token.message
+
+    def _discard(self, token: object) -> None:
+        assert isinstance(token, _Offer)
+        self._drop(token.link)
+        token.done.set()
+
+    def interrupt(self) -> None:
+        super().interrupt()
+        self.settle()
+
+
+class Callback(Mailbox):
+    """Calls a function with each message, in the thread of its connection.
+
+    An exception in the function is logged with its traceback; the connection goes on. With `lock`
+    calls of different connections come one at a time.
+    """
+
+    def __init__(self, handler: Callable[[Message], None], lock: bool = False) -> None:
+        super().__init__()
+        self._handler = handler
+        self._lock = threading.Lock() if lock else None  # the user asked for one call at a time
+
+    def put(self, link: Inbound, message: Message) -> None:
+        if self.stopped:
+            self._drop(link)
+            return
+        try:
+            if self._lock is None:
+                self._handler(message)
+            else:
+                with self._lock:
+                    self._handler(message)
+        except PortClosed:
+            self._drop(link)
+        except YarpError as error:
+            self._drop(link)
+            log.warning("%s: message from %s: %s", link.owner.name, link.route.source, error)
+        except Exception:
+            self._drop(link)
+            log.exception("%s: the callback failed on %r", link.owner.name, message)
+
+    def take(self, timeout: float | None = None) -> Message | None:
+        raise PortClosed("this port hands its messages to a callback; there is nothing to read")

@@ -1,0 +1,116 @@
+"""Questions to a port over a short text connection, as every YARP tool asks them.
+
+Rules: one connection per question, un-rooted sender names (so that nobody is displaced), a time
+limit always. Source: core-3 sections 5.1, 6.3, 6.4.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from yarpy.contact import Contact, Route
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+from yarpy.errors import YarpError
+from yarpy.link.driver import Driver
+from yarpy.link.handshake import greet
+from yarpy.link.outbound import Outbound
+from yarpy.names.default import secret
+from yarpy.wire.message import Packet
+
+TIMEOUT = 3.0  # seconds; a port that lives answers in milliseconds
+
+
+def ask(
+    contact: Contact,
+    question: Sequence[object],
+    *,
+    key: str = "a",
+    name: str = "admin",
+    timeout: float = TIMEOUT,
+    secret_: bytes | None = None,
+) -> Bottle:
+    """The answer to an administrative question (`key` "a") or to data ("d").
+
+    Raises LinkClosed, Timeout, RemoteProtocolError.
+    """
+    route = Route(name, contact.name or f"/{contact.address}", "text_ack")
+    driver, carrier = greet(
+        contact, route, key=secret() if secret_ is None else secret_, timeout=timeout
+    )
+    link = Outbound(driver, carrier)
+    try:
+        reply = link.call(Packet(list(question), key=key), timeout)
+        return Bottle() if reply is None else reply.as_(Bottle)
+    finally:
+        driver.transport.close()
+
+
+def describe(
+    contact: Contact, name: str = "<ping>", timeout: float = TIMEOUT, secret_: bytes | None = None
+) -> list[str]:
+    """The lines in which a port describes itself and its connections (port command `*`)."""
+    return _lines(contact, "*", name, timeout, secret_)
+
+
+def drop_input(
+    contact: Contact, source: str, timeout: float = TIMEOUT, secret_: bytes | None = None
+) -> None:
+    """Ask a port to drop what comes from `source`: how connectionless senders say goodbye."""
+    route = Route("admin", contact.name, "text")
+    driver, _ = greet(contact, route, key=secret() if secret_ is None else secret_, timeout=timeout)
+    try:
+        driver.stream.write(f"~{source}\r\nq\r\n".encode())
+        driver.flush()
+        for _ in range(2):  # the welcome and the result
+            driver.run(driver.stream.read_line(), _deadline(timeout))
+    finally:
+        driver.transport.close()
+
+
+def is_alive(contact: Contact, key: bytes = b"") -> bool:
+    """Whether the port of that name really listens at that address."""
+    try:
+        lines = _lines(contact, "*", "<ping>", 1.0, key)
+    except (YarpError, OSError):
+        return False
+    return bool(lines) and lines[0].startswith(f"This is {contact.name} at ")
+
+
+def answers(contact: Contact, timeout: float = TIMEOUT) -> bool:
+    """Whether a YARP port answers there (`yarp exists`)."""
+    try:
+        reply = ask(contact, [Vocab("ver")], timeout=timeout)
+    except (YarpError, OSError):
+        return False
+    return bool(reply) and plain_text(reply[0]) in ("ver", "dict")
+
+
+def _lines(
+    contact: Contact, command: str, name: str, timeout: float, secret_: bytes | None
+) -> list[str]:
+    route = Route(name, contact.name, "text_ack")
+    driver, _ = greet(contact, route, key=secret() if secret_ is None else secret_, timeout=timeout)
+    try:
+        driver.stream.write(command.encode() + b"\r\n")
+        driver.flush()
+        return list(_until_ack(driver, timeout))
+    finally:
+        driver.transport.close()
+
+
+def _until_ack(driver: Driver, timeout: float) -> list[str]:
+    lines: list[str] = []
+    deadline = _deadline(timeout)
+    while len(lines) < 10_000:
+        line = driver.run(driver.stream.read_line(), deadline).decode("utf-8", "replace")
+        if line == "<ACK>":
+            break
+        lines.append(line)
+    return lines
+
+
+def _deadline(timeout: float) -> float:
+    return time.monotonic() + timeout

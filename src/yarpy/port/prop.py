@@ -1,0 +1,152 @@
+"""`prop get` and `prop set` of a port: its process, its threads, the priority of its connections.
+
+Rules: the shapes are those of C++ YARP (core-3 sections 5.3, 8). Settings apply to the first
+connection with that peer. An output without a thread of its own keeps its scheduling until it gets
+one.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+import threading
+from typing import TYPE_CHECKING, Any
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.property import Property
+from yarpy.errors import LocalProtocolError
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
+from yarpy.qos import Sched, policy_of, schedule, scheduled, tos_of
+
+if TYPE_CHECKING:
+    from yarpy.port.hub import Hub
+
+
+def get_self(hub: Hub) -> Bottle:
+    """Scheduling of the accepting thread, the process, the platform, the port's kind."""
+    argv = sys.orig_argv
+    thread = hub.thread_id
+    own, process = scheduled(thread), scheduled(os.getpid())
+    return Bottle(
+        [
+            Bottle(["sched", _dict(policy=own.policy, priority=own.priority, tid=thread)]),
+            Bottle(
+                [
+                    "process",
+                    _dict(
+                        arguments=" ".join(argv[1:])[:256],
+                        name=argv[0] if argv else "unknown",
+                        pid=os.getpid(),
+                        policy=process.policy,
+                        priority=process.priority,
+                    ),
+                ]
+            ),
+            Bottle(["platform", _dict(hostname=hub.contact.host, os=platform.system())]),
+            Bottle(
+                [
+                    "port",
+                    _dict(
+                        is_input=int(hub.admits_inputs),
+                        is_output=int(hub.admits_outputs),
+                        is_rpc=int(hub.rpc),
+                        type=hub.type,
+                    ),
+                ]
+            ),
+        ]
+    )
+
+
+def get_peer(hub: Hub, name: str) -> Bottle | None:
+    """Scheduling and packet priority of each connection with `name`; None if there is none."""
+    reply = Bottle()
+    for link in _links(hub, name):
+        thread = thread_of(link)
+        sched = scheduled(thread) if thread >= 0 else link.sched
+        reply += [
+            Bottle(["sched", _dict(policy=sched.policy, priority=sched.priority, tid=thread)]),
+            Bottle(["qos", _dict(tos=link.tos)]),
+        ]
+    return reply or None
+
+
+def set_self(hub: Hub, request: Bottle) -> bool:
+    """`(process ((priority N) (policy P)))`: every thread of the process."""
+    group = _group(request, "process")
+    if group is None:
+        return False
+    sched = _sched(group, Sched(0, 0))
+    for thread in threading.enumerate():
+        if thread.native_id is not None:
+            schedule(thread.native_id, sched)
+    return True
+
+
+def set_peer(hub: Hub, name: str, request: Bottle) -> bool:
+    """`(sched ((priority N) (policy P))) (qos ((priority HIGH)))` on the first connection."""
+    links = _links(hub, name)
+    if not links:
+        return False
+    link = links[0]
+    done = False
+    wanted = request.group("sched")
+    if wanted is not None:
+        group = _group(request, "sched")
+        if group is None:
+            return False
+        link.sched = _sched(group, link.sched)
+        thread = thread_of(link)
+        if thread >= 0:
+            schedule(thread, link.sched)
+        done = True
+    if request.group("qos") is not None:
+        group = _group(request, "qos")
+        if group is None:
+            return False
+        link.tos = _tos(group)
+        link.driver.transport.set_dscp(link.tos)
+        done = True
+    return done
+
+
+def thread_of(link: Inbound | Outbound) -> int:
+    """The kernel's id of a link's thread, -1 if it has none of its own."""
+    thread = link.thread
+    return thread.native_id if thread is not None and thread.native_id is not None else -1
+
+
+def _links(hub: Hub, name: str) -> list[Inbound | Outbound]:
+    out: list[Inbound | Outbound] = [x for x in hub.outputs if x.route.target == name]
+    return [*out, *(x for x in hub.inputs if x.route.source == name)]
+
+
+def _group(request: Bottle, key: str) -> Bottle | None:
+    """The list of lists behind `key`; a dict is refused, as C++ does."""
+    value = request.find(key)
+    return value if isinstance(value, Bottle) and value else None
+
+
+def _sched(group: Bottle, default: Sched) -> Sched:
+    policy, priority = group.find("policy"), group.find("priority")
+    return Sched(
+        default.policy if policy is None or policy == -1 else policy_of(policy),
+        default.priority if priority is None or priority == -1 else int(priority),
+    )
+
+
+def _tos(group: Bottle) -> int:
+    level, dscp, tos = group.find("priority"), group.find("dscp"), group.find("tos")
+    if isinstance(level, str):
+        return tos_of(level)
+    if dscp is not None:
+        return tos_of(dscp)
+    if isinstance(tos, int) and 0 <= tos < 256:
+        return tos
+    raise LocalProtocolError("a packet priority is a level, a DSCP class or a TOS byte")
+
+
+def _dict(**values: Any) -> Property:
+    return Property(**values)

@@ -1,0 +1,281 @@
+"""Repair: connections that failed come back, names that a restarted server forgot are told again.
+
+Rules: one daemon thread for the process, started with the first registered port, asleep most of the
+time. What somebody disconnected on purpose stays disconnected; what broke is tried again until it
+works or is given up. A lost output is dialled again by us; a lost input is asked for again from its
+sender, once that is back. A name server is watched through a connection of its own.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from yarpy.contact import Contact, Route, modifier
+from yarpy.data.value import Vocab
+from yarpy.errors import YarpError
+from yarpy.names.base import NameClient
+from yarpy.names.client import YarpNameClient
+from yarpy.names.several import SeveralNames
+from yarpy.port import command, probe
+
+if TYPE_CHECKING:
+    from yarpy.port.hub import Hub
+
+log = logging.getLogger("yarpy.port")
+
+TICK: Final = 0.1  # seconds between looks at what is broken
+CALM: Final = 0.5  # seconds between looks when nothing is
+INPUT_PATIENCE: Final = 60.0  # seconds for a sender that vanished to come back
+
+
+@dataclass(slots=True)
+class _Lost:
+    """A connection that failed."""
+
+    hub: Hub
+    route: Route
+    incoming: bool
+    since: float = field(default_factory=time.monotonic)
+    pause: float = TICK
+    due: float = 0.0
+    seen_gone: bool = False
+
+
+class Repairer:
+    """The thread and its lists."""
+
+    def __init__(self) -> None:
+        self._hubs: list[Hub] = []
+        self._lost: list[_Lost] = []
+        self._dead_servers: set[int] = set()
+        self._lines: dict[int, tuple[YarpNameClient, object]] = {}
+        self._thread: threading.Thread | None = None
+        self._wake = threading.Event()
+        self._lock = threading.Lock()  # ports come and go from any thread
+
+    # -- what ports say ---------------------------------------------------------------------------
+
+    def watch(self, hub: Hub) -> None:
+        """Look after a registered port."""
+        with self._lock:
+            self._hubs.append(hub)
+            if self._thread is None or not self._thread.is_alive():
+                self._thread = threading.Thread(target=self._run, name="yarpy repair", daemon=True)
+                self._thread.start()
+        self._wake.set()
+
+    def forget(self, hub: Hub) -> None:
+        """The port closes."""
+        with self._lock:
+            self._hubs = [item for item in self._hubs if item is not hub]
+            self._lost = [item for item in self._lost if item.hub is not hub]
+        self._wake.set()
+
+    def add(self, hub: Hub, route: Route, incoming: bool) -> None:
+        """A connection failed."""
+        if not hub.registered:
+            return
+        with self._lock:
+            self._lost.append(_Lost(hub, route, incoming))
+        self._wake.set()
+
+    def give_up(self, hub: Hub, target: str) -> None:
+        """Somebody takes the connection to or from `target` in hand."""
+        with self._lock:
+            self._lost = [
+                item
+                for item in self._lost
+                if item.hub is not hub
+                or target not in (item.route.source if item.incoming else item.route.target, "")
+            ]
+
+    def pending(self, hub: Hub) -> list[Route]:
+        """Outputs that are being tried again."""
+        return [item.route for item in self._lost if item.hub is hub and not item.incoming]
+
+    # -- the thread -------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        while True:
+            busy = bool(self._lost or self._dead_servers)
+            self._wake.wait(TICK if busy else CALM)
+            self._wake.clear()
+            with self._lock:
+                hubs, lost = list(self._hubs), list(self._lost)
+                if not hubs:
+                    self._drop_lines()
+                    self._thread = None
+                    return
+            try:
+                self._look_at_outputs(hubs)
+                self._look_at_servers(hubs)
+                for item in lost:
+                    self._mend(item)
+            except Exception:
+                log.exception("the repair of connections failed; it goes on")
+
+    def _look_at_outputs(self, hubs: list[Hub]) -> None:
+        for hub in hubs:
+            for link in hub.outputs:
+                if link.ended():
+                    hub.drop_output(link, "the peer hung up", lost=True)
+
+    def _look_at_servers(self, hubs: list[Hub]) -> None:
+        servers = {id(client): client for hub in hubs for client in _servers(hub.names)}
+        for number in [number for number in self._lines if number not in servers]:
+            _close(self._lines.pop(number)[1])
+        for number, client in servers.items():
+            line = self._lines.get(number)
+            if line is not None and _holds(line[1]):
+                continue
+            if line is not None:
+                del self._lines[number]
+                _close(line[1])
+                self._dead_servers.add(number)
+                log.warning("the name server at %s:%d went away", client.host, client.port)
+            try:
+                fresh = client.connect()
+            except YarpError:
+                continue
+            self._lines[number] = (client, fresh)
+            if number in self._dead_servers:
+                self._dead_servers.discard(number)
+                self._register_again(client, hubs)
+
+    def _register_again(self, client: YarpNameClient, hubs: list[Hub]) -> None:
+        log.warning("the name server at %s:%d is back", client.host, client.port)
+        for hub in hubs:
+            if hub.closing or client not in _servers(hub.names):
+                continue
+            try:
+                known = client.query(hub.name)
+                contact = hub.contact
+                if known is None or (known.host, known.port) != (contact.host, hub.port):
+                    client.register(hub.name, "tcp", contact.host, hub.port, hub.type or None)
+                hub.describe(client)
+            except YarpError as error:
+                log.warning("%s could not be registered again: %s", hub.name, error)
+
+    def _drop_lines(self) -> None:
+        for _, line in self._lines.values():
+            _close(line)
+        self._lines.clear()
+        self._dead_servers.clear()
+
+    # -- one connection ---------------------------------------------------------------------------
+
+    def _mend(self, item: _Lost) -> None:
+        now = time.monotonic()
+        if now < item.due or item.hub.closing:
+            return
+        done = False
+        try:
+            done = self._mend_input(item) if item.incoming else self._mend_output(item)
+        except (YarpError, OSError):
+            pass  # not yet
+        if item.incoming and now - item.since > INPUT_PATIENCE:
+            done = True
+        if done:
+            with self._lock:
+                self._lost = [other for other in self._lost if other is not item]
+        else:
+            item.due = now + item.pause
+            item.pause = min(item.pause * 1.5, CALM)
+
+    def _mend_output(self, item: _Lost) -> bool:
+        hub, route = item.hub, item.route
+        if any(link.route.target == route.target for link in hub.outputs):
+            return True
+        contact = hub.names.query(route.target) if hub.names is not None else None
+        if contact is None:
+            return False
+        command.open_output(hub, contact, route.target, route.carrier)
+        log.info("%s: the connection to %s is back", hub.name, route.target)
+        return True
+
+    def _mend_input(self, item: _Lost) -> bool:
+        """Ask the sender, once it lives again, to send to us as before."""
+        hub, route = item.hub, item.route
+        if any(link.route.source == route.source for link in hub.inputs):
+            return True
+        contact = hub.names.query(route.source) if hub.names is not None else None
+        if contact is None or not probe.is_alive(contact, hub.key):
+            item.seen_gone = True
+            return False
+        if not item.seen_gone and time.monotonic() - item.since < CALM:
+            return False  # it is still there: give it the time to dial us by itself
+        listed = probe.ask(contact, [Vocab("list"), Vocab("out")], secret_=hub.key)
+        if hub.name in listed:
+            return True
+        carrier = route.carrier
+        if modifier(carrier, "log") is not None:
+            return True
+        probe.ask(contact, [Vocab("add"), f"{carrier}:/{hub.name}"], secret_=hub.key)
+        return True
+
+
+def _servers(names: NameClient | None) -> list[YarpNameClient]:
+    if isinstance(names, SeveralNames):
+        return [client for each in names.clients for client in _servers(each)]
+    return [names] if isinstance(names, YarpNameClient) else []
+
+
+def _holds(line: object) -> bool:
+    """Whether an idle connection is still open."""
+    import socket
+
+    assert isinstance(line, socket.socket)
+    try:
+        line.setblocking(False)
+        return bool(line.recv(1, socket.MSG_PEEK))
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+
+
+def _close(line: object) -> None:
+    import socket
+
+    assert isinstance(line, socket.socket)
+    line.close()
+
+
+REPAIR: Final = Repairer()
+watch = REPAIR.watch
+forget = REPAIR.forget
+give_up = REPAIR.give_up
+pending = REPAIR.pending
+
+
+def output_lost(hub: Hub, route: Route) -> None:
+    """An output broke without anybody asking for it."""
+    if modifier(route.carrier, "log") is None:
+        REPAIR.add(hub, route, incoming=False)
+
+
+def input_lost(hub: Hub, route: Route) -> None:
+    """An input ended without a goodbye."""
+    if route.source.startswith("/") and not parse_is_address(route.source):
+        REPAIR.add(hub, route, incoming=True)
+
+
+def parse_is_address(name: str) -> bool:
+    """Whether a route's name is really an address, which nobody can be asked at."""
+    from yarpy.contact import parse_contact
+
+    try:
+        return parse_contact(name).reachable
+    except YarpError:
+        return True
+
+
+def ask_to_disconnect(hub: Hub, source: str) -> None:
+    """Ask the port `source` to drop its connection to us."""
+    contact: Contact | None = hub.names.query(source) if hub.names is not None else None
+    if contact is not None and contact.carrier == "tcp":
+        probe.ask(contact, [Vocab("del"), hub.name], timeout=1.0, secret_=hub.key)

@@ -1,0 +1,178 @@
+"""Remote procedure calls: RpcServer answers, RpcClient asks."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from yarpy.contact import modifier
+from yarpy.data.bottle import Bottle
+from yarpy.data.value import Vocab
+from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, YarpError
+from yarpy.link.outbound import Outbound
+from yarpy.names.base import NameClient
+from yarpy.port.hub import Hub
+from yarpy.port.mailbox import Callback, Mailbox
+from yarpy.port.port import BasePort
+from yarpy.wire.message import CALL, Message, Packet
+from yarpy.wire.stream import DEFAULT_LIMIT
+
+log = logging.getLogger("yarpy.port")
+
+Handler = Callable[[Message], object]
+
+
+class RpcServer(BasePort):
+    """Answers every message with what `handler(message)` returns; None is an empty answer.
+
+    The handler runs in the connection's thread, so calls of different clients run side by side;
+    with `lock` one at a time. What it raises is answered as `[fail] "reason"` and logged. It may
+    also call `message.reply(...)` itself. Other parameters as `Port`.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        handler: Handler,
+        *,
+        names: NameClient | None = None,
+        port: int = 0,
+        type_: str = "",
+        lock: bool = False,
+        limit: int = DEFAULT_LIMIT,
+        register: bool = True,
+    ) -> None:
+        self._handler = handler
+        super().__init__(
+            Hub(
+                name,
+                Callback(self._answer, lock),
+                names,
+                port=port,
+                type_=type_,
+                admits_outputs=False,
+                limit=limit,
+                register=register,
+            )
+        )
+
+    def _answer(self, message: Message) -> None:
+        try:
+            reply = self._handler(message)
+        except DecodeError as error:
+            log.warning("%s: message from %s: %s", self.name, message.source, error)
+            reply = Bottle([Vocab("fail"), str(error)])
+        except Exception as error:
+            log.exception("%s: the handler failed on %r", self.name, message)
+            reply = Bottle([Vocab("fail"), f"{type(error).__name__}: {error}"])
+        answer = Bottle() if reply is None else reply
+        self._forward(message, answer)
+        if message.answer is not None:
+            message.reply(answer)
+
+    def _forward(self, message: Message, answer: object) -> None:
+        """Tell connected loggers (`+log.in`) what was asked and answered."""
+        for link in self._hub.outputs:
+            if modifier(link.route.carrier, "log") != "in":
+                continue
+            request = message.value
+            if message.wants_reply:
+                record: Any = Bottle([Vocab("rpc"), _as_list(request), _as_list(answer)])
+            else:
+                record = request
+            try:
+                link.send(Packet(record))
+            except YarpError as error:
+                self._hub.drop_output(link, str(error))
+
+
+def _as_list(value: object) -> Bottle:
+    return Bottle(value) if isinstance(value, (list, tuple)) else Bottle([value])
+
+
+class RpcClient(BasePort):
+    """Asks one server. `target` may be given at once, or with `connect`, or by `yarpy connect`.
+
+    A server that was restarted is found again by the next call. Other parameters as `Port`.
+    """
+
+    def __init__(
+        self,
+        name: str = "...",
+        target: str = "",
+        *,
+        carrier: str = "tcp",
+        names: NameClient | None = None,
+        port: int = 0,
+        limit: int = DEFAULT_LIMIT,
+    ) -> None:
+        mailbox: Mailbox = Callback(lambda message: None)
+        super().__init__(Hub(name, mailbox, names, port=port, rpc=True, limit=limit))
+        self._target = ""
+        self._carrier = carrier
+        if target:
+            try:
+                self.connect(target, carrier)
+            except YarpError:
+                self.close()
+                raise
+
+    def connect(self, target: str, carrier: str = "tcp", timeout: float | None = None) -> RpcClient:
+        """Choose the server to ask; see Port.connect."""
+        super().connect(target, carrier, timeout)
+        self._target, self._carrier = target, carrier
+        return self
+
+    def call(self, *args: object, timeout: float | None = None) -> Any:
+        """Ask, and return the answer's value.
+
+        One argument that is a list, dict or message object is the question itself; otherwise the
+        arguments are its elements. Raises Timeout after `timeout` seconds (10 ms accuracy),
+        LinkClosed when the server is gone, LocalProtocolError when no server is connected.
+        """
+        message = self.ask(
+            args[0] if len(args) == 1 and _is_message(args[0]) else Bottle(args), timeout
+        )
+        return Bottle() if message is None else message.value
+
+    def ask(self, question: object, timeout: float | None = None) -> Message | None:
+        """As `call` with one argument, but returns the whole Message; None if there is no reply."""
+        self._check_open()
+        packet = Packet(question, key=CALL)
+        link = self._link()
+        try:
+            return link.call(packet, timeout)
+        except LinkClosed as error:
+            self._hub.drop_output(link, str(error))
+            # The server may have been restarted since the last call: once more, with a new
+            # connection.
+            try:
+                return self._again(link).call(packet, timeout)
+            except LinkClosed:
+                raise LinkClosed(f'"{link.route.target}" went away during the call') from error
+        except YarpError as error:
+            if link.broken:
+                self._hub.drop_output(link, str(error), lost=True)
+            raise
+
+    def _link(self) -> Outbound:
+        for link in self._hub.outputs:
+            if not link.broken:
+                return link
+        if self._target:
+            super().connect(self._target, self._carrier)
+            return self._hub.outputs[0]
+        raise LocalProtocolError(
+            f'"{self.name}" is not connected to a server: connect("/server"), or from outside '
+            f"`yarpy connect {self.name} /server`"
+        )
+
+    def _again(self, old: Outbound) -> Outbound:
+        super().connect(old.route.target, old.route.carrier)
+        return self._hub.outputs[0]
+
+
+def _is_message(value: object) -> bool:
+    """Whether an only argument is the whole question rather than its one element."""
+    return not isinstance(value, (str, int, float, bytes, bool))

@@ -1,0 +1,79 @@
+"""Connecting a port of ours, with errors for programs where `command` has lines for people."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from yarpy.contact import parse_contact
+from yarpy.data.text import plain_text
+from yarpy.errors import LinkClosed, LocalProtocolError, UnknownName, UnknownPlugin, YarpError
+from yarpy.link.handshake import find_carrier
+from yarpy.port import command, probe
+
+if TYPE_CHECKING:
+    from yarpy.port.hub import Hub
+
+_POLL = 0.05
+
+
+def connect(hub: Hub, target: str, carrier: str, timeout: float | None) -> None:
+    """Connect `hub` to `target`; see Port.connect."""
+    kind = find_carrier(carrier)
+    wanted = parse_contact(target)
+    text = target if wanted.carrier and not wanted.reachable else command.joined(target, carrier)
+    deadline = None if timeout is None else time.monotonic() + timeout
+    while True:
+        try:
+            command.connect(hub, text)
+            return
+        except command.Refused as error:
+            if deadline is None or time.monotonic() >= deadline:
+                raise explained(hub, target, kind.name, error) from error.__cause__
+        time.sleep(_POLL)
+
+
+def explained(hub: Hub, target: str, carrier: str, error: command.Refused) -> YarpError:
+    """The error of the tree that fits a refusal."""
+    cause, line = error.__cause__, str(error)
+    if isinstance(cause, UnknownPlugin):
+        return cause
+    if line.startswith("Do not know"):
+        return unknown(target, hub.names)
+    if line.startswith("Cannot connect"):
+        return LinkClosed(
+            f'"{hub.name}" cannot connect to "{target}" over {carrier}: {cause or "no answer"}'
+        )
+    return LocalProtocolError(f'"{hub.name}" cannot connect to "{target}": {line}')
+
+
+def unknown(name: str, names: object) -> UnknownName:
+    """The error for a name that nobody knows, with the nearest one that somebody does."""
+    from difflib import get_close_matches
+
+    near: list[str] = []
+    try:
+        known = [contact.name for contact in names.list()]  # type: ignore[attr-defined]
+        near = get_close_matches(name, known, n=1)
+    except (YarpError, AttributeError):
+        pass
+    hint = f'did you mean "{near[0]}"?' if near else "is its program running?"
+    return UnknownName(f'no port "{name}" is registered: {hint} (`yarpy name list` shows all)')
+
+
+def subscribe(hub: Hub, source: str, carrier: str) -> None:
+    """Ask the port `source` to send to `hub`; see BasePort.listen_to."""
+    contact = parse_contact(source)
+    if not contact.reachable:
+        found = hub.names.query(contact.name) if hub.names is not None else None
+        if found is None:
+            raise unknown(source, hub.names)
+        contact = found
+    if not find_carrier(carrier).push:
+        connect(hub, source, carrier, None)
+        return
+    target = hub.name if hub.registered else f"/{hub.contact.address}"
+    reply = probe.ask(contact, ["add", command.joined(target, carrier)], secret_=hub.key)
+    if not reply or reply[0] != 0:
+        text = plain_text(reply[1]).strip() if len(reply) > 1 else "no answer"
+        raise LocalProtocolError(f'"{source}" does not send to "{hub.name}": {text}')
