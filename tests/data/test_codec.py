@@ -1,7 +1,9 @@
+import enum
 import math
 import struct
 import subprocess
 import sys
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -283,6 +285,31 @@ def test_decode_as_subclasses():
     assert type(codec.decode_as(joined("x"), Name)) is Name
     with pytest.raises(TypeError, match="from_wire"):
         codec.decode_as(joined([1]), set)
+
+
+class Colour(enum.IntEnum):
+    RED = 7
+
+
+class Word(enum.StrEnum):
+    GO = "go"
+
+
+class Position(NamedTuple):
+    x: float
+    y: float
+
+
+def test_decode_as_enumerations_and_named_tuples():
+    assert codec.decode_as(joined(Colour.RED), Colour) is Colour.RED
+    assert codec.decode_as(joined("go"), Word) is Word.GO
+    assert codec.decode_as(joined(Position(1.0, 2.0)), Position) == Position(1.0, 2.0)
+    with pytest.raises(DecodeError, match="expected a Colour: 8"):
+        codec.decode_as(joined(8), Colour)
+    with pytest.raises(DecodeError, match="expected a Position"):
+        codec.decode_as(joined([1.0]), Position)
+    with pytest.raises(DecodeError, match="expected an integer"):
+        codec.decode_as(joined("x"), Colour)
 
 
 def test_arrays():

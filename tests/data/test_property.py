@@ -1,9 +1,12 @@
 import copy
+import math
 import pickle
+import struct
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.message import bottles, kinds, scalars, texts
 from support.vectors import rows
 
 from yarpy.data.bottle import Bottle
@@ -118,17 +121,25 @@ def test_subclass_and_repr():
     assert repr(Property(a=1)) == "Property({'a': 1})"
 
 
-@given(
-    st.dictionaries(
-        st.text(max_size=5), st.integers() | st.floats(allow_nan=False) | st.text(max_size=5)
-    )
-)
-def test_spellings_agree(values):
-    values = {key: value for key, value in values.items() if not isinstance(value, int)} | {
-        key: max(min(value, 2**63 - 1), -(2**63))
-        for key, value in values.items()
-        if isinstance(value, int)
-    }
-    message = Property(values).to_bytes()
-    assert message == bottle_of(values).to_bytes()
-    assert Property.from_bytes(message).to_bytes() == message
+@given(st.dictionaries(texts, scalars | bottles, max_size=5))
+def test_the_message_is_what_the_text_says(values):
+    by_text = Bottle.from_text(text_of(values))
+    assert repr(bottle_of(values)) == repr(by_text)
+    assert kinds(bottle_of(values)) == kinds(by_text)
+    assert Property(values).to_bytes() == by_text.to_bytes()
+
+
+@pytest.mark.parametrize("word", ["null", "inf", "nan", "-inf", "true", "-nan"])
+def test_words_that_change(word):
+    changed = {"null": Vocab("null"), "inf": math.inf, "nan": math.nan}.get(word, word)
+    assert repr(bottle_of({"k": [word]})) == repr(Bottle([Bottle(["k", Bottle([changed])])]))
+
+
+def test_values_that_text_changes():
+    negative_nan = struct.unpack("<d", b"\0\0\0\0\0\0\xf8\xff")[0]
+    assert bottle_of({"k": negative_nan}) == [["k", "-nan.0"]]
+    assert math.isnan(bottle_of({"k": math.nan})[0][1])
+    assert bottle_of({"k": -math.inf}) == [["k", -math.inf]]
+    assert bottle_of({"a": 1, "b": Vocab(")")}) == [["a", 1]], "the bracket swallows its group"
+    with pytest.raises(OverflowError):
+        Property(k=2**70).to_bytes()

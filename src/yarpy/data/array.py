@@ -15,57 +15,85 @@ numbers of large vectors are not copied if the memory layout allows it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from struct import Struct
+from typing import TYPE_CHECKING, Any, Final
 
-from yarpy.data.value import Float32, Int8, Int16
+from yarpy.data.value import (
+    BIG,
+    FLOAT32,
+    FLOAT64,
+    INT8,
+    INT16,
+    INT32,
+    INT64,
+    LIST,
+    Blocks,
+    Float32,
+    Int8,
+    Int16,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_WIDER = {
-    "bool": "int8",
-    "uint8": "int16",
-    "uint16": "int32",
-    "uint32": "int64",
-    "uint64": "int64",
-    "float16": "float32",
+#: numpy's name of a little-endian type -> tag of the list
+_LISTS: Final = {
+    "<f8": FLOAT64,
+    "<f4": FLOAT32,
+    "<i8": INT64,
+    "<i4": INT32,
+    "<i2": INT16,
+    "|i1": INT8,
 }
-_SAME = ("float64", "float32", "int64", "int32", "int16", "int8")
-_IMAGES = {
-    ("uint8", 1): "mono",
-    ("uint16", 1): "mo16",
-    ("uint8", 3): "rgb",
-    ("uint8", 4): "rgba",
-    ("float32", 3): "rgb.",
+_WIDER: Final = {
+    "|b1": "<i1",
+    "|u1": "<i2",
+    "<u2": "<i4",
+    "<u4": "<i8",
+    "<u8": "<i8",
+    "<f2": "<f4",
+}
+_IMAGES: Final = {
+    ("|u1", 1): "mono",
+    ("<u2", 1): "mo16",
+    ("|u1", 3): "rgb",
+    ("|u1", 4): "rgba",
+    ("<f4", 3): "rgb.",
 }
 
+_HEAD = Struct("<ii")
 
-def blocks(array: NDArray[Any]) -> tuple[bytes | memoryview, ...]:
+
+def blocks(array: NDArray[Any]) -> Blocks:
     """The wire blocks of an array with at least one dimension."""
-    name = array.dtype.name
+    kind = array.dtype.str
+    if kind[0] == ">":
+        return blocks(array.astype(array.dtype.newbyteorder("<")))
     if array.ndim == 1:
-        from yarpy.data.vector import Vector
-
-        if name in _SAME:
-            return Vector(array, name).to_wire()
-        wider = _WIDER.get(name)
-        if wider is not None:
-            if name == "uint64" and array.size and int(array.max()) > 0x7FFFFFFFFFFFFFFF:
+        if kind in _WIDER:
+            if kind == "<u8" and array.size and int(array.max()) > 0x7FFFFFFFFFFFFFFF:
                 raise OverflowError("an array of uint64 holds a value beyond 63 bits")
-            return Vector(array, wider).to_wire()
-    elif array.ndim == 2 and name in ("float64", "float32"):
+            array = array.astype(_WIDER[kind])
+            kind = array.dtype.str
+        tag = _LISTS.get(kind)
+        if tag is not None:
+            head = _HEAD.pack(LIST + tag, len(array))
+            if array.nbytes < BIG or not array.flags.c_contiguous:
+                return (head + array.tobytes(),)
+            return head, array.data.cast("B")
+    elif array.ndim == 2 and kind in ("<f8", "<f4"):
         from yarpy.data.matrix import Matrix
 
         return Matrix(array).to_wire()
     elif array.ndim == 2 or array.ndim == 3:
-        code = _IMAGES.get((name, 1 if array.ndim == 2 else array.shape[2]))
+        code = _IMAGES.get((kind, 1 if array.ndim == 2 else array.shape[2]))
         if code is not None:
             from yarpy.data.image import Image
 
             return Image(array, code).to_wire()
     raise TypeError(
-        f"no YARP type goes with an array of {name} and shape {array.shape}; say what is meant "
-        "with Vector(array), Matrix(array) or Image(array, code)"
+        f"no YARP type goes with an array of {array.dtype} and shape {array.shape}; say what is "
+        "meant with Vector(array), Matrix(array) or Image(array, code)"
     )
 
 

@@ -182,7 +182,13 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
         return cast(T, _to_array(view))
     for base in (Bottle, Property, Vocab, str, int, float, bytes, list, tuple, dict):
         if issubclass(type_, base):
-            return cast(T, type_(_CONVERTERS[base](view)))
+            make = getattr(type_, "_make", type_)  # named tuples have their own way
+            try:
+                return cast(T, make(_CONVERTERS[base](view)))
+            except (ValueError, TypeError, LookupError, OverflowError) as error:
+                if isinstance(error, DecodeError):
+                    raise
+                raise DecodeError(f"expected a {type_.__name__}: {error}") from error
     raise TypeError(
         f"messages cannot be read as {type_.__name__}; give it a class method from_wire(view)"
     )

@@ -62,12 +62,11 @@ class Image:
         if not 0 <= quantum <= 0x7FFF:
             raise ValueError(f"a quantum of {quantum}: rows are padded to 1 to 32767 bytes")
         shape = (*given.shape, 1) if given.ndim == 2 else given.shape
-        dtype = np.dtype(kind.dtype)
-        if len(shape) != 3 or shape[2] != kind.channels or given.dtype.newbyteorder("<") != dtype:
+        if len(shape) != 3 or shape[2] != kind.channels or given.dtype.str[1:] != kind.dtype[1:]:
             channels = f", {kind.channels}" if kind.channels > 1 else ""
             raise ValueError(
-                f"an image of pixels {kind.name or kind.code!r} is an array of {dtype.name} and "
-                f"shape (height, width{channels}), not of {given.dtype} and shape {given.shape}"
+                f"an image of pixels {kind.name or kind.code!r} is an array of {kind.dtype[1:]} "
+                f"and shape (height, width{channels}), not of {given.dtype} and shape {given.shape}"
             )
         self.height, self.width = shape[:2]
         self.code = Vocab.from_code(kind.code)
@@ -75,7 +74,7 @@ class Image:
         self.top_down = top_down
         self._array: NDArray[Any] | None = None
         rows = given if top_down else given[::-1]
-        self._pixels = _laid_out(rows, dtype, shape, _row_bytes(self.width, kind, self.quantum))
+        self._pixels = _laid_out(rows, kind, shape, _row_bytes(self.width, kind, self.quantum))
 
     @classmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
@@ -135,6 +134,21 @@ class Image:
             array: NDArray[Any] = np.ndarray(shape, kind.dtype, self._pixels, 0, strides)
             self._array = array if self.top_down else array[::-1]
         return self._array
+
+    def converted(self, code: str | int, quantum: int | None = None) -> Image:
+        """This image with another pixel type; ValueError if there is no way to it.
+
+        The numbers are those C++ gets (see `conversion`): grey is (r + g + b) / 3, colour is grey
+        three times, a new alpha is 255. With the same code and quantum it is the image itself.
+        """
+        from yarpy.data.conversion import convert
+
+        kind = pixel_of(code)
+        rows = self.quantum if quantum is None else quantum or QUANTUM
+        if kind.code == self.code.code and rows == self.quantum:
+            return self
+        array = convert(self.array, pixel_of(self.code.code), kind)
+        return Image(array, kind.code, rows, top_down=self.top_down)
 
     def __array__(
         self, dtype: np.dtype[Any] | None = None, copy: bool | None = None
@@ -198,19 +212,18 @@ def _kind_of(array: NDArray[Any]) -> Pixel:
 
 
 def _laid_out(
-    rows: NDArray[Any], dtype: np.dtype[Any], shape: tuple[int, ...], row_bytes: int
+    rows: NDArray[Any], kind: Pixel, shape: tuple[int, ...], row_bytes: int
 ) -> memoryview:
     """The memory of `rows` if it is as the wire wants it, else a copy with padded rows."""
-    import numpy as np
-
     if not rows.size:
         return memoryview(b"")
-    height = shape[0]
-    pixel_bytes = shape[1] * shape[2] * dtype.itemsize
-    if rows.dtype == dtype and rows.flags.c_contiguous and row_bytes == pixel_bytes:
-        return memoryview(rows.data).cast("B")
-    padded = np.zeros((height, row_bytes), "u1")
-    strides = (row_bytes, shape[2] * dtype.itemsize, dtype.itemsize)
-    inner: NDArray[Any] = np.ndarray(shape, dtype, padded.data, 0, strides)
+    plain = rows.dtype.str[0] != ">" and rows.flags.c_contiguous
+    if plain and row_bytes == shape[1] * kind.stride:
+        return rows.data.cast("B")
+    import numpy as np
+
+    padded = np.zeros((shape[0], row_bytes), "u1")
+    strides = (row_bytes, kind.stride, kind.stride // kind.channels)
+    inner: NDArray[Any] = np.ndarray(shape, kind.dtype, padded.data, 0, strides)
     inner[...] = rows.reshape(shape)
-    return memoryview(padded.data).cast("B")
+    return padded.data.cast("B")

@@ -88,17 +88,44 @@ def text_of(values: Mapping[str, Any], depth: int = 0) -> str:
     """The text of any mapping with string keys, sorted by the bytes of the keys."""
     from yarpy.data.text import print_text
 
-    for key in values:
-        if not isinstance(key, str):
-            raise TypeError(f"the key {key!r} is no string: a YARP Property only has string keys")
-    keys = sorted(values, key=lambda key: key.encode("utf-8", "surrogateescape"))
-    groups = (_group(values, key, values[key]) for key in keys)
+    groups = (_group(values, key, values[key]) for key in _sorted(values))
     return " ".join(f"({print_text(group, depth + 1)})" for group in groups)
 
 
 def bottle_of(values: Mapping[str, Any]) -> Bottle:
-    """What a Property message holds: the text, read again."""
-    return Bottle.from_text(text_of(values))
+    """What a Property message holds: what `text_of` reads back as."""
+    try:
+        return Bottle(
+            Bottle(map(_through_text, _group(values, key, values[key]))) for key in _sorted(values)
+        )
+    except _NotPlain:
+        return Bottle.from_text(text_of(values))
+
+
+class _NotPlain(Exception):
+    """Only printing and reading tells what becomes of this value."""
+
+
+def _through_text(value: Any) -> Any:
+    """What a value is after it was printed and read again: mostly itself."""
+    kind = type(value)
+    if kind is int or kind is bool or kind is bytes:
+        return value
+    if kind is str and value not in ("null", "inf", "nan"):
+        return value
+    if kind is float and value == value:
+        return value
+    if kind is list or kind is Bottle or kind is tuple:
+        return Bottle(map(_through_text, value))
+    raise _NotPlain
+
+
+def _sorted(values: Mapping[str, Any]) -> list[str]:
+    """The keys in the order of their bytes."""
+    for key in values:
+        if not isinstance(key, str):
+            raise TypeError(f"the key {key!r} is no string: a YARP Property only has string keys")
+    return sorted(values, key=lambda key: key.encode("utf-8", "surrogateescape"))
 
 
 def _group(values: Mapping[str, Any], key: str, value: Any) -> Bottle:

@@ -34,6 +34,10 @@ _INT64_MAX: Final = 0x7FFFFFFFFFFFFFFF
 #: Everything the tokeniser has to look at: an escape, a quote, a bracket or a separator.
 _MARK = re.compile(rb'\\.|["(){}]|[, \t\r\n]', re.DOTALL)
 
+#: What makes a text more than words between separators.
+_NESTING = re.compile(rb'[\\"(){}]')
+_SEPARATORS: Final = bytes.maketrans(b",\t\r\n", b"    ")
+
 #: Leading zeros, signs and x, then digits: anything else makes a token a word.
 _NUMBER = re.compile(rb"([0+\-xX]*)([0-9.eE+\-a-fA-F]*)")
 _C_INT = re.compile(rb"([+-]?)(?:0[xX]([0-9a-fA-F]+)|(0[0-7]*)|([1-9][0-9]*))")
@@ -78,6 +82,8 @@ def _parse(data: bytes, depth: int) -> list[Any]:
 
 def tokens(data: bytes) -> list[bytes]:
     """The tokens of a text, still with their quotes, brackets and escapes."""
+    if _NESTING.search(data) is None:
+        return [word for word in data.translate(_SEPARATORS).split(b" ") if word]
     found = []
     start = 0
     quoted = False
