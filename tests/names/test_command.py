@@ -10,7 +10,7 @@ from support.name_line import new_service
 
 from yarpy.data.bottle import Bottle
 from yarpy.errors import YarpError
-from yarpy.names.command import NameService, Reply, split_network, without_request
+from yarpy.names.command import NameService, Reply, without_request
 from yarpy.names.line import END
 from yarpy.names.store import Limits, NameStore
 from yarpy.names.topology import Topology
@@ -77,6 +77,12 @@ DIALOGUE = [
     ("check /x foo y", ["port /x property foo value y present true"]),
     ("check /x foo 7", ["port /x property foo value 7 present false"]),
     ("bot check /x foo y", ["port /x property foo value y present true"]),
+    ("check /x foo (1 (2))", ["port /x property foo value 1 (2) present false"]),
+    (
+        'set /x odd "a\\\\b" "x\\"y" "[voc]" "(1 2)"',
+        ["port /x property odd = (1 2) [voc] a\\\\b x\\y"],
+    ),
+    ("bot get /x odd", ['> (1 2) [voc] "a\\\\b" "x\\"y"']),
     ("check /nope foo y", []),
     ("bot route /x /y", ["port /x route /y = tcp://y"]),
     ("route /x DEST", ["port /x route DEST = tcp:/DEST"]),
@@ -113,6 +119,17 @@ DIALOGUE = [
         ],
     ),
     ("subscribe topic1", ["> subscriptions"]),
+    ("subscribe /s1 7", None),
+    ("register 123 tcp h 5", ["registration name  ip h port 5 type tcp"]),
+    ("query 7", ["registration name  ip h port 5 type tcp"]),
+    ("unregister (a b)", []),
+    ("register true tcp h 5.9", ["registration name true ip h port 5 type tcp"]),
+    ("unregister true", []),
+    ('set /x (a b) "" c', ["port /x property a b =  c"]),
+    ("bot get /x (a b)", ["> c"]),
+    ("register /tq topic ... -1", ["registration name /tq ip 127.0.0.1 port 21109 type topic"]),
+    ('set /tq host ""', ["port /tq property host = "]),
+    ("query /tq", ["registration name /tq ip localhost port 21109 type topic"]),
     (
         "subscribe /topic1",
         ['> subscriptions (subscription (src "/s1") (dest "topic://topic1") (topic 0 1))'],
@@ -149,6 +166,7 @@ def test_owned_names_leave_a_word_each(service: NameService) -> None:
     assert reply.lines == ("old", "old", END)
     assert [event.to_text() for event in reply.events] == ['[del] "/c"', '[del] "/a"']
     assert ask(service, "list") == []
+    assert ask(service, "register /a", "set /a owns /none /none2", "unregister /a") == ["old"] * 2
 
 
 def test_registering_again_says_so_to_listeners(service: NameService) -> None:
@@ -178,6 +196,11 @@ def test_actions_of_persistent_connections(service: NameService) -> None:
 def test_a_subscription_dies_with_its_end(service: NameService) -> None:
     ask(service, "register /a", "register /b", "subscribe /a /b to")
     assert ask(service, "unregister /b", "subscribe") == ["> subscriptions"]
+
+
+def test_unregistering_what_was_only_announced(service: NameService) -> None:
+    ask(service, "announce /a", "unregister /a")
+    assert service.topology.live == {}
 
 
 def test_somebody_complains(service: NameService) -> None:
@@ -268,12 +291,6 @@ def test_other_formats_are_old_style(service: NameService) -> None:
         ["set", "/x", "k", ["a", "b"]],
         False,
     )
-
-
-def test_split_network() -> None:
-    assert split_network("/net=127.0.0/a/b") == ("127.0.0", "/a/b")
-    assert split_network("/net=127") == ("127", "")
-    assert split_network("/network/x") == (None, "/network/x")
 
 
 # --- multicast

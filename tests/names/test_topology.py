@@ -5,7 +5,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yarpy.errors import AddressError
-from yarpy.names.topology import Action, Subscription, Topology, undecorate
+from yarpy.names.topology import (
+    Action,
+    Subscription,
+    Topology,
+    bare_name,
+    split_network,
+    undecorate,
+)
 
 
 class Clock:
@@ -115,6 +122,15 @@ def test_a_life_that_has_not_begun_stores_nothing(
     assert topology.subscribe("/a", "/b", mode, lambda name: name != missing) == []
     assert topology.subscriptions() == []
     assert topology.subscribe("/a", "/b", mode, lambda name: name == missing) != []
+    topology.subscribe("/a", "/b", mode, lambda name: name != missing)
+    assert topology.subscriptions() == [], "it replaced the other rule before it was dropped"
+
+
+def test_a_topic_need_not_be_registered(topology: Topology) -> None:
+    topology.subscribe("/a", "topic://t", "to", lambda name: False)
+    assert len(topology.subscriptions("/t")) == 1
+    topology.subscribe("/b", "/t", "to", lambda name: False)
+    assert len(topology.subscriptions("/t")) == 1, "it must be called a topic to count as one"
 
 
 def test_unsubscribe_leaves_the_connection(topology: Topology) -> None:
@@ -184,6 +200,19 @@ def test_undecorate() -> None:
     assert undecorate("/udp://x") == ("udp", "/x")
     assert undecorate("tcp:/x") == ("tcp", "x")
     assert undecorate("") == ("", "")
+
+
+def test_networks() -> None:
+    assert split_network("/net=127.0.0/a/b") == ("127.0.0", "/a/b")
+    assert split_network("/NET=127") == ("127", "")
+    assert split_network("/network/x") == (None, "/network/x")
+    assert bare_name("udp://net=10/x") == "/x"
+
+
+def test_a_network_does_not_make_another_rule(topology: Topology) -> None:
+    topology.subscribe("/net=10/a", "/b", "", everybody)
+    assert [rule.source_text for rule in topology.subscriptions("/a")] == ["/net=10/a"]
+    assert topology.unsubscribe("/a", "/b")
 
 
 def test_restore_works_like_the_events(topology: Topology) -> None:

@@ -22,8 +22,15 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import AddressError, DecodeError
 from yarpy.names.line import END, PREFIX, registration_line
-from yarpy.names.store import NameStore
-from yarpy.names.topology import Action, Subscription, Topology, undecorate
+from yarpy.names.store import NameStore, Registration
+from yarpy.names.topology import (
+    Action,
+    Subscription,
+    Topology,
+    bare_name,
+    split_network,
+    undecorate,
+)
 
 HELP_HEADING = "Here are some ways to use the name server:"
 HELP = (
@@ -167,7 +174,6 @@ class NameService:
         return _found(self.store.query(name, network), nested)
 
     def _register(self, words: list[Any], nested: bool, peer: str) -> Reply:
-        number = words[4] if len(words) > 4 else 0
         name = _word(words, 1)
         removed = self.store.unregister(name)
         events, actions = self._gone(removed)
@@ -176,7 +182,7 @@ class NameService:
                 name,
                 _word(words, 2),
                 _word(words, 3),
-                number if isinstance(number, int) and not isinstance(number, bool) else 0,
+                _port_number(words),
                 _word(words, 5),
                 peer,
             )
@@ -189,11 +195,16 @@ class NameService:
         return _old([registration_line(contact)], events, actions)
 
     def _unregister(self, words: list[Any], nested: bool, peer: str) -> Reply:
-        removed = self.store.unregister(_word(words, 1))
+        name = _word(words, 1)
+        removed = self.store.unregister(name)
         events, actions = self._gone(removed)
+        if not removed:
+            actions += self.topology.vanish(name)  # it may have been announced all the same
         if nested:
             return _old(_broken(_UNKNOWN), events, actions)
-        return _old(["old"] * (len(removed) - 1), events, actions)
+        # C++ lets the reply for each owned name show through, whether it existed or not.
+        owned = sum(len(port.fields.get("owns", ())) for port in removed)
+        return _old(["old"] * owned, events, actions)
 
     def _list(self, words: list[Any], nested: bool, peer: str) -> Reply:
         return _all(self.store.contacts(_word(words, 1)), nested)
@@ -202,21 +213,21 @@ class NameService:
         return _all(self.store.having("yarprun", "true"), nested)
 
     def _set(self, words: list[Any], nested: bool, peer: str) -> Reply:
-        name, key = _word(words, 1), _word(words, 2)
+        name, key = _word(words, 1), _key(words)
         values = self.store.assign(name, key, [plain_text(value) for value in words[3:]])
         return _property(name, key, values, nested)
 
     def _get(self, words: list[Any], nested: bool, peer: str) -> Reply:
-        name, key = _word(words, 1), _word(words, 2)
+        name, key = _word(words, 1), _key(words)
         return _property(name, key, self.store.values(name, key), nested)
 
     def _check(self, words: list[Any], nested: bool, peer: str) -> Reply:
-        name, key = _word(words, 1), _word(words, 2)
+        name, key = _word(words, 1), _key(words)
         values = self.store.values(name, key)
         if values is None:
             return _old(())
-        value = words[3] if len(words) > 3 else ""
-        present = "true" if plain_text(value) in values else "false"
+        value = plain_text(words[3]) if len(words) > 3 else ""
+        present = "true" if value in values else "false"
         items = ["port", name, "property", key, "value", value, "present"]
         return _old([f"{_unquoted(items)} {present}"])
 
@@ -234,12 +245,12 @@ class NameService:
             return Reply(bottle=Bottle(HELP))
         return _old([HELP_HEADING, *HELP])
 
-    def _gone(self, removed: Iterable[Contact]) -> tuple[list[Bottle], list[Action]]:
+    def _gone(self, removed: Iterable[Registration]) -> tuple[list[Bottle], list[Action]]:
         events, actions = [], []
-        for contact in removed:
-            actions += self.topology.vanish(contact.name)
-            if contact.carrier != "mcast":
-                events.append(Bottle([Vocab("del"), contact.name]))
+        for port in removed:
+            actions += self.topology.vanish(port.name)
+            if port.contact.carrier != "mcast":
+                events.append(Bottle([Vocab("del"), port.name]))
         return events, actions
 
     # --- topics and rules
@@ -252,13 +263,12 @@ class NameService:
         return _ok(self.topology.announce(name))
 
     def _subscribe(self, words: list[Any]) -> Reply:
-        if len(words) > 2:
+        source, destination, mode = _word(words, 1), _word(words, 2), _word(words, 3)
+        if destination:
             known = self.store.__contains__
-            source, destination, mode = _word(words, 1), _word(words, 2), _word(words, 3)
             return _ok(self.topology.subscribe(source, destination, mode, known))
-        name = undecorate(_word(words, 1))[1]
         reply = Bottle(["subscriptions"])
-        reply += [self._rule(rule) for rule in self.topology.subscriptions(name)]
+        reply += [self._rule(rule) for rule in self.topology.subscriptions(bare_name(source))]
         return Reply(bottle=reply)
 
     def _rule(self, rule: Subscription) -> Bottle:
@@ -319,24 +329,29 @@ def without_request(command: Sequence[Any]) -> tuple[list[Any], bool]:
     return words, json
 
 
-def split_network(name: str) -> tuple[str | None, str]:
-    """`/net=127/x` asks for /x at an address beginning with 127.
-
-    >>> split_network("/net=127/x"), split_network("/x")
-    (('127', '/x'), (None, '/x'))
-    """
-    if name[:5] not in ("/net=", "/NET="):
-        return None, name
-    network, slash, rest = name[5:].partition("/")
-    return network, slash + rest
-
-
 def _is_pair(item: Any) -> bool:
     return isinstance(item, list) and len(item) == 2
 
 
 def _word(words: Sequence[Any], place: int) -> str:
-    return plain_text(words[place]) if place < len(words) else ""
+    """A name or a like word: numbers, lists and blobs count as "", as in C++."""
+    word = words[place] if place < len(words) else ""
+    return plain_text(word) if isinstance(word, (str, bool)) else ""
+
+
+def _key(words: Sequence[Any]) -> str:
+    """The key of a property: whatever it is, its text."""
+    return plain_text(words[2]) if len(words) > 2 else ""
+
+
+def _port_number(words: Sequence[Any]) -> int:
+    """0 where no port number is asked for, -1 where any will do."""
+    if len(words) <= 4:
+        return 0
+    number = words[4]
+    if isinstance(number, bool) or not isinstance(number, (int, float)) or not 0 < number < 1e9:
+        return -1
+    return int(number)
 
 
 # --- building replies
@@ -381,7 +396,7 @@ def _all(contacts: Iterable[Contact], nested: bool) -> Reply:
 
 def _property(name: str, key: str, values: list[str] | None, nested: bool) -> Reply:
     if nested:
-        return Reply(bottle=Bottle(map(_value, values or ())))
+        return Reply(bottle=Bottle(_value(value) for value in values or () if value))
     if values is None:
         return _old(())
     return _old([_unquoted(["port", name, "property", key, "=", *values])])
@@ -393,7 +408,8 @@ def _value(text: str) -> Any:
         parsed = Bottle.from_text(text)
     except DecodeError:
         return text
-    return parsed[0] if len(parsed) == 1 else text
+    # A word stays as it is: C++ would take its quotes and backslashes off once more.
+    return parsed[0] if len(parsed) == 1 and type(parsed[0]) is not str else text
 
 
 def _unquoted(items: list[Any]) -> str:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 from yarpy.errors import AddressError
 
 OnChange = Callable[[str], None]
+Row = tuple[str, bool | None, str | None]  # value, in use, who had it last
 
 
 class Pool:
@@ -40,14 +41,14 @@ class Pool:
         self.remember = remember
         self.counter = first - 1  # the last fresh value that went out
         self.on_change: OnChange | None = None
-        self._used: dict[str, str] = {}  # value -> owner; "" where a database did not say
+        self._used: dict[str, str | None] = {}  # value -> owner; None: nobody in particular
         self._lent: dict[str, str] = {}  # the reverse; a named owner has one value at a time
         self._free: list[str] = []  # sorted as text
         self._former: dict[str, str] = {}  # value -> the owner to whom it went last
         self._habit: dict[str, str] = {}  # the reverse of _former
 
-    def take(self, owner: str, blocked: Callable[[str], bool] | None = None) -> str:
-        """A value for `owner`; those for which `blocked` says so are passed over.
+    def take(self, owner: str | None, blocked: Callable[[str], bool] | None = None) -> str:
+        """A value for `owner` (None: anybody may give it back), never one that is `blocked`.
 
         Raises AddressError when there is none left.
         """
@@ -63,9 +64,9 @@ class Pool:
                 "unregister what is dead, for example with `yarpy clean`"
             )
         self._used[value] = owner
-        if owner:
+        if owner is not None:
             self._lent[owner] = value
-        if self.remember:
+        if self.remember and owner is not None:
             former = self._former.get(value)
             if former is not None and self._habit.get(former) == value:
                 del self._habit[former]
@@ -74,54 +75,49 @@ class Pool:
         self._changed(value)
         return value
 
-    def release(self, value: str, owner: str) -> bool:
-        """Take `value` back if it was lent to `owner`; whether it was."""
-        holder = self._used.get(value)
-        if holder is None or holder not in (owner, ""):
+    def release(self, value: str, owner: str | None) -> bool:
+        """Take `value` back if it was lent to `owner` or to nobody in particular; whether so."""
+        if value not in self._used or self._used[value] not in (owner, None):
             return False
-        del self._used[value]
-        if self._lent.get(holder) == value:
+        holder = self._used.pop(value)
+        if holder is not None and self._lent.get(holder) == value:
             del self._lent[holder]
         insort(self._free, value)
         self._changed(value)
         return True
 
-    def lent(self, owner: str) -> str:
-        """The value that `owner` has now, "" if none."""
-        return self._lent.get(owner, "")
+    def lent(self, owner: str) -> str | None:
+        """The value that `owner` has now."""
+        return self._lent.get(owner)
 
-    def owner(self, value: str) -> str | None:
-        """Who has `value` now: a name, "" when unknown, None when it is not out."""
-        return self._used.get(value)
-
-    def rows(self, values: Iterable[str] | None = None) -> Iterator[tuple[str, bool | None, str]]:
+    def rows(self, values: Iterable[str] | None = None) -> Iterator[Row]:
         """`(value, in use, remembered owner)` of `values` or all; in use is None: never lent."""
         if values is None:
             values = [*self._used, *self._free]
         for value in values:
             used = value in self._used
             known = used or self._is_free(value)
-            yield value, used if known else None, self._former.get(value, "")
+            yield value, used if known else None, self._former.get(value)
 
-    def restore(self, counter: int, rows: Iterable[tuple[str, bool | None, str]]) -> None:
+    def restore(self, counter: int, rows: Iterable[Row]) -> None:
         """The reverse of `rows`, for an empty pool: what a database remembers."""
         self.counter = max(self.counter, min(counter, self.last))
         for value, used, owner in rows:
             if used:
                 self._used[value] = owner
-                if owner:
+                if owner is not None:
                     self._lent[owner] = value
             elif used is not None:
                 self._free.append(value)
-            if owner and self.remember:
+            if owner is not None and self.remember:
                 self._former[value] = owner
                 # Two values may carry one owner's name; the one that is not lent out serves it.
                 if owner not in self._habit or not used:
                     self._habit[owner] = value
         self._free = sorted(set(self._free) - self._used.keys())
 
-    def _usual(self, owner: str, blocked: Callable[[str], bool] | None) -> str | None:
-        value = self._habit.get(owner) if self.remember else None
+    def _usual(self, owner: str | None, blocked: Callable[[str], bool] | None) -> str | None:
+        value = None if owner is None else self._habit.get(owner)
         if value is None or value in self._used or (blocked and blocked(value)):
             return None
         if self._is_free(value):

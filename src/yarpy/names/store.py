@@ -48,13 +48,10 @@ class Registration:
     @property
     def contact(self) -> Contact:
         if self._contact is None:
-            first = {key: values[0] for key, values in self.fields.items() if values}
-            self._contact = Contact(
-                first.get("carrier", NOWHERE.carrier),
-                self.name,
-                first.get("host", NOWHERE.host),
-                _number(first.get("socket", str(NOWHERE.port))),
-            )
+            carrier = self.fields.get("carrier", [NOWHERE.carrier])[0]
+            host, number = (self.fields.get(key, [""])[0] for key in ("host", "socket"))
+            port = _number(number) if number else NOWHERE.port
+            self._contact = Contact(carrier, self.name, host or NOWHERE.host, port)
         return self._contact
 
     def assign(self, key: str, values: list[str]) -> None:
@@ -209,10 +206,10 @@ class NameStore:
     ) -> Contact:
         """Put a port in; whoever had the name is unregistered first (the newest wins).
 
-        name: `...` asks for /tmp/port/N, `=suffix` for /tmp/port/N=suffix.
-        carrier, host: "" or `...` mean tcp and `peer`, the address the request came from.
-        port: 0 or less asks for a number. Returns the complete contact.
-        Raises AddressError when something has run out or is beyond a limit.
+        name: `...` asks for /tmp/port/N, `=suffix` for /tmp/port/N=suffix. carrier, host: "" or
+        `...` mean tcp and `peer`, the address the request came from. port: 0 or less asks for a
+        number (0 for a topic: the server's own). Returns the complete contact. Raises AddressError
+        when something has run out or is beyond a limit.
         """
         carrier = "tcp" if carrier in ("", "...") else carrier
         host = "" if host == "..." else host
@@ -227,7 +224,7 @@ class NameStore:
         self.unregister(name)
         if name == "..." or name.startswith("="):
             suffix = name if name.startswith("=") else ""
-            base = self.temporary.take("", lambda value: value + suffix in self._ports)
+            base = self.temporary.take(None, lambda value: value + suffix in self._ports)
             name = base + suffix
         contact = self._complete(name, carrier, host, port, peer)
         entry = Registration(name)
@@ -242,13 +239,13 @@ class NameStore:
         self._insert(entry)
         return contact
 
-    def unregister(self, name: str) -> list[Contact]:
+    def unregister(self, name: str) -> list[Registration]:
         """Take a port out with all that it owns. Returns what went: the owned ones first."""
         order: list[Registration] = []
         self._collect(name, order, set())
         for port in order:
             self._remove(port)
-        return [port.contact for port in order]
+        return order
 
     def assign(self, name: str, key: str, values: Iterable[str]) -> list[str] | None:
         """Replace the values of a property; returns them sorted, None if there is no such port.
@@ -304,7 +301,7 @@ class NameStore:
                 else:
                     host = peer or NOWHERE.host
             if port <= 0:
-                if carrier == "topic":
+                if carrier == "topic" and port == 0:
                     port = self.port
                 else:
                     taken = self._addresses
@@ -321,7 +318,7 @@ class NameStore:
         numbers.release(numbers.lent(contact.name) or str(contact.port), contact.name)
         groups.release(groups.lent(contact.name) or contact.host, contact.name)
         if contact.name.startswith(TEMPORARY):
-            self.temporary.release(contact.name.partition("=")[0], "")
+            self.temporary.release(contact.name.partition("=")[0], None)
 
     def _insert(self, port: Registration) -> None:
         self._ports[port.name] = port

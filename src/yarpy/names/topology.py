@@ -34,6 +34,23 @@ def undecorate(text: str) -> tuple[str, str]:
     return text[:place].removeprefix("/"), text[place + 2 :]
 
 
+def split_network(name: str) -> tuple[str | None, str]:
+    """`/net=127/x` means /x at an address that begins with 127.
+
+    >>> split_network("/net=127/x"), split_network("/x")
+    (('127', '/x'), (None, '/x'))
+    """
+    if name[:5] not in ("/net=", "/NET="):
+        return None, name
+    network, slash, rest = name[5:].partition("/")
+    return network, slash + rest
+
+
+def bare_name(text: str) -> str:
+    """The name in a decorated one: without carrier and network."""
+    return split_network(undecorate(text)[1])[1]
+
+
 @dataclass(frozen=True, slots=True)
 class Subscription:
     """A rule: keep `source` connected to `destination`. Both may be decorated by a carrier."""
@@ -44,11 +61,11 @@ class Subscription:
 
     @property
     def source(self) -> str:
-        return undecorate(self.source_text)[1]
+        return bare_name(self.source_text)
 
     @property
     def destination(self) -> str:
-        return undecorate(self.destination_text)[1]
+        return bare_name(self.destination_text)
 
     @property
     def carrier(self) -> str:
@@ -123,8 +140,8 @@ class Topology:
     ) -> list[Action]:
         """Add a rule, or replace the one for the same two names. Returns what to connect now.
 
-        mode: "from" or "to" tie it to the life of the source or destination; if that one is not
-        `known` (registered) the rule is dropped at once, silently as in C++.
+        mode: "from" or "to" tie it to the life of the source or destination; if that is a port
+        and not `known` (registered) the rule is dropped at once, silently as in C++.
         Raises AddressError for an empty name, an unknown mode, or too many rules.
         """
         if mode not in ("", "from", "to"):
@@ -134,12 +151,14 @@ class Topology:
             raise AddressError("a subscription needs two port or topic names")
         if "\0" in source + destination:
             raise AddressError("a port or topic name cannot hold a NUL character")
-        if mode and not known(rule.source if mode == "from" else rule.destination):
-            return []
-        for text, name in ((source, rule.source), (destination, rule.destination)):
-            if undecorate(text)[0].partition("+")[0] == "topic" and name not in self.topics:
-                self.declare(name)
         pair = rule.source, rule.destination
+        for side, text, name in (("from", source, pair[0]), ("to", destination, pair[1])):
+            if undecorate(text)[0].partition("+")[0] == "topic":
+                if name not in self.topics:
+                    self.declare(name)
+            elif mode == side and not known(name):
+                self.unsubscribe(*pair)
+                return []
         if pair not in self._rules and len(self._rules) >= self.limit:
             raise AddressError(f"this server keeps at most {self.limit} subscriptions")
         self._add(rule)
@@ -148,7 +167,7 @@ class Topology:
 
     def unsubscribe(self, source: str, destination: str) -> bool:
         """Forget a rule; a connection that exists stays. Whether there was one."""
-        pair = undecorate(source)[1], undecorate(destination)[1]
+        pair = bare_name(source), bare_name(destination)
         if self._rules.pop(pair, None) is None:
             return False
         for table, key, other in ((self._out, *pair), (self._in, pair[1], pair[0])):
