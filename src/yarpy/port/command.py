@@ -144,10 +144,11 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
 def _locate(hub: Hub, wanted: Contact) -> Contact | None:
     if wanted.reachable:
         return wanted
-    if hub.names is None or not wanted.name.startswith("/"):
+    names = hub.service() if wanted.name.startswith("/") else None
+    if names is None:
         return None
     try:
-        return hub.names.query(wanted.name)
+        return names.query(wanted.name)
     except YarpError as error:
         raise Refused(f"Cannot connect to {wanted.name}") from error
 

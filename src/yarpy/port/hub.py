@@ -86,7 +86,7 @@ class Hub:
             name = check_name(port_name(name, os.environ))
         self.name = name
         self.names = names
-        if register and name and names is None:
+        if self.registered and names is None:
             self.names = DEFAULT.current()
         self._open(port or port_number(name, os.environ), host)
 
@@ -152,6 +152,15 @@ class Hub:
         names.set(self.name, "ips", *local_addresses())
         names.set(self.name, "process", os.getpid())
         names.announce(self.name)
+
+    def service(self) -> NameClient | None:
+        """The name service to look others up with, None if there is none."""
+        if self.names is None:
+            try:
+                self.names = DEFAULT.current()
+            except NoNameServer:
+                return None
+        return self.names
 
     @property
     def thread_id(self) -> int:
@@ -270,16 +279,17 @@ class Hub:
 
     def group(self, local_host: str) -> tuple[str, int]:
         """The multicast group of this port: one for all its connections."""
-        if self.names is None:
+        names = self.service()
+        if names is None:
             return "224.3.1.1", 11000  # what C++ falls back to without a name server
-        contact = self.names.query(self.group_name) if self.group_name else None
+        contact = names.query(self.group_name) if self.group_name else None
         if contact is None:
-            contact = self.names.register(
-                "...", "mcast", None, None if self.names.allocates else self.port
+            contact = names.register(
+                "...", "mcast", None, None if names.allocates else self.port
             )
             self.group_name = contact.name
             if self.registered:
-                self.names.set(self.name, "owns", contact.name)
+                names.set(self.name, "owns", contact.name)
         return contact.host, contact.port
 
     # -- reports ----------------------------------------------------------------------------------

@@ -92,16 +92,19 @@ def _as_list(value: object) -> Bottle:
 
 
 class RpcClient(BasePort):
-    """Asks one server. `target` may be given at once, or with `connect`, or by `yarpy connect`.
+    """Asks the server called `target`: `RpcClient("/server").call("add", 1, 2)`.
 
-    A server that was restarted is found again by the next call. Other parameters as `Port`.
+    name: the client's own name, for servers that want to know and for `yarpy connect`; without one
+    it is not registered. A client with a name may be made without a target and connected later. A
+    server that was restarted is found again by the next call. Other parameters as `Port`.
+    Raises UnknownName, LinkClosed when the server is not there.
     """
 
     def __init__(
         self,
-        name: str = "...",
         target: str = "",
         *,
+        name: str = "",
         carrier: str = "tcp",
         names: NameClient | None = None,
         port: int = 0,

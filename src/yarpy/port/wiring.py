@@ -39,7 +39,7 @@ def explained(hub: Hub, target: str, carrier: str, error: command.Refused) -> Ya
     if isinstance(cause, UnknownPlugin):
         return cause
     if line.startswith("Do not know"):
-        return unknown(target, hub.names)
+        return unknown(target, hub.service())
     if line.startswith("Cannot connect"):
         return LinkClosed(
             f'"{hub.name}" cannot connect to "{target}" over {carrier}: {cause or "no answer"}'
@@ -65,9 +65,10 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
     """Ask the port `source` to send to `hub`; see BasePort.listen_to."""
     contact = parse_contact(source)
     if not contact.reachable:
-        found = hub.names.query(contact.name) if hub.names is not None else None
+        names = hub.service()
+        found = names.query(contact.name) if names is not None else None
         if found is None:
-            raise unknown(source, hub.names)
+            raise unknown(source, names)
         contact = found
     if not find_carrier(carrier).push:
         connect(hub, source, carrier, None)
