@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from support.message import bottles, kinds
 from support.vectors import binaries, rows
 
@@ -285,6 +286,12 @@ def test_decode_as_subclasses():
     assert type(codec.decode_as(joined("x"), Name)) is Name
     with pytest.raises(TypeError, match="from_wire"):
         codec.decode_as(joined([1]), set)
+
+
+def test_decode_as_generic_types():
+    assert codec.decode_as(joined([1, 2]), list[int]) == [1, 2]
+    assert codec.decode_as(joined({"a": 1}), dict[str, int]) == {"a": 1}
+    assert codec.decode_as(joined([1.0]), NDArray[np.float64]).tolist() == [1.0]
 
 
 class Colour(enum.IntEnum):

@@ -1,5 +1,6 @@
 import math
 import struct
+import time
 
 import pytest
 from hypothesis import given
@@ -8,7 +9,7 @@ from support.message import bottles, texts
 from support.vectors import rows
 
 from yarpy.data.bottle import Bottle
-from yarpy.data.text import balanced, parse_text, plain_text, print_text, tokens
+from yarpy.data.text import Balance, balanced, parse_text, plain_text, print_text, tokens
 from yarpy.data.value import Float32, Int8, Int64, Vocab
 from yarpy.errors import DecodeError
 
@@ -215,14 +216,26 @@ def test_plain_text(value, text):
 def test_deep_nesting_is_an_error_of_ours():
     text = "(" * 100 + "a" + ")" * 100
     assert Bottle.from_text(text).to_text() == text
-    for depth in (101, 3000):
+    for depth in (101, 3000, 1_000_000):
         with pytest.raises(DecodeError, match="nested"):
             parse_text("(" * depth + "a" + ")" * depth)
+        with pytest.raises(DecodeError, match="nested"):
+            parse_text("(" * depth)
     assert parse_text("{" * 3000 + "}" * 3000) == [b"\0"]
     loop: list[object] = []
     loop.append(loop)
     with pytest.raises(ValueError, match="nested"):
         print_text(loop)
+
+
+def test_deep_and_long_text_takes_no_minutes():
+    words = "a b " * 20_000
+    for depth in (5, 40):
+        assert len(parse_text("(" * depth + words + ")" * depth)) == 1
+    begin = time.perf_counter()
+    with pytest.raises(DecodeError, match="length"):
+        parse_text("(" * 100 + words * 20 + ")" * 100)
+    assert time.perf_counter() - begin < 20
 
 
 def test_unknown_objects_cannot_be_printed():
@@ -249,6 +262,39 @@ def test_unknown_objects_cannot_be_printed():
 def test_balanced(text, complete):
     assert balanced(text) is complete
     assert balanced(text.encode()) is complete
+
+
+def slow_balanced(text):
+    quoted = back = False
+    nested = curly = 0
+    for char in text.decode():
+        if back:
+            back = False
+            continue
+        back = char == "\\"
+        if char == '"':
+            quoted = not quoted
+        elif not quoted:
+            nested += (char == "(") - (char == ")")
+            curly += (char == "{") - (char == "}")
+    return not quoted and nested == curly == 0
+
+
+@given(st.lists(st.text('ab"\\\\(){} \n', max_size=6).map(str.encode), max_size=6))
+def test_balance_of_pieces(pieces):
+    balance = Balance()
+    whole = b""
+    for piece in pieces:
+        whole += piece
+        assert balance.feed(piece) is balanced(whole) is slow_balanced(whole)
+
+
+def test_balance_is_not_quadratic():
+    balance = Balance()
+    begin = time.perf_counter()
+    for _ in range(200_000):
+        assert not balance.feed(b"\n(")
+    assert time.perf_counter() - begin < 5
 
 
 def slow_tokens(line):

@@ -178,6 +178,9 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
         return cast(T, from_wire(view))
     if type_ is object or type_ is Any:
         return cast(T, decode(view))
+    origin = getattr(type_, "__origin__", None)
+    if isinstance(origin, type):  # list[int]: what is in the list is the caller's business
+        return cast(T, decode_as(view, origin))
     if type_.__name__ == "ndarray" and type_.__module__ == "numpy":
         return cast(T, _to_array(view))
     for base in (Bottle, Property, Vocab, str, int, float, bytes, list, tuple, dict):

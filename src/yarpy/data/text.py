@@ -29,6 +29,9 @@ from yarpy.data.value import (
 )
 from yarpy.errors import DecodeError
 
+#: bytes of nested text that are always read, however deep
+_FREE_WORK: Final = 1 << 22
+
 _INT64_MAX: Final = 0x7FFFFFFFFFFFFFFF
 
 #: Everything the tokeniser has to look at: an escape, a quote, a bracket or a separator.
@@ -56,32 +59,57 @@ _QUOTED: Final = str.maketrans({"\n": "\\n", "\r": "\\r", "\0": "\\0", "\\": "\\
 def parse_text(text: str | bytes) -> list[Any]:
     """The elements that a line of text stands for; DecodeError only for hundreds of brackets."""
     data = text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
-    return _parse(data, 0)
+    return _parse(data, [max(_FREE_WORK, 8 * len(data))])
 
 
 def balanced(text: str | bytes) -> bool:
     """Are all quotes and brackets of this text closed? If not, a text peer sends more lines."""
     data = text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
-    quoted = False
-    round_depth = curly_depth = 0
-    for mark in _MARK.finditer(data):
-        char = mark.group()
-        if char == b'"':
-            quoted = not quoted
-        elif not quoted:
-            round_depth += (char == b"(") - (char == b")")
-            curly_depth += (char == b"{") - (char == b"}")
-    return not (quoted or round_depth or curly_depth)
+    return Balance().feed(data)
 
 
-def _parse(data: bytes, depth: int) -> list[Any]:
-    if depth > MAX_DEPTH:
-        raise DecodeError(f"text with lists nested more than {MAX_DEPTH} deep")
-    return [_classify(token, depth) for token in tokens(data)]
+class Balance:
+    """`balanced` for a text that comes piece by piece; every byte is looked at once.
+
+    `feed(first_line)`, then `feed(b"\\n" + next_line)` and so on until it says True.
+    """
+
+    __slots__ = ("_curly", "_escaped", "_quoted", "_round")
+
+    def __init__(self) -> None:
+        self._quoted = self._escaped = False
+        self._round = self._curly = 0
+
+    def feed(self, piece: bytes) -> bool:
+        """Take the next piece of the text. Is everything closed at its end?"""
+        at = 1 if self._escaped and piece else 0
+        for mark in _MARK.finditer(piece, at):
+            char = mark.group()
+            if char == b'"':
+                self._quoted = not self._quoted
+            elif not self._quoted:
+                self._round += (char == b"(") - (char == b")")
+                self._curly += (char == b"{") - (char == b"}")
+            at = mark.end()
+        if piece:  # a last backslash waits for its character
+            self._escaped = piece.find(b"\\", at) >= 0
+        return not (self._quoted or self._round or self._curly)
+
+
+def _parse(data: bytes, work: list[int]) -> list[Any]:
+    # What is inside a list is looked at once more for every list around it. `work` is how many
+    # bytes may still be looked at, so that deep and long text cannot keep us busy for minutes.
+    work[0] -= len(data)
+    if work[0] < 0:
+        raise DecodeError("text with lists too deeply nested for its length")
+    return [_classify(token, work) for token in tokens(data)]
 
 
 def tokens(data: bytes) -> list[bytes]:
-    """The tokens of a text, still with their quotes, brackets and escapes."""
+    """The tokens of a text, still with their quotes, brackets and escapes.
+
+    DecodeError for more than MAX_DEPTH round brackets in each other, whatever they mean.
+    """
     if _NESTING.search(data) is None:
         return [word for word in data.translate(_SEPARATORS).split(b" ") if word]
     found = []
@@ -97,6 +125,8 @@ def tokens(data: bytes) -> list[bytes]:
             continue
         elif char == b"(":
             round_depth += 1
+            if round_depth > MAX_DEPTH:
+                raise DecodeError(f"text with lists nested more than {MAX_DEPTH} deep")
         elif char == b")":
             round_depth -= 1
         elif char == b"{":
@@ -111,7 +141,7 @@ def tokens(data: bytes) -> list[bytes]:
     return found
 
 
-def _classify(token: bytes, depth: int) -> Any:
+def _classify(token: bytes, work: list[int]) -> Any:
     first = token[:1]
     if first in b"0123456789+-.in":
         number = _number(token)
@@ -120,7 +150,7 @@ def _classify(token: bytes, depth: int) -> Any:
         if token == b"null":
             return Vocab("null")
     elif first == b"(":
-        return Bottle(_parse(token[1:-1], depth + 1))
+        return Bottle(_parse(token[1:-1], work))
     elif first == b"[":
         return vocab_of(vocab_code(token[1:-1]))
     elif first == b"{":
