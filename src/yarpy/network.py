@@ -42,7 +42,8 @@ def query(name: str, names: NameClient | None = None) -> Contact | None:
     return (names or DEFAULT.current()).query(contact.name)
 
 
-def _find(name: str, names: NameClient | None) -> Contact:
+def find(name: str, names: NameClient | None = None) -> Contact:
+    """As `query`, but an unknown name raises UnknownName, which names the nearest known one."""
     contact = query(name, names)
     if contact is None:
         raise unknown(name, names or DEFAULT.current())
@@ -56,7 +57,7 @@ def admin(
 
     Words that are commands may be strings. Raises UnknownName, LinkClosed, Timeout.
     """
-    contact = _find(name, names)
+    contact = find(name, names)
     try:
         return probe.ask(contact, list(words), timeout=timeout)
     except LinkClosed as error:
@@ -80,8 +81,8 @@ class Route:
             self.carrier = carrier or "tcp"
             self.ask, self.peer, self.pull = "", "", False
             return
-        here = from_ if from_.reachable else _find(from_.name, names)
-        there = to if to.reachable else _find(to.name, names)
+        here = from_ if from_.reachable else find(from_.name, names)
+        there = to if to.reachable else find(to.name, names)
         constraint = ""
         for contact in (here, there):
             if not _competent(contact):
@@ -228,7 +229,7 @@ def exists(name: str, target: str | None = None, *, names: NameClient | None = N
 
 def ping(name: str, *, names: NameClient | None = None) -> list[str]:
     """What the port says of itself and its connections. Raises UnknownName, LinkClosed."""
-    return probe.describe(_find(name, names))
+    return probe.describe(find(name, names))
 
 
 def wait_for(
