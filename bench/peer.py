@@ -27,6 +27,7 @@ def main(functions):
     parser.add_argument("side", choices=["server", "client"])
     parser.add_argument("workload", choices=[*functions])
     parser.add_argument("--carrier", default="tcp")
+    parser.add_argument("--spin", action="store_true", help="readers poll instead of sleeping")
     parser.add_argument("--at", type=json.loads, default={}, help="what the server printed")
     parser.add_argument("--warmup", type=int, default=100)
     parser.add_argument("--count", type=int, default=1000)

@@ -20,6 +20,7 @@ class Line:
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.socket = connected
         self.rest = b""
+        self.large = bytearray()
 
     def send(self, payload):
         self.socket.sendall(LENGTH.pack(len(payload)) + payload)
@@ -44,12 +45,14 @@ class Line:
             self.socket.sendall(memoryview(payload)[sent - 4 :])
 
     def receive_large(self):
-        """The next frame, received into a buffer of its own without another copy."""
-        payload = bytearray(LENGTH.unpack(self.socket.recv(4, socket.MSG_WAITALL))[0])
-        free = memoryview(payload)
+        """The next frame, in a buffer that the next one overwrites: no copy, no zeroing."""
+        length = LENGTH.unpack(self.socket.recv(4, socket.MSG_WAITALL))[0]
+        if len(self.large) != length:
+            self.large = bytearray(length)
+        free = memoryview(self.large)
         while free:
             free = free[self.socket.recv_into(free) :]
-        return payload
+        return self.large
 
 
 def accept(count=1):

@@ -1,4 +1,4 @@
-"""Peer: yarpy itself, `--carrier tcp` (acknowledged) or `fast_tcp`.
+"""Peer: yarpy itself, `--carrier tcp` (acknowledged) or `fast_tcp`; `--spin` for spinning readers.
 
 The server's process also holds the name server. Writers are Ports, readers BufferedPorts.
 """
@@ -33,13 +33,13 @@ def client_ports(options, **reading):
 
 
 def serve_stream(options):
-    inlet, outlet = serve_ports()
+    inlet, outlet = serve_ports(spin=options.spin)
     for message in inlet:
         outlet.write(message.value)
 
 
 def stream(options):
-    outlet, inlet = client_ports(options)
+    outlet, inlet = client_ports(options, spin=options.spin)
 
     def exchange(index):
         outlet.write([index, NUMBER])
@@ -51,7 +51,7 @@ def stream(options):
 def serve_rpc(options):
     with (
         yarpy.NameServer() as names,
-        yarpy.RpcServer(PREFIX + "/service", lambda *request: request) as service,
+        yarpy.RpcServer(PREFIX + "/service", lambda message: message.value) as service,
     ):
         ready(environment=names.environment, inlet=service.name)
         threading.Event().wait()
@@ -59,7 +59,7 @@ def serve_rpc(options):
 
 def rpc(options):
     os.environ.update(options.at["environment"])
-    client = yarpy.RpcClient(options.at["inlet"])
+    client = yarpy.RpcClient(options.at["inlet"], carrier=options.carrier)
 
     def exchange(index):
         assert client.call(index, NUMBER)[0] == index

@@ -6,6 +6,7 @@ middle one of these ratios counts: a disturbance that lasts a while hits both si
 
 import statistics
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from workload import GOALS, WORKLOADS, Goal, Workload
 
@@ -46,15 +47,27 @@ def summary(samples: Samples, workload: Workload) -> dict[str, float]:
     }
 
 
-def goal_ratio(goal: Goal, results: Results) -> tuple[float, bool] | None:
-    """The measured ratio and whether it reaches the goal; None if one of the two did not run."""
-    peers = results.get(goal.workload, {})
-    if goal.peer not in peers or goal.against not in peers:
-        return None
-    measured = ratio(peers[goal.peer], peers[goal.against])
-    if WORKLOADS[goal.workload].more_is_better:
-        return measured, measured >= goal.factor
-    return measured, measured <= goal.factor
+@dataclass(frozen=True)
+class Outcome:
+    """A goal beside what was measured."""
+
+    goal: Goal
+    workload: str
+    measured: float
+
+    @property
+    def reached(self) -> bool:
+        if WORKLOADS[self.workload].more_is_better:
+            return self.measured >= self.goal.factor
+        return self.measured <= self.goal.factor
+
+
+def outcomes(results: Results, goals: Sequence[Goal] = GOALS) -> Iterator[Outcome]:
+    """Every goal whose two peers ran, once for each workload that asks the same of them."""
+    for goal in goals:
+        for name, peers in results.items():
+            if WORKLOADS[name].function == goal.function and {goal.peer, goal.against} <= {*peers}:
+                yield Outcome(goal, name, ratio(peers[goal.peer], peers[goal.against]))
 
 
 def table(results: Results) -> Iterator[str]:
@@ -72,19 +85,17 @@ def table(results: Results) -> Iterator[str]:
             compared = f"{ratio(samples, peers['raw']):9.2f}" if "raw" in peers else ""
             tail = "" if workload.more_is_better else _number(row["p99"])
             yield f"  {peer:18}{_number(row['median']):>11}{tail:>11}{spread:>25}{compared}"
-    reached = [(goal, goal_ratio(goal, results)) for goal in GOALS]
-    if any(outcome for _, outcome in reached):
+    reached = list(outcomes(results))
+    if reached:
         yield ""
         yield "goals: ratio of medians, paired by round"
-    for goal, outcome in reached:
-        if outcome is not None:
-            sign = ">=" if WORKLOADS[goal.workload].more_is_better else "<="
-            verdict = "reached" if outcome[1] else "missed"
-            pair = f"{goal.peer} / {goal.against}"
-            yield (
-                f"  {goal.workload:8}{pair:32}{outcome[0]:7.2f}"
-                f"   goal {sign} {goal.factor:<5g} {verdict}"
-            )
+    for outcome in reached:
+        sign = ">=" if WORKLOADS[outcome.workload].more_is_better else "<="
+        pair = f"{outcome.goal.peer} / {outcome.goal.against}"
+        yield (
+            f"  {outcome.workload:15}{pair:32}{outcome.measured:7.2f}"
+            f"   goal {sign} {outcome.goal.factor:<5g} {'reached' if outcome.reached else 'missed'}"
+        )
 
 
 def _number(value: float) -> str:

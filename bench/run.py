@@ -44,6 +44,11 @@ class Peer:
     """Module without which it cannot run; "cpp" for the C++ peer."""
     options: tuple[str, ...] = ()
     functions: Sequence[str] = EVERYTHING
+    needs_core: bool = False
+    """It spins: two of it on one core would wait for the scheduler, not for each other."""
+
+    def can(self, workload: Workload) -> bool:
+        return workload.function in self.functions and workload.cores > self.needs_core
 
 
 PEERS = (
@@ -55,6 +60,7 @@ PEERS = (
     Peer("cpp-latency-test", "peer_latency_test.py", "cpp", (), ("stream", "rpc")),
     Peer("yarpy-tcp", "peer_yarpy.py", "yarpy", ("--carrier", "tcp")),
     Peer("yarpy-fast_tcp", "peer_yarpy.py", "yarpy", ("--carrier", "fast_tcp")),
+    Peer("yarpy-spin", "peer_yarpy.py", "yarpy", ("--spin",), ("stream",), needs_core=True),
 )
 
 
@@ -130,7 +136,7 @@ def run(
     """Samples by workload, peer and round, measured in turns."""
     results: dict[str, dict[str, list[list[float]]]] = {}
     for name, workload in workloads.items():
-        able = [peer for peer in peers if workload.function in peer.functions]
+        able = [peer for peer in peers if peer.can(workload)]
         collected: dict[str, list[list[float]]] = {peer.name: [] for peer in able}
         for number in range(rounds):
             turn = number % len(able) if able else 0
@@ -243,14 +249,13 @@ def document(
         },
         "goals": [
             {
-                "workload": goal.workload,
-                "ratio_of": f"{goal.peer} / {goal.against}",
-                "goal": goal.factor,
-                "measured": outcome[0],
-                "reached": outcome[1],
+                "workload": outcome.workload,
+                "ratio_of": f"{outcome.goal.peer} / {outcome.goal.against}",
+                "goal": outcome.goal.factor,
+                "measured": outcome.measured,
+                "reached": outcome.reached,
             }
-            for goal in report.GOALS
-            if (outcome := report.goal_ratio(goal, results)) is not None
+            for outcome in report.outcomes(results)
         ],
         "problems": problems,
     }

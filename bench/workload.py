@@ -59,9 +59,10 @@ WORKLOADS = {
 
 @dataclass(frozen=True)
 class Goal:
-    """`peer` shall need at most (or, for a rate, reach at least) `factor` times `against`."""
+    """`peer` shall need at most (or, for a rate, reach at least) `factor` times `against`,
+    in every workload that asks for `function`."""
 
-    workload: str
+    function: str
     peer: str
     against: str
     factor: float

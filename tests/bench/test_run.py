@@ -36,13 +36,20 @@ def test_ratio_pairs_the_rounds() -> None:
 def test_goals_know_which_way_is_better(workload: str, mine: int, reached: bool) -> None:
     factor = 5.0 if WORKLOADS[workload].more_is_better else 0.75
     goal = Goal(workload, "a", "b", factor)
-    results = {workload: {"a": [[mine]], "b": [[100]]}}
-    assert report.goal_ratio(goal, results) == (mine / 100, reached)
-    assert report.goal_ratio(goal, {workload: {"a": [[mine]]}}) is None
+    [outcome] = report.outcomes({workload: {"a": [[mine]], "b": [[100]]}}, [goal])
+    assert (outcome.measured, outcome.reached) == (mine / 100, reached)
+    assert not list(report.outcomes({workload: {"a": [[mine]]}}, [goal]))
+
+
+def test_goals_count_in_each_placement() -> None:
+    measured = {"a": [[1]], "b": [[2]]}
+    results = {"stream": measured, "stream-1-core": measured, "rpc": measured}
+    found = report.outcomes(results, [Goal("stream", "a", "b", 1.0)])
+    assert [outcome.workload for outcome in found] == ["stream", "stream-1-core"]
 
 
 def test_goals_name_what_exists() -> None:
-    assert {goal.workload for goal in GOALS} <= set(WORKLOADS)
+    assert {goal.function for goal in GOALS} <= {one.function for one in WORKLOADS.values()}
 
 
 def test_a_quick_run_prints_a_table_and_writes_json(tmp_path: Path) -> None:
