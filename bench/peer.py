@@ -31,6 +31,8 @@ def main(functions):
     parser.add_argument("--at", type=json.loads, default={}, help="what the server printed")
     parser.add_argument("--warmup", type=int, default=100)
     parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--pause", type=float, default=0.0, help="seconds before each exchange")
+    parser.add_argument("--server", type=int, help="process id of the server, to ask what it used")
     parser.add_argument("--core", type=int, help="the only processor core to run on")
     options = parser.parse_args()
     if options.core is not None:
@@ -41,34 +43,60 @@ def main(functions):
         return
     timed = ask(options)
     if isinstance(timed, list):
-        samples = timed
+        answer = {"samples": timed, "processor": None}
     elif options.workload == "flood":
-        samples = time_burst(timed, options.warmup, options.count)
+        answer = time_burst(timed, options)
     else:
-        samples = time_each(timed, options.warmup, options.count)
-    print(json.dumps({"samples": samples}), flush=True)
+        answer = time_each(timed, options)
+    print(json.dumps(answer), flush=True)
     # Closing politely is not measured, and a library may wait in it for threads that block.
     os._exit(0)
 
 
-def time_each(exchange, warmup, count):
-    """Nanoseconds of each exchange."""
-    for index in range(warmup):
+def time_each(exchange, options):
+    """`samples`: nanoseconds of each exchange; `processor`: see `processor_time`, per exchange."""
+    for index in range(options.warmup):
         exchange(index)
     gc.collect()
-    now = time.perf_counter_ns
+    now, pause = time.perf_counter_ns, options.pause
     samples = []
-    for index in range(count):
+    before = processor_time(options.server)
+    for index in range(options.count):
+        if pause:
+            time.sleep(pause)
         start = now()
         exchange(index)
         samples.append(now() - start)
-    return samples
+    return {"samples": samples, "processor": used_since(before, options)}
 
 
-def time_burst(burst, warmup, count):
-    """One sample: messages per second."""
-    burst(warmup)
+def time_burst(burst, options):
+    """`samples`: one, messages per second; `processor` per message."""
+    burst(options.warmup)
     gc.collect()
+    before = processor_time(options.server)
     start = time.perf_counter_ns()
-    burst(count)
-    return [count * 1e9 / (time.perf_counter_ns() - start)]
+    burst(options.count)
+    rate = options.count * 1e9 / (time.perf_counter_ns() - start)
+    return {"samples": [rate], "processor": used_since(before, options)}
+
+
+def used_since(before, options):
+    after = processor_time(options.server)
+    return None if None in (before, after) else (after - before) / options.count
+
+
+def processor_time(server):
+    """Nanoseconds that all threads of this process and of the server have run; None if unknown.
+
+    Latency can be bought by looking for messages instead of sleeping: this is the price.
+    """
+    total = 0
+    try:
+        for process in ("self", server):
+            for thread in os.listdir(f"/proc/{process}/task"):
+                with open(f"/proc/{process}/task/{thread}/schedstat") as status:
+                    total += int(status.read().split()[0])
+    except OSError:
+        return None
+    return total

@@ -35,6 +35,8 @@ def client(options, *mode):
     with tempfile.TemporaryDirectory() as directory:
         frames = ("--nframes", str(options.warmup + options.count), "--payload_size", str(PAYLOAD))
         how = ("--protocol", options.carrier, "--logfile", f"{directory}/log", *mode)
+        if options.pause:
+            how = (*how, "--client_wait", str(options.pause))
         subprocess.run(run("--client", *frames, *how), check=True, stdout=subprocess.DEVNULL)
         rows = Path(directory, f"log{PAYLOAD}.txt").read_text().splitlines()
     return [int(float(row.split()[0]) * 1e6) for row in rows[options.warmup :]]

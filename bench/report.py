@@ -10,14 +10,25 @@ from dataclasses import dataclass
 
 from workload import GOALS, WORKLOADS, Goal, Workload
 
-# results[workload][peer] = one list of samples per round: nanoseconds, or messages per second
-Samples = Sequence[Sequence[float]]
-Results = Mapping[str, Mapping[str, Samples]]
+
+@dataclass(frozen=True)
+class Measurement:
+    """What one client said after one round."""
+
+    samples: Sequence[float]
+    """Nanoseconds of each exchange, or messages per second."""
+    processor: float | None = None
+    """Nanoseconds that client and server ran per exchange or message, if known."""
 
 
-def medians(samples: Samples) -> list[float]:
+# Results[workload][peer] = one measurement per round
+Rounds = Sequence[Measurement]
+Results = Mapping[str, Mapping[str, Rounds]]
+
+
+def medians(rounds: Rounds) -> list[float]:
     """The median of each round."""
-    return [statistics.median(one) for one in samples]
+    return [statistics.median(one.samples) for one in rounds]
 
 
 def quantile(values: Sequence[float], part: float) -> float:
@@ -26,22 +37,24 @@ def quantile(values: Sequence[float], part: float) -> float:
     return ordered[max(0, -int(-part * len(ordered) // 1) - 1)]
 
 
-def ratio(mine: Samples, other: Samples) -> float:
+def ratio(mine: Rounds, other: Rounds) -> float:
     """How many times as much as `other`: the middle of the rounds' ratios."""
     pairs = zip(medians(mine), medians(other), strict=False)
     return statistics.median(a / b for a, b in pairs)
 
 
-def summary(samples: Samples, workload: Workload) -> dict[str, float]:
-    """What the JSON file keeps of a peer, in the workload's unit."""
+def summary(rounds: Rounds, workload: Workload) -> dict[str, float | None]:
+    """What the JSON file keeps of a peer, in the workload's unit; `processor` in microseconds."""
     scale = 1.0 if workload.more_is_better else 1e-3
-    everything = [value for one in samples for value in one]
-    by_round = medians(samples)
+    everything = [value for one in rounds for value in one.samples]
+    by_round = medians(rounds)
+    ran = [one.processor for one in rounds if one.processor is not None]
     return {
         "median": statistics.median(everything) * scale,
         "p99": quantile(everything, 0.01 if workload.more_is_better else 0.99) * scale,
         "lowest_round": min(by_round) * scale,
         "highest_round": max(by_round) * scale,
+        "processor": statistics.median(ran) * 1e-3 if ran else None,
         "rounds": len(by_round),
         "samples": len(everything),
     }
@@ -76,15 +89,22 @@ def table(results: Results) -> Iterator[str]:
         workload = WORKLOADS[name]
         yield ""
         cores = f"{workload.cores} core" + "s" * (workload.cores > 1)
-        yield f"{name}: {workload.title} [{workload.unit}, {cores}]"
+        pause = f", every {workload.pause * 1000:g} ms" if workload.pause else ""
+        yield f"{name}: {workload.title} [{workload.unit}, {cores}{pause}]"
         tail = "" if workload.more_is_better else "p99"
-        yield f"  {'peer':18}{'median':>11}{tail:>11}{'medians of rounds':>25}{'x raw':>9}"
-        for peer, samples in peers.items():
-            row = summary(samples, workload)
+        yield (
+            f"  {'peer':18}{'median':>11}{tail:>11}{'medians of rounds':>23}"
+            f"{'cpu us':>9}{'x raw':>8}"
+        )
+        for peer, rounds in peers.items():
+            row = summary(rounds, workload)
             spread = f"{_number(row['lowest_round'])} - {_number(row['highest_round'])}"
-            compared = f"{ratio(samples, peers['raw']):9.2f}" if "raw" in peers else ""
+            compared = f"{ratio(rounds, peers['raw']):8.2f}" if "raw" in peers else ""
             tail = "" if workload.more_is_better else _number(row["p99"])
-            yield f"  {peer:18}{_number(row['median']):>11}{tail:>11}{spread:>25}{compared}"
+            yield (
+                f"  {peer:18}{_number(row['median']):>11}{tail:>11}{spread:>23}"
+                f"{_number(row['processor']):>9}{compared}"
+            )
     reached = list(outcomes(results))
     if reached:
         yield ""
@@ -98,5 +118,7 @@ def table(results: Results) -> Iterator[str]:
         )
 
 
-def _number(value: float) -> str:
+def _number(value: float | None) -> str:
+    if value is None:
+        return "-"
     return f"{value:,.0f}" if value >= 1000 else f"{value:.1f}"

@@ -74,15 +74,15 @@ class Bench:
     cpp: CppYarp | None = None
     problems: dict[str, str] = field(default_factory=dict)
 
-    def measure(self, peer: Peer, workload: Workload) -> list[float]:
-        """One server and one client; the client's samples."""
+    def measure(self, peer: Peer, workload: Workload) -> report.Measurement:
+        """One server and one client; what the client measured."""
         with self.start(peer, "server", workload, 1) as server:
             at = server.wait_line(r"^\{.*\}$", timeout=40, stream="out")[0]
             counts = ("--warmup", str(workload.warmup), "--count", str(workload.count))
-            with self.start(peer, "client", workload, 0, "--at", at, *counts) as client:
+            rest = ("--pause", str(workload.pause), "--server", str(server.pid))
+            with self.start(peer, "client", workload, 0, "--at", at, *counts, *rest) as client:
                 answer = client.wait_line(r"^\{.*\}$", timeout=180, stream="out")[0]
-        samples: list[float] = json.loads(answer)["samples"]
-        return samples
+        return report.Measurement(**json.loads(answer))
 
     def start(self, peer: Peer, side: str, workload: Workload, core: int, *more: str) -> Process:
         python, environment = sys.executable, dict(os.environ)
@@ -130,14 +130,14 @@ def run(
     peers: Sequence[Peer],
     workloads: dict[str, Workload],
     rounds: int,
-    measure: Callable[[Peer, Workload], list[float]],
+    measure: Callable[[Peer, Workload], report.Measurement],
     problems: dict[str, str],
-) -> dict[str, dict[str, list[list[float]]]]:
-    """Samples by workload, peer and round, measured in turns."""
-    results: dict[str, dict[str, list[list[float]]]] = {}
+) -> dict[str, dict[str, list[report.Measurement]]]:
+    """Measurements by workload, peer and round, made in turns."""
+    results: dict[str, dict[str, list[report.Measurement]]] = {}
     for name, workload in workloads.items():
         able = [peer for peer in peers if peer.can(workload)]
-        collected: dict[str, list[list[float]]] = {peer.name: [] for peer in able}
+        collected: dict[str, list[report.Measurement]] = {peer.name: [] for peer in able}
         for number in range(rounds):
             turn = number % len(able) if able else 0
             for peer in [*able[turn:], *able[:turn]]:
@@ -149,7 +149,7 @@ def run(
                     collected[peer.name].append(measure(peer, workload))
                 except AssertionError as error:
                     problems[problem] = str(error)
-        results[name] = {peer: samples for peer, samples in collected.items() if samples}
+        results[name] = {peer: made for peer, made in collected.items() if made}
     progress("")
     return results
 
@@ -239,10 +239,10 @@ def document(
                 "unit": workload.unit,
                 "peers": {
                     peer: {
-                        **report.summary(samples, workload),
-                        "medians_of_rounds": report.medians(samples),
+                        **report.summary(measured, workload),
+                        "medians_of_rounds": report.medians(measured),
                     }
-                    for peer, samples in results[name].items()
+                    for peer, measured in results[name].items()
                 },
             }
             for name, workload in workloads.items()

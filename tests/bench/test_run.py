@@ -14,6 +14,10 @@ import report  # noqa: E402
 from workload import GOALS, WORKLOADS, Goal  # noqa: E402
 
 
+def rounds(*samples: list[int]) -> list[report.Measurement]:
+    return [report.Measurement(one) for one in samples]
+
+
 def test_quantile_is_a_value_that_occurred() -> None:
     hundred = list(range(1, 101))
     assert report.quantile(hundred, 0.99) == 99
@@ -24,8 +28,8 @@ def test_quantile_is_a_value_that_occurred() -> None:
 
 def test_ratio_pairs_the_rounds() -> None:
     # The machine was twice as slow in the second round and disturbed one peer in the third.
-    mine = [[10, 11, 12], [22, 22, 22], [900, 900, 900]]
-    other = [[11, 11, 11], [22, 22, 22], [11, 11, 11]]
+    mine = rounds([10, 11, 12], [22, 22, 22], [900, 900, 900])
+    other = rounds([11, 11, 11], [22, 22, 22], [11, 11, 11])
     assert report.ratio(mine, other) == 1.0
 
 
@@ -36,13 +40,13 @@ def test_ratio_pairs_the_rounds() -> None:
 def test_goals_know_which_way_is_better(workload: str, mine: int, reached: bool) -> None:
     factor = 5.0 if WORKLOADS[workload].more_is_better else 0.75
     goal = Goal(workload, "a", "b", factor)
-    [outcome] = report.outcomes({workload: {"a": [[mine]], "b": [[100]]}}, [goal])
+    [outcome] = report.outcomes({workload: {"a": rounds([mine]), "b": rounds([100])}}, [goal])
     assert (outcome.measured, outcome.reached) == (mine / 100, reached)
-    assert not list(report.outcomes({workload: {"a": [[mine]]}}, [goal]))
+    assert not list(report.outcomes({workload: {"a": rounds([mine])}}, [goal]))
 
 
 def test_goals_count_in_each_placement() -> None:
-    measured = {"a": [[1]], "b": [[2]]}
+    measured = {"a": rounds([1]), "b": rounds([2])}
     results = {"stream": measured, "stream-1-core": measured, "rpc": measured}
     found = report.outcomes(results, [Goal("stream", "a", "b", 1.0)])
     assert [outcome.workload for outcome in found] == ["stream", "stream-1-core"]
@@ -65,5 +69,6 @@ def test_a_quick_run_prints_a_table_and_writes_json(tmp_path: Path) -> None:
     [written] = tmp_path.glob("*.json")
     document = json.loads(written.read_text())
     assert document["workloads"]["stream"]["peers"]["raw"]["samples"] == 800
+    assert document["workloads"]["stream"]["peers"]["raw"]["processor"] > 0
     assert document["workloads"]["flood"]["peers"]["raw"]["median"] > 0
     assert document["machine"]["cores"] >= 1
