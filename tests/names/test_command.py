@@ -169,6 +169,11 @@ def test_owned_names_leave_a_word_each(service: NameService) -> None:
     assert ask(service, "register /a", "set /a owns /none /none2", "unregister /a") == ["old"] * 2
 
 
+def test_an_ipv4_peer_of_an_ipv6_server_is_named_as_ipv4(service: NameService) -> None:
+    reply = service.answer_text("register /x", "::ffff:10.0.0.7")
+    assert reply.lines[0] == "registration name /x ip 10.0.0.7 port 21102 type tcp"
+
+
 def test_registering_again_says_so_to_listeners(service: NameService) -> None:
     assert [e.to_text() for e in service.answer_text("register /x").events] == ['[add] "/x"']
     assert [e.to_text() for e in service.answer_text("register /x").events] == [

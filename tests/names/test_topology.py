@@ -176,9 +176,17 @@ def test_refusals() -> None:
         ("/a", "tcp:/", ""),
         ("/a", "/b", "both"),
         ("/a\0", "/b", ""),
+        ("/a", "/" + "b" * 1000, ""),
     ):
         with pytest.raises(AddressError):
             topology.subscribe(source, destination, mode, everybody)
+    for name, structure in (("/" + "x" * 1000, ""), ("/x", "s" * 70_000), ("/\0", "")):
+        with pytest.raises(AddressError):
+            topology.declare(name, structure)
+        with pytest.raises(AddressError):
+            topology.describe(name, structure)
+    with pytest.raises(AddressError):
+        topology.announce("x" * 1001)
     for name in ("/a", "/b"):
         topology.announce(name)
         topology.declare(name)

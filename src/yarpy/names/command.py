@@ -21,6 +21,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import AddressError, DecodeError
+from yarpy.names.address import plain_host
 from yarpy.names.line import END, PREFIX, registration_line
 from yarpy.names.store import NameStore, Registration
 from yarpy.names.topology import (
@@ -184,7 +185,7 @@ class NameService:
                 _word(words, 3),
                 _port_number(words),
                 _word(words, 5),
-                peer,
+                plain_host(peer),
             )
         except AddressError as error:
             return _old([f"error {error}"], events, actions)

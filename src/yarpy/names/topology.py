@@ -18,6 +18,8 @@ from typing import Literal
 from yarpy.errors import AddressError
 
 GRACE = 30.0  # seconds a name must have been live before a complaint removes it
+LONGEST_NAME = 1000  # characters of a name, decorations included
+LONGEST_STRUCTURE = 65_536  # characters that describe a topic or a type
 
 
 def undecorate(text: str) -> tuple[str, str]:
@@ -108,6 +110,7 @@ class Topology:
 
     def announce(self, name: str) -> list[Action]:
         """`name` listens: connect it wherever a rule has it and the other side is live too."""
+        _check(name)
         if name not in self.live and len(self.live) >= self.limit:
             raise AddressError(f"this server watches at most {self.limit} ports")
         self.live[name] = self.clock()
@@ -149,8 +152,8 @@ class Topology:
         rule = Subscription(source, destination, mode)
         if not rule.source or not rule.destination:
             raise AddressError("a subscription needs two port or topic names")
-        if "\0" in source + destination:
-            raise AddressError("a port or topic name cannot hold a NUL character")
+        _check(source)
+        _check(destination)
         pair = rule.source, rule.destination
         for side, text, name in (("from", source, pair[0]), ("to", destination, pair[1])):
             if undecorate(text)[0].partition("+")[0] == "topic":
@@ -179,6 +182,7 @@ class Topology:
 
     def declare(self, topic: str, structure: str = "") -> list[Action]:
         """Make `topic` a topic; rules that mention it join through it from now on."""
+        _check(topic, structure)
         if topic not in self.topics and len(self.topics) >= self.limit:
             raise AddressError(f"this server keeps at most {self.limit} topics")
         new = topic not in self.topics
@@ -195,6 +199,7 @@ class Topology:
 
     def describe(self, type_: str, structure: str) -> None:
         """Remember the description of a type."""
+        _check(type_, structure)
         if type_ not in self.structures and len(self.structures) >= self.limit:
             raise AddressError(f"this server keeps at most {self.limit} types")
         self.structures[type_] = structure
@@ -273,6 +278,15 @@ class Topology:
     def _changed(self, kind: str, key: str) -> None:
         if self.on_change is not None:
             self.on_change(kind, key)
+
+
+def _check(name: str, structure: str = "") -> None:
+    if len(name) > LONGEST_NAME:
+        raise AddressError(f"a name is at most {LONGEST_NAME} characters long")
+    if "\0" in name:
+        raise AddressError("a port or topic name cannot hold a NUL character")
+    if len(structure) > LONGEST_STRUCTURE:
+        raise AddressError(f"a description is at most {LONGEST_STRUCTURE} characters long")
 
 
 def _connect(source: str, destination: str, carrier: str) -> Action:
