@@ -6,9 +6,10 @@ One thread at a time uses a driver; who that is, is the link's business. No prot
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
 from yarpy.transports.base import Transport
@@ -19,6 +20,14 @@ from yarpy.wire.effects import Group, Open, Steps, Switch
 from yarpy.wire.stream import DEFAULT_LIMIT, ByteStream, ObjectStream
 
 T = TypeVar("T")
+
+# Waking a sleeping thread takes some 30 us. When the last wait was about that short, the next bytes
+# are looked for, for a while, before sleeping; each time in vain makes that rarer.
+SOON: Final = 150e-6
+LOOKING: Final = 60e-6
+FIRST_PENALTY: Final = 32
+LAST_PENALTY: Final = 4096
+_CORES: Final = os.cpu_count() or 1
 
 
 class Driver:
@@ -32,6 +41,11 @@ class Driver:
     ) -> None:
         self.transport = transport
         self.stream = ByteStream(limit)
+        self.eager = _CORES > 1  # whether looking again may beat sleeping
+        self._near = self.eager and transport.near
+        self._looks = False  # look again and again for the next bytes instead of sleeping
+        self._skip = 0  # waits to pass before that is tried again
+        self._penalty = FIRST_PENALTY
         self.bytes_in = 0
         self.bytes_out = 0
         self._objects: InprocTransport | None = None
@@ -85,7 +99,11 @@ class Driver:
             if self._objects is not None:
                 self._fill_objects(self._objects)
                 return
-            count = self.transport.recv_into(self.stream.get_buffer())
+            buffer = self.stream.get_buffer()
+            looks = self._looks or (self.stream.halfway and self._near)
+            count = self._look(buffer) if looks else -1
+            if count < 0:
+                count = self._sleep(buffer)
         except (BlockingIOError, TimeoutError) as error:
             raise Timeout("the peer is silent") from error
         except OSError as error:
@@ -97,6 +115,34 @@ class Driver:
             self.bytes_in += count
         else:
             self.stream.feed_eof()
+
+    def _sleep(self, buffer: memoryview) -> int:
+        """Let the kernel wake us. If that was soon, looking would have been sooner."""
+        started = time.perf_counter()
+        count = self.transport.recv_into(buffer)
+        if self._skip:
+            self._skip -= 1
+        elif self.eager and time.perf_counter() - started < SOON:
+            self._looks = True
+        return count
+
+    def _look(self, buffer: memoryview) -> int:
+        """Ask for bytes until they come; -1 when that takes longer than going to sleep would."""
+        look = self.transport.try_recv_into
+        until = time.perf_counter() + LOOKING
+        while True:
+            for _ in range(8):
+                count = look(buffer)
+                if count >= 0:
+                    if self._penalty > FIRST_PENALTY:
+                        self._penalty -= 1
+                    return count
+            if time.perf_counter() > until:
+                break
+        self._looks = False
+        self._skip = self._penalty
+        self._penalty = min(2 * self._penalty, LAST_PENALTY)
+        return -1
 
     def try_fill(self) -> bool:
         """Take bytes that are there already; False if there are none."""

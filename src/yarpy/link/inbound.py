@@ -21,6 +21,7 @@ from yarpy.link.counter import Counter
 from yarpy.link.driver import Driver
 from yarpy.qos import Sched
 from yarpy.wire.message import CALL, DATA, QUIT, Message
+from yarpy.wire.stream import LARGE
 
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
@@ -119,6 +120,7 @@ class Inbound:
                 self._leaving = self.wanted
                 self._deliver(message)
                 if self._leaving:
+                    self._limit(PATIENCE)  # so often a reader with the turn looks around
                     return
             else:
                 self._obey(message)
@@ -135,9 +137,16 @@ class Inbound:
                 gone = time.perf_counter() - self.visited > PARKED
                 if not self.wanted or (gone and self._answering is None):
                     self.wanted = self._leaving = False
+                    self._limit(None)
             finally:
                 self._turn.release()
         self.wanted = self._leaving = False
+
+    def _limit(self, seconds: float | None) -> None:
+        try:
+            self.driver.transport.limit_waiting(seconds)
+        except OSError:
+            pass  # closed meanwhile; reading tells
 
     # -- reading ----------------------------------------------------------------------------------
 
@@ -160,6 +169,9 @@ class Inbound:
                     self._steps = None
                     message = stop.value
                     break
+                except BaseException:
+                    self._steps = None  # whoever reads next meets the same end
+                    raise
             if self._unsent_acks:
                 self._send_acks()
             driver.fill(deadline)
@@ -186,7 +198,10 @@ class Inbound:
         self._turn.release()
 
     def fetch(self, deadline: float | None, spin: bool = False) -> Message | None:
-        """The next data message, read by a borrower; None when it should look around again."""
+        """The next data message, read by a borrower; None when it should look around again.
+
+        `deadline` is for waits shorter than PATIENCE only.
+        """
         try:
             while True:
                 if spin and not self.driver.stream.waiting and not self._spin(deadline):
@@ -199,6 +214,8 @@ class Inbound:
                 if self._quit or self._reversed:
                     break
         except Timeout:
+            if deadline is not None:
+                self._limit(PATIENCE)
             return None
         except YarpError:
             pass  # the link's thread meets the same end at once, and tells of it
@@ -211,11 +228,12 @@ class Inbound:
         if self._unsent_acks:
             self._send_acks()
         driver = self.driver
+        until = deadline if deadline is not None else time.monotonic() + PATIENCE
         while True:
             for _ in range(64):
                 if driver.try_fill():
                     return True
-            if deadline is not None and time.monotonic() > deadline:
+            if time.monotonic() > until:
                 return False
 
     # -- handing on -------------------------------------------------------------------------------
@@ -227,7 +245,7 @@ class Inbound:
             self._answering = message
             message.answer = self._reply
         else:
-            self._acknowledge()
+            self._acknowledge(message)
 
     def _deliver(self, message: Message) -> None:
         if message.key == CALL and self.carrier.replies:
@@ -237,7 +255,7 @@ class Inbound:
             self.settle(message)
         else:
             self.owner.receive(self, message)
-            self._acknowledge()
+            self._acknowledge(message)
 
     def settle(self, message: Message) -> None:
         """The port is done with `message`: if nobody answered a question, an empty answer goes."""
@@ -250,7 +268,7 @@ class Inbound:
         if self.carrier.spelling == "binary" and self.carrier.acks:
             self._reply(Bottle())
         else:
-            self._acknowledge()
+            self._acknowledge(message)
 
     def _reply(self, value: object) -> None:
         self._answering = None
@@ -261,11 +279,15 @@ class Inbound:
         self._unsent_acks = 0
         self.driver.flush()
 
-    def _acknowledge(self) -> None:
+    def _eager_for_ack(self, message: Message) -> bool:
+        """Whether the sender is likely to wait: it is not let far ahead with large messages."""
+        return message.spelling == "binary" and len(message.payload) >= LARGE
+
+    def _acknowledge(self, message: Message) -> None:
         if self.carrier.acks:
             self.carrier.encode_ack(self.driver.stream)
             self._unsent_acks += 1
-            if self._unsent_acks >= MAX_UNSENT_ACKS:
+            if self._unsent_acks >= MAX_UNSENT_ACKS or self._eager_for_ack(message):
                 self._send_acks()
 
     def _send_acks(self) -> None:

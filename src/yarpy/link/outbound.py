@@ -27,7 +27,11 @@ if TYPE_CHECKING:
     from yarpy.link.driver import Driver
     from yarpy.wire.effects import Steps
 
-WINDOW: Final = 256  # messages that may be unacknowledged before a send waits
+# How far a sender may be ahead of acknowledgements: so many messages, bytes, seconds. A slow reader
+# thus holds its sender up, as it does in C++, instead of getting old data.
+WINDOW: Final = 256
+WINDOW_BYTES: Final = 1 << 16
+WINDOW_SECONDS: Final = 0.005
 ASK_EVERY: Final = 32  # messages after which acknowledgements are looked for
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
@@ -47,6 +51,8 @@ class Outbound:
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
         self.unacknowledged = 0
+        self._ahead_since = 0.0
+        self._ahead_from = 0
         self.broken = False
         self.sched = Sched()  # what somebody asked for; -1: nothing
         self.tos = 0
@@ -81,8 +87,24 @@ class Outbound:
         count."""
         if self._queue is None:
             self.start_background()
+        if self.unacknowledged and not self._caught_up():
+            self.counter.drops += 1
+            return False
         assert self._queue is not None
         return self._queue.put(packet)
+
+    def _caught_up(self) -> bool:
+        """Whether the reader has taken the last message."""
+        if not self._lock.acquire(blocking=False):
+            return False
+        try:
+            self._collect(wait=False)
+        except YarpError:
+            self._break()
+            return True  # sending finds out, and says so
+        finally:
+            self._lock.release()
+        return not self.unacknowledged
 
     def _send(self, packet: Packet) -> None:
         if self.broken:
@@ -91,6 +113,11 @@ class Outbound:
         carrier, driver = self.carrier, self.driver
         now = time.perf_counter()
         try:
+            if self.unacknowledged and (
+                now - self._ahead_since > WINDOW_SECONDS
+                or driver.bytes_out - self._ahead_from > WINDOW_BYTES
+            ):
+                self._collect(wait=True, all_=True)
             carrier.encode(driver.stream, packet)
             if now - self._left > RUSH:
                 self._rush = 0
@@ -101,6 +128,9 @@ class Outbound:
             else:
                 self._gather(now)
             if carrier.acks:
+                if not self.unacknowledged:
+                    self._ahead_since = now
+                    self._ahead_from = driver.bytes_out
                 self.unacknowledged += 1
                 if self.unacknowledged % ASK_EVERY == 0:
                     self._collect(wait=self.unacknowledged >= WINDOW)
@@ -231,6 +261,7 @@ class Outbound:
         driver = self.driver
         if self._gathered:
             self._flush()
+        before = self.unacknowledged
         while self.unacknowledged > (target if wait else 0):
             if self._acks is None:
                 self._acks = self.carrier.expect_ack(driver.stream)
@@ -244,6 +275,9 @@ class Outbound:
                 driver.fill(deadline)
             elif not driver.try_fill():
                 break
+        if self.unacknowledged < before:
+            self._ahead_since = time.perf_counter()
+            self._ahead_from = driver.bytes_out
         if deadline is not None:
             driver.transport.limit_waiting(None)
 

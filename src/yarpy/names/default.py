@@ -12,11 +12,13 @@ import socket
 import threading
 
 from yarpy.carriers.auth import prove_initiator
-from yarpy.errors import NoNameServer
+from yarpy.data.text import plain_text
+from yarpy.errors import AddressError, NoNameServer
 from yarpy.names.address import local_addresses
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.configuration import Server, configuration
+from yarpy.names.resource import find_file
 from yarpy.names.several import SeveralNames
 from yarpy.wire.stream import ByteStream
 
@@ -75,17 +77,20 @@ def own_host() -> str:
 
 
 def secret() -> bytes:
-    """The key of `auth.conf`, b"" if there is no such file: connections need no proof then."""
-    from yarpy.names.resource import find_file
+    """The key of `auth.conf`, b"" if there is no such file: connections need no proof then.
 
+    Raises AddressError for a file without a key: to go on in the open would be the wrong guess.
+    """
     path = find_file("auth.conf")
     if path is None:
         return b""
-    from yarpy.names.ini import read_ini
+    from yarpy.names.ini import read_ini  # late: few have such a file
 
     group = read_ini(path).group("AUTH")
-    key = group.find("key") if group is not None else None
-    return str(key).encode() if key is not None else b""
+    key = None if group is None else group.find("key")
+    if key is None:
+        raise AddressError(f"{path} has no key: write `[AUTH]` and below it `key SECRET`")
+    return plain_text(key).encode()
 
 
 def prove(connection: socket.socket) -> None:

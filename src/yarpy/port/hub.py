@@ -284,9 +284,7 @@ class Hub:
             return "224.3.1.1", 11000  # what C++ falls back to without a name server
         contact = names.query(self.group_name) if self.group_name else None
         if contact is None:
-            contact = names.register(
-                "...", "mcast", None, None if names.allocates else self.port
-            )
+            contact = names.register("...", "mcast", None, None if names.allocates else self.port)
             self.group_name = contact.name
             if self.registered:
                 names.set(self.name, "owns", contact.name)

@@ -320,9 +320,9 @@ class Reader:
             return None
         try:
             while not (self._mailbox.waiting or self._mailbox.stopped) and link.wanted:
-                until = time.monotonic() + PATIENCE
-                if deadline is not None:
-                    until = min(until, deadline)
+                until = deadline
+                if until is not None and until - time.monotonic() > PATIENCE:
+                    until = None
                 message = link.fetch(until, self._spin)
                 if message is not None:
                     if message.answer is not None:

@@ -44,14 +44,27 @@ class DatagramTransport(SocketTransport):
         return self.local[1]
 
     def recv_into(self, view: memoryview) -> int:
+        while True:
+            count = self._recv_datagram(view)
+            if self._woken:
+                return 0
+            if count:
+                return count  # an empty datagram is not an end: anybody can send one
+
+    def _recv_datagram(self, view: memoryview) -> int:
         if not _SO_RXQ_OVFL:
-            count = self._recv_into(view)
-        else:
-            count, ancillary, _, _ = self.sock.recvmsg_into([view], 64)
-            for level, kind, data in ancillary:
-                if level == socket.SOL_SOCKET and kind == _SO_RXQ_OVFL:
-                    (self.dropped,) = struct.unpack("=I", data)
-        return 0 if self._woken else count
+            return self._recv_into(view)
+        count, ancillary, _, _ = self.sock.recvmsg_into([view], 64)
+        for level, kind, data in ancillary:
+            if level == socket.SOL_SOCKET and kind == _SO_RXQ_OVFL:
+                (self.dropped,) = struct.unpack("=I", data)
+        return count
+
+    def try_recv_into(self, view: memoryview) -> int:
+        while True:
+            count = super().try_recv_into(view)
+            if count or self._woken:
+                return count
 
     def send(self, buffers: Sequence[Buffer]) -> None:
         for datagram in buffers:

@@ -106,6 +106,11 @@ class ByteStream:
         return bool(self._output)
 
     @property
+    def halfway(self) -> bool:
+        """Whether a large read has begun: more bytes are certainly on their way."""
+        return self._big is not None
+
+    @property
     def waiting(self) -> int:
         """Bytes that arrived and were not read yet."""
         return self.tail - self.head
@@ -141,21 +146,24 @@ class ByteStream:
         CR, LF and NUL are never part of a line; a backslash before the end joins the next line.
         """
         line = bytearray()
-        escaped = False
+        slashes = 0  # backslashes at the end of what has come
         while True:
             if self.head == self.tail:
                 yield from self.more(1)
             stop = self.buffer.find(end, self.head, self.tail)
             part = self.buffer[self.head : stop if stop >= 0 else self.tail]
             self.head = self.tail if stop < 0 else stop + 1
-            line += part.translate(None, b"\r\n\0")
+            part = part.translate(None, b"\r\n\0")
+            line += part
             if len(line) > limit:
                 raise RemoteProtocolError(f"a line of more than {limit} bytes")
+            last = len(part) - len(part.rstrip(b"\\"))
+            slashes = slashes + last if last == len(part) else last
             if stop >= 0:
-                escaped = (len(line) - len(line.rstrip(b"\\"))) % 2 == 1
-                if not escaped:
+                if slashes % 2 == 0:
                     return bytes(line)
                 del line[-1]
+                slashes -= 1
 
     def read_parsed(self, parse: Callable[[memoryview], tuple[T, int] | int]) -> Steps[T]:
         """What `parse` makes of the bytes that have arrived.
@@ -169,9 +177,13 @@ class ByteStream:
                 value, used = result
                 self.head += used
                 return value
-            if result > len(self.buffer):
+            if result > self.limit:
+                raise RemoteProtocolError(
+                    f"a message of {result} bytes; the limit is {self.limit} bytes"
+                )
+            if self.tail - self.head == len(self.buffer):
                 self._enlarge(result)
-            yield from self.more(result)
+            yield from self.more(min(result, len(self.buffer)))
 
     def skip(self, count: int) -> Steps[None]:
         """Read and forget `count` bytes, holding none of them."""
@@ -195,10 +207,11 @@ class ByteStream:
         self.head, self.tail = 0, count
 
     def _enlarge(self, size: int) -> None:
-        """A buffer of at least `size` bytes, within the limit; grows by doubling."""
-        if size > self.limit:
-            raise RemoteProtocolError(f"a message of {size} bytes; the limit is {self.limit} bytes")
-        fresh = bytearray(min(max(size, 2 * len(self.buffer)), self.limit))
+        """The buffer is full and `size` bytes are announced: make it longer, up to twice as long.
+
+        Never more at once: the peer must have sent as much as it makes us take.
+        """
+        fresh = bytearray(max(min(size, 2 * len(self.buffer)), len(self.buffer)))
         count = self.tail - self.head
         fresh[:count] = self._view[self.head : self.tail]
         self.buffer, self._view = fresh, memoryview(fresh)
@@ -209,7 +222,7 @@ class ByteStream:
             raise RemoteProtocolError(
                 f"a message of {count} bytes is announced; the limit is {self.limit} bytes"
             )
-        target = self._spare_buffer(min(count, FIRST_GRANT))
+        target = self._spare_buffer(count)
         view = memoryview(target)
         filled = min(self.tail - self.head, len(target))
         view[:filled] = self._view[self.head : self.head + filled]
@@ -229,11 +242,11 @@ class ByteStream:
         return view
 
     def _spare_buffer(self, size: int) -> bytearray:
-        """A buffer of `size` bytes: one of the last two if its message is gone, else a new one."""
+        """A buffer for `size` bytes: one of the last two if its message is gone, else a new one."""
         for buffer in self._spare:
             if len(buffer) == size and sys.getrefcount(buffer) == _UNUSED:
                 return buffer
-        fresh = bytearray(size)
+        fresh = bytearray(min(size, FIRST_GRANT))
         self._spare = [*self._spare[-2:], fresh]
         return fresh
 
