@@ -48,6 +48,8 @@ class Scripted:
         return self
 
     def __exit__(self, *details: object) -> None:
+        with contextlib.suppress(OSError):
+            self._listener.shutdown(socket.SHUT_RDWR)  # wakes a thread in accept
         self._listener.close()
         self._thread.join(5)
 

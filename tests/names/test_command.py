@@ -10,8 +10,9 @@ from support.name_line import new_service
 
 from yarpy.data.bottle import Bottle
 from yarpy.errors import YarpError
-from yarpy.names.command import NameService, Reply, without_request
+from yarpy.names.command import NameService, without_request
 from yarpy.names.line import END
+from yarpy.names.reply import Reply
 from yarpy.names.store import Limits, NameStore
 from yarpy.names.topology import Topology
 
@@ -243,18 +244,6 @@ def test_a_failed_registration_still_says_what_it_replaced() -> None:
     reply = service.answer_text("register /x")
     assert reply.lines[0].startswith("error ran out")
     assert [event.to_text() for event in reply.events] == ['[del] "/x"']
-
-
-def test_both_styles_for_both_kinds_of_connection(service: NameService) -> None:
-    old = service.answer_text("register /x", "h")
-    text = "registration name /x ip h port 21102 type tcp\r\n*** end of message\r\n"
-    assert old.to_bytes() == text.encode()
-    assert old.message() == Bottle([text])
-    assert old.first() == Bottle.from_text("registration name /x ip h port 21102 type tcp")
-    new = service.answer_text("announce /x")
-    assert new.to_bytes() == b"[ok]\r\n"
-    assert new.message() == new.first() == ["ok"]
-    assert service.answer_text("bogus").first() == ["***", "end", "of", "message"]
 
 
 # --- what HTTP adds

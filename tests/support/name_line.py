@@ -11,7 +11,8 @@ import threading
 from collections.abc import Iterator
 from typing import Any
 
-from yarpy.names.command import NameService, Reply
+from yarpy.names.command import NameService
+from yarpy.names.reply import Reply
 from yarpy.names.store import NameStore
 from yarpy.names.topology import Topology
 

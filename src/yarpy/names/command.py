@@ -13,16 +13,28 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import AddressError, DecodeError
 from yarpy.names.address import plain_host
-from yarpy.names.line import END, PREFIX, registration_line
+from yarpy.names.line import PREFIX, registration_line
+from yarpy.names.reply import (
+    HELP,
+    HELP_HEADING,
+    Reply,
+    broken,
+    every,
+    fail,
+    found,
+    ok,
+    old,
+    port_bottle,
+    properties,
+    unquoted,
+)
 from yarpy.names.store import NameStore, Registration
 from yarpy.names.topology import (
     Action,
@@ -33,64 +45,8 @@ from yarpy.names.topology import (
     undecorate,
 )
 
-HELP_HEADING = "Here are some ways to use the name server:"
-HELP = (
-    "+ help",
-    "+ list [$prefix]",
-    "+ register $portname",
-    "+ register $portname $carrier $ipAddress $portNumber",
-    "  (if you want a field set automatically, write '...')",
-    "+ unregister $portname",
-    "+ query $portname",
-    "+ set $portname $property $value",
-    "+ get $portname $property",
-    "+ check $portname $property",
-    "+ route $port1 $port2",
-    "+ runners",
-    "  (to get a list of the yarprun ports)",
-)
-
 # What may be asked by multicast: anybody in the network can send a datagram in anybody's name.
 READING = frozenset({"query", "list", "runners", "get", "check", "route", "help"})
-
-
-@dataclass(frozen=True, slots=True)
-class Reply:
-    """What to send back, and what else follows from a command.
-
-    `lines`: an old style reply with its end line; empty for a Bottle style one, which is in
-    `bottle`. `events`: Bottles for everybody connected to the server's output. `actions`:
-    connections to make or break in the background, in this order for each pair of ports.
-    """
-
-    lines: tuple[str, ...] = ()
-    bottle: Bottle | None = None
-    events: tuple[Bottle, ...] = ()
-    actions: tuple[Action, ...] = ()
-
-    def text_lines(self) -> tuple[str, ...]:
-        """The lines for a text connection, either style, without their ends."""
-        return self.lines if self.bottle is None else (self.bottle.to_text(),)
-
-    def to_bytes(self) -> bytes:
-        """The same with CR LF: what C++ sends even on binary connections, for old style."""
-        text = "".join(f"{line}\r\n" for line in self.text_lines())
-        return text.encode("utf-8", "surrogateescape")
-
-    def message(self) -> Bottle:
-        """For a binary connection: an old style reply becomes a Bottle of one string.
-
-        C++ sends raw text there, which no binary reader can digest (nameserver spec 1.3).
-        """
-        if self.bottle is not None:
-            return self.bottle
-        return Bottle(["".join(f"{line}\r\n" for line in self.lines)])
-
-    def first(self) -> Bottle:
-        """The Bottle, or the first line read as one: what HTTP turns into JSON."""
-        if self.bottle is not None:
-            return self.bottle
-        return Bottle.from_text(self.lines[0])
 
 
 class NameService:
@@ -135,7 +91,7 @@ class NameService:
                 try:
                     return subscriber(words)
                 except AddressError as error:
-                    return Reply(bottle=Bottle([Vocab("fail"), str(error)]))
+                    return fail(str(error))
             if verb == "NAME_SERVER":
                 del words[0]
             if words and plain_text(words[0]) == "bot":
@@ -143,11 +99,11 @@ class NameService:
                 nested = True
             registry = self._registry.get(plain_text(words[0])) if words else None
             if registry is None:
-                return _old(())
+                return old(())
             try:
                 return registry(words, nested, peer_host)
             except AddressError as error:
-                return _old([f"error {error}"])
+                return old([f"error {error}"])
 
     def answer_text(self, line: str | bytes, peer_host: str = "") -> Reply:
         """The reply to a line of text."""
@@ -172,7 +128,7 @@ class NameService:
 
     def _query(self, words: list[Any], nested: bool, peer: str) -> Reply:
         network, name = split_network(undecorate(_word(words, 1))[1])
-        return _found(self.store.query(name, network), nested)
+        return found(self.store.query(name, network), nested)
 
     def _register(self, words: list[Any], nested: bool, peer: str) -> Reply:
         name = _word(words, 1)
@@ -188,12 +144,12 @@ class NameService:
                 plain_host(peer),
             )
         except AddressError as error:
-            return _old([f"error {error}"], events, actions)
+            return old([f"error {error}"], events, actions)
         if contact.carrier != "mcast":
             events.append(Bottle([Vocab("add"), contact.name]))
         if nested:
-            return _old(_broken(port_bottle(contact)), events, actions)
-        return _old([registration_line(contact)], events, actions)
+            return old(broken(port_bottle(contact)), events, actions)
+        return old([registration_line(contact)], events, actions)
 
     def _unregister(self, words: list[Any], nested: bool, peer: str) -> Reply:
         name = _word(words, 1)
@@ -202,49 +158,49 @@ class NameService:
         if not removed:
             actions += self.topology.vanish(name)  # it may have been announced all the same
         if nested:
-            return _old(_broken(_UNKNOWN), events, actions)
+            return old(broken(port_bottle(None)), events, actions)
         # C++ lets the reply for each owned name show through, whether it existed or not.
         owned = sum(len(port.fields.get("owns", ())) for port in removed)
-        return _old(["old"] * owned, events, actions)
+        return old(["old"] * owned, events, actions)
 
     def _list(self, words: list[Any], nested: bool, peer: str) -> Reply:
-        return _all(self.store.contacts(_word(words, 1)), nested)
+        return every(self.store.contacts(_word(words, 1)), nested)
 
     def _runners(self, words: list[Any], nested: bool, peer: str) -> Reply:
-        return _all(self.store.having("yarprun", "true"), nested)
+        return every(self.store.having("yarprun", "true"), nested)
 
     def _set(self, words: list[Any], nested: bool, peer: str) -> Reply:
         name, key = _word(words, 1), _key(words)
         values = self.store.assign(name, key, [plain_text(value) for value in words[3:]])
-        return _property(name, key, values, nested)
+        return properties(name, key, values, nested)
 
     def _get(self, words: list[Any], nested: bool, peer: str) -> Reply:
         name, key = _word(words, 1), _key(words)
-        return _property(name, key, self.store.values(name, key), nested)
+        return properties(name, key, self.store.values(name, key), nested)
 
     def _check(self, words: list[Any], nested: bool, peer: str) -> Reply:
         name, key = _word(words, 1), _key(words)
         values = self.store.values(name, key)
         if values is None:
-            return _old(())
+            return old(())
         value = plain_text(words[3]) if len(words) > 3 else ""
         present = "true" if value in values else "false"
         items = ["port", name, "property", key, "value", value, "present"]
-        return _old([f"{_unquoted(items)} {present}"])
+        return old([f"{unquoted(items)} {present}"])
 
     def _route(self, words: list[Any], nested: bool, peer: str) -> Reply:
         source, destination = _word(words, 1), _word(words, 2)
         items = ["port", source, "route", destination, "=", f"tcp:/{destination}"]
-        return _old([_unquoted(items)])
+        return old([unquoted(items)])
 
     def _gc(self, words: list[Any], nested: bool, peer: str) -> Reply:
         self.topology.collect(self.store.__contains__)
-        return _old(["garbage collection done."])
+        return old(["garbage collection done."])
 
     def _help(self, words: list[Any], nested: bool, peer: str) -> Reply:
         if nested:
             return Reply(bottle=Bottle(HELP))
-        return _old([HELP_HEADING, *HELP])
+        return old([HELP_HEADING, *HELP])
 
     def _gone(self, removed: Iterable[Registration]) -> tuple[list[Bottle], list[Action]]:
         events, actions = [], []
@@ -260,14 +216,14 @@ class NameService:
         name = _word(words, 1)
         if len(words) > 2 and not (isinstance(words[2], int) and words[2]):
             self.topology.complain(name)
-            return _ok()
-        return _ok(self.topology.announce(name))
+            return ok()
+        return ok(self.topology.announce(name))
 
     def _subscribe(self, words: list[Any]) -> Reply:
         source, destination, mode = _word(words, 1), _word(words, 2), _word(words, 3)
         if destination:
             known = self.store.__contains__
-            return _ok(self.topology.subscribe(source, destination, mode, known))
+            return ok(self.topology.subscribe(source, destination, mode, known))
         reply = Bottle(["subscriptions"])
         reply += [self._rule(rule) for rule in self.topology.subscriptions(bare_name(source))]
         return Reply(bottle=reply)
@@ -284,27 +240,27 @@ class NameService:
 
     def _unsubscribe(self, words: list[Any]) -> Reply:
         self.topology.unsubscribe(_word(words, 1), _word(words, 2))
-        return _ok()
+        return ok()
 
     def _topic(self, words: list[Any]) -> Reply:
         if len(words) < 2:
             return Reply(bottle=Bottle(sorted(self.topology.topics)))
-        return _ok(self.topology.declare(_word(words, 1), _word(words, 2)))
+        return ok(self.topology.declare(_word(words, 1), _word(words, 2)))
 
     def _untopic(self, words: list[Any]) -> Reply:
         self.topology.undeclare(_word(words, 1))
-        return _ok()
+        return ok()
 
     def _type(self, words: list[Any]) -> Reply:
         family, name = _word(words, 1), _word(words, 2)
         if family != "yarp" or len(words) < 3:
-            return Reply(bottle=Bottle([Vocab("fail")]))
+            return fail()
         if len(words) > 3:
             self.topology.describe(name, _word(words, 3))
-            return _ok()
+            return ok()
         structure = self.topology.structures.get(name)
         if structure is None:
-            return Reply(bottle=Bottle([Vocab("fail")]))
+            return fail()
         return Reply(bottle=Bottle(["type", family, name, structure]))
 
 
@@ -353,70 +309,3 @@ def _port_number(words: Sequence[Any]) -> int:
     if isinstance(number, bool) or not isinstance(number, (int, float)) or not 0 < number < 1e9:
         return -1
     return int(number)
-
-
-# --- building replies
-
-_UNKNOWN = Bottle(["port", Bottle(["error", -2, "port not known"])])
-
-
-def port_bottle(contact: Contact) -> Bottle:
-    """`port (name N) (ip H) (port_number P) (carrier C)`."""
-    return Bottle(
-        [
-            "port",
-            Bottle(["name", contact.name]),
-            Bottle(["ip", contact.host]),
-            Bottle(["port_number", contact.port]),
-            Bottle(["carrier", contact.carrier]),
-        ]
-    )
-
-
-def _old(
-    lines: Iterable[str], events: Sequence[Bottle] = (), actions: Sequence[Action] = ()
-) -> Reply:
-    return Reply((*lines, END), None, tuple(events), tuple(actions))
-
-
-def _ok(actions: Sequence[Action] = ()) -> Reply:
-    return Reply(bottle=Bottle([Vocab("ok")]), actions=tuple(actions))
-
-
-def _found(contact: Contact | None, nested: bool) -> Reply:
-    if nested:
-        return Reply(bottle=Bottle(_UNKNOWN) if contact is None else port_bottle(contact))
-    return _old(() if contact is None else [registration_line(contact)])
-
-
-def _all(contacts: Iterable[Contact], nested: bool) -> Reply:
-    if nested:
-        return Reply(bottle=Bottle(["ports", *map(port_bottle, contacts)]))
-    return _old(map(registration_line, contacts))
-
-
-def _property(name: str, key: str, values: list[str] | None, nested: bool) -> Reply:
-    if nested:
-        return Reply(bottle=Bottle(_value(value) for value in values or () if value))
-    if values is None:
-        return _old(())
-    return _old([_unquoted(["port", name, "property", key, "=", *values])])
-
-
-def _value(text: str) -> Any:
-    """A stored property as the value it is the text of; what is no single value stays text."""
-    try:
-        parsed = Bottle.from_text(text)
-    except DecodeError:
-        return text
-    # A word stays as it is: C++ would take its quotes and backslashes off once more.
-    return parsed[0] if len(parsed) == 1 and type(parsed[0]) is not str else text
-
-
-def _unquoted(items: list[Any]) -> str:
-    return Bottle(items).to_text().replace('"', "")
-
-
-def _broken(bottle: Bottle) -> list[str]:
-    """A Bottle reply forced into lines, one for each element, as C++ does for `bot register`."""
-    return [_unquoted(item if isinstance(item, list) else [item]) for item in bottle]
