@@ -2,11 +2,13 @@
 
 Rules: a capture is a list of steps, each the bytes of one side. Its `variable` field says which
 bytes are the machine's or the moment's; `masked` blanks them on both sides of a comparison.
+`groups.json` lists the names of the groups that the core has to answer for.
 """
 
 import json
 import re
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +27,10 @@ class Step:
     data: bytes
     connection: int
     """The dialogue's connections one after the other, from 0."""
+    transport: str = ""
+    """`tcp`, `udp datagram`, `unix` where a dialogue uses several."""
+    whole: int = 0
+    """The full length, where only the beginning of long data was kept; else 0."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +39,10 @@ class Capture:
     steps: list[Step]
     variable: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
     """Step -> ranges of bytes that differ from run to run."""
+    ports: dict[str, int] = field(default_factory=dict)
+    """`initiator_port` and `acceptor_port` of the TCP connection, where known."""
+    ends: list[tuple[str, int]] = field(default_factory=list)
+    """Who hung up, after how many steps."""
 
     def masked(self, step: Step, data: bytes) -> bytes:
         """`data` with the variable ranges of `step` blanked, for comparing with its bytes."""
@@ -42,7 +52,12 @@ class Capture:
             blank[start:end] = b"?" * max(0, end - start)
         return bytes(blank)
 
+    def said(self, sender: str) -> bytes:
+        """Everything one side sent."""
+        return b"".join(step.data for step in self.steps if step.sender == sender)
 
+
+@cache
 def load_capture(name: str) -> Capture:
     """Read one capture."""
     raw: dict[str, Any] = json.loads((CAPTURES / f"{name}.json").read_text())
@@ -53,7 +68,22 @@ def load_capture(name: str) -> Capture:
             step, start, end = map(int, match.groups())
             variable.setdefault(step, []).append((start, end))
     steps = [
-        Step(index, item["from"], bytes.fromhex(item["hex"]), item.get("conn", 0))
+        Step(
+            index,
+            item["from"],
+            bytes.fromhex(item["hex"]),
+            item.get("conn", 0),
+            item.get("transport", ""),
+            item.get("truncated_from", 0),
+        )
         for index, item in enumerate(raw["steps"])
     ]
-    return Capture(raw["name"], steps, variable)
+    ends = [(end["from"], end["after_step"]) for end in raw.get("ends") or []]
+    return Capture(raw["name"], steps, variable, raw.get("ports") or {}, ends)
+
+
+@cache
+def groups() -> dict[str, list[str]]:
+    """Which captures belong together, as they were recorded."""
+    found: dict[str, list[str]] = json.loads((CAPTURES / "groups.json").read_text())
+    return found

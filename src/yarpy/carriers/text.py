@@ -10,7 +10,7 @@ from __future__ import annotations
 from yarpy.carriers.base import Carrier
 from yarpy.contact import specifier
 from yarpy.data import codec
-from yarpy.data.text import balanced
+from yarpy.data.text import Balance
 from yarpy.errors import RemoteProtocolError
 from yarpy.wire import framing
 from yarpy.wire.effects import Steps
@@ -27,6 +27,7 @@ class Text(Carrier):
     name = "text"
     magic = b"CONNECT "
     spelling = "text"
+    _welcomed = True  # whether the welcome that answers our greeting was read
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         name = specifier(self.route.source, self.route.carrier)
@@ -104,9 +105,13 @@ class TextAck(Text):
 
 def read_text(stream: ByteStream, limit: int) -> Steps[bytes]:
     """One payload: a line, and more lines while it has an open bracket or quote."""
-    text = yield from stream.read_line(limit)
-    while not balanced(text):
-        text += b"\n" + (yield from stream.read_line(limit))
+    text = bytearray((yield from stream.read_line(limit)))
+    balance = Balance()
+    closed = balance.feed(bytes(text))
+    while not closed:
+        line = b"\n" + (yield from stream.read_line(limit))
+        text += line
         if len(text) > limit:
             raise RemoteProtocolError(f"a text message of more than {limit} bytes")
-    return text
+        closed = balance.feed(line)
+    return bytes(text)

@@ -27,7 +27,6 @@ class Datagrams(Indexed):
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self._assembler: Assembler | None = None
-        self._whole = ByteStream(size=1)
 
     def parse(self, stream: ByteStream) -> Message | None:
         return None
@@ -37,17 +36,17 @@ class Datagrams(Indexed):
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         assert isinstance(stream, DatagramStream)
-        if self._assembler is None:
-            self._assembler = Assembler(stream.limit)
+        assembler = self._assembler
+        if assembler is None:
+            assembler = self._assembler = Assembler(stream.limit)
         while True:
-            whole = self._assembler.add((yield from stream.read_datagram()))
-            self.lost = self._assembler.lost
-            if whole is None:
-                continue
-            message = parse_whole(whole, stream.limit)
+            whole = assembler.add((yield from stream.read_datagram()))
+            message = parse_whole(whole, stream.limit) if whole is not None else None
+            if whole is not None and message is None:
+                assembler.lost += 1
+            self.lost = assembler.lost
             if message is not None:
                 return message
-            self._assembler.lost += 1
 
     def encode_quit(self, stream: ByteStream) -> None:
         """Not told in datagrams: the closing side asks the peer's port by a text connection."""

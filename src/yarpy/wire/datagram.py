@@ -1,7 +1,8 @@
 """Messages cut into datagrams, as udp and mcast do it: CRC-32, a sequence number, a piece.
 
 Rules: pure. Numbers start at 0 with every message; a message of which a piece is missing, late or
-damaged is dropped whole and counted. Number -1 is somebody waking their own reader: ignored.
+damaged, or that is longer than the limit, is dropped whole and counted: anybody can send a
+datagram, so none ends a connection. Number -1 is somebody waking their own reader: ignored.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 from zlib import crc32
 
-from yarpy.errors import RemoteProtocolError
 from yarpy.wire.framing import INDEX
 from yarpy.wire.stream import Buffer
 
@@ -56,7 +56,10 @@ class Assembler:
         if sequence == 0:
             if self._parts:
                 self._drop()
-            self._total = self._announced(piece)
+            self._total = announced(piece)
+            if self._total > self.limit:
+                self._drop()
+                return None
         elif sequence != self._expected or not self._parts:
             if self._parts:
                 self._drop()
@@ -70,21 +73,6 @@ class Assembler:
         self._reset()
         return whole
 
-    def _announced(self, piece: bytes) -> int:
-        """How long the message that begins with `piece` will be."""
-        if not piece.startswith(INDEX) or len(piece) < _INDEX_HEAD:
-            return len(piece)
-        count, replies = piece[8], piece[9]
-        start = _INDEX_HEAD + 4 * (count + replies)
-        if len(piece) < start:
-            return len(piece)
-        total: int = start + sum(struct.unpack_from(f"<{count}i", piece, _INDEX_HEAD))
-        if total > self.limit:
-            raise RemoteProtocolError(
-                f"a message of {total} bytes; the limit is {self.limit} bytes"
-            )
-        return total
-
     def _drop(self) -> None:
         self.lost += 1
         self._reset()
@@ -92,3 +80,15 @@ class Assembler:
     def _reset(self) -> None:
         self._parts = []
         self._size = self._expected = self._total = 0
+
+
+def announced(piece: bytes) -> int:
+    """How long the message that begins with `piece` says it is."""
+    if not piece.startswith(INDEX) or len(piece) < _INDEX_HEAD:
+        return len(piece)
+    count, replies = piece[8], piece[9]
+    start = _INDEX_HEAD + 4 * (count + replies)
+    if len(piece) < start:
+        return len(piece)
+    total: int = start + sum(struct.unpack_from(f"<{count}i", piece, _INDEX_HEAD))
+    return total

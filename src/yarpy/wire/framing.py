@@ -11,14 +11,14 @@ import struct
 from typing import Final
 
 from yarpy.data.walker import Walker
-from yarpy.errors import RemoteProtocolError
+from yarpy.errors import LinkClosed, RemoteProtocolError
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import Message, Packet
-from yarpy.wire.stream import LARGE, Buffer, ByteStream
+from yarpy.wire.stream import CUT_OFF, LARGE, Buffer, ByteStream
 
 BASE: Final = 7777  # what a carrier's code is added to in its first eight bytes
 MAX_NAME: Final = 1000
-MAX_COMMAND: Final = 1 << 16
+MAX_COMMAND: Final = 1 << 15  # half the buffer of a stream
 
 _NUMBER: Final = struct.Struct("<2si2s")
 _INT: Final = struct.Struct("<i")
@@ -123,7 +123,10 @@ def read_message(stream: ByteStream) -> Steps[Message]:
         elif not stream.buffer.startswith(INDEX, stream.head):
             stream.head += 8
             continue
-        found = yield from _read_any(stream)
+        try:
+            found = yield from _read_any(stream)
+        except LinkClosed:
+            raise LinkClosed(CUT_OFF) from None
         if found is not None:
             return found
 
@@ -187,13 +190,25 @@ def read_command(stream: ByteStream) -> Steps[tuple[Message, int] | None]:
     head = yield from stream.read_exact(8)
     if head[4] != 0x7E:
         return None
-    used = 8
     if head[5]:
-        return Message(chr(head[5])), used
-    before = stream.head
-    line = yield from stream.read_line(MAX_COMMAND, end=0)
-    used += max(_INT.unpack_from(head)[0], 0) or stream.head - before
-    return parse_command(line.decode("utf-8", "replace")), used
+        return Message(chr(head[5])), 8
+    text = yield from _read_text(stream)
+    return parse_command(text.translate(None, b"\r\n").decode("utf-8", "replace")), 9 + len(text)
+
+
+def _read_text(stream: ByteStream) -> Steps[bytes]:
+    """The text of a port command, up to its NUL. What its header says of its length is ignored."""
+    seen = 0
+    while True:
+        stop = stream.buffer.find(0, stream.head + seen, stream.tail)
+        if stop >= 0:
+            text = bytes(stream.buffer[stream.head : stop])
+            stream.head = stop + 1
+            return text
+        seen = stream.tail - stream.head
+        if seen >= MAX_COMMAND:
+            raise RemoteProtocolError(f"a port command of more than {MAX_COMMAND} bytes")
+        yield from stream.more(seen + 1)
 
 
 def parse_command(text: str) -> Message:

@@ -23,6 +23,7 @@ BUFFER_SIZE: Final = 1 << 16
 LARGE: Final = 1 << 14  # reads from here on get a buffer of their own
 FIRST_GRANT: Final = 1 << 24  # memory taken on the peer's word alone; beyond it must send first
 DEFAULT_LIMIT: Final = 1 << 30  # bytes per message, whatever the peer announces
+CUT_OFF: Final = "the peer closed the connection in the middle of a message"
 
 # References to a spare buffer while nobody else uses it: the list, the loop variable, the argument.
 _UNUSED: Final = 3
@@ -140,8 +141,8 @@ class ByteStream:
         self.head = start + count
         return bytes(self._view[start : self.head])
 
-    def read_line(self, limit: int = 1 << 20, end: int = 0x0A) -> Steps[bytes]:
-        """One line by the text rules of YARP, without its end; `end` may be NUL instead of LF.
+    def read_line(self, limit: int = 1 << 20) -> Steps[bytes]:
+        """One line by the text rules of YARP, without its end.
 
         CR, LF and NUL are never part of a line; a backslash before the end joins the next line.
         """
@@ -150,7 +151,7 @@ class ByteStream:
         while True:
             if self.head == self.tail:
                 yield from self.more(1)
-            stop = self.buffer.find(end, self.head, self.tail)
+            stop = self.buffer.find(0x0A, self.head, self.tail)
             part = self.buffer[self.head : stop if stop >= 0 else self.tail]
             self.head = self.tail if stop < 0 else stop + 1
             part = part.translate(None, b"\r\n\0")
@@ -198,7 +199,7 @@ class ByteStream:
 
     def _ended(self) -> None:
         if self.tail > self.head or self._big is not None:
-            raise LinkClosed("the peer closed the connection in the middle of a message")
+            raise LinkClosed(CUT_OFF)
         raise LinkClosed("the peer closed the connection")
 
     def _compact(self) -> None:
@@ -311,16 +312,20 @@ class DatagramStream(ByteStream):
 def run(steps: Steps[T], stream: ByteStream, feeds: Iterable[Buffer] = ()) -> T:
     """Drive `steps` to its end with `feeds` as the peer's bytes, then end of stream. For tests."""
     source = iter(feeds)
+    rest = memoryview(b"")
     try:
         effect = next(steps)
         while True:
             if effect is not None:
                 raise RemoteProtocolError(f"{effect} needs a driver")
-            data = next(source, None)
+            data = rest if rest else next(source, None)
             if data is None:
                 stream.feed_eof()
             else:
-                stream.feed(data)
+                rest = memoryview(data).cast("B")
+                room = len(stream.get_buffer())
+                stream.feed(rest[:room])
+                rest = rest[room:]
             effect = steps.send(None)
     except StopIteration as stop:
         value: T = stop.value

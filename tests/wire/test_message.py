@@ -1,0 +1,137 @@
+"""Packet and Message: encoded once, decoded late, answered once."""
+
+from __future__ import annotations
+
+import pytest
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.property import Property
+from yarpy.data.stamp import Stamp
+from yarpy.data.value import Vocab
+from yarpy.data.vector import Vector
+from yarpy.errors import DecodeError, LocalProtocolError
+from yarpy.wire.message import CALL, DATA, Lines, Message, Packet
+
+
+class Counting:
+    """Something that can be sent, and knows how often it was encoded."""
+
+    def __init__(self) -> None:
+        self.encoded = 0
+
+    def to_wire(self) -> tuple[bytes, ...]:
+        self.encoded += 1
+        return (Bottle([1, "x"]).to_bytes(),)
+
+
+def test_packet_encodes_each_spelling_once() -> None:
+    thing = Counting()
+    packet = Packet(thing)
+    first = packet.blocks
+    for _ in range(5):
+        assert packet.blocks is first
+    assert thing.encoded == 1
+    assert packet.line == b"1 x"
+    assert packet.line is packet.line
+    assert packet.key == DATA
+
+
+def test_packet_keeps_large_arrays_where_they_are() -> None:
+    numpy = pytest.importorskip("numpy")
+    pixels = numpy.zeros((480, 640, 3), numpy.uint8)
+    blocks = Packet(pixels).blocks
+    pixels[0, 0, 0] = 7
+    assert 7 in bytes(blocks[-1][:100])
+
+
+def test_message_is_not_decoded_before_somebody_looks() -> None:
+    message = Message(DATA, b"this is no Bottle at all")
+    assert message.key == DATA
+    with pytest.raises(DecodeError):
+        _ = message.value
+    assert "undecodable" in repr(message)
+
+
+def test_value_is_decoded_once() -> None:
+    message = Message(DATA, Bottle([1, [2, 3]]).to_bytes())
+    assert message.value == [1, [2, 3]]
+    assert message.value is message.value
+
+
+SPELLINGS = [
+    ("binary", Bottle([1, "two", [3]]).to_bytes()),
+    ("text", b"1 two (3)"),
+    ("object", [1, "two", [3]]),
+]
+
+
+@pytest.mark.parametrize(("spelling", "payload"), SPELLINGS)
+def test_every_spelling_reads_alike(spelling: str, payload: object) -> None:
+    message = Message(DATA, payload, spelling=spelling)  # type: ignore[arg-type]
+    assert message.value == [1, "two", [3]]
+    assert message.as_(Bottle) == Bottle([1, "two", [3]])
+    assert message.as_(list) == [1, "two", [3]]
+    with pytest.raises(DecodeError):
+        message.as_(Stamp)
+
+
+def test_object_of_the_wanted_type_is_handed_out_itself() -> None:
+    original = Property(a=1)
+    assert Message(DATA, original, spelling="object").as_(Property) is original
+    assert Message(DATA, {"a": 1}, spelling="object").as_(Property) == original
+
+
+def test_array_is_a_view_of_what_arrived() -> None:
+    numpy = pytest.importorskip("numpy")
+    payload = bytearray(b"".join(bytes(b) for b in Packet(Vector([1.0, 2.0])).blocks))
+    message = Message(DATA, memoryview(payload))
+    array = message.as_(numpy.ndarray)
+    assert list(array) == [1.0, 2.0]
+    payload[-1] ^= 0x80
+    assert list(array) == [1.0, -2.0]
+
+
+ENVELOPES = [
+    ("7 1.25", Stamp(7, 1.25)),
+    ("0 0", Stamp(0, 0.0)),
+    ("", None),
+    ("some text", None),
+]
+
+
+@pytest.mark.parametrize(("envelope", "stamp"), ENVELOPES)
+def test_stamp_is_read_from_the_envelope(envelope: str, stamp: Stamp | None) -> None:
+    assert Message(DATA, b"", envelope).stamp == stamp
+
+
+def test_reply_goes_once() -> None:
+    answers: list[object] = []
+    message = Message(CALL, b"")
+    message.source = "/asker"
+    assert not message.wants_reply
+    with pytest.raises(LocalProtocolError, match="/asker"):
+        message.reply(1)
+    message.answer = answers.append
+    assert message.wants_reply
+    message.reply([1, 2])
+    assert answers == [[1, 2]]
+    assert not message.wants_reply
+    with pytest.raises(LocalProtocolError, match="RpcClient"):
+        message.reply(3)
+
+
+def test_lines_are_text_for_people_and_a_string_for_programs() -> None:
+    lines = Lines(["one", "two \u00e9"])
+    assert lines.to_text() == "one\r\ntwo \u00e9\r\n".encode()
+    assert Bottle.from_bytes(b"".join(lines.to_wire())) == ["one\r\ntwo \u00e9\r\n"]
+    assert Lines().to_text() == b""
+
+
+def test_repr_tells_who_and_what_in_one_line() -> None:
+    message = Message(DATA, Bottle(["x" * 300]).to_bytes(), "5 2.5")
+    message.source = "/talker"
+    text = repr(message)
+    assert "/talker" in text
+    assert "5 2.5" in text
+    assert len(text) < 160
+    assert repr(Message(DATA, Bottle([Vocab("set")]).to_bytes())).startswith("<Message")
