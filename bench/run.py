@@ -81,7 +81,7 @@ class Bench:
             counts = ("--warmup", str(workload.warmup), "--count", str(workload.count))
             rest = ("--pause", str(workload.pause), "--server", str(server.pid))
             with self.start(peer, "client", workload, 0, "--at", at, *counts, *rest) as client:
-                answer = client.wait_line(r"^\{.*\}$", timeout=180, stream="out")[0]
+                answer = client.wait_line(r"^\{.*\}$", timeout=60, stream="out")[0]
         return report.Measurement(**json.loads(answer))
 
     def start(self, peer: Peer, side: str, workload: Workload, core: int, *more: str) -> Process:
