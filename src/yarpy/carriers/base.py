@@ -42,6 +42,7 @@ class Carrier:
     replies: ClassVar[bool] = True
     spelling: ClassVar[Spelling] = "binary"
     escapes: ClassVar[bool] = True  # messages begin with a port command, so admin works
+    gathers: ClassVar[bool] = True  # small messages of a burst may leave in one send
     connectionless: ClassVar[bool] = False  # closing must be told to the peer some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
 
@@ -109,6 +110,15 @@ class Carrier:
         """Write the acknowledgement of a message."""
         stream.write(framing.ACK)
 
+    def encode_acks(self, stream: ByteStream, count: int) -> None:
+        """Write several acknowledgements."""
+        for _ in range(count):
+            self.encode_ack(stream)
+
+    def parse_acks(self, stream: ByteStream, most: int) -> int:
+        """Take up to `most` acknowledgements that have already come; returns how many."""
+        return 0
+
     def expect_ack(self, stream: ByteStream) -> Steps[None]:
         """Read one acknowledgement. A number n in it means that n more bytes follow."""
         value = framing.parse_number((yield from stream.read_exact(8)))
@@ -140,6 +150,16 @@ class Indexed(Carrier):
 
     def parse(self, stream: ByteStream) -> Message | None:
         return framing.parse_plain(stream)
+
+    def encode_acks(self, stream: ByteStream, count: int) -> None:
+        stream.write(framing.ACK * count)
+
+    def parse_acks(self, stream: ByteStream, most: int) -> int:
+        count = min(most, stream.waiting // len(framing.ACK))
+        if not count or not stream.buffer.startswith(framing.ACK * count, stream.head):
+            return 0  # something else is among them; one by one, then
+        stream.head += count * len(framing.ACK)
+        return count
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         stream.write(framing.number(framing.BASE + self.code) + self.sender())

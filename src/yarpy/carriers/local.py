@@ -18,6 +18,7 @@ class Local(Carrier):
     name = "local"
     magic = b"LOCALITY"
     spelling = "object"
+    gathers = False
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         handle = yield Open("inproc", listen=False)

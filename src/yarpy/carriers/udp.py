@@ -22,6 +22,7 @@ class Datagrams(Indexed):
 
     replies = False
     connectionless = True
+    gathers = False
     datagram_size = MAX_DATAGRAM
 
     def __init__(self, route: Route) -> None:

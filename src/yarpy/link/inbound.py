@@ -273,10 +273,10 @@ class Inbound:
     def _reply(self, value: object) -> None:
         self._answering = None
         stream = self.driver.stream
+        self._owe_acks()
         self.carrier.encode_reply(stream, value)
         if self.carrier.acks:
             self.carrier.encode_ack(stream)
-        self._unsent_acks = 0
         self.driver.flush()
 
     def _eager_for_ack(self, message: Message) -> bool:
@@ -285,18 +285,24 @@ class Inbound:
 
     def _acknowledge(self, message: Message) -> None:
         if self.carrier.acks:
-            self.carrier.encode_ack(self.driver.stream)
             self._unsent_acks += 1
             if self._unsent_acks >= MAX_UNSENT_ACKS or self._eager_for_ack(message):
                 self._send_acks()
 
     def _send_acks(self) -> None:
-        self._unsent_acks = 0
+        self._owe_acks()
         self.driver.flush()
+
+    def _owe_acks(self) -> None:
+        """Put acknowledgements that were held back in front of what is written next."""
+        if self._unsent_acks:
+            self.carrier.encode_acks(self.driver.stream, self._unsent_acks)
+            self._unsent_acks = 0
 
     def _obey(self, message: Message) -> None:
         """A port command that is not data."""
         carrier, stream = self.carrier, self.driver.stream
+        self._owe_acks()
         if message.key == "a":
             carrier.encode_reply(stream, self.owner.administer(self, message))
         elif message.key == QUIT:
@@ -337,7 +343,7 @@ class Inbound:
 
     def _finish(self) -> None:
         try:
-            self.driver.flush()
+            self._send_acks()
         except YarpError:
             pass  # the last acknowledgements find nobody
         self.driver.transport.close()

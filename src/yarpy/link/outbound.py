@@ -38,7 +38,7 @@ CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 # Gathering. A writer that comes back within RUSH seconds, BURST times in a row, is flooding.
 RUSH: Final = 15e-6
 BURST: Final = 16
-GATHER_BYTES: Final = 1 << 15
+GATHER: Final = 64  # messages
 GATHER_SECONDS: Final = 200e-6
 
 
@@ -63,9 +63,7 @@ class Outbound:
         self._queue: _Background | None = None
         self._rush = 0
         self._left = 0.0  # when the last send ended
-        self._gathered: list[Any] = []
-        self._gathered_size = 0
-        self._gathered_count = 0
+        self._gathered = 0  # messages that wait in the stream for the next send
         self._gathered_since = 0.0
         self._sweeper: _Sweeper | None = None
 
@@ -125,8 +123,10 @@ class Outbound:
             elif self._rush < BURST:
                 self._rush += 1
                 self._flush()
-            else:
+            elif carrier.gathers and packet.small:
                 self._gather(now)
+            else:
+                self._flush()
             if carrier.acks:
                 if not self.unacknowledged:
                     self._ahead_since = now
@@ -144,29 +144,18 @@ class Outbound:
         self._left = time.perf_counter()
 
     def _flush(self) -> None:
-        if self._gathered:
-            self._gathered += self.driver.stream.take_output()
-            joined = b"".join(self._gathered)
-            self._gathered, self._gathered_size, self._gathered_count = [], 0, 0
-            self.driver.stream.write(joined)
+        self._gathered = 0
         self.driver.flush()
 
     def _gather(self, now: float) -> None:
-        """Keep the message for the next send of many, which comes soon."""
-        if self.carrier.connectionless or self.carrier.spelling == "object":
-            self._flush()
-            return
-        output = self.driver.stream.take_output()
+        """Leave the message in the stream for the next send of many, which comes soon."""
         if not self._gathered:
             self._gathered_since = now
             if self._sweeper is None:
                 self._sweeper = _Sweeper(self)
             self._sweeper.watch()
-        # A gathered message must not alias memory that its writer may change before it leaves.
-        self._gathered += [bytes(piece) for piece in output]
-        self._gathered_size += sum(map(len, output))
-        self._gathered_count += 1
-        if self._gathered_size >= GATHER_BYTES or now - self._gathered_since >= GATHER_SECONDS:
+        self._gathered += 1
+        if self._gathered >= GATHER or now - self._gathered_since >= GATHER_SECONDS:
             self._flush()
 
     def sweep(self) -> None:
@@ -264,6 +253,10 @@ class Outbound:
         before = self.unacknowledged
         while self.unacknowledged > (target if wait else 0):
             if self._acks is None:
+                found = self.carrier.parse_acks(driver.stream, self.unacknowledged)
+                if found:
+                    self.unacknowledged -= found
+                    continue
                 self._acks = self.carrier.expect_ack(driver.stream)
             try:
                 next(self._acks)
@@ -287,11 +280,10 @@ class Outbound:
         """The connection failed: what was never acknowledged is lost, and counted."""
         if not self.broken:
             self.broken = True
-            lost = self.unacknowledged if self.carrier.acks else self._gathered_count
+            lost = self.unacknowledged if self.carrier.acks else self._gathered
             self.counter.messages -= lost
             self.counter.drops += lost
-            self.unacknowledged = self._gathered_count = 0
-            self._gathered = []
+            self.unacknowledged = self._gathered = 0
             self.driver.transport.close()
 
     def ended(self) -> bool:

@@ -107,6 +107,8 @@ class SocketTransport:
     def send(self, buffers: Sequence[Buffer]) -> None:
         if len(buffers) == 1:
             self.sock.sendall(buffers[0])
+        elif len(buffers) > _MANY and sum(map(len, buffers)) < _LITTLE:
+            self.sock.sendall(b"".join(buffers))  # cheaper than a list for the kernel to walk
         elif buffers:
             send_all(self.sock, buffers)
 
@@ -141,6 +143,8 @@ class SocketTransport:
 
 MSG_DONTWAIT: int = getattr(socket, "MSG_DONTWAIT", 0)
 _IOV_MAX = 512
+_MANY = 3
+_LITTLE = 1 << 17
 
 
 def send_all(sock: socket.socket, buffers: Sequence[Buffer]) -> None:

@@ -26,6 +26,8 @@ CALL: Final = "d"  # data, the sender reads a reply
 ADMIN: Final = "a"
 QUIT: Final = "q"
 
+SMALL: Final = 2048  # bytes; larger messages gain nothing from waiting for others
+
 _UNSET: Final = object()
 
 
@@ -68,6 +70,12 @@ class Packet:
         if self._blocks is None:
             self._blocks = codec.encode(self.value)
         return self._blocks
+
+    @property
+    def small(self) -> bool:
+        """Whether it is encoded into memory of its own: nothing the writer may change meanwhile."""
+        framed = self.framed
+        return framed is not None and len(framed) == 1 and len(framed[0]) < SMALL
 
     @property
     def line(self) -> bytes:
