@@ -46,6 +46,11 @@ class Registry:
         with self._lock:
             self._loaded[name] = plugin
 
+    def remove(self, name: str) -> None:
+        """Undo `add`; an installed plug-in of that name can be found again."""
+        with self._lock:
+            self._loaded.pop(name, None)
+
     def names(self) -> list[str]:
         """Every name that `load` would find, ours first."""
         with self._lock:

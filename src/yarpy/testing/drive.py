@@ -1,0 +1,301 @@
+"""Carriers without a transport: one side driven by hand, or two against each other.
+
+    talk = Dialogue(MyCarrier, piece=1)          # every byte arrives alone
+    talk.greet()
+    assert talk.send([1, "two"]).value == [1, "two"]
+    assert talk.traffic == [("initiator", b"..."), ("acceptor", b"...")]
+
+Rules: pure - no sockets, threads or clock. What a carrier asks of its driver (`Open`, `Switch`,
+`Group`) is granted with made-up places. Two sides that both wait are an error, Stalled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from yarpy import registry
+from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.contact import Route
+from yarpy.link.handshake import recognise
+from yarpy.wire.effects import Effect, Group, Open, Steps, Switch
+from yarpy.wire.message import DATA, Message, Packet
+from yarpy.wire.stream import DEFAULT_LIMIT, Buffer, ByteStream, DatagramStream, ObjectStream
+
+TCP_PORT = 21602  # what the accepting side of every connection says its number is
+UDP_PORT = 48669
+GROUP = ("224.1.1.3", 21604)
+
+
+class Stalled(AssertionError):
+    """Both sides wait for bytes, or one waits for what the other never says."""
+
+
+class Handle:
+    """A place that was opened for a carrier: only its number is real."""
+
+    def __init__(self, effect: Open) -> None:
+        self.effect = effect
+        self.port = UDP_PORT if effect.listen and effect.kind == "udp" else effect.port
+
+
+class End:
+    """One side of a connection: a stream, and the steps that are running on it.
+
+    `outbox` holds what it wrote and nobody took; `opened` the places it asked for. With `piece`
+    bytes arrive in portions of that size, and the steps run after each.
+    """
+
+    def __init__(self, piece: int = 0, limit: int = DEFAULT_LIMIT) -> None:
+        self.piece = piece
+        self.stream = ByteStream(limit)
+        self.outbox: list[Any] = []
+        self.opened: list[Open] = []
+        self.done = True
+        self.result: Any = None
+        self._steps: Steps[Any] | None = None
+
+    def begin(self, steps: Steps[Any]) -> None:
+        """Run `steps` as far as the bytes that are here take them."""
+        self._steps, self.done, self.result = steps, False, None
+        self._advance()
+
+    def feed(self, item: Any) -> None:
+        """Bytes from the peer; on a datagram stream one datagram, on an object stream an object."""
+        stream = self.stream
+        if isinstance(stream, ObjectStream):
+            stream.feed_object(item)
+            self._advance()
+        elif isinstance(stream, DatagramStream):
+            stream.feed(item)
+            self._advance()
+        else:
+            self._feed_bytes(stream, memoryview(item).cast("B"))
+
+    def _feed_bytes(self, stream: ByteStream, rest: memoryview) -> None:
+        while rest:
+            if stream is not self.stream:
+                raise Stalled(f"{len(rest)} bytes came after the connection had moved elsewhere")
+            room = len(stream.get_buffer())
+            if not room:
+                raise Stalled("nobody reads, and the buffer is full")
+            part = rest[: min(room, self.piece or room)]
+            stream.feed(part)
+            rest = rest[len(part) :]
+            self._advance()
+
+    def feed_eof(self) -> None:
+        """The peer hangs up."""
+        self.stream.feed_eof()
+        self._advance()
+
+    def collect(self) -> None:
+        """Move what was written into the outbox."""
+        self.outbox += self.stream.take_output()
+
+    def take(self) -> bytes:
+        """Everything that was written since the last look, as one."""
+        self.collect()
+        items, self.outbox = self.outbox, []
+        return b"".join(bytes(item) for item in items)
+
+    def _advance(self) -> None:
+        if self._steps is None:
+            return
+        answer: Any = None
+        try:
+            while True:
+                effect = self._steps.send(answer)
+                self.collect()
+                if effect is None:
+                    return
+                answer = self._grant(effect)
+        except StopIteration as stop:
+            self._steps, self.done, self.result = None, True, stop.value
+            self.collect()
+        except BaseException:
+            self._steps = None
+            raise
+
+    def _grant(self, effect: Effect) -> Any:
+        if isinstance(effect, Group):
+            return GROUP
+        if isinstance(effect, Open):
+            self.opened.append(effect)
+            return Handle(effect)
+        assert isinstance(effect, Switch)
+        self.stream = effect.stream
+        return None
+
+
+class Dialogue:
+    """A connection between two carriers of one kind, from the greeting to the goodbye.
+
+    modifiers: what follows the carrier's name (`+ack`). piece: bytes that arrive at once, 0: all.
+    The acceptor is chosen by its first bytes among all installed carriers and `carrier`, as a port
+    does it. `traffic` is what each side said, in order.
+    """
+
+    def __init__(
+        self,
+        carrier: type[Carrier],
+        modifiers: str = "",
+        *,
+        source: str = "/sender",
+        target: str = "/receiver",
+        piece: int = 0,
+        limit: int = DEFAULT_LIMIT,
+    ) -> None:
+        self.kind = carrier
+        self.target = target
+        self.initiator: End = End(piece, limit)
+        self.acceptor: End = End(piece, limit)
+        self.initiating = carrier(Route(source, target, carrier.name + modifiers, TCP_PORT))
+        self.accepting: Carrier | None = None
+        self.traffic: list[tuple[str, Any]] = []
+        self._welcome: Steps[None] | None = None
+
+    @property
+    def sender(self) -> tuple[End, Carrier]:
+        """The side that sends data, and its carrier: who dialled, unless the carrier pulls."""
+        if self.kind.push:
+            return self.initiator, self.initiating
+        return self.acceptor, self._accepted()
+
+    @property
+    def receiver(self) -> tuple[End, Carrier | None]:
+        """The other side."""
+        if self.kind.push:
+            return self.acceptor, self.accepting
+        return self.initiator, self.initiating
+
+    def greet(self) -> None:
+        """The greeting, both ways. Where the initiator has nothing to say it ends with the first
+        message."""
+        self._welcome = self._choose()
+        self.acceptor.begin(self._welcome)
+        self.initiator.begin(self.initiating.greet(self.initiator.stream))
+        self.pump()
+        if not self.initiator.done:
+            raise Stalled("the greeting is not answered")
+
+    def send(self, value: object, envelope: str = "", key: str = DATA) -> Message:
+        """Encode `value` on one side; the message that the other side decodes."""
+        end, carrier = self.sender
+        carrier.encode(end.stream, Packet(value, envelope.encode(), key))
+        return self._received()
+
+    def quit(self) -> Message | None:
+        """Say goodbye in the carrier's way; None if it has none."""
+        end, carrier = self.sender
+        carrier.encode_quit(end.stream)
+        end.collect()
+        return self._received() if end.outbox else None
+
+    def reply(self, value: object) -> Message | None:
+        """Answer the last message, and acknowledge it if the carrier does so; what the asker
+        reads."""
+        end, carrier = self._answering()
+        carrier.encode_reply(end.stream, value)
+        if carrier.acks:
+            carrier.encode_ack(end.stream)
+        return self._answered()
+
+    def acknowledge(self, replied: bool = False) -> Message | None:
+        """Acknowledge the last message. `replied`: its sender waits for a reply, in vain."""
+        end, carrier = self._answering()
+        carrier.encode_ack(end.stream)
+        if replied:
+            return self._answered()
+        asker, asking = self.sender
+        asker.begin(asking.expect_ack(asker.stream))
+        self.pump()
+        if not asker.done:
+            raise Stalled("the acknowledgement is not recognised")
+        return None
+
+    def pump(self) -> None:
+        """Carry bytes both ways until none are left to carry."""
+        drive(self.initiator, self.acceptor, self.traffic)
+
+    def _choose(self) -> Steps[None]:
+        end = self.acceptor
+        first = bytes((yield from end.stream.read_exact(MAGIC_SIZE)))
+        kind = recognise(first, [self.kind, *registry.carriers])
+        if kind is None:
+            raise AssertionError(f"no carrier recognises the bytes {first!r}")
+        self.accepting = kind(Route("", self.target, kind.name, TCP_PORT))
+        yield from self.accepting.welcome(end.stream, first)
+
+    def _accepted(self) -> Carrier:
+        if self.accepting is None:
+            raise Stalled("nobody has greeted yet")
+        return self.accepting
+
+    def _answering(self) -> tuple[End, Carrier]:
+        end, carrier = self.receiver
+        return end, carrier or self._accepted()
+
+    def _received(self) -> Message:
+        end, _ = self.receiver
+        # A greeting without words goes on until the first message.
+        rest = None if end.done or not self.kind.push else self._welcome
+        end.begin(self._read(rest))
+        self.pump()
+        if not end.done:
+            raise Stalled("the message has no end that the receiver can see")
+        message: Message = end.result
+        return message
+
+    def _read(self, rest: Steps[None] | None) -> Steps[Message]:
+        if rest is not None:
+            yield from rest
+        end, carrier = self.receiver
+        if carrier is None:
+            carrier = self._accepted()
+        if not end.stream.waiting:
+            yield None
+        if end.stream.waiting:
+            message = carrier.parse(end.stream)
+            if message is not None:
+                return message
+        return (yield from carrier.decode(end.stream))
+
+    def _answered(self) -> Message | None:
+        end, carrier = self.sender
+        end.begin(_reply_and_ack(carrier, end.stream))
+        self.pump()
+        if not end.done:
+            raise Stalled("the reply has no end that the asker can see")
+        message: Message | None = end.result
+        return message
+
+
+def _reply_and_ack(carrier: Carrier, stream: ByteStream) -> Steps[Message | None]:
+    reply = yield from carrier.expect_reply(stream)
+    if carrier.acks:
+        yield from carrier.expect_ack(stream)
+    return reply
+
+
+def drive(initiator: End, acceptor: End, traffic: list[tuple[str, Any]] | None = None) -> None:
+    """Carry what each side wrote to the other, until nothing is left to carry."""
+    moved = True
+    while moved:
+        moved = False
+        for name, end, other in (
+            ("initiator", initiator, acceptor),
+            ("acceptor", acceptor, initiator),
+        ):
+            end.collect()
+            items, end.outbox = end.outbox, []
+            for item in items:
+                moved = True
+                if traffic is not None:
+                    traffic.append((name, item))
+                other.feed(item)
+
+
+def said(traffic: Iterable[tuple[str, Buffer]], name: str) -> bytes:
+    """Everything that the `initiator` or the `acceptor` wrote, as one."""
+    return b"".join(bytes(item) for who, item in traffic if who == name)

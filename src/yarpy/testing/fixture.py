@@ -1,0 +1,28 @@
+"""The same as pytest fixtures: import them into a `conftest.py`.
+
+from yarpy.testing.fixture import name_server, names
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from yarpy.names.local import LocalNames
+from yarpy.services.name_server import NameServer
+from yarpy.testing.names import private_names, private_server
+
+
+@pytest.fixture
+def names() -> Iterator[LocalNames]:
+    """Names of this test alone; ports that it opens use them without being told."""
+    with private_names() as found:
+        yield found
+
+
+@pytest.fixture
+def name_server() -> Iterator[NameServer]:
+    """A name server of this test alone, the default while the test runs."""
+    with private_server() as server:
+        yield server

@@ -1,0 +1,38 @@
+"""Names for tests: a world of its own, or a name server that nobody else uses.
+
+Rules: inside the `with` they are this process's default, so ports need not be told; several can be
+open at once, the innermost counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from yarpy.names.default import DEFAULT
+from yarpy.names.local import LocalNames
+from yarpy.services.name_server import NameServer
+
+
+@contextmanager
+def private_names() -> Iterator[LocalNames]:
+    """Names inside this process, without any server.
+
+    with private_names(), Port("/a") as a, Port("/b") as b: ...
+    """
+    names = LocalNames()
+    DEFAULT.push(names)
+    try:
+        yield names
+    finally:
+        DEFAULT.pop(names)
+
+
+@contextmanager
+def private_server() -> Iterator[NameServer]:
+    """A name server on a free number of the loopback, gone at the end.
+
+    Its `environment` makes child processes use it: `{**os.environ, **server.environment}`.
+    """
+    with NameServer() as server:
+        yield server
