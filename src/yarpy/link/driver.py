@@ -42,7 +42,6 @@ class Driver:
         self.transport = transport
         self.stream = ByteStream(limit)
         self.eager = _CORES > 1  # whether looking again may beat sleeping
-        self._near = self.eager and transport.near
         self._looks = False  # look again and again for the next bytes instead of sleeping
         self._skip = 0  # waits to pass before that is tried again
         self._penalty = FIRST_PENALTY
@@ -100,8 +99,7 @@ class Driver:
                 self._fill_objects(self._objects)
                 return
             buffer = self.stream.get_buffer()
-            looks = self._looks or (self.stream.halfway and self._near)
-            count = self._look(buffer) if looks else -1
+            count = self._look(buffer) if self._looks else -1
             if count < 0:
                 count = self._sleep(buffer)
         except (BlockingIOError, TimeoutError) as error:

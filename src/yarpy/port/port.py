@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     pass
 
 # A reader that comes back within this many seconds may read the socket itself.
-_QUICK = 0.002
+_QUICK = 0.005
 
 
 class BasePort:

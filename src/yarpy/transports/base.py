@@ -45,10 +45,6 @@ class Transport(Protocol):
     def send(self, buffers: Sequence[Buffer]) -> None:
         """Send everything."""
 
-    @property
-    def near(self) -> bool:
-        """Whether the peer is on this host."""
-
     def limit_waiting(self, seconds: float | None) -> None:
         """Let each receive or send wait that long at most; None: for ever."""
 
@@ -84,13 +80,6 @@ class SocketTransport:
     @property
     def port(self) -> int:
         return 0
-
-    @property
-    def near(self) -> bool:
-        try:
-            return self.local[0] == self.remote[0]
-        except OSError:
-            return False
 
     def ready(self) -> None:
         """Sockets that were accepted or connected are ready."""

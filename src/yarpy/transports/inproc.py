@@ -45,7 +45,6 @@ class InprocTransport:
         self.local = local
         self.remote = remote
         self.port = 0
-        self.near = True
         self._inbox: SimpleQueue[object] = SimpleQueue()
         self._peer: InprocTransport | None = None
         self._timeout: float | None = None

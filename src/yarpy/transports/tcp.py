@@ -13,21 +13,6 @@ from yarpy.errors import AddressError
 from yarpy.transports.base import Address, SocketTransport
 
 CONNECT_TIMEOUT = 10.0  # seconds, as C++ YARP
-BUFFER = 1 << 22  # bytes; an image in one go, without its sender being put to sleep half way
-
-
-def kernel_buffer(path: str) -> int:
-    """The buffer size to ask for, 0 to leave it to the kernel, which may grow it further than we
-    are allowed to."""
-    try:
-        with open(path) as file:
-            return BUFFER if int(file.read()) >= BUFFER else 0
-    except (OSError, ValueError):
-        return 0
-
-
-RECEIVE_BUFFER = kernel_buffer("/proc/sys/net/core/rmem_max")
-SEND_BUFFER = kernel_buffer("/proc/sys/net/core/wmem_max")
 
 
 class TcpTransport(SocketTransport):
@@ -43,10 +28,7 @@ def dial(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TcpTransport
     """Connect to a port. Raises OSError (ConnectionRefusedError, TimeoutError ...)."""
     if not 0 < port < 65536:
         raise AddressError(f"{host}:{port}: a TCP port number lies between 1 and 65535")
-    sock = socket.create_connection((host, port), timeout)
-    if SEND_BUFFER:
-        sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER)
-    return TcpTransport(sock)
+    return TcpTransport(socket.create_connection((host, port), timeout))
 
 
 class TcpListener:
@@ -60,8 +42,6 @@ class TcpListener:
         try:
             if sys.platform != "win32":
                 self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            if RECEIVE_BUFFER:  # before listening, so that the window can be that large
-                self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER)
             self.sock.bind((host, port))
             self.sock.listen(1024)
         except OSError:

@@ -107,11 +107,6 @@ class ByteStream:
         return bool(self._output)
 
     @property
-    def halfway(self) -> bool:
-        """Whether a large read has begun: more bytes are certainly on their way."""
-        return self._big is not None
-
-    @property
     def waiting(self) -> int:
         """Bytes that arrived and were not read yet."""
         return self.tail - self.head
