@@ -1,0 +1,199 @@
+"""Every example, run as its first lines say: what it prints, how it ends, and how long it is."""
+
+import ast
+import os
+import re
+import shutil
+import signal
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+from support.process import Process
+
+import yarpy
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "examples"
+LONGEST = 60
+
+# What an example that needs no server prints, in this order, among other things.
+ALONE = {
+    "asyncio_reader.py": [r"/left got .*'four', 0.* from /right", r"messages: \[2, 3\]"],
+    "images.py": [
+        r"Image\(320 x 240, 'rgb', quantum=8\) at 0.000 s, \(240, 320, 3\), .*\[119\.5 +19\.5\]",
+        r"at 0.067 s, .*\[119\.5 +39\.5\]",
+        r"Image\(5 x 2, 'dec', quantum=8\)",
+        r"Image\(320 x 240, 'mono', quantum=1\)",
+    ],
+    "no_server.py": [r"by a name that only", r"to .*, without any name", r"<ping>", r"^2 4 6$"],
+    "realtime.py": [r"^alone +mean", r"busy thread +mean", r"realtime\(\) +mean", r"SCHED_FIFO"],
+    "several_carriers.py": [
+        r"^tcp +Bottle\(\['hello', 1, 2.5, Bottle\(\['nested', b'.*'\]\)\]\) over tcp$",
+        r"^fast_tcp +Bottle.* over fast_tcp$",
+        r"^udp +Bottle.* over udp$",
+        r"^mcast +(Bottle.* over mcast|not here: .*)$",
+        r"^text +Bottle.* over text$",
+        r"^text_ack +Bottle.* over text_ack$",
+        r"^unix_stream +(Bottle.* over unix_stream|not here: .*)$",
+        r"^unix_stream\+ack +(Bottle.* over unix_stream\+ack|not here: .*)$",
+        r"^local +\['hello', .* over local$",
+        r'no carrier "tpc": did you mean "tcp"\?',
+    ],
+    "stamps_and_drops.py": [r"were skipped", r"^written +1000$", r"dropped by the reader \d+"],
+}
+TOGETHER = {
+    "demo.py",
+    "listener.py",
+    "netcat.sh",
+    "rpc_client.py",
+    "rpc_server.py",
+    "talker.py",
+}
+FILES = sorted(path for path in EXAMPLES.iterdir() if path.suffix in (".py", ".sh"))
+
+needs_netcat = pytest.mark.skipif(not shutil.which("nc"), reason="netcat (nc) is not installed")
+
+
+def start(name: str, *arguments: str, **variables: str) -> Process:
+    """Start an example in an environment that knows no name server but what is given."""
+    return Process(
+        [sys.executable, EXAMPLES / name, *arguments], env=environment(variables), cwd=ROOT
+    )
+
+
+def environment(variables: Mapping[str, str]) -> dict[str, str]:
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(("YARP", "XDG_"))}
+    return {**clean, "YARP_CONFIG_HOME": str(ROOT / "no such directory"), **variables}
+
+
+def shell(command: str) -> Process:
+    """A line as a person would paste it into a terminal, in the checkout."""
+    return Process(["sh", "-c", command], env=environment({}), cwd=ROOT)
+
+
+def interrupt(process: Process) -> None:
+    """Ctrl-C: the program ends in good order, and says nothing about it."""
+    process.signal(signal.SIGINT)
+    assert process.wait(5) == 0, process.stderr
+    assert "Traceback" not in process.stderr
+
+
+@pytest.fixture
+def server() -> Iterator[yarpy.NameServer]:
+    with yarpy.NameServer() as server:
+        yield server
+
+
+def test_every_example_is_run_here():
+    assert {path.name for path in FILES} == TOGETHER | ALONE.keys()
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_it_is_short_and_says_how_to_run_it(path: Path):
+    text = path.read_text()
+    if path.name != "demo.py":
+        assert len(text.splitlines()) <= LONGEST
+    words = ast.get_docstring(ast.parse(text)) if path.suffix == ".py" else text
+    assert words
+    assert f"examples/{path.name}" in words or "make demo" in words
+
+
+@pytest.mark.parametrize("name", ALONE)
+def test_alone(name: str):
+    with start(name) as process:
+        assert process.wait(30) == 0, process.stderr
+        rest = process.stdout.splitlines()
+        for pattern in ALONE[name]:
+            places = [number for number, line in enumerate(rest) if re.search(pattern, line)]
+            assert places, f"no line {pattern!r} at its place in:\n{process.stdout}"
+            del rest[: places[0] + 1]
+        assert "Traceback" not in process.stderr
+
+
+def test_talker_and_listener(server: yarpy.NameServer):
+    pattern = r"^/talker Bottle\(\[\d+, 'hello'\]\) Stamp\(count=\d+, time=\d"
+    with start("listener.py", **server.environment) as listener:
+        assert yarpy.wait_for("/listener", timeout=10)  # it waits for the talker now
+        with start("talker.py", **server.environment) as talker:
+            listener.wait_line(pattern)
+            talker.kill()
+        before = len(listener.stdout.splitlines())
+        with start("talker.py", **server.environment) as talker:
+            listener.wait_line(pattern, count=before + 2)
+            interrupt(talker)
+            assert yarpy.query("/talker") is None
+        interrupt(listener)
+
+
+def test_talker_and_listener_end_by_themselves(server: yarpy.NameServer):
+    with (
+        start("talker.py", "10", **server.environment) as talker,
+        start("listener.py", "2", **server.environment) as listener,
+    ):
+        assert listener.wait(10) == 0, listener.stderr
+        assert talker.wait(10) == 0, talker.stderr
+        assert len(listener.stdout.splitlines()) == 2
+
+
+def test_rpc(server: yarpy.NameServer):
+    with start("rpc_server.py", **server.environment) as calculator:
+        with start("rpc_client.py", **server.environment) as client:
+            assert client.wait(15) == 0, client.stderr
+            assert client.stdout.splitlines() == [
+                "add 1 2 3   -> 6",
+                "set speed 4 -> ok",
+                "get speed   -> 4",
+                "get other   -> nobody has set other",
+            ]
+        interrupt(calculator)
+
+
+@needs_netcat
+def test_netcat(server: yarpy.NameServer):
+    with (
+        start("talker.py", **server.environment) as talker,
+        start("rpc_server.py", **server.environment) as calculator,
+    ):
+        addresses = [process.wait_line(r"listens at (\S+)")[1] for process in (talker, calculator)]
+        with Process(["sh", EXAMPLES / "netcat.sh", *addresses]) as script:
+            assert script.wait(15) == 0, script.stderr
+            said = script.stdout.replace("\r", "").splitlines()
+        assert said[0].startswith("---")
+        assert said[1] == "* Error. Protocol not found."
+        assert "* Goodbye." in said
+        welcome = said.index("Welcome test")
+        assert said[welcome + 1 : welcome + 3] == ["3", "[ok]"]
+        assert f"This is /talker at tcp://{addresses[0]}/" in said
+        assert "[ver] 1 2 3" in said
+        assert re.fullmatch(r"D \d+ \d+\.\d+", said[-2])
+        assert re.fullmatch(r"\d+ hello", said[-1])
+
+
+def test_demo_ends_by_itself():
+    with start("demo.py", "--seconds", "0.7") as demo:
+        assert demo.wait(10) == 0, demo.stderr
+        assert re.search(r"\d+ /machine/load: .*load \d", demo.stdout)
+        assert not demo.stderr
+
+
+@needs_netcat
+def test_demo_and_every_line_it_tells_to_try():
+    with start("demo.py") as demo:
+        demo.wait_line(r"/machine/load: ", timeout=15)
+        lines = re.findall(r"^  (\S.*)$", demo.stdout, re.MULTILINE)
+        assert len(lines) == 6
+        expected = {
+            " name list": r"registration name /machine/rpc ip 127\.0\.0\.1 port \d+ type tcp",
+            " read /demo/view": r"\(load \d.*\)",
+            "echo cpu": r"Response: \d+",
+            "; echo r;": r"^D \d+ \d+\.\d+",
+            "nhelp": r"^\[many\] .*load",
+            "echo hello": r"Protocol not found",
+        }
+        for line in lines:
+            [pattern] = [pattern for words, pattern in expected.items() if words in line]
+            with shell(line) as process:
+                process.wait_line(pattern, timeout=15)
+        interrupt(demo)
