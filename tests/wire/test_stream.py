@@ -110,6 +110,17 @@ def test_flood_of_large_messages_takes_the_memory_of_two() -> None:
     assert peak.bytes < 2.5 * (1 << 20)
 
 
+def test_what_was_read_too_far_is_put_back() -> None:
+    stream = ByteStream()
+    steps = stream.read_exact(8)
+    assert is_waiting(steps)
+    stream.feed(b"GET /x12")
+    assert finish(steps) == b"GET /x12"
+    stream.unread(3)
+    stream.feed(b"3")
+    assert finish(stream.read_exact(4)) == b"x123"
+
+
 # ---------------------------------------------------------------------------------- limits
 
 

@@ -18,7 +18,6 @@ from typing import ClassVar
 
 from yarpy.contact import Route, read_specifier, specifier
 from yarpy.data import codec
-from yarpy.errors import LocalProtocolError
 from yarpy.wire import framing
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
@@ -65,6 +64,9 @@ class Carrier:
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
         """The acceptor's answer; `first` are the eight bytes, already read."""
+        magic = self.recognises(first)
+        if 0 < magic < MAGIC_SIZE:
+            stream.unread(MAGIC_SIZE - magic)  # they belong to the name
         self.introduce((yield from framing.read_name(stream)))
 
     def sender(self) -> bytes:
@@ -165,13 +167,6 @@ class Indexed(Carrier):
         stream.write(framing.number(framing.BASE + self.code) + self.sender())
         return
         yield
-
-
-def refuse_reply(carrier: Carrier) -> LocalProtocolError:
-    """The error for asking a one-way carrier for a reply."""
-    return LocalProtocolError(
-        f'"{carrier.name}" carries no replies; connect with tcp to call "{carrier.route.target}"'
-    )
 
 
 __all__ = ["CALL", "QUIT", "Buffer", "Carrier", "Indexed", "Message", "Packet", "Route", "Steps"]

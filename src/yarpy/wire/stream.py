@@ -136,6 +136,10 @@ class ByteStream:
         self.head = start + count
         return bytes(self._view[start : self.head])
 
+    def unread(self, count: int) -> None:
+        """Put back the last `count` bytes of a short read that has just ended."""
+        self.head -= count
+
     def read_line(self, limit: int = 1 << 20) -> Steps[bytes]:
         """One line by the text rules of YARP, without its end.
 
