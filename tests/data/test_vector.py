@@ -1,4 +1,5 @@
 import struct
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -40,6 +41,19 @@ def test_is_like_a_list():
             vector[index]
     with pytest.raises(TypeError):
         hash(vector)
+
+
+def test_is_a_sequence():
+    """A message of floats alone arrives as a Vector: programs match it like any other list."""
+    match Vector.from_wire(joined(Vector([1.5, 2.5, 1.5]))):
+        case [first, *rest]:
+            assert (first, rest) == (1.5, [2.5, 1.5])
+        case _:
+            raise AssertionError("a Vector does not match the pattern of a list")
+    vector = Vector([1.5, 2.5, 1.5])
+    assert isinstance(vector, Sequence)
+    assert vector.count(1.5) == 2 and vector.index(2.5) == 1
+    assert list(reversed(vector)) == [1.5, 2.5, 1.5]
 
 
 def test_can_be_changed():

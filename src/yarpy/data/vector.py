@@ -9,7 +9,7 @@ copying, and numpy is not needed until somebody asks for that. C++ reads float64
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from struct import Struct, error
 from typing import TYPE_CHECKING, Any, Final, Self
 
@@ -34,12 +34,13 @@ _NAMES: Final = {tag: name for name, (tag, _, _) in KINDS.items()}
 _HEAD = Struct("<ii")
 
 
-class Vector:
+class Vector(Sequence[Any]):
     """A list of numbers with a numpy array inside.
 
     `Vector([1, 2.5])`, `Vector(numpy_array)`, `Vector([1, 2], dtype="int32")`. It has a length, can
-    be indexed, iterated and compared with lists; `array` is the 1-D numpy view of the same memory,
-    through which it can be changed unless the bytes it came from are read-only.
+    be indexed, iterated, matched (`case [x, y]`) and compared with lists; `array` is the 1-D numpy
+    view of the same memory, through which it can be changed unless the bytes it came from are
+    read-only.
     """
 
     __slots__ = ("_array", "_data", "_letter", "_width", "kind")
