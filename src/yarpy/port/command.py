@@ -11,7 +11,7 @@ import threading
 from typing import TYPE_CHECKING
 
 from yarpy.contact import Contact, Route, base_carrier, modifier, parse_contact
-from yarpy.errors import AddressError, PortClosed, UnknownPlugin, YarpError
+from yarpy.errors import AddressError, LinkClosed, PortClosed, UnknownPlugin, YarpError
 from yarpy.link.handshake import find_carrier, greet
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
@@ -129,6 +129,7 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
     try:
         driver, speaker = greet(contact, route, key=hub.key, group=hub.group, limit=hub.limit)
     except (YarpError, OSError) as error:
+        _complain(hub, target, error)
         raise Refused(f"Cannot connect to {text or target}") from error
     if speaker.push:
         try:
@@ -139,6 +140,17 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
         # Who dials a pull carrier is the one that receives.
         route.source, route.target = target, hub.name
         threading.Thread(target=hub.run_input, args=(driver, speaker), daemon=True).start()
+
+
+def _complain(hub: Hub, target: str, error: Exception) -> None:
+    """Tell the name service about a registered port that nobody answers for."""
+    names = hub.service()
+    if names is None or not isinstance(error, LinkClosed):
+        return
+    try:
+        names.announce(target, False)
+    except YarpError:
+        pass  # it is not our business to be heard
 
 
 def _locate(hub: Hub, wanted: Contact) -> Contact | None:

@@ -17,19 +17,22 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Final, Self
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
 from yarpy.link.inbound import Inbound
 from yarpy.names.address import local_addresses
 from yarpy.names.command import NameService
-from yarpy.names.configuration import DEFAULT_PORT, ROOT, Server
+from yarpy.names.configuration import ROOT, Server, default_port
 from yarpy.names.default import DEFAULT, client_of
+from yarpy.names.reply import Reply
 from yarpy.names.store import NameStore
 from yarpy.names.topology import Action, Topology
 from yarpy.port import probe
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
+from yarpy.services.collector import Collector
 from yarpy.wire.message import Lines, Message, Packet
 
 if TYPE_CHECKING:
@@ -85,6 +88,7 @@ class NameServer:
         self.service = NameService(NameStore(host, self.port), Topology(time.time))
         self._database: Database | None = None
         self._responder: Responder | None = None
+        self._collector: Collector | None = None
         self._queues: list[SimpleQueue[Action | None]] = [SimpleQueue() for _ in range(WORKERS)]
         self._events: SimpleQueue[Bottle | None] = SimpleQueue()
         self.on_command: Callable[[str, str], None] | None = None
@@ -95,6 +99,7 @@ class NameServer:
             for queue in self._queues:
                 self._start(lambda queue=queue: self._work(queue), "wiring")  # type: ignore[misc]
             self._start(self._tell, "events")
+            self._collector = Collector(self.service, self._obey, name)
             if discoverable:
                 self._open_responder()
         except BaseException:
@@ -130,6 +135,17 @@ class NameServer:
             self.on_command(Bottle(message.as_(Bottle)).to_text(), peer)
         if message.answer is not None:
             message.reply(reply.bottle if reply.bottle is not None else Lines(reply.lines))
+        self._follow(reply)
+        words = message.as_(Bottle)
+        if len(words) > 2 and words[0] == "announce" and not words[2] and self._collector:
+            self._collector.suspect(plain_text(words[1]))
+
+    def _obey(self, command: Bottle) -> None:
+        """Carry out a command of our own."""
+        self._follow(self.service.answer(command))
+
+    def _follow(self, reply: Reply) -> None:
+        """Tell and do what follows from a command."""
         for event in reply.events:
             if self._hub.outputs and self._events.qsize() < MAX_EVENTS:
                 self._events.put(event)
@@ -144,7 +160,7 @@ class NameServer:
         answer(Bottle(["set", self.name, "accepts", *known]))
         answer(Bottle(["set", self.name, "ips", *local_addresses()]))
         answer(Bottle(["set", self.name, "process", os.getpid()]))
-        answer(Bottle(["register", "fallback", "mcast", GROUP, DEFAULT_PORT]))
+        answer(Bottle(["register", "fallback", "mcast", GROUP, default_port(os.environ)]))
         answer(Bottle(["set", self.name, "nameserver", "true"]))
 
     def _open_database(
@@ -157,7 +173,6 @@ class NameServer:
         self._database.start()
 
     def _open_responder(self) -> None:
-        from yarpy.names.configuration import default_port
         from yarpy.names.discovery import Responder
 
         responder = Responder(self.service.answer_multicast, default_port(os.environ))
@@ -209,6 +224,9 @@ class NameServer:
         for queue in self._queues:
             queue.put(None)
         self._events.put(None)
+        if self._collector is not None:
+            self._collector.close()
+            self._collector = None
         if self._responder is not None:
             self._responder.close()
             self._responder = None
