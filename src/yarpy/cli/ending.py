@@ -1,0 +1,51 @@
+"""How a command ends when somebody wants it to: by ^C, by SIGTERM, by the end of its terminal.
+
+Rules: the first signal is the exception `Interrupted` in the main thread, so `with` blocks close
+their ports and names are given back; what comes within two seconds is the same person pressing
+twice, and what comes later ends the process at once. A hangup that `nohup` has us ignore stays
+ignored; SIGINT is obeyed also where a shell ignores it for its background jobs, as C++ does.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from types import FrameType
+from typing import Final
+
+PATIENCE: Final = 2.0  # seconds that closing may take before another signal means: at once
+_NAMES: Final = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
+
+
+class Interrupted(BaseException):
+    """A signal asks the command to end; `number` says which. Not an Exception: nobody eats it."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+def watch() -> None:
+    """Turn signals into `Interrupted` from now on. To be called in the main thread."""
+    handler = _Handler()
+    for name in _NAMES:
+        number = getattr(signal, name, None)
+        if number is None or (name == "SIGHUP" and signal.getsignal(number) is signal.SIG_IGN):
+            continue
+        signal.signal(number, handler)
+
+
+class _Handler:
+    """What a signal does; it knows whether it is the first."""
+
+    def __init__(self) -> None:
+        self._first: float | None = None
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        now = time.monotonic()
+        if self._first is None:
+            self._first = now
+            raise Interrupted(number)
+        if now - self._first > PATIENCE:
+            os._exit(128 + number)

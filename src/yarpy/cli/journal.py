@@ -1,0 +1,58 @@
+"""What the library logs, on standard error: `[INFO] Port /r active at tcp://127.0.0.1:10002/`.
+
+Rules: the texts are those of C++ YARP; its `|component|id|` part is left out. `YARP_QUIET` keeps
+only warnings, `YARP_VERBOSE` shows everything, `YARP_COLORED_OUTPUT` decides about colours, which
+otherwise only a terminal gets.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+from collections.abc import Mapping
+from typing import Final
+
+import click
+
+_COLOURS: Final = {"INFO": "blue", "WARNING": "yellow", "ERROR": "red", "CRITICAL": "red"}
+_YES: Final = frozenset({"1", "true", "yes", "on"})
+_NO: Final = frozenset({"0", "false", "no", "off"})
+
+
+def show(level: int = logging.INFO) -> None:
+    """Show what the library logs at `level` and above, or as the environment says."""
+    handler = logging.StreamHandler(sys.stderr)
+    terminal = sys.stderr.isatty()
+    handler.setFormatter(_Form(flag(os.environ, "YARP_COLORED_OUTPUT", terminal)))
+    logger = logging.getLogger("yarpy")
+    logger.handlers = [handler]
+    logger.propagate = False
+    logger.setLevel(chosen(os.environ, level))
+
+
+def chosen(environment: Mapping[str, str], level: int) -> int:
+    """The level that the environment asks for, else `level`."""
+    if flag(environment, "YARP_QUIET", False):
+        return logging.WARNING
+    if flag(environment, "YARP_VERBOSE", False):
+        return logging.DEBUG
+    return level
+
+
+def flag(environment: Mapping[str, str], name: str, default: bool) -> bool:
+    """A yes or no among the variables; anything else counts as not said."""
+    text = environment.get(name, "").lower()
+    return default if text not in _YES | _NO else text in _YES
+
+
+class _Form(logging.Formatter):
+    def __init__(self, coloured: bool) -> None:
+        super().__init__("%(message)s")
+        self._coloured = coloured
+
+    def format(self, record: logging.LogRecord) -> str:
+        level = record.levelname
+        if self._coloured:
+            level = click.style(level, fg=_COLOURS.get(level), bold=True)
+        return f"[{level}] {super().format(record)}"

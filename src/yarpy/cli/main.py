@@ -1,0 +1,185 @@
+"""`yarpy VERB ...`: finds the verb, runs it, and turns errors into one line and an exit code.
+
+Rules: a verb is a module of this package that has a click command called `command`, and a line in
+`VERBS`; it is imported when it is used, so that `yarpy --help` and small verbs start fast. Packages
+add verbs by the entry point group `yarpy.commands`. What a command returns is the exit code, None
+is 0. Standard output belongs to the verb; errors go to standard error as `error: ...`.
+
+Exit codes: 0 done; 1 not done, or used wrongly; 255 no such verb; 128 + N ended by signal N.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any, Final, NoReturn
+
+import click
+
+from yarpy.cli import ending
+from yarpy.errors import UnknownPlugin, YarpError
+
+VERBS: Final = {
+    "admin": "write or rpc to the administrative side of a port",
+    "check": "try whether ports can be opened, found and connected here",
+    "clean": "take names of dead ports off the name server",
+    "conf": "show or set the address of the name server",
+    "connect": "connect two ports, or list persistent connections",
+    "detect": "search the network for a name server",
+    "disconnect": "end a connection of two ports",
+    "env": "print environment variables",
+    "exists": "tell whether a port or a connection is alive",
+    "help": "list the commands, or explain one",
+    "merge": "concatenate what several ports send",
+    "name": "send a command to the name server",
+    "namespace": "show or set the namespaces in use",
+    "ping": "ask a port about itself and its connections",
+    "plugin": "list carriers, types, monitors and commands that are installed",
+    "read": "print what arrives at a port",
+    "readwrite": "print what arrives at one port, send lines from another",
+    "repeat": "send on what a port receives",
+    "resource": "find configuration files",
+    "rpc": "send lines to a port and print its replies",
+    "rpcserver": "print questions and answer them by hand",
+    "sample": "send on what a port receives, at a constant rate",
+    "server": "run a name server",
+    "split": "send each element of a message to a port of its own",
+    "stats": "measure what a port sends",
+    "terminate": "ask a program to end, by the name of its port",
+    "time": "print the time, again and again",
+    "topic": "make, list or remove topics",
+    "trafficgen": "send messages of a given size at a given rate",
+    "version": "print the version",
+    "wait": "wait for a port or a connection",
+    "where": "tell where the name server is",
+    "write": "send lines from a port",
+}
+
+NO_SUCH_VERB: Final = 255
+
+
+class _NoSuchVerb(click.UsageError):
+    exit_code = NO_SUCH_VERB
+
+
+class Verbs(click.Group):
+    """The verbs of `VERBS` and of installed packages, loaded when they are asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        from yarpy.registry import commands
+
+        return sorted({*VERBS, *commands.names()})
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        return find_verb(name)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        command = find_verb(args[0])
+        if command is None:
+            raise _NoSuchVerb(_advice(args[0], self.list_commands(ctx)), ctx)
+        return args[0], command, args[1:]
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The list of verbs, from the table: loading them all would take a second."""
+        rows = [
+            (name, VERBS.get(name) or "(from an installed package)")
+            for name in self.list_commands(ctx)
+        ]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+
+def find_verb(name: str) -> click.Command | None:
+    """The command called `name`, or None. Raises UnknownPlugin for one that does not load."""
+    from importlib import import_module
+
+    if name in VERBS:
+        command: Any = import_module(f"yarpy.cli.{name}").command
+    else:
+        from yarpy.registry import commands
+
+        if name not in commands.names():
+            return None
+        command = commands.load(name)
+    if not isinstance(command, click.Command):
+        raise UnknownPlugin(
+            f'the command "{name}" is installed, but is not a click command '
+            "(its entry point in the group yarpy.commands must name one)"
+        )
+    return command
+
+
+def _advice(name: str, known: Sequence[str]) -> str:
+    from difflib import get_close_matches
+
+    near = get_close_matches(name, known, n=1)
+    hint = f'did you mean "{near[0]}"? ' if near else ""
+    return f'no command "{name}": {hint}`yarpy help` lists them'
+
+
+@click.group(
+    cls=Verbs,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+@click.option("--version", is_flag=True, help="Print the version.")
+@click.pass_context
+def yarpy(ctx: click.Context, version: bool) -> int:
+    """Named ports and the tools around them, compatible with YARP.
+
+    `yarpy COMMAND --help` explains a command.
+    """
+    if ctx.invoked_subcommand is None:
+        from yarpy import __version__
+
+        click.echo(f"yarpy version {__version__}" if version else ctx.get_help())
+    return 0
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run `yarpy ARGUMENTS` in this process; the exit code."""
+    try:
+        code = yarpy.main([*arguments], "yarpy", standalone_mode=False)
+    except ending.Interrupted as signal:
+        return 128 + signal.number
+    except click.Abort:  # click's word for ^C and for the end of input at one of its prompts
+        return 130
+    except click.UsageError as error:
+        complain(error.format_message())
+        if error.ctx is not None and error.exit_code != NO_SUCH_VERB:
+            click.echo(error.ctx.get_usage(), err=True)
+        return NO_SUCH_VERB if error.exit_code == NO_SUCH_VERB else 1
+    except click.ClickException as error:
+        complain(error.format_message())
+        return 1
+    except YarpError as error:
+        complain(str(error))
+        return 1
+    except OSError as error:
+        complain(f"{error.strerror or error}" + (f": {error.filename}" if error.filename else ""))
+        return 1
+    return code if isinstance(code, int) else 0
+
+
+def complain(text: str) -> None:
+    """Say on standard error what went wrong, on one line."""
+    label = click.style("error:", fg="red", bold=True)
+    click.echo(f"{label} {' '.join(text.split())}", err=True)
+
+
+def main() -> NoReturn:
+    """The program `yarpy`."""
+    for stream in (sys.stdin, sys.stdout):
+        # Port data is UTF-8 with whatever else a peer put there: bytes go through as they are.
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(encoding="utf-8", errors="surrogateescape")
+    ending.watch()
+    code = run(sys.argv[1:])
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        sys.stdout = None  # nobody reads: no complaint at exit
+        code = code or 1
+    sys.exit(code)

@@ -1,0 +1,46 @@
+"""Values as people and scripts see them: lines of text and of JSON.
+
+Rules: JSON keeps what it can: lists and dicts as they are, a vocab as `"[ok]"`, bytes as
+`{"base64": "..."}`, numbers that JSON lacks as the strings "nan", "inf", "-inf". One object per
+line, so that a stream of them can be read line by line.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import Any
+
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+
+
+def jsonable(value: Any) -> Any:
+    """`value` as something that `json` takes."""
+    if isinstance(value, Vocab):
+        return f"[{plain_text(value)}]"
+    if isinstance(value, str):
+        return value.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+    if value is None or isinstance(value, bool | int):
+        return value
+    if isinstance(value, float):
+        return float(value) if abs(value) < float("inf") else plain_text(float(value))
+    if isinstance(value, bytes | bytearray | memoryview):
+        import base64
+
+        return {"base64": base64.b64encode(value).decode("ascii")}
+    if isinstance(value, dict):
+        return {plain_text(key): jsonable(item) for key, item in value.items()}
+    return [jsonable(item) for item in value]
+
+
+def print_json(value: Any) -> None:
+    """One line of JSON on standard output, flushed."""
+    print_line(json.dumps(jsonable(value), ensure_ascii=False))
+
+
+def print_line(text: str) -> None:
+    """One line on standard output, flushed: whoever reads a pipe sees it at once."""
+    out = sys.stdout
+    out.write(text + "\n")
+    out.flush()
