@@ -1,0 +1,22 @@
+"""`yarpy help [COMMAND]`: the list of commands, or what one of them does."""
+
+from __future__ import annotations
+
+import click
+
+
+@click.command()
+@click.argument("verb", required=False, metavar="[COMMAND]")
+@click.pass_context
+def command(ctx: click.Context, verb: str | None) -> None:
+    """List the commands, or explain one."""
+    from yarpy.cli.main import yarpy
+
+    root = ctx.find_root()
+    if verb is None:
+        click.echo(yarpy.get_help(root))
+        return
+    name, found, _ = yarpy.resolve_command(root, [verb])
+    assert found is not None
+    with click.Context(found, info_name=name, parent=root) as inner:
+        click.echo(found.get_help(inner))

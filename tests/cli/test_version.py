@@ -1,0 +1,8 @@
+"""`yarpy version`."""
+
+import yarpy
+
+
+def test_version(cli):
+    said = cli.run("version")
+    assert (said.returncode, said.stdout) == (0, f"yarpy version {yarpy.__version__}\n")
