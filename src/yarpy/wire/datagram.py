@@ -51,7 +51,8 @@ class Assembler:
             return None
         piece = datagram[_HEAD.size :]
         if crc32(piece) != crc:
-            self._drop()
+            if sequence == 0 or self._parts:  # else its message is given up already
+                self._drop()
             return None
         if sequence == 0:
             if self._parts:
