@@ -1,0 +1,106 @@
+"""`yarpy connect SOURCE TARGET [CARRIER]`: connect two ports.
+
+    connect SOURCE TARGET [CARRIER]              now; a connection that exists is made again
+    connect --persist SOURCE TARGET [CARRIER]    now and whenever both are there, until
+                                                 `yarpy disconnect --persist`
+    connect --persist-from | --persist-to ...    the same, until SOURCE | TARGET is unregistered
+    connect [--persist] [PORT]                   list persistent connections (of PORT)
+    connect --list-carriers                      the protocols there are
+
+A carrier may have modifiers (`fast_tcp+recv.priority`); `topic://t` stands for a topic.
+
+Differs from C++: no log prefixes and no stray carriage return; an entry of the list is one line.
+Exit codes: 0 connected; 1 not.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from yarpy.cli.spelling import print_line
+
+
+@click.command()
+@click.argument("source", required=False)
+@click.argument("target", required=False)
+@click.argument("carrier", required=False)
+@click.option("--persist", "mode", flag_value="always", help="Connect whenever both are there.")
+@click.option("--persist-from", "mode", flag_value="from", help="... until SOURCE goes away.")
+@click.option("--persist-to", "mode", flag_value="to", help="... until TARGET goes away.")
+@click.option("--list-carriers", is_flag=True, help="List the carriers that are installed.")
+def command(
+    source: str | None,
+    target: str | None,
+    carrier: str | None,
+    mode: str | None,
+    list_carriers: bool,
+) -> int:
+    """Have the port SOURCE send to the port TARGET over CARRIER (tcp)."""
+    if list_carriers:
+        from yarpy.registry import carriers
+
+        for name in carriers.names():
+            print_line(name)
+        return 0
+    if source is None or target is None:
+        return _list(source or "", describe=mode is None)
+    if mode is not None:
+        return _persist(source, target, carrier or "", "" if mode == "always" else mode)
+    import yarpy
+
+    existing = _existing(source, target)
+    if existing:
+        print_line(f"Connection found between {source} and {target} using carrier {existing}")
+    print_line(f"Success: {yarpy.connect(source, target, carrier)}")
+    return 0
+
+
+def _existing(source: str, target: str) -> str:
+    """The carrier of the connection that is there already, "" if none is."""
+    import yarpy
+    from yarpy.network import Route
+
+    try:
+        route = Route(source, target, None, None)
+        return "" if route.topical else route.existing()
+    except yarpy.YarpError:
+        return ""  # connecting will say it
+
+
+def _persist(source: str, target: str, carrier: str, mode: str) -> int:
+    from yarpy.network import ask_server
+
+    if carrier:
+        from yarpy.contact import parse_contact
+        from yarpy.link.handshake import find_carrier
+
+        find_carrier(carrier)
+        target = f"{carrier}:/{parse_contact(target).name}"
+    ask_server(None, ["subscribe", source, target, *([mode] if mode else [])])
+    return 0
+
+
+def _list(port: str, describe: bool) -> int:
+    from yarpy.network import ask_server
+
+    if port and describe:
+        import yarpy
+        from yarpy.cli.ping import as_shown
+
+        for line in yarpy.ping(port):
+            print_line(as_shown(line))
+    entries = ask_server(None, ["subscribe", port] if port else ["subscribe"])[1:]
+    for entry in entries:
+        print_line(entry_line(entry))
+    if not entries:
+        print_line("No persistent connections.")
+    return 0
+
+
+def entry_line(entry: Any) -> str:
+    """`Persistent connection /a -> udp://b [from]` for an entry of the name server's list."""
+    mode = entry.find("mode", "")
+    line = f"Persistent connection {entry.find('src', '')} -> {entry.find('dest', '')}"
+    return f"{line} [{mode}]" if mode else line

@@ -1,0 +1,46 @@
+"""`yarpy wait`."""
+
+from support.port import free_port
+
+import yarpy
+
+
+def test_a_port_that_comes(cli, names):
+    with cli.start("wait", "/wait/a") as process:
+        process.wait_line(r"^Waiting for /wait/a\.\.\.$", stream="out")
+        with yarpy.Port("/wait/a", names=names):
+            assert process.wait() == 0
+
+
+def test_a_connection_that_comes(cli, names):
+    with (
+        yarpy.Port("/wait/b", names=names) as b,
+        yarpy.Port("/wait/c", names=names, callback=lambda message: None),
+        cli.start("wait", "/wait/b", "/wait/c") as process,
+    ):
+        process.wait_line(r"^Waiting for /wait/b->/wait/c\.\.\.$", stream="out")
+        b.connect("/wait/c")
+        assert process.wait() == 0
+
+
+def test_the_time_is_over(here):
+    assert here("wait", "/wait/never", "--timeout", "0.2") == (
+        1,
+        "Waiting for /wait/never...\n",
+        "",
+    )
+
+
+def test_a_name_server_that_comes(cli, tmp_path):
+    port = free_port()
+    cli.environment["YARPY_SERVER"], before = f"127.0.0.1:{port}", cli.environment["YARPY_SERVER"]
+    try:
+        with cli.start("wait", "/wait/d") as process:
+            process.wait_line("waiting for one", stream="err")
+            with (
+                yarpy.NameServer(port) as server,
+                yarpy.Port("/wait/d", names=server.client),
+            ):
+                assert process.wait() == 0
+    finally:
+        cli.environment["YARPY_SERVER"] = before
