@@ -1,13 +1,22 @@
 """The C++ side of the interoperation tests.
 
 `cpp` is a real C++ YARP without a name server, for the session; `cpp_server` adds a C++ name server
-of its own to each test. Both skip with the reason where C++ YARP cannot be had.
+of its own to each test. `network` is a place where yarpy ports of this process and C++ programs
+meet: a test that takes it runs twice, around a yarpy name server and around a C++ one; `our_names`
+and `cpp_names` are only the one or the other. `peer` is a C++ program in that place. All skip with
+the reason where C++ YARP cannot be had.
 """
 
+import contextlib
 from collections.abc import Iterator
 
 import pytest
 from support.cpp import CppYarp, MissingPeer
+from support.cpp_program import CppProgram
+from support.environment import configured_for
+from support.port import free_block
+
+import yarpy
 
 
 @pytest.fixture(scope="session")
@@ -24,3 +33,49 @@ def cpp_server(cpp: CppYarp) -> Iterator[CppYarp]:
     """A fresh C++ name server on 127.0.0.1 and the C++ programs configured for it."""
     with cpp.server() as names:
         yield names
+
+
+@contextlib.contextmanager
+def around_ours(cpp: CppYarp) -> Iterator[CppYarp]:
+    """A yarpy name server in this process, and the C++ programs that use it."""
+    with (
+        yarpy.NameServer(free_block(200)) as server,
+        cpp.at("127.0.0.1", server.port) as programs,
+        configured_for(programs, by_file=False),
+    ):
+        yield programs
+
+
+@contextlib.contextmanager
+def around_cpp(cpp: CppYarp) -> Iterator[CppYarp]:
+    """A C++ name server, which yarpy finds by the same configuration file as the programs."""
+    with cpp.server() as programs, configured_for(programs, by_file=True):
+        yield programs
+
+
+@pytest.fixture(scope="module")
+def our_names(cpp: CppYarp) -> Iterator[CppYarp]:
+    """C++ programs around a name server of ours."""
+    with around_ours(cpp) as programs:
+        yield programs
+
+
+@pytest.fixture(scope="module")
+def cpp_names(cpp: CppYarp) -> Iterator[CppYarp]:
+    """C++ programs around a C++ name server, and yarpy configured to use it too."""
+    with around_cpp(cpp) as programs:
+        yield programs
+
+
+@pytest.fixture(scope="module", params=["yarpy_server", "cpp_server"])
+def network(cpp: CppYarp, request: pytest.FixtureRequest) -> Iterator[CppYarp]:
+    """C++ programs and yarpy around a name server of either kind."""
+    with around_ours(cpp) if request.param == "yarpy_server" else around_cpp(cpp) as programs:
+        yield programs
+
+
+@pytest.fixture
+def peer(network: CppYarp) -> Iterator[CppProgram]:
+    """A C++ program to talk to, which has opened nothing yet."""
+    with CppProgram(network) as program:
+        yield program

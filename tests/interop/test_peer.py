@@ -1,6 +1,8 @@
 """The C++ peer alone: if these fail, an interoperation test says nothing about yarpy."""
 
+import pytest
 from support.cpp import CppYarp
+from support.cpp_program import CppProgram
 
 
 def test_programs_and_binding_are_the_known_version(cpp: CppYarp) -> None:
@@ -70,3 +72,16 @@ def test_ended_programs_leave_nothing(cpp: CppYarp) -> None:
     assert names.server_process is not None
     assert names.server_process.returncode is not None
     assert not names.home.exists()
+
+
+def test_a_program_does_what_it_is_told(cpp_server: CppYarp) -> None:
+    with CppProgram(cpp_server) as program:
+        program.do("count = 1")
+        program.begin("time.sleep(0.1); count += 1\n[count, 'done']")
+        assert program.end() == [2, "done"]
+        assert program.do("port = yarp.Port(); port.open('/mine')") is True
+        assert program.do("yarp.Network.queryName('/mine').getCarrier()") == "tcp"
+        with pytest.raises(AssertionError, match="ZeroDivisionError"):
+            program.do("1 / 0")
+        assert program.do("count") == 2
+    assert program.process.returncode is not None

@@ -157,16 +157,16 @@ def _finish(process: Process, input: str, timeout: float) -> "subprocess.Complet
 
 
 def _wait_until_it_answers(process: Process, port: int, patience: float = 10.0) -> None:
-    """Ask for the server's own name as telnet would: its output is no sign, it is block buffered
-    when it does not go to a terminal."""
+    """Ask for the last name the server registers itself, as telnet would: its output is no sign,
+    it is block buffered when it does not go to a terminal."""
     deadline = time.monotonic() + patience
     while time.monotonic() < deadline:
         if process.returncode is not None:
             break
         with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1) as line:
             line.settimeout(1)
-            line.sendall(b"NAME_SERVER query /root\n")
-            if line.recv(200).startswith(b"registration name /root "):
+            line.sendall(b"NAME_SERVER query fallback\n")
+            if line.recv(200).startswith(b"registration name fallback "):
                 return
         time.sleep(0.02)
     process.signal(signal.SIGTERM)
