@@ -21,7 +21,9 @@ class BufferedPort(Writer):
     Reading gives the newest message, older ones are dropped and counted; with `strict` every
     message comes, in order. Writing hands each connection its message and returns; a connection
     that still sends the one before drops this one, and counts it; with `strict` the writer waits
-    instead. `callback` gets every message in its connection's thread. Other parameters as `Port`.
+    instead. A list may be changed after `write`, but a large array (from 4096 bytes) is sent from
+    its own memory, later: write a new one each time, or `flush` before you change it. `callback`
+    gets every message in its connection's thread. Other parameters as `Port`.
     """
 
     def __init__(

@@ -56,8 +56,9 @@ def obey(hub: Hub, link: Inbound, message: Message) -> list[str]:
     if key == "!":
         return [disconnect_output(hub, rest)[1]]
     if key == "~":
-        found, line = disconnect_input(hub, rest, asking=link)
-        return [line] if found != "self" else []
+        asked_for_itself = link.route.source == rest
+        _, line = disconnect_input(hub, rest)
+        return [] if asked_for_itself else [line]
     if key == "*":
         return describe(hub)
     if key in ("?", "h"):
@@ -196,17 +197,13 @@ def disconnect_output(hub: Hub, target: str) -> tuple[bool, str]:
     return False, f"Could not find an outgoing connection to {target}"
 
 
-def disconnect_input(
-    hub: Hub, source: str, asking: Inbound | None = None
-) -> tuple[bool | str, str]:
-    """Remove the inputs from `source`. One that asks to be removed itself goes last ("self")."""
+def disconnect_input(hub: Hub, source: str) -> tuple[bool, str]:
+    """Remove the inputs from `source`; whether there were any, and the line that says so."""
     found = [link for link in hub.inputs if link.route.source == source]
     for link in found:
         link.close()
-    if asking in found:
-        return "self", ""
     for link in found:
-        if link.thread is not None and link.thread is not threading.current_thread():
+        if link.thread is not None and not link.asking:
             link.thread.join(2.0)
     if found:
         return True, f"Removing connection from {source} to {hub.name}"

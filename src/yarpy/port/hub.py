@@ -19,7 +19,7 @@ from yarpy.carriers.base import Carrier
 from yarpy.contact import Contact, check_name
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
-from yarpy.errors import AddressError, LinkClosed, NoNameServer, PortClosed, Timeout, YarpError
+from yarpy.errors import AddressError, NoNameServer, PortClosed, YarpError
 from yarpy.link.acceptor import Acceptor
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import welcome
@@ -78,6 +78,7 @@ class Hub:
         self.interrupted = False
         self.on_admin: Callable[[Message], object] | None = None
         self.on_inputs: Callable[[], None] = lambda: None  # the reader looks at them again
+        self._greeting: set[threading.Thread] = set()  # connections that are being welcomed
         self.lock = threading.Lock()  # replaces the tuples of links
         self.group_name = ""  # the temporary name of our multicast group
         self.key = secret()
@@ -173,6 +174,7 @@ class Hub:
         """The life of one accepted connection, in its own thread."""
         transport = TcpTransport(sock)
         peer = _peer(transport)
+        self._greeting.add(threading.current_thread())
         try:
             found = welcome(transport, self.name, self.port, key=self.key, limit=self.limit)
         except (YarpError, OSError) as error:
@@ -180,6 +182,8 @@ class Hub:
             if not self.closing:
                 log.warning("%s: connection from %s refused: %s", self.name, peer, error)
             return
+        finally:
+            self._greeting.discard(threading.current_thread())
         if found is None:
             transport.close()
             return
@@ -193,10 +197,13 @@ class Hub:
         if link.route.source.startswith("/"):
             self._displace(link.route.source)
         with self.lock:
-            if self.closing:
-                driver.transport.close()
-                return
-            self.inputs = (*self.inputs, link)
+            late = self.closing
+            if not late:
+                self.inputs = (*self.inputs, link)
+        if late:
+            self._ask_to_leave(link.route.source)
+            driver.transport.close()
+            return
         self.on_inputs()
         self.report(link, created=True)
         link.serve()
@@ -327,6 +334,9 @@ class Hub:
             self.closing = True
         repair.forget(self)
         self.mailbox.interrupt()
+        soon = time.monotonic() + 0.3
+        for thread in tuple(self._greeting):  # who is just arriving is told to leave as well
+            thread.join(max(0.0, soon - time.monotonic()))
         self._ask_senders_to_leave()
         for output in self.outputs:
             command.close_output(self, output)
@@ -350,12 +360,14 @@ class Hub:
     def _ask_senders_to_leave(self) -> None:
         """Ports that send to us hear it from us, so that they do not take it for a failure."""
         for link in self.inputs:
-            source = link.route.source
-            if source.startswith("/") and source != self.name:
-                try:
-                    repair.ask_to_disconnect(self, source)
-                except (LinkClosed, Timeout, YarpError, OSError):
-                    continue  # it will notice by itself
+            self._ask_to_leave(link.route.source)
+
+    def _ask_to_leave(self, source: str) -> None:
+        if source.startswith("/") and source != self.name:
+            try:
+                repair.ask_to_disconnect(self, source)
+            except (YarpError, OSError):
+                pass  # it will notice by itself
 
     def snapshot(self) -> dict[str, Any]:
         """Counters of every connection, and of the mailbox."""
