@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
 import yarpy
@@ -39,4 +40,15 @@ def test_a_list_may_be_changed_after_writing(ports):
         assert writer.write(numbers) == 1
         numbers[:] = [-1] * 100
         assert reader.read(timeout=5).value == [number] * 100
+        writer.flush(timeout=5)
+
+
+def test_an_array_may_be_changed_after_writing(ports):
+    """Also when it leaves later, in the thread of its connection, and is too large to be copied."""
+    writer, reader = ports
+    for turn in range(20):
+        image = np.full((200, 200), turn, np.uint8)
+        assert writer.write(image) == 1
+        image[:] = 255
+        assert int(reader.read(timeout=5).value.array.max()) == turn
         writer.flush(timeout=5)

@@ -75,7 +75,7 @@ class Outbound:
         Blocks while the peer is WINDOW acknowledgements behind. Raises LinkClosed.
         """
         if self._queue is not None:
-            self._encode(packet)
+            packet.own(self.carrier.spelling)  # what cannot be sent is the writer's error
             self._queue.wait_put(packet)
             return
         with self._lock:
@@ -90,16 +90,8 @@ class Outbound:
             self.counter.drops += 1
             return False
         assert self._queue is not None
-        self._encode(packet)
+        packet.own(self.carrier.spelling)
         return self._queue.put(packet)
-
-    def _encode(self, packet: Packet) -> None:
-        """Spell `packet` in the writer's thread, not in the one that sends: what cannot be sent is
-        the writer's error, and it may change its lists when `write` returns."""
-        if self.carrier.spelling == "binary":
-            _ = packet.blocks
-        elif self.carrier.spelling == "text":
-            _ = packet.line
 
     def _caught_up(self) -> bool:
         """Whether the reader has taken the last message."""

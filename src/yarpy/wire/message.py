@@ -71,6 +71,16 @@ class Packet:
             self._blocks = codec.encode(self.value)
         return self._blocks
 
+    def own(self, spelling: Spelling) -> None:
+        """Encode now, into memory of our own: the message leaves later, its writer goes on."""
+        if spelling == "text":
+            _ = self.line
+        elif spelling == "binary":
+            blocks = self.blocks
+            if any(type(block) is not bytes for block in blocks):
+                self._blocks = tuple(map(bytes, blocks))
+                self.framed = None
+
     @property
     def small(self) -> bool:
         """Whether it is encoded into memory of its own: nothing the writer may change meanwhile."""
