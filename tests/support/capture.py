@@ -43,6 +43,8 @@ class Capture:
     """`initiator_port` and `acceptor_port` of the TCP connection, where known."""
     ends: list[tuple[str, int]] = field(default_factory=list)
     """Who hung up, after how many steps."""
+    roles: dict[str, str] = field(default_factory=dict)
+    """What `a` and `b` were, in words."""
 
     def masked(self, step: Step, data: bytes) -> bytes:
         """`data` with the variable ranges of `step` blanked, for comparing with its bytes."""
@@ -79,7 +81,7 @@ def load_capture(name: str) -> Capture:
         for index, item in enumerate(raw["steps"])
     ]
     ends = [(end["from"], end["after_step"]) for end in raw.get("ends") or []]
-    return Capture(raw["name"], steps, variable, raw.get("ports") or {}, ends)
+    return Capture(raw["name"], steps, variable, raw.get("ports") or {}, ends, raw["roles"])
 
 
 @cache

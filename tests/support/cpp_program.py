@@ -62,7 +62,8 @@ class CppProgram:
         """The value of the step that was begun."""
         answer = self.process.wait_line("", timeout=timeout, count=self._steps, stream="out")
         state, value = json.loads(answer.string)
-        assert state == "done", f"{value}\nafter it had said:\n{self.process.stderr}"
+        said = "\n".join(self.process.stderr.splitlines()[-20:])
+        assert state == "done", f"{value}\nafter it had said:\n{said}"
         return value
 
     def __enter__(self) -> Self:

@@ -7,6 +7,7 @@ that is not listed here has to be equal, byte for byte. What cannot be replayed 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -58,6 +59,16 @@ LINE_END = (
 )
 SOUND = "C++ prints a Sound, which is no Bottle, as an empty line ended by LF; we by CR LF"
 
+
+def matching(pattern: str) -> Check:
+    """Text that is wholly of this shape."""
+
+    def check(data: bytes) -> None:
+        assert re.fullmatch(pattern.encode(), data), data
+
+    return check
+
+
 # Common to replays with bytes alone and to those against a real port.
 DIFFERENT: dict[str, dict[int, Difference]] = {
     "bad_bottle_code": {
@@ -84,4 +95,88 @@ DIFFERENT: dict[str, dict[int, Difference]] = {
         6: Difference(b"[mat] [mono] (1 6 1 3 2) {0 10 20 1 11 21}\r\n<ACK>\r\n", LINE_END),
         8: Difference(b"\r\n<ACK>\r\n", SOUND),
     },
+}
+
+ROS_WORDS = (
+    "C++ acknowledges the words of ROS slaves twice and hangs up; we acknowledge once and stay: it "
+    "is the http connection of a ROS node that ends after one request"
+)
+MONITORS = "monitors of ports come with the monitor plug-ins"
+OWN_TEXT = "the prayers are our own; the first two lines are fixed"
+POLICY_NAMES = "C++ reads the word SCHED_FIFO as policy 0; we know the names"
+MODIFIERS = "C++ refuses a connection whose filter it cannot load when the first command comes"
+DEADLOCK = "C++ deadlocks when a connection asks for its own end; we answer, end it, and serve on"
+
+SELF = (
+    r"\(sched \(\(policy -?\d+\) \(priority -?\d+\) \(tid \d+\)\)\) "
+    r'\(process \(\(arguments ".*"\) \(name .*\) \(pid \d+\) \(policy \d\) \(priority \d+\)\)\) '
+    r'\(platform \(\(hostname "127\.0\.0\.1"\) \(os \w+\)\)\) '
+    r'\(port \(\(is_input 1\) \(is_output 1\) \(is_rpc 0\) \(type ""\)\)\)\r\n<ACK>\r\n'
+)
+
+# Only against real ports: these answers depend on what a port is and does.
+LIVE_DIFFERENT: dict[str, dict[int, Difference]] = {
+    **DIFFERENT,
+    "admin_atch_dtch": {
+        step: Difference(
+            b'[fail] "Portmonitor carrier modifier cannot be find or it is not enabled in YARP!"'
+            b"\r\n<ACK>\r\n",
+            MONITORS,
+        )
+        for step in (6, 8)
+    },
+    "admin_pray": {
+        2: Difference(
+            matching(
+                r'"You begin praying to cap\." "You finish your prayer\."( "[^"]+")+\r\n<ACK>\r\n'
+            ),
+            OWN_TEXT,
+        )
+    },
+    "admin_prop_sched": {
+        2: Difference(matching(SELF), "another process on another machine"),
+        10: Difference(
+            b"(sched ((policy 1) (priority 30) (tid -1))) (qos ((tos 0)))\r\n<ACK>\r\n",
+            POLICY_NAMES,
+        ),
+    },
+    "ns_admin": {12: Difference(matching(SELF), "another process on another machine")},
+    "admin_ros_getPid": {
+        2: Difference(matching(r'1 "" \d+\r\n<ACK>\r\n'), ROS_WORDS),
+        4: Difference(b"<ACK>\r\n", ROS_WORDS),
+    },
+    "admin_ros_publisherUpdate": {
+        2: Difference(b"1 ok\r\n<ACK>\r\n", ROS_WORDS),
+        4: Difference(b"<ACK>\r\n", ROS_WORDS),
+    },
+    "admin_ros_requestTopic": {
+        2: Difference(
+            matching(r'1 "/cap/out" \(TCPROS "127\.0\.0\.1" \d+\)\r\n<ACK>\r\n'), ROS_WORDS
+        ),
+        4: Difference(b"<ACK>\r\n", ROS_WORDS),
+    },
+    "telnet_sender_spaces": {
+        2: Difference(
+            matching(
+                r"This is /cap/srv at tcp://127\.0\.0\.1:\d+/\r\n"
+                r"There are no outgoing connections\r\n"
+                r"There is an input connection from /my to /cap/srv using text\+port\+recv\.x\r\n"
+            ),
+            MODIFIERS,
+        )
+    },
+    "telnet_drop_self_after": {
+        0: Difference(
+            matching(
+                r"Welcome other\r\nThis is /cap/self at tcp://127\.0\.0\.1:\d+/\r\n"
+                r"There are no outgoing connections\r\n"
+                r"There is an input connection from other to /cap/self using text_ack\r\n<ACK>\r\n"
+            ),
+            DEADLOCK,
+        )
+    },
+}
+
+NOT_REPLAYED: dict[str, str] = {
+    "api_style_http_1": "http is a carrier of a later part",
 }

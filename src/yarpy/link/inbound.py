@@ -78,6 +78,7 @@ class Inbound:
         self._closing = False
         self._quit = False
         self._reversed = False
+        self._asker = 0  # the thread that carries out a command of the peer
         self._woken = threading.Event()
 
     @property
@@ -303,6 +304,7 @@ class Inbound:
         """A port command that is not data."""
         carrier, stream = self.carrier, self.driver.stream
         self._owe_acks()
+        self._asker = threading.get_ident()
         if message.key == "a":
             carrier.encode_reply(stream, self.owner.administer(self, message))
         elif message.key == QUIT:
@@ -311,15 +313,27 @@ class Inbound:
             self._reversed = True
         else:
             carrier.encode_lines(stream, self.owner.command(self, message))
+        self._asker = 0
         if carrier.acks:
             carrier.encode_ack(stream)
         self.driver.flush()
 
     # -- ending -----------------------------------------------------------------------------------
 
+    @property
+    def asking(self) -> bool:
+        """Whether the caller is carrying out a command that came over this very connection."""
+        return self._asker == threading.get_ident()
+
     def close(self) -> None:
-        """End the connection from our side; its thread notices. Any thread may call."""
+        """End the connection from our side; its thread notices. Any thread may call.
+
+        A command that asks for the end of its own connection is answered first.
+        """
         self._closing = True
+        if self.asking:
+            self._quit = True
+            return
         self._woken.set()
         self.driver.transport.interrupt()
 

@@ -51,7 +51,7 @@ _HELP = (
         "set properties of the current process (e.g., scheduling priority, pid)",
     ),
     ("[atch] [out] $prop", "attach a portmonitor plug-in to the port's output"),
-    ("[atch] [in] $prop", "attach a portmonitor plug-in to the port's input"),
+    ("[atch] [in]  $prop", "attach a portmonitor plug-in to the port's input"),
     ("[dtch] [out]", "detach portmonitor plug-in from the port's output"),
     ("[dtch] [in]", "detach portmonitor plug-in from the port's input"),
 )
