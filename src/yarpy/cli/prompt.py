@@ -1,0 +1,102 @@
+"""Lines that somebody types, or that a pipe brings.
+
+Rules: at a terminal there is a prompt, line editing, history and completion; over a pipe there is
+nothing of it. The last line counts also without its line end, and a line that begins with a
+control character ends the input, as in C++. History is kept per prompt under the data home; where
+it cannot be written there is none.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, Final
+
+HISTORY: Final = 1000  # lines kept
+
+Complete = Callable[[], list[str]]
+
+
+def lines(prompt: str = ">>", history: str = "", complete: Complete | None = None) -> Iterator[str]:
+    """The lines of standard input, without their ends.
+
+    history: name of the file that remembers them. complete: the words that Tab offers, asked for
+    when it is first pressed.
+    """
+    source = _typed(prompt, history, complete) if at_terminal() else _piped()
+    for line in source:
+        if line and line[0] < " " and line[0] != "\t":
+            return
+        yield line
+
+
+def at_terminal() -> bool:
+    """Whether a person sits at both ends."""
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def history_file(name: str) -> Path:
+    """Where the lines typed at the prompt called `name` (a port) are remembered."""
+    from yarpy.names.configuration import safe_name
+    from yarpy.names.resource import data_home
+
+    return data_home(os.environ) / "history" / safe_name(name).strip("_")
+
+
+def _piped() -> Iterator[str]:
+    for line in sys.stdin:
+        yield line.rstrip("\r\n")
+
+
+def _typed(prompt: str, history: str, complete: Complete | None) -> Iterator[str]:
+    readline = _readline()
+    path = history_file(history) if history else None
+    if readline is not None:
+        readline.set_history_length(HISTORY)
+        readline.set_completer(Completer(complete) if complete is not None else None)
+        # macOS has another library under the same name, with its own language.
+        other = "libedit" in (readline.__doc__ or "")
+        readline.parse_and_bind("bind ^I rl_complete" if other else "tab: complete")
+        if path is not None:
+            with contextlib.suppress(OSError):
+                readline.read_history_file(path)
+    try:
+        while True:
+            try:
+                line = input(prompt)
+            except EOFError:
+                print()
+                return
+            yield line
+    finally:
+        if readline is not None and path is not None:
+            with contextlib.suppress(OSError):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                readline.write_history_file(path)
+
+
+class Completer:
+    """What readline calls for the first, second ... word that `text` may become."""
+
+    def __init__(self, words: Complete) -> None:
+        self._words = words
+        self._known: list[str] | None = None
+
+    def __call__(self, text: str, number: int) -> str | None:
+        if self._known is None:
+            self._known = self._words()
+        found = [word for word in self._known if word.startswith(text)]
+        # Python takes readline's blank behind a completed word away; here it is again.
+        return f"{found[number]} " if number < len(found) else None
+
+
+def _readline() -> Any:
+    """The module, None where the system has none (Windows)."""
+    try:
+        import readline
+    except ImportError:
+        return None
+    return readline
