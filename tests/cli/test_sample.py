@@ -1,0 +1,50 @@
+"""`yarpy sample`."""
+
+import time
+
+import pytest
+
+import yarpy
+
+
+def test_drops_and_repeats_at_a_constant_rate(cli, names):
+    words = ("--output", "/sample/a", "--rate", "20", "--input", "/sample/source", "--show")
+    with (
+        yarpy.Port("/sample/source", names=names) as source,
+        yarpy.BufferedPort("/sample/sink", strict=True, names=names) as sink,
+        cli.start("sample", *words) as process,
+    ):
+        assert source.wait_for_outputs(timeout=10)
+        sink.listen_to("/sample/a")
+        started = time.monotonic()
+        for number in range(50):
+            source.write([number], yarpy.Stamp(number, 1.0))
+            time.sleep(0.01)
+        values = [sink.read(timeout=10) for _ in range(30)]
+        passed = time.monotonic() - started
+        numbers = [message.value[0] for message in values]
+        assert numbers == sorted(numbers)
+        assert len(set(numbers)) < 40  # many were dropped
+        assert numbers[-1] == 49 and numbers.count(49) > 1  # the last one comes again
+        assert 1.0 < passed < 4.0  # 30 messages at 20 Hz
+        assert values[-1].stamp == yarpy.Stamp(49, 1.0)
+        process.wait_line("^49$", stream="out")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        (),
+        ("--output", "/sample/b"),
+        ("--output", "/sample/b", "--rate", "1", "--period", "1"),
+        ("--output", "/sample/b", "--rate", "0"),
+        ("--rate", "1"),
+    ],
+)
+def test_wrong_options(here, words):
+    assert here("sample", *words).code == 1
+
+
+def test_a_source_that_is_not_there(here, names):
+    assert here("sample", "--output", "/sample/c", "--rate", "1", "--input", "/nobody").code == 1
+    assert names.query("/sample/c") is None
