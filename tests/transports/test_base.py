@@ -1,0 +1,149 @@
+"""What all sockets do alike: sending many buffers, waiting with a limit, being woken."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from yarpy.transports.base import SocketTransport, address_of, send_all, timeval
+
+Pair = tuple[SocketTransport, SocketTransport]
+
+
+@pytest.fixture
+def pair() -> Iterator[Pair]:
+    left, right = socket.socketpair()
+    ends = SocketTransport(left), SocketTransport(right)
+    yield ends
+    for end in ends:
+        end.close()
+
+
+def receive(end: SocketTransport, count: int) -> bytes:
+    data = bytearray()
+    room = memoryview(bytearray(65536))
+    while len(data) < count:
+        got = end.recv_into(room)
+        assert got
+        data += room[:got]
+    return bytes(data)
+
+
+@pytest.mark.parametrize(
+    "sizes",
+    [[1], [5, 5], [1] * 10, [1] * 3000, [100_000, 1, 100_000], [0, 5, 0], [700_000, 700_000]],
+    ids=str,
+)
+def test_buffers_arrive_in_order_and_whole(pair: Pair, sizes: list[int]) -> None:
+    buffers = [bytes([number % 251]) * size for number, size in enumerate(sizes)]
+    sender = threading.Thread(target=pair[0].send, args=(buffers,))
+    sender.start()
+    assert receive(pair[1], sum(sizes)) == b"".join(buffers)
+    sender.join(5)
+
+
+def test_send_goes_on_where_the_kernel_stopped() -> None:
+    """A socket that takes little at a time gets the rest from the middle of a buffer."""
+
+    class Reluctant:
+        def __init__(self) -> None:
+            self.got = bytearray()
+
+        def sendmsg(self, buffers: list[bytes]) -> int:
+            data = b"".join(bytes(b) for b in buffers)[:7]
+            self.got += data
+            return len(data)
+
+    sock = Reluctant()
+    send_all(sock, [b"0123456789", b"", b"abc", memoryview(b"xyz" * 5)])  # type: ignore[arg-type]
+    assert sock.got == b"0123456789abc" + b"xyz" * 5
+
+
+def test_without_sendmsg_buffers_are_joined() -> None:
+    class Windows:
+        def __init__(self) -> None:
+            self.got = b""
+
+        def sendall(self, data: bytes) -> None:
+            self.got += data
+
+    sock = Windows()
+    send_all(sock, [b"a", b"b"])  # type: ignore[arg-type]
+    assert sock.got == b"ab"
+
+
+def test_trying_does_not_wait(pair: Pair) -> None:
+    room = memoryview(bytearray(10))
+    assert pair[1].try_recv_into(room) == -1
+    pair[0].send([b"abc"])
+    assert pair[1].try_recv_into(room) == 3
+    pair[0].close()
+    assert pair[1].try_recv_into(room) == 0
+
+
+def test_waiting_has_a_limit_that_can_be_lifted(pair: Pair) -> None:
+    room = memoryview(bytearray(10))
+    pair[1].limit_waiting(0.05)
+    started = time.monotonic()
+    with pytest.raises(BlockingIOError):
+        pair[1].recv_into(room)
+    assert 0.04 < time.monotonic() - started < 2
+    pair[1].limit_waiting(None)
+    threading.Timer(0.1, pair[0].send, ([b"late"],)).start()
+    assert pair[1].recv_into(room) == 4
+
+
+def test_sending_has_the_same_limit(pair: Pair) -> None:
+    pair[0].limit_waiting(0.05)
+    with pytest.raises((BlockingIOError, TimeoutError)):
+        pair[0].send([bytes(100_000_000)])
+
+
+def test_end_of_the_peer_is_seen_without_reading(pair: Pair) -> None:
+    assert not pair[1].ended()
+    pair[0].send([b"last words"])
+    assert not pair[1].ended()
+    pair[0].close()
+    assert not pair[1].ended()  # there is something left to read
+    assert receive(pair[1], 10) == b"last words"
+    assert pair[1].ended()
+
+
+def test_interrupt_wakes_who_waits(pair: Pair) -> None:
+    found: list[int] = []
+    waiter = threading.Thread(
+        target=lambda: found.append(pair[1].recv_into(memoryview(bytearray(10))))
+    )
+    waiter.start()
+    time.sleep(0.05)
+    pair[1].interrupt()
+    waiter.join(5)
+    assert found == [0]
+    pair[1].interrupt()  # again does no harm
+    pair[1].close()
+    pair[1].interrupt()
+    pair[1].close()
+
+
+@pytest.mark.parametrize(
+    ("raw", "wanted"),
+    [
+        (("127.0.0.1", 80), ("127.0.0.1", 80)),
+        (("::ffff:10.0.0.1", 80, 0, 0), ("10.0.0.1", 80)),
+        (("fe80::1", 80, 0, 2), ("fe80::1", 80)),
+        ("/path", ("/path", 0)),
+    ],
+)
+def test_addresses(raw: object, wanted: tuple[str, int]) -> None:
+    assert address_of(raw) == wanted
+
+
+def test_time_limits_are_never_nothing() -> None:
+    """Zero would mean for ever."""
+    assert timeval(None) == bytes(len(timeval(None)))
+    for seconds in (0.0, 1e-9, 0.5, 3.25):
+        assert timeval(seconds) != timeval(None)

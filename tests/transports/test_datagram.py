@@ -1,0 +1,157 @@
+"""UDP and multicast sockets: borders, wakers, and what the kernel lost."""
+
+from __future__ import annotations
+
+import socket
+import sys
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+from support.port import free_port
+
+from yarpy.transports.datagram import DatagramTransport, open_mcast, open_udp
+
+HOME = ("127.0.0.1", 0)
+
+
+def receive(end: DatagramTransport) -> bytes:
+    room = memoryview(bytearray(65536))
+    return bytes(room[: end.recv_into(room)])
+
+
+def pair() -> tuple[DatagramTransport, DatagramTransport]:
+    listening = open_udp(True, HOME, HOME, 0)
+    listening.limit_waiting(5)
+    return open_udp(False, HOME, HOME, listening.port), listening
+
+
+def test_each_send_is_a_datagram() -> None:
+    near, far = pair()
+    near.send([b"one", b"two" * 1000])
+    near.send([b"three"])
+    assert [receive(far) for _ in range(3)] == [b"one", b"two" * 1000, b"three"]
+    near.close()
+    far.close()
+
+
+def test_sender_keeps_the_number_of_its_tcp_port() -> None:
+    """The peer may have noted it; if it is taken any other does."""
+    number = free_port()
+    first = open_udp(False, ("127.0.0.1", number), HOME, 9)
+    assert first.port == number
+    second = open_udp(False, ("127.0.0.1", number), HOME, 9)
+    assert second.port != number
+    first.close()
+    second.close()
+
+
+def test_receiver_cannot_send() -> None:
+    near, far = pair()
+    with pytest.raises(OSError, match="only receives"):
+        far.send([b"x"])
+    assert not far.ended()
+    near.close()
+    far.close()
+
+
+def test_empty_datagram_is_not_an_end() -> None:
+    """Anybody can send one."""
+    near, far = pair()
+    near.send([b"", b"", b"after"])
+    assert receive(far) == b"after"
+    room = memoryview(bytearray(10))
+    near.send([b""])
+    time.sleep(0.02)
+    assert far.try_recv_into(room) == -1
+    near.close()
+    far.close()
+
+
+def test_trying_does_not_wait() -> None:
+    near, far = pair()
+    room = memoryview(bytearray(10))
+    assert far.try_recv_into(room) == -1
+    near.send([b"abc"])
+    deadline = time.monotonic() + 5
+    count = -1
+    while count < 0 and time.monotonic() < deadline:
+        count = far.try_recv_into(room)
+    assert count == 3
+    near.close()
+    far.close()
+
+
+def woken(end: DatagramTransport, wake: Callable[[], None]) -> float:
+    """How long it takes to wake a receiver that waits."""
+    done: list[float] = []
+
+    def wait() -> None:
+        assert end.recv_into(memoryview(bytearray(10))) == 0
+        done.append(time.monotonic())
+
+    thread = threading.Thread(target=wait, daemon=True)
+    thread.start()
+    time.sleep(0.05)
+    started = time.monotonic()
+    wake()
+    thread.join(5)
+    assert done, "the receiver still waits"
+    return done[0] - started
+
+
+def test_interrupt_wakes_a_receiver() -> None:
+    near, far = pair()
+    far.limit_waiting(None)
+    assert woken(far, far.interrupt) < 1
+    near.close()
+    far.close()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux counts them")
+def test_what_the_kernel_drops_is_counted() -> None:
+    near, far = pair()
+    far.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    for _ in range(200):
+        near.send([b"x" * 500])
+    room = memoryview(bytearray(1000))
+    got = 0
+    while far.try_recv_into(room) > 0:
+        got += 1
+    near.send([b"the next one tells"])
+    far.recv_into(room)
+    assert got < 200
+    assert far.dropped == 200 - got
+    near.close()
+    far.close()
+
+
+# ---------------------------------------------------------------------------------- multicast
+
+GROUP = "224.1.200.7"
+
+
+def test_group_reaches_every_member_and_the_port_stays_shared() -> None:
+    number = free_port()
+    members = [open_mcast(True, HOME, GROUP, number) for _ in range(2)]
+    sender = open_mcast(False, HOME, GROUP, number)
+    sender.send([b"to all"])
+    for member in members:
+        found: list[bytes] = []
+        thread = threading.Thread(target=lambda m=member, f=found: f.append(receive(m)))
+        thread.start()
+        thread.join(5)
+        assert found == [b"to all"]
+    for end in (*members, sender):
+        end.close()
+
+
+def test_member_leaves_without_troubling_the_group() -> None:
+    number = free_port()
+    leaving, staying = (open_mcast(True, HOME, GROUP, number) for _ in range(2))
+    assert woken(leaving, leaving.interrupt) < 1
+    room = memoryview(bytearray(10))
+    assert staying.try_recv_into(room) == -1
+    leaving.close()
+    staying.close()

@@ -1,0 +1,118 @@
+"""Unix sockets: where they lie, how the two sides meet, what is cleaned up."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from yarpy.errors import LocalProtocolError
+from yarpy.transports import unix
+from yarpy.transports.unix import UnixTransport, open_unix, runtime_directory
+
+ACCEPTOR, INITIATOR = ("127.0.0.1", 21605), ("127.0.0.1", 47340)
+
+
+@pytest.fixture(autouse=True)
+def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    monkeypatch.setenv("YARP_RUNTIME_DIR", str(tmp_path))
+    return tmp_path
+
+
+def meet() -> tuple[UnixTransport, UnixTransport]:
+    listening = open_unix(True, ACCEPTOR, INITIATOR)
+    dialling = open_unix(False, INITIATOR, ACCEPTOR)
+    thread = threading.Thread(target=listening.ready)
+    thread.start()
+    dialling.ready()
+    thread.join(5)
+    return listening, dialling
+
+
+def test_path_is_made_of_both_numbers(directory: Path) -> None:
+    listening = open_unix(True, ACCEPTOR, INITIATOR)
+    assert [p.name for p in directory.iterdir()] == ["21605_47340.sock"]
+    listening.close()
+    assert list(directory.iterdir()) == []
+
+
+def test_two_sides_meet_and_the_path_is_gone(directory: Path) -> None:
+    listening, dialling = meet()
+    assert list(directory.iterdir()) == []
+    room = memoryview(bytearray(10))
+    dialling.send([b"there"])
+    assert listening.recv_into(room) == 5
+    listening.send([b"back"])
+    assert dialling.recv_into(room) == 4
+    dialling.close()
+    assert listening.recv_into(room) == 0
+    listening.close()
+
+
+def test_dialling_side_may_come_first() -> None:
+    dialling = open_unix(False, INITIATOR, ACCEPTOR)
+    thread = threading.Thread(target=dialling.ready)
+    thread.start()
+    time.sleep(0.1)
+    listening = open_unix(True, ACCEPTOR, INITIATOR)
+    listening.ready()
+    thread.join(5)
+    assert not thread.is_alive()
+    listening.close()
+    dialling.close()
+
+
+def test_peer_that_never_comes(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(unix, "PATIENCE", 0.1)
+    listening = open_unix(True, ACCEPTOR, INITIATOR)
+    with pytest.raises(TimeoutError):
+        listening.ready()
+    assert list(directory.iterdir()) == []
+    dialling = open_unix(False, INITIATOR, ACCEPTOR)
+    with pytest.raises(FileNotFoundError):
+        dialling.ready()
+    dialling.close()
+
+
+def test_leftover_of_a_dead_process_is_replaced(directory: Path) -> None:
+    (directory / "21605_47340.sock").write_text("old")
+    listening, dialling = meet()
+    listening.close()
+    dialling.close()
+
+
+def test_only_for_one_host() -> None:
+    with pytest.raises(LocalProtocolError, match="use tcp"):
+        open_unix(False, INITIATOR, ("10.0.0.1", 21605))
+
+
+def test_no_packet_priority() -> None:
+    listening, dialling = meet()
+    with pytest.raises(LocalProtocolError, match="packet priority"):
+        dialling.set_dscp(8)
+    listening.close()
+    dialling.close()
+
+
+@pytest.mark.parametrize(
+    ("variables", "wanted"),
+    [
+        ({"YARP_RUNTIME_DIR": "/r"}, "/r"),
+        ({"XDG_RUNTIME_DIR": "/run/user/1"}, "/run/user/1/yarp"),
+        ({"USER": "me"}, "/tmp/runtime-me/yarp"),
+        ({"USER": "me", "TMPDIR": "/t"}, "/t/runtime-me/yarp"),
+        ({"YARP_RUNTIME_DIR": "/r", "XDG_RUNTIME_DIR": "/x"}, "/r"),
+    ],
+)
+def test_directory_is_where_cpp_has_it(
+    variables: dict[str, str], wanted: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("YARP_RUNTIME_DIR", "XDG_RUNTIME_DIR", "TMPDIR", "USER"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(unix.tempfile, "gettempdir", lambda: "/tmp")
+    assert str(runtime_directory()) == wanted
