@@ -53,6 +53,7 @@ class Port:
         self._arrived = asyncio.Event()
         self._port: plain.Port | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._asked: set[_Arrival] = set()  # questions that were read and not answered yet
         self._closed = False
         self.drops = 0
 
@@ -74,9 +75,10 @@ class Port:
         self._closed = True
         if port is not None:
             self._arrived.set()
-            for arrival in self._inbox:
+            for arrival in (*self._inbox, *self._asked):
                 arrival.release()
             self._inbox.clear()
+            self._asked.clear()
             await asyncio.to_thread(port.close)
 
     async def __aenter__(self) -> Self:
@@ -188,6 +190,9 @@ class Port:
     def _next(self) -> Message:
         arrival = self._inbox.popleft()
         arrival.go_on()
+        self._asked = {asked for asked in self._asked if not asked.done}
+        if not arrival.done:
+            self._asked.add(arrival)
         if len(self._inbox) >= self._limit:
             self._inbox[self._limit - 1].go_on()
         return arrival.message
@@ -212,7 +217,13 @@ class _Arrival:
 
             message.answer = reply
 
+    @property
+    def done(self) -> bool:
+        """Whether its connection may go on."""
+        return self._done.is_set()
+
     def wait(self) -> None:
+        """Wait, in the connection's thread, until it may go on."""
         self._done.wait()
 
     def go_on(self) -> None:

@@ -142,38 +142,34 @@ class RpcClient(BasePort):
     def ask(self, question: object, timeout: float | None = None) -> Message | None:
         """As `call` with one argument, but returns the whole Message; None if there is no reply."""
         self._check_open()
-        packet = Packet(question, key=CALL)
         link = self._link()
         try:
-            return link.call(packet, timeout)
+            return link.call(Packet(question, key=CALL), timeout)
         except LinkClosed as error:
             self._hub.drop_output(link, str(error))
-            # The server may have been restarted since the last call: once more, with a new
-            # connection.
-            try:
-                return self._again(link).call(packet, timeout)
-            except LinkClosed:
-                raise LinkClosed(f'"{link.route.target}" went away during the call') from error
+            # Not asked again: the server may have done what it was told before it went away.
+            raise LinkClosed(f'"{link.route.target}" went away during the call') from error
         except YarpError as error:
             if link.broken:
-                self._hub.drop_output(link, str(error), lost=True)
+                self._hub.drop_output(link, str(error))
             raise
 
     def _link(self) -> Outbound:
+        """The connection to the server: the one there is, if it lives, else a new one."""
+        target, carrier = self._target, self._carrier
         for link in self._hub.outputs:
-            if not link.broken:
+            if not link.ended():
                 return link
-        if self._target:
-            super().connect(self._target, self._carrier)
+            # The server was restarted, or the last call did not end well.
+            target, carrier = link.route.target, link.route.carrier
+            self._hub.drop_output(link, "the server hung up")
+        if target:
+            super().connect(target, carrier)
             return self._hub.outputs[0]
         raise LocalProtocolError(
             f'"{self.name}" is not connected to a server: connect("/server"), or from outside '
             f"`yarpy connect {self.name} /server`"
         )
-
-    def _again(self, old: Outbound) -> Outbound:
-        super().connect(old.route.target, old.route.carrier)
-        return self._hub.outputs[0]
 
 
 def _is_message(value: object) -> bool:
