@@ -1,0 +1,152 @@
+"""The frame of the command: verbs are found, errors are one line, exit codes are as promised."""
+
+import importlib
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import click
+import pytest
+
+from yarpy import registry
+from yarpy.cli import main as frame
+
+SOURCE = Path(frame.__file__).parent
+FRAME = {"main", "ending", "journal", "opening", "prompt", "relay", "service", "spelling"}
+
+
+def test_every_verb_has_a_module_and_every_module_is_a_verb():
+    modules = {path.stem for path in SOURCE.glob("*.py")} - FRAME - {"__init__"}
+    assert modules == set(frame.VERBS)
+
+
+@pytest.mark.parametrize("verb", frame.VERBS)
+def test_every_verb_explains_itself(verb, here):
+    assert isinstance(importlib.import_module(f"yarpy.cli.{verb}").command, click.Command)
+    said = here(verb, "--help")
+    assert said.code == 0
+    assert said.out.startswith(f"Usage: yarpy {verb} ")
+    assert here("help", verb).out == said.out
+
+
+def test_every_verb_is_in_the_documentation():
+    page = (Path(__file__).parents[2] / "docs" / "cli.md").read_text()
+    headings = " ".join(line for line in page.splitlines() if line.startswith("### "))
+    assert [verb for verb in frame.VERBS if f"`{verb}" not in headings] == []
+
+
+def test_alone_it_lists_the_verbs(cli):
+    said = cli.run()
+    assert said.returncode == 0
+    for verb, line in frame.VERBS.items():
+        assert f"  {verb} " in said.stdout and line in said.stdout
+
+
+def test_version_flag(here):
+    assert here("--version").out == here("version").out
+
+
+def test_unknown_verb(cli):
+    said = cli.run("raed", "/x")
+    assert (said.returncode, said.stdout) == (255, "")
+    assert said.stderr == 'error: no command "raed": did you mean "read"? `yarpy help` lists them\n'
+
+
+def test_wrong_use_is_told_with_the_right_one(here):
+    said = here("exists")
+    assert (said.code, said.out) == (1, "")
+    assert said.err == (
+        "error: Missing argument 'PORT'.\nUsage: yarpy exists [OPTIONS] PORT [TARGET]\n"
+    )
+
+
+def test_an_error_is_one_line(lone):
+    said = lone.run("ping", "/nobody")
+    assert (said.returncode, said.stdout) == (1, "")
+    assert said.stderr.startswith("error: no name server is configured for /root: start one with")
+    assert said.stderr.count("\n") == 1
+
+
+def test_an_error_of_the_system_is_one_line(here, monkeypatch, tmp_path):
+    (tmp_path / "config").write_text("a file where a directory should be")
+    said = here("conf", "127.0.0.1", "10000")
+    assert said.code == 1
+    assert said.err.count("\n") == 1 and said.err.startswith("error: ")
+
+
+def test_verbs_of_other_packages(here, monkeypatch):
+    @click.command()
+    def wave() -> int:
+        """Wave."""
+        click.echo("hello")
+        return 3
+
+    monkeypatch.setattr(frame, "VERBS", frame.VERBS)
+    foreign = registry.Registry("commands", {})
+    foreign.add("wave", wave)
+    foreign.add("odd", print)
+    monkeypatch.setattr(registry, "commands", foreign)
+    assert here("wave")[:2] == (3, "hello\n")
+    assert "wave" in here("help").out
+    said = here("odd")
+    assert said.code == 1 and "is not a click command" in said.err
+
+
+def test_bytes_go_through_as_they_are(cli):
+    """Whatever the locale is: names and data are bytes to a shell."""
+    done = subprocess.run(
+        [sys.executable, "-m", "yarpy", "env", "ODD"],
+        env={**cli.environment, "LC_ALL": "C", "PYTHONUTF8": "0"} | {"ODD": "caf\udce9 é"},
+        capture_output=True,
+        timeout=20,
+    )
+    assert done.stdout == b"ODD=caf\xe9 \xc3\xa9\n"
+
+
+def test_a_reader_that_goes_away_is_no_traceback(cli):
+    with subprocess.Popen(
+        [sys.executable, "-m", "yarpy", "time"],
+        env=cli.environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    ) as process:
+        assert process.stdout is not None and process.stderr is not None
+        process.stdout.readline()
+        process.stdout.close()
+        assert process.wait(20) == 1
+        assert process.stderr.read() == b""
+
+
+def test_installed_command():
+    """The entry point of the package; a bare source tree has none."""
+    script = Path(sys.executable).parent / "yarpy"
+    if not script.exists():
+        pytest.skip("yarpy is not installed beside this interpreter")
+    done = subprocess.run([script, "version"], capture_output=True, text=True, timeout=20)
+    assert (done.returncode, done.stdout.split()[:2]) == (0, ["yarpy", "version"])
+
+
+@pytest.mark.parametrize("words", [("--help",), ("exists", "/nobody")])
+def test_starts_fast(cli, words):
+    """The best of some runs, for busy hosts; an interpreter alone takes a part of it."""
+
+    def seconds(command):
+        started = time.perf_counter()
+        subprocess.run(command, env=cli.environment, capture_output=True, timeout=20)
+        return time.perf_counter() - started
+
+    bare = min(seconds([sys.executable, "-c", "pass"]) for _ in range(3))
+    best = min(seconds([sys.executable, "-m", "yarpy", *words]) for _ in range(5))
+    assert best - bare < 0.150
+
+
+@pytest.mark.parametrize("verb", ["exists", "ping", "where", "name", "version"])
+def test_small_verbs_load_nothing_heavy(verb):
+    heavy = ("numpy", "rich", "sqlite3", "asyncio", "email", "http", "xml", "importlib.metadata")
+    code = (
+        f"import sys; from yarpy.cli.main import find_verb; find_verb({verb!r});"
+        f"print(sorted(set({heavy!r}) & sys.modules.keys()))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20)
+    assert done.stdout.strip() == "[]", done.stderr
