@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from support.vectors import rows
 
+from yarpy.data.bottle import Bottle
 from yarpy.data.sound import Sound
 from yarpy.errors import DecodeError, Truncated
 
@@ -37,6 +38,34 @@ def test_captured_reply():
     )
     assert joined(Sound([5, -6], 44100)) == message
     assert Sound.from_wire(message).array.tolist() == [[5, -6]]
+
+
+# From C++ YARP 3.5: 3 samples of 2 channels, 8000 a second.
+OLD = bytes.fromhex(
+    "00010000020000000001000004000000090000006d617400090000006d6f313601010000050000000200"
+    "00000c0000000200000003000000020000000c0000000c0000000500faff07000000010008000101000001000000"
+    "401f0000"
+)
+
+
+def test_form_of_old_peers():
+    sound = Sound.from_wire(OLD)
+    assert sound == Sound([[5, -6, 7], [0, 1, 8]], 8000)
+    assert sound.to_bottle().to_bytes() == OLD
+    assert sound.to_bottle() == Bottle.from_bytes(OLD)
+    for size in range(16, len(OLD)):
+        with pytest.raises(Truncated) as caught:
+            Sound.from_wire(OLD[:size])
+        assert size < caught.value.need <= len(OLD)
+
+
+@pytest.mark.parametrize("at", [*range(16, 48, 4), 52, 56, 60, 64, 80, 84])
+@pytest.mark.parametrize("word", [-1, 77, 0x7FFFFFFF])
+def test_old_form_with_a_wrong_word(at, word):
+    message = bytearray(OLD)
+    struct.pack_into("<i", message, at, word)
+    with pytest.raises(DecodeError):
+        Sound.from_wire(message)
 
 
 def test_takes_integers_of_any_width():

@@ -3,6 +3,10 @@
     256, 4, 0, samples, 1, channels, 1, bytes per sample, 1, frequency     (ten int32)
     samples of the first channel, of the second ...                        (int16)
 
+YARP up to 3.5 sends a list of two instead, which is read too, and `to_bottle` makes:
+
+    256, 2, an image [mo16] with a row of samples for each channel, 257, 1, frequency
+
 Rules: the 0 is no tag of a Bottle, so a Sound is not one and has no text form. Samples are always
 two bytes: what C++ calls 8-bit sound is sent like that too. A received Sound is a view.
 """
@@ -12,13 +16,19 @@ from __future__ import annotations
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Self
 
-from yarpy.data.value import BIG
+from yarpy.data.bottle import Bottle
+from yarpy.data.value import BIG, Vocab
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 _HEAD = Struct("<10i")
+_OLD = Struct("<17i")
+_OLD_END = Struct("<3i")
+_MAT = 0x0074616D
+_MO16 = 0x36316F6D
+_OLD_START = Struct("<4i").pack(256, 2, 256, 4)
 
 
 class Sound:
@@ -56,22 +66,59 @@ class Sound:
     @classmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
         """A Sound over the bytes of a message; DecodeError if they are none."""
+        if bytes(view[:16]) == _OLD_START:
+            return cls._from_old_wire(view)
         if len(view) < _HEAD.size:
             raise Truncated(f"a Sound has a header of {_HEAD.size} bytes", _HEAD.size)
         code, length, zero, samples, *rest = _HEAD.unpack_from(view)
         one, channels, two, _, three, frequency = rest
         if (code, length, zero, one, two, three) != (256, 4, 0, 1, 1, 1):
             raise DecodeError("no Sound: the header is another one")
+        return cls._over(view, _HEAD.size, channels, samples, frequency)
+
+    @classmethod
+    def _from_old_wire(cls, view: bytes | bytearray | memoryview) -> Self:
+        if len(view) < _OLD.size:
+            raise Truncated(f"an old Sound has a header of {_OLD.size} bytes", _OLD.size)
+        head = _OLD.unpack_from(view)
+        size, samples, channels = head[11], head[13], head[14]
+        image = (9, _MAT, 9, _MO16, 257, 5, 2)
+        if head[4:11] != image or head[15:] != (12, size) or size != 2 * samples * channels:
+            raise DecodeError("no Sound: two lists, but the first is no image of 16-bit samples")
+        end = _OLD.size + max(size, 0) + _OLD_END.size
+        if len(view) < end:
+            raise Truncated(f"this Sound takes {end} bytes, here are {len(view)}", end)
+        code, count, frequency = _OLD_END.unpack_from(view, end - _OLD_END.size)
+        if (code, count) != (257, 1):
+            raise DecodeError("no Sound: the second list is no frequency")
+        return cls._over(view, _OLD.size, channels, samples, frequency)
+
+    @classmethod
+    def _over(
+        cls,
+        view: bytes | bytearray | memoryview,
+        start: int,
+        channels: int,
+        samples: int,
+        frequency: int,
+    ) -> Self:
+        """A Sound whose samples begin at `start` of a message."""
         if samples < 0 or channels < 0:
             raise DecodeError(f"a Sound of {channels} channels with {samples} samples")
-        end = _HEAD.size + 2 * samples * channels
+        end = start + 2 * samples * channels
         if len(view) < end:
             raise Truncated(f"this Sound takes {end} bytes, here are {len(view)}", end)
         self = cls.__new__(cls)
         self.channels, self.length, self.frequency = channels, samples, frequency
         self._array = None
-        self._data = memoryview(view)[_HEAD.size : end]
+        self._data = memoryview(view)[start:end]
         return self
+
+    def to_bottle(self) -> Bottle:
+        """The form for peers of YARP up to 3.5: `port.write(sound.to_bottle())`."""
+        size = len(self._data)
+        image = [Vocab("mat"), Vocab("mo16"), [2, size, 2, self.length, self.channels]]
+        return Bottle([[*image, bytes(self._data)], [self.frequency]])
 
     def to_wire(self) -> tuple[bytes | memoryview, ...]:
         """Header and samples; from 4096 bytes the samples are a block of their own, not copied."""
