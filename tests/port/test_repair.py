@@ -134,3 +134,25 @@ def test_a_closed_reader_is_not_dialled_again_under_the_same_name() -> None:
         with yarpy.BufferedPort("/repair/in") as reader:
             time.sleep(1.2)
             assert not reader.inputs
+
+
+def test_a_connection_to_an_address_comes_back_without_any_name_server(number: int) -> None:
+    place = free_port()
+    with yarpy.Port("", port=free_port()) as writer:
+        for turn in range(2):
+            with yarpy.BufferedPort("", port=place) as reader:
+                if turn == 0:
+                    writer.connect(f"/127.0.0.1:{place}")
+                assert writer.wait_for_outputs(timeout=RECOVERY)
+                writer.write([turn])
+                assert reader.read(timeout=5).value == [turn]
+                for link in reader._hub.inputs:  # as a crash would: without a goodbye
+                    link.driver.transport.interrupt()
+            assert _wait_until(lambda: not writer.outputs)
+
+
+def _wait_until(condition) -> bool:
+    deadline = time.monotonic() + RECOVERY
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return bool(condition())

@@ -45,8 +45,9 @@ GATHER_SECONDS: Final = 200e-6
 class Outbound:
     """One connection out of a port. `background` links send from a thread of their own."""
 
-    def __init__(self, driver: Driver, carrier: Carrier) -> None:
+    def __init__(self, driver: Driver, carrier: Carrier, dialled: bool = True) -> None:
         self.driver = driver
+        self.dialled = dialled  # by us; else the reader came to us, and has to come again
         self.carrier = carrier
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
@@ -129,13 +130,6 @@ class Outbound:
                 self._gather(now)
             else:
                 self._flush()
-            if carrier.acks:
-                if not self.unacknowledged:
-                    self._ahead_since = now
-                    self._ahead_from = driver.bytes_out
-                self.unacknowledged += 1
-                if self.unacknowledged % ASK_EVERY == 0:
-                    self._collect(wait=self.unacknowledged >= WINDOW)
         except YarpError:
             self.counter.drops += 1
             self._break()
@@ -143,11 +137,25 @@ class Outbound:
         counter = self.counter
         counter.count(now)
         counter.bytes = driver.bytes_out
+        if carrier.acks:
+            if not self.unacknowledged:
+                self._ahead_since = now
+                self._ahead_from = driver.bytes_out
+            self.unacknowledged += 1
+            if self.unacknowledged % ASK_EVERY == 0:
+                self._look_for_acks()
         self._left = time.perf_counter()
 
+    def _look_for_acks(self) -> None:
+        try:
+            self._collect(wait=self.unacknowledged >= WINDOW)
+        except YarpError:
+            self._break()
+            raise
+
     def _flush(self) -> None:
-        self._gathered = 0
         self.driver.flush()
+        self._gathered = 0
 
     def _gather(self, now: float) -> None:
         """Leave the message in the stream for the next send of many, which comes soon."""
@@ -156,9 +164,10 @@ class Outbound:
             if self._sweeper is None:
                 self._sweeper = _Sweeper(self)
             self._sweeper.watch()
-        self._gathered += 1
-        if self._gathered >= GATHER or now - self._gathered_since >= GATHER_SECONDS:
+        if self._gathered + 1 >= GATHER or now - self._gathered_since >= GATHER_SECONDS:
             self._flush()
+        else:
+            self._gathered += 1
 
     def sweep(self) -> None:
         """Send what a burst left behind."""
@@ -290,6 +299,8 @@ class Outbound:
 
     def ended(self) -> bool:
         """Whether the peer has hung up, found out without sending anything."""
+        if self.unacknowledged:
+            self._caught_up()  # acknowledgements that nobody read hide the end behind them
         if not self.broken and self.driver.transport.ended():
             with self._lock:
                 self._break()
@@ -349,6 +360,7 @@ class _Background:
         with self._changed:
             self._changed.wait_for(lambda: not self._waiting or self._stopped)
             if self._stopped:
+                self._link.counter.drops += 1
                 raise LinkClosed(f'the connection to "{self._link.route.target}" is gone')
             self._waiting.append(packet)
             self._changed.notify_all()

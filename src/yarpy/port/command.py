@@ -96,7 +96,7 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
     except AddressError as error:
         raise Refused(f"Do not know how to connect to {text}") from error
     carrier = wanted.carrier or "tcp"
-    contact = _locate(hub, wanted)
+    contact = locate(hub, wanted)
     if contact is None:
         raise Refused(f"Do not know how to connect to {text}")
     target = wanted.name or f"/{wanted.address}/"
@@ -154,7 +154,8 @@ def _complain(hub: Hub, target: str, error: Exception) -> None:
         pass  # it is not our business to be heard
 
 
-def _locate(hub: Hub, wanted: Contact) -> Contact | None:
+def locate(hub: Hub, wanted: Contact) -> Contact | None:
+    """Where a destination is; None if no name service knows. Raises Refused if none answers."""
     if wanted.reachable:
         return wanted
     names = hub.service() if wanted.name.startswith("/") else None
@@ -181,7 +182,7 @@ def close_output(hub: Hub, link: Outbound) -> None:
 
 def _receiver(hub: Hub, target: str) -> Contact | None:
     try:
-        return _locate(hub, parse_contact(target))
+        return locate(hub, parse_contact(target))
     except YarpError:
         return None
 

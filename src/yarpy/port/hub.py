@@ -127,7 +127,7 @@ class Hub:
         self.name = contact.name
         if names is not None:
             self.describe(names)
-            repair.watch(self)
+        repair.watch(self)
         log.info("Port %s active at %s", self.name, f"tcp://{contact.address}/")
 
     def _refuse_taken(self, names: NameClient) -> None:
@@ -233,7 +233,7 @@ class Hub:
         route = link.route
         route.source, route.target = self.name, route.source
         self._forget_input(link)
-        output = Outbound(link.driver, link.carrier)
+        output = Outbound(link.driver, link.carrier, dialled=False)
         with self.lock:
             self.outputs = (*self.outputs, output)
         self.report(output, created=True)
@@ -272,7 +272,7 @@ class Hub:
             self._elect()
         if known:
             self.report(link, created=False, reason=reason)
-            if lost and not self.closing and link.route.target.startswith("/"):
+            if lost and link.dialled and not self.closing:
                 repair.output_lost(self, link.route)
         return known
 

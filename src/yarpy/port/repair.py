@@ -9,12 +9,13 @@ sender, once that is back. A name server is watched through a connection of its 
 from __future__ import annotations
 
 import logging
+import socket
 import threading
 import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from yarpy.contact import Contact, Route, modifier
+from yarpy.contact import Contact, Route, modifier, parse_contact
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
 from yarpy.names.base import NameClient
@@ -77,8 +78,6 @@ class Repairer:
 
     def add(self, hub: Hub, route: Route, incoming: bool) -> None:
         """A connection failed."""
-        if not hub.registered:
-            return
         with self._lock:
             self._lost.append(_Lost(hub, route, incoming))
         self._wake.set()
@@ -190,7 +189,7 @@ class Repairer:
         hub, route = item.hub, item.route
         if any(link.route.target == route.target for link in hub.outputs):
             return True
-        contact = hub.names.query(route.target) if hub.names is not None else None
+        contact = command.locate(hub, parse_contact(route.target))
         if contact is None:
             return False
         command.open_output(hub, contact, route.target, route.carrier)
@@ -226,8 +225,6 @@ def _servers(names: NameClient | None) -> list[YarpNameClient]:
 
 def _holds(line: object) -> bool:
     """Whether an idle connection is still open."""
-    import socket
-
     assert isinstance(line, socket.socket)
     try:
         line.setblocking(False)
@@ -239,8 +236,6 @@ def _holds(line: object) -> bool:
 
 
 def _close(line: object) -> None:
-    import socket
-
     assert isinstance(line, socket.socket)
     line.close()
 
@@ -260,14 +255,12 @@ def output_lost(hub: Hub, route: Route) -> None:
 
 def input_lost(hub: Hub, route: Route) -> None:
     """An input ended without a goodbye."""
-    if route.source.startswith("/") and not parse_is_address(route.source):
+    if route.source.startswith("/") and not _is_address(route.source):
         REPAIR.add(hub, route, incoming=True)
 
 
-def parse_is_address(name: str) -> bool:
+def _is_address(name: str) -> bool:
     """Whether a route's name is really an address, which nobody can be asked at."""
-    from yarpy.contact import parse_contact
-
     try:
         return parse_contact(name).reachable
     except YarpError:

@@ -7,6 +7,7 @@ mapped to ours by the driver alone.
 
 from __future__ import annotations
 
+import select
 import socket
 import struct
 import sys
@@ -88,6 +89,8 @@ class SocketTransport:
         return self._recv_into(view)
 
     def try_recv_into(self, view: memoryview) -> int:
+        if not MSG_DONTWAIT and not self._readable():
+            return -1
         try:
             return self._recv_into(view, 0, MSG_DONTWAIT)
         except BlockingIOError:
@@ -112,7 +115,13 @@ class SocketTransport:
         else:
             self.sock.setsockopt(socket.IPPROTO_IP, socket.IP_TOS, tos)
 
+    def _readable(self) -> bool:
+        """For systems where a single call cannot be told not to wait (Windows)."""
+        return bool(select.select([self.sock], [], [], 0)[0])
+
     def ended(self) -> bool:
+        if not MSG_DONTWAIT and not self._readable():
+            return False
         try:
             return not self.sock.recv(1, socket.MSG_PEEK | MSG_DONTWAIT)
         except BlockingIOError:
