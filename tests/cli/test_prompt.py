@@ -90,6 +90,7 @@ def test_prompt_history_and_completion(env, tmp_path):
         terminal.wait(">>")
         terminal.type("st\t\n")
         terminal.wait("'stop '")
+        terminal.wait(">>")
         terminal.type("\x04")
         assert terminal.end() == 0
     assert (tmp_path / "history" / "test__prompt").read_text() == "one line\nstop \n"
@@ -101,6 +102,7 @@ def test_prompt_history_and_completion(env, tmp_path):
         terminal.wait(">>")
         terminal.type("x\x01y\n")  # to the beginning of the line
         terminal.wait("'yx'")
+        terminal.wait(">>")
         terminal.type("\x04")
         assert terminal.end() == 0
 
@@ -111,6 +113,7 @@ def test_history_that_cannot_be_written_is_no_error(env, tmp_path):
         terminal.wait(">>")
         terminal.type("x\n")
         terminal.wait("'x'")
+        terminal.wait(">>")
         terminal.type("\x04")
         assert terminal.end() == 0
 
