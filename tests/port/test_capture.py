@@ -24,7 +24,8 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.names.local import LocalNames
-from yarpy.port.port import BasePort, Port
+from yarpy.port.base import BasePort
+from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.wire.message import Message
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from yarpy.cli import journal
 
 if TYPE_CHECKING:
-    from yarpy.port.port import BasePort
+    from yarpy.port.base import BasePort
 
 P = TypeVar("P", bound="BasePort")
 

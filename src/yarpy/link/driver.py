@@ -26,7 +26,7 @@ T = TypeVar("T")
 SOON: Final = 150e-6
 LOOKING: Final = 60e-6
 FIRST_PENALTY: Final = 32
-LAST_PENALTY: Final = 4096
+LAST_PENALTY: Final = 512
 _CORES: Final = os.cpu_count() or 1
 
 

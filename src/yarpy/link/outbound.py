@@ -11,17 +11,15 @@ from __future__ import annotations
 
 import threading
 import time
-from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
+from yarpy.link.background import GATHER_SECONDS, Background, Sweeper
 from yarpy.link.counter import Counter
-from yarpy.qos import Sched, schedule
+from yarpy.qos import Sched
 from yarpy.wire.message import CALL, Message, Packet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from yarpy.carriers.base import Carrier
     from yarpy.contact import Route
     from yarpy.link.driver import Driver
@@ -39,7 +37,6 @@ CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 RUSH: Final = 15e-6
 BURST: Final = 16
 GATHER: Final = 64  # messages
-GATHER_SECONDS: Final = 200e-6
 
 
 class Outbound:
@@ -59,14 +56,14 @@ class Outbound:
         self.tos = 0
         self.active = True  # of the multicast links of a port only one sends
         self.thread: threading.Thread | None = None
-        self._lock = threading.Lock()  # one message at a time on the wire
+        self.lock = threading.Lock()  # one message at a time on the wire
         self._acks: Steps[None] | None = None
-        self._queue: _Background | None = None
+        self._queue: Background | None = None
         self._rush = 0
-        self._left = 0.0  # when the last send ended
+        self.left = 0.0  # when the last send ended
         self._gathered = 0  # messages that wait in the stream for the next send
         self._gathered_since = 0.0
-        self._sweeper: _Sweeper | None = None
+        self._sweeper: Sweeper | None = None
 
     # -- sending ----------------------------------------------------------------------------------
 
@@ -79,8 +76,8 @@ class Outbound:
             packet.own(self.carrier.spelling)  # what cannot be sent is the writer's error
             self._queue.wait_put(packet)
             return
-        with self._lock:
-            self._send(packet)
+        with self.lock:
+            self.send_now(packet)
 
     def offer(self, packet: Packet) -> bool:
         """Send in the background unless the previous message is still going: then drop, and
@@ -96,7 +93,7 @@ class Outbound:
 
     def _caught_up(self) -> bool:
         """Whether the reader has taken the last message."""
-        if not self._lock.acquire(blocking=False):
+        if not self.lock.acquire(blocking=False):
             return False
         try:
             self._collect(wait=False)
@@ -104,10 +101,10 @@ class Outbound:
             self._break()
             return True  # sending finds out, and says so
         finally:
-            self._lock.release()
+            self.lock.release()
         return not self.unacknowledged
 
-    def _send(self, packet: Packet) -> None:
+    def send_now(self, packet: Packet) -> None:
         if self.broken:
             self.counter.drops += 1
             raise LinkClosed(f'the connection to "{self.route.target}" is gone')
@@ -120,7 +117,7 @@ class Outbound:
             ):
                 self._collect(wait=True, all_=True)
             carrier.encode(driver.stream, packet)
-            if now - self._left > RUSH:
+            if now - self.left > RUSH:
                 self._rush = 0
                 self._flush()
             elif self._rush < BURST:
@@ -144,7 +141,7 @@ class Outbound:
             self.unacknowledged += 1
             if self.unacknowledged % ASK_EVERY == 0:
                 self._look_for_acks()
-        self._left = time.perf_counter()
+        self.left = time.perf_counter()
 
     def _look_for_acks(self) -> None:
         try:
@@ -162,7 +159,7 @@ class Outbound:
         if not self._gathered:
             self._gathered_since = now
             if self._sweeper is None:
-                self._sweeper = _Sweeper(self)
+                self._sweeper = Sweeper(self)
             self._sweeper.watch()
         if self._gathered + 1 >= GATHER or now - self._gathered_since >= GATHER_SECONDS:
             self._flush()
@@ -171,7 +168,7 @@ class Outbound:
 
     def sweep(self) -> None:
         """Send what a burst left behind."""
-        with self._lock:
+        with self.lock:
             if self._gathered and not self.broken:
                 try:
                     self._flush()
@@ -180,9 +177,9 @@ class Outbound:
 
     def start_background(self) -> None:
         """Give the link a thread that sends; `send` and `offer` then only hand over."""
-        with self._lock:
+        with self.lock:
             if self._queue is None and not self.broken:
-                self._queue = _Background(self)
+                self._queue = Background(self)
                 self.thread = threading.Thread(
                     target=self._queue.run, name=f"yarpy {self.route}", daemon=True
                 )
@@ -210,7 +207,7 @@ class Outbound:
         assert packet.key == CALL or packet.key == "a"
         deadline = None if timeout is None else time.monotonic() + timeout
         self.drain(timeout)
-        with self._lock:
+        with self.lock:
             started = time.perf_counter()
             driver = self.driver
             try:
@@ -244,7 +241,7 @@ class Outbound:
     def wait_acknowledged(self, timeout: float | None = None) -> None:
         """Wait until the peer has taken every message. Raises Timeout, LinkClosed."""
         self.drain(timeout)
-        with self._lock:
+        with self.lock:
             try:
                 deadline = None if timeout is None else time.monotonic() + timeout
                 self._collect(wait=True, all_=True, deadline=deadline)
@@ -302,7 +299,7 @@ class Outbound:
         if self.unacknowledged:
             self._caught_up()  # acknowledgements that nobody read hide the end behind them
         if not self.broken and self.driver.transport.ended():
-            with self._lock:
+            with self.lock:
                 self._break()
         return self.broken
 
@@ -311,7 +308,7 @@ class Outbound:
         self.drain(CLOSE_PATIENCE)
         if self._queue is not None:
             self._queue.stop()
-        with self._lock:
+        with self.lock:
             if self.broken:
                 return
             driver = self.driver
@@ -333,102 +330,3 @@ class Outbound:
     def snapshot(self) -> dict[str, Any]:
         """Counters as plain numbers."""
         return {**self.counter.as_dict(), "unacknowledged": self.unacknowledged}
-
-
-class _Background:
-    """The queue and loop of a link's own sending thread: one message in flight, one waiting."""
-
-    def __init__(self, link: Outbound) -> None:
-        self._link = link
-        self._waiting: deque[Packet] = deque()
-        self._busy = False
-        self._stopped = False
-        self._changed = threading.Condition()  # writer and sender pass packets
-
-    def put(self, packet: Packet) -> bool:
-        """Take the packet if the link is idle; else count a drop."""
-        with self._changed:
-            if self._busy or self._waiting or self._stopped:
-                self._link.counter.drops += 1
-                return False
-            self._waiting.append(packet)
-            self._changed.notify_all()
-            return True
-
-    def wait_put(self, packet: Packet) -> None:
-        """Take the packet; wait while an earlier one has not begun to leave."""
-        with self._changed:
-            self._changed.wait_for(lambda: not self._waiting or self._stopped)
-            if self._stopped:
-                self._link.counter.drops += 1
-                raise LinkClosed(f'the connection to "{self._link.route.target}" is gone')
-            self._waiting.append(packet)
-            self._changed.notify_all()
-
-    def wait_empty(self, timeout: float | None) -> bool:
-        """Wait until nothing waits or leaves."""
-        with self._changed:
-            return self._changed.wait_for(
-                lambda: self._stopped or not (self._waiting or self._busy), timeout
-            )
-
-    def stop(self) -> None:
-        """Let the thread end."""
-        with self._changed:
-            self._stopped = True
-            self._link.counter.drops += len(self._waiting)
-            self._waiting.clear()
-            self._changed.notify_all()
-
-    def run(self) -> None:
-        """Send what is put, until stopped."""
-        link = self._link
-        if link.sched.policy >= 0:
-            try:
-                schedule(0, link.sched)
-            except YarpError:
-                pass  # said when it was asked for; the link sends all the same
-        while True:
-            with self._changed:
-                self._busy = False
-                self._changed.notify_all()
-                self._changed.wait_for(lambda: bool(self._waiting) or self._stopped)
-                if self._stopped:
-                    return
-                packet = self._waiting.popleft()
-                self._busy = True
-                self._changed.notify_all()
-            try:
-                with link._lock:
-                    link._send(packet)
-            except YarpError:
-                self.stop()
-
-
-class _Sweeper:
-    """Sends what a burst left behind, if its writer does not come back to do so."""
-
-    def __init__(self, link: Outbound) -> None:
-        self._sweep: Callable[[], None] = link.sweep
-        self._link = link
-        self._wake = threading.Semaphore(0)
-        self._asleep = True
-        threading.Thread(target=self._run, name=f"yarpy sweep {link.route}", daemon=True).start()
-
-    def watch(self) -> None:
-        """Something was gathered."""
-        if self._asleep:
-            self._asleep = False
-            self._wake.release()
-
-    def _run(self) -> None:
-        while not self._link.broken:
-            if not self._wake.acquire(timeout=5.0):
-                continue
-            while True:
-                time.sleep(GATHER_SECONDS)
-                self._sweep()
-                if time.perf_counter() - self._link._left > 100 * GATHER_SECONDS:
-                    break
-            self._asleep = True
-            self._sweep()

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
-from yarpy.errors import LinkClosed, PortClosed, YarpError
+from yarpy.errors import LinkClosed, YarpError
 from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox
-from yarpy.port.port import Reader, Writer, _is_log
+from yarpy.port.reader import ReadingPort
+from yarpy.port.writer import is_log
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
 
 
-class BufferedPort(Writer):
+class BufferedPort(ReadingPort):
     """A port between loops that run at their own pace.
 
     Reading gives the newest message, older ones are dropped and counted; with `strict` every
@@ -51,32 +52,14 @@ class BufferedPort(Writer):
             limit=limit,
             on_connection=on_connection,
         )
-        super().__init__(hub)
-        self._mailbox = mailbox
-        self._reader = Reader(hub, spin)
-
-    def read(self, timeout: float | None = None) -> Message:
-        """The newest message that was not read yet (`strict`: the next), waiting for one if needed.
-
-        Raises Timeout after `timeout` seconds, PortClosed if the port is closed or interrupted.
-        """
-        return self._reader.read(timeout)
-
-    def poll(self) -> Message | None:
-        """A message that is already there, or None."""
-        return self._mailbox.poll()
-
-    @property
-    def waiting(self) -> int:
-        """Messages that came and were not read yet."""
-        return self._mailbox.waiting
+        super().__init__(hub, spin)
 
     def _send_all(self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool) -> int:
         if self.strict or wait:
             return super()._send_all(packet, outputs, wait)
         sent = 0
         for link in outputs:
-            if not link.active or _is_log(link):
+            if not link.active or is_log(link):
                 continue
             if link.broken:
                 self._hub.drop_output(link, "the connection broke", lost=True)
@@ -88,11 +71,3 @@ class BufferedPort(Writer):
             except YarpError as error:
                 self._hub.drop_output(link, str(error))
         return sent
-
-    def __iter__(self) -> Iterator[Message]:
-        """Messages until the port is closed or interrupted."""
-        try:
-            while True:
-                yield self.read()
-        except PortClosed:
-            return

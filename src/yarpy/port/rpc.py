@@ -12,9 +12,9 @@ from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, YarpError
 from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
+from yarpy.port.base import BasePort
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Mailbox
-from yarpy.port.port import BasePort
 from yarpy.wire.message import CALL, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
 

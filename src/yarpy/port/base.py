@@ -1,0 +1,147 @@
+"""BasePort: what every kind of port can do - be open under a name, and have connections."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, Self
+
+from yarpy.contact import Contact
+from yarpy.errors import PortClosed
+from yarpy.port import command, wiring
+from yarpy.port.connection import Connection
+from yarpy.port.event import ConnectionEvent
+from yarpy.port.hub import Hub
+from yarpy.wire.message import Message
+
+
+class BasePort:
+    """The common part of all ports. Made by its subclasses, not by users."""
+
+    _hub: Hub
+
+    def __init__(self, hub: Hub) -> None:
+        self._hub = hub
+
+    @property
+    def name(self) -> str:
+        """The name, complete: what `...` became, prefix included."""
+        return self._hub.name
+
+    @property
+    def contact(self) -> Contact:
+        """Where the port listens."""
+        return self._hub.contact
+
+    @property
+    def address(self) -> str:
+        """`host:port` of the listening socket."""
+        return self._hub.contact.address
+
+    @property
+    def inputs(self) -> list[Connection]:
+        """The connections that bring messages here."""
+        hub = self._hub
+        return [Connection(link, link.close) for link in hub.inputs if _shown(link.route.source)]
+
+    @property
+    def outputs(self) -> list[Connection]:
+        """The connections that take messages away."""
+        hub = self._hub
+        return [
+            Connection(link, lambda link=link: command.close_output(hub, link))  # type: ignore[misc]
+            for link in hub.outputs
+        ]
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        """Counters of every connection and of the mailbox, as plain data."""
+        return self._hub.snapshot()
+
+    def connect(self, target: str, carrier: str = "tcp", timeout: float | None = None) -> Self:
+        """Send what this port writes to `target` (`/name`, `/host:port`) over `carrier`.
+
+        With `timeout`, wait that many seconds for a port that is not there yet. Raises UnknownName,
+        UnknownPlugin (a wrong carrier), LinkClosed, LocalProtocolError (the port takes no outputs).
+        """
+        wiring.connect(self._hub, target, carrier, timeout)
+        return self
+
+    def disconnect(self, target: str) -> bool:
+        """End the connections to `target`; whether there were any."""
+        found, _ = command.disconnect_output(self._hub, target)
+        return bool(found)
+
+    def listen_to(self, source: str, carrier: str = "tcp") -> Self:
+        """Ask the port `source` to send here. Raises UnknownName, LinkClosed,
+        LocalProtocolError."""
+        wiring.subscribe(self._hub, source, carrier)
+        return self
+
+    def wait_for_outputs(self, count: int = 1, timeout: float | None = None) -> bool:
+        """Wait until at least `count` ports receive what this one writes; False if time is over."""
+        return _wait(lambda: len(self._hub.outputs) >= count, timeout)
+
+    def wait_for_inputs(self, count: int = 1, timeout: float | None = None) -> bool:
+        """Wait until at least `count` ports write to this one; False if time is over."""
+        return _wait(lambda: len(self.inputs) >= count, timeout)
+
+    def on_connection(self, callback: Callable[[ConnectionEvent], None] | None) -> None:
+        """Call `callback` whenever a connection comes or goes."""
+        self._hub.on_connection = callback
+
+    def on_admin(self, callback: Callable[[Message], object] | None) -> None:
+        """Let `callback` answer administrative messages that the port itself does not know."""
+        self._hub.on_admin = callback
+
+    def interrupt(self) -> None:
+        """Stop reading and writing: who waits in `read` gets PortClosed; connections stay."""
+        self._hub.interrupt()
+
+    def resume(self) -> None:
+        """Undo `interrupt`."""
+        self._hub.resume()
+
+    def close(self) -> None:
+        """Close the port: say goodbye on each connection, give the name back. Idempotent."""
+        self._hub.close()
+
+    @property
+    def closed(self) -> bool:
+        """Whether `close` was called."""
+        return self._hub.closing
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        state = "closed" if self.closed else self.address
+        return f"<{type(self).__name__} {self.name} ({state})>"
+
+    def _check_open(self) -> None:
+        hub = self._hub
+        if hub.closing or hub.interrupted:
+            state = "closed" if hub.closing else "interrupted"
+            raise PortClosed(f'"{hub.name}" is {state}')
+
+
+def _shown(name: str) -> bool:
+    return name != "admin"
+
+
+def _wait(condition: Callable[[], bool], timeout: float | None) -> bool:
+    deadline = None if timeout is None else time.monotonic() + timeout
+    while not condition():
+        if deadline is not None and time.monotonic() >= deadline:
+            return False
+        time.sleep(0.005)
+    return True

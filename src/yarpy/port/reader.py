@@ -1,0 +1,145 @@
+"""Reading ports: the loop over what comes in, out of the mailbox or straight from the socket.
+
+The mailbox is always right. Direct reading is a shortcut for the case that matters most, a loop
+around one connection: it saves waking a second thread for every message.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+from yarpy.errors import PortClosed, Timeout
+from yarpy.link.inbound import PATIENCE, Inbound
+from yarpy.port.hub import Hub
+from yarpy.port.writer import Writer
+from yarpy.wire.message import Message
+
+# A reader that comes back within this many seconds may read the socket itself.
+_QUICK = 0.005
+
+
+class ReadingPort(Writer):
+    """A port that is read from. Subclasses choose the mailbox, which is the reading policy."""
+
+    def __init__(self, hub: Hub, spin: bool) -> None:
+        super().__init__(hub)
+        self._mailbox = hub.mailbox
+        self._reader = Reader(hub, spin)
+
+    def read(self, timeout: float | None = None) -> Message:
+        """The next message, waiting for one if needed.
+
+        Raises Timeout after `timeout` seconds, PortClosed if the port is closed or interrupted.
+        """
+        return self._reader.read(timeout)
+
+    def poll(self) -> Message | None:
+        """A message that is already there, or None."""
+        return self._reader.poll()
+
+    @property
+    def waiting(self) -> int:
+        """Messages that came and were not read yet."""
+        return self._mailbox.waiting
+
+    def __iter__(self) -> Iterator[Message]:
+        """Messages until the port is closed or interrupted."""
+        try:
+            while True:
+                yield self.read()
+        except PortClosed:
+            return
+
+
+class Reader:
+    """Reading from a hub: out of the mailbox, or directly from the one link there is.
+
+    The mailbox is always right. Direct reading is a shortcut for the case that matters most, a loop
+    around one connection: it saves waking a second thread for every message.
+    """
+
+    def __init__(self, hub: Hub, spin: bool = False) -> None:
+        self._hub = hub
+        self._mailbox = hub.mailbox
+        self._spin = spin
+        self._sole: Inbound | None = None
+        self._left = 0.0
+        self._asking: Message | None = None
+        self._settle = getattr(hub.mailbox, "settle", None)
+        hub.on_inputs = self._look_again
+
+    def poll(self) -> Message | None:
+        """A message that is already there, or None."""
+        return self._mailbox.poll()
+
+    def _look_again(self) -> None:
+        """Connections came or went: only a sole, unscheduled one may be read directly."""
+        inputs = self._hub.inputs
+        sole = inputs[0] if len(inputs) == 1 and not inputs[0].carrier.connectionless else None
+        old, self._sole = self._sole, sole
+        if old is not None and old is not sole:
+            old.wanted = False
+
+    def read(self, timeout: float | None) -> Message:
+        """See Port.read."""
+        deadline = None if timeout is None else time.monotonic() + timeout
+        self._finish()
+        while True:
+            link = self._sole
+            if link is not None and link.wanted and not self._hub.mailbox.waiting:
+                message = self._directly(link, deadline)
+                if message is not None:
+                    return message
+            elif link is not None and link.sched.policy < 1 and self._is_quick():
+                link.wanted = True
+            message = self._from_mailbox(link, deadline)
+            if message is not None:
+                self._left = time.perf_counter()
+                return message
+            if deadline is not None and time.monotonic() >= deadline:
+                raise Timeout(f'nothing came to "{self._hub.name}" within {timeout} s')
+
+    def _is_quick(self) -> bool:
+        """Whether the reader comes back fast enough to be worth the turn."""
+        return self._spin or time.perf_counter() - self._left < _QUICK
+
+    def _from_mailbox(self, link: Inbound | None, deadline: float | None) -> Message | None:
+        left = None if deadline is None else max(0.0, deadline - time.monotonic())
+        if link is not None and link.wanted:
+            # The turn may become free at any moment; do not sleep past it.
+            left = PATIENCE if left is None else min(left, PATIENCE)
+        return self._mailbox.take(left)
+
+    def _directly(self, link: Inbound, deadline: float | None) -> Message | None:
+        hub = self._hub
+        if not link.borrow():
+            return None
+        try:
+            while not (self._mailbox.waiting or self._mailbox.stopped) and link.wanted:
+                until = deadline
+                if until is not None and until - time.monotonic() > PATIENCE:
+                    until = None
+                message = link.fetch(until, self._spin)
+                if message is not None:
+                    if message.answer is not None:
+                        self._asking = message
+                        if self._settle is None:
+                            link.settle(message)
+                    if hub.mailbox.stopped:
+                        hub.mailbox.put(link, message)
+                        return None
+                    return message
+                if deadline is not None and time.monotonic() >= deadline:
+                    return None
+            return None
+        finally:
+            link.give_back()
+
+    def _finish(self) -> None:
+        """The reader is done with the message it took last."""
+        if self._settle is not None:
+            self._settle()
+        asking, self._asking = self._asking, None
+        if asking is not None and asking.answer is not None and self._sole is not None:
+            self._sole.settle(asking)
