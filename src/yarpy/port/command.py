@@ -8,13 +8,22 @@ says.
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from yarpy.contact import Contact, Route, base_carrier, modifier, parse_contact
-from yarpy.errors import AddressError, LinkClosed, PortClosed, UnknownPlugin, YarpError
+from yarpy.errors import (
+    AddressError,
+    LinkClosed,
+    PortClosed,
+    Timeout,
+    UnknownPlugin,
+    YarpError,
+)
 from yarpy.link.handshake import find_carrier, greet
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
+from yarpy.names.address import is_loopback
 from yarpy.port import probe, repair
 from yarpy.wire.message import Message
 
@@ -128,7 +137,13 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
     """Dial `contact` and take the connection in. Raises Refused."""
     route = Route(hub.name, target, carrier, contact.port)
     try:
-        driver, speaker = greet(contact, route, key=hub.key, group=hub.group, limit=hub.limit)
+        try:
+            driver, speaker = greet(contact, route, key=hub.key, group=hub.group, limit=hub.limit)
+        except (LinkClosed, Timeout):
+            other = _other_address(hub, contact)
+            if other is None:
+                raise
+            driver, speaker = greet(other, route, key=hub.key, group=hub.group, limit=hub.limit)
     except (YarpError, OSError) as error:
         _complain(hub, target, error)
         raise Refused(f"Cannot connect to {text or target}") from error
@@ -141,6 +156,27 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
         # Who dials a pull carrier is the one that receives.
         route.source, route.target = target, hub.name
         threading.Thread(target=hub.run_input, args=(driver, speaker), daemon=True).start()
+
+
+def _other_address(hub: Hub, contact: Contact) -> Contact | None:
+    """Where else a port on a host with several networks can be reached from here, if anywhere.
+
+    It told the name server all its addresses; whoever answers there has to have the right name.
+    """
+    names = hub.service()
+    if names is None or not contact.name:
+        return None
+    try:
+        addresses = names.get(contact.name, "ips")
+    except YarpError:
+        return None
+    for address in addresses:
+        other = replace(contact, host=address)
+        if address == contact.host or is_loopback(address):
+            continue
+        if probe.is_alive(other, hub.key):
+            return other
+    return None
 
 
 def _complain(hub: Hub, target: str, error: Exception) -> None:

@@ -21,7 +21,7 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
 from yarpy.link.inbound import Inbound
-from yarpy.names.address import local_addresses
+from yarpy.names.address import is_loopback, local_addresses
 from yarpy.names.command import NameService
 from yarpy.names.configuration import ROOT, Server, default_port
 from yarpy.names.default import DEFAULT, client_of
@@ -127,6 +127,8 @@ class NameServer:
 
     def _answer(self, link: Inbound, message: Message) -> None:
         peer = link.driver.transport.remote[0]
+        if is_loopback(peer):
+            peer = self.host  # a program of this host: others reach it as they reach us
         if message.spelling == "text":
             reply = self.service.answer_text(message.payload, peer)
         else:
