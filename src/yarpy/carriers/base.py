@@ -24,6 +24,7 @@ from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
 from yarpy.wire.stream import Buffer, ByteStream
 
 MAGIC_SIZE = 8  # bytes by which protocols are told apart
+ASKS_FOR_KEY = "perhaps it asks for a key that this side has not (auth.conf)"
 
 
 class Carrier:
@@ -47,6 +48,7 @@ class Carrier:
 
     def __init__(self, route: Route) -> None:
         self.route = route
+        self.accepted = False  # whether the peer dialled us; set by the link
         self.lost = 0
 
     @classmethod

@@ -122,5 +122,6 @@ def welcome(
         driver.flush()
         raise RemoteProtocolError(f"no carrier begins with the bytes {first!r}")
     carrier = kind(Route("", target, kind.name, port))
+    carrier.accepted = True
     driver.run(carrier.welcome(driver.stream, first), deadline)
     return driver, carrier

@@ -190,7 +190,13 @@ class Hub:
         self.run_input(*found)
 
     def run_input(self, driver: Driver, carrier: Carrier) -> None:
-        """Serve an open connection as an input, in this thread, until it ends."""
+        """Serve an open connection as an input, in this thread, until it ends.
+
+        If we accepted it and it is a pull carrier, it is an output instead: who dialled receives.
+        """
+        if not carrier.push and carrier.route.target == self.name and carrier.accepted:
+            self._serve_reader(driver, carrier)
+            return
         link = Inbound(self, driver, carrier)
         link.thread = threading.current_thread()
         link.thread.name = f"yarpy {link.route}"
@@ -230,11 +236,18 @@ class Hub:
 
     def reverse(self, link: Inbound) -> None:
         """The peer at the other end wants to read: its connection becomes an output of ours."""
-        route = link.route
-        route.source, route.target = self.name, route.source
         self._forget_input(link)
-        output = Outbound(link.driver, link.carrier, dialled=False)
+        self._serve_reader(link.driver, link.carrier)
+
+    def _serve_reader(self, driver: Driver, carrier: Carrier) -> None:
+        """Make a connection that somebody else opened an output of ours."""
+        route = carrier.route
+        route.source, route.target = self.name, route.source
+        output = Outbound(driver, carrier, dialled=False)
         with self.lock:
+            if self.closing:
+                driver.transport.close()
+                return
             self.outputs = (*self.outputs, output)
         self.report(output, created=True)
 
