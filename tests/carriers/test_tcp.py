@@ -9,6 +9,7 @@ from support.steps import chop
 from yarpy.carriers.tcp import FastTcp, Tcp
 from yarpy.contact import Route
 from yarpy.data.value import Vocab
+from yarpy.errors import RemoteProtocolError
 from yarpy.testing import CarrierConformance, Dialogue, End, said
 from yarpy.wire import framing
 
@@ -100,6 +101,15 @@ def test_call_is_answered_by_the_bare_object_then_acknowledged() -> None:
         "0001000003000000 09000000 6f6b0000 0101000002000000 01000000 02000000"
         "0a000000 0000000000000c40 5941000000005250"
     )
+
+
+@pytest.mark.parametrize("kind", [Tcp, FastTcp])
+def test_answer_that_is_no_number_is_refused(kind: type[FastTcp]) -> None:
+    """A port with a key speaks first, and says something else."""
+    end = End()
+    end.begin(kind(Route("/a", "/b", kind.name)).greet(end.stream))
+    with pytest.raises(RemoteProtocolError, match=r"auth\.conf"):
+        end.feed(bytes(range(40)))
 
 
 @pytest.mark.parametrize("extra", [0, 1, 8, 1000])

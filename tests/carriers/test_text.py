@@ -148,6 +148,14 @@ def test_sender_of_text_ack_waits() -> None:
     assert end.done
 
 
+def test_answer_that_is_no_welcome_is_refused() -> None:
+    """A port with a key speaks first, and says something else."""
+    end = End()
+    end.begin(TextAck(Route("/a", "/b", "text_ack")).greet(end.stream))
+    with pytest.raises(RemoteProtocolError, match=r"auth\.conf"):
+        end.feed(b"\x01\x02\xff\n" * 10)
+
+
 @pytest.mark.parametrize("kind", [Text, TextAck])
 def test_reversed_connection_can_be_asked(kind: type[Text]) -> None:
     """The side that was dialled never greeted, so no welcome is to be stepped over."""

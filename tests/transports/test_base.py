@@ -129,6 +129,12 @@ def test_interrupt_wakes_who_waits(pair: Pair) -> None:
     pair[1].close()
 
 
+def test_limit_of_a_closed_socket_is_no_error(pair: Pair) -> None:
+    pair[0].close()
+    pair[0].limit_waiting(1.0)
+    pair[0].limit_waiting(None)
+
+
 @pytest.mark.parametrize(
     ("raw", "wanted"),
     [

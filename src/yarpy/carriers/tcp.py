@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from yarpy.carriers.base import Indexed
+from yarpy.carriers.base import ASKS_FOR_KEY, Indexed
+from yarpy.errors import RemoteProtocolError
 from yarpy.wire import framing
 from yarpy.wire.effects import Steps
 from yarpy.wire.stream import ByteStream
@@ -25,7 +26,9 @@ class FastTcp(Indexed):
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         yield from super().greet(stream)
-        yield from stream.read_exact(8)
+        answer = yield from stream.read_exact(8)
+        if framing.parse_number(answer) < 0:
+            raise RemoteProtocolError(f"a number was due, {bytes(answer)!r} came; {ASKS_FOR_KEY}")
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
         yield from super().welcome(stream, first)

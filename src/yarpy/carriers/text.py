@@ -7,7 +7,7 @@ each command with a line `<ACK>`.
 
 from __future__ import annotations
 
-from yarpy.carriers.base import Carrier
+from yarpy.carriers.base import ASKS_FOR_KEY, Carrier
 from yarpy.contact import specifier
 from yarpy.data import codec
 from yarpy.data.text import Balance
@@ -92,7 +92,9 @@ class TextAck(Text):
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         yield from super().greet(stream)
-        yield from stream.read_line(framing.MAX_NAME + 16)
+        line = yield from stream.read_line(framing.MAX_NAME + 16)
+        if not line.startswith(b"Welcome"):
+            raise RemoteProtocolError(f"a welcome was due, {line[:40]!r} came; {ASKS_FOR_KEY}")
         self._welcomed = True
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:

@@ -166,14 +166,19 @@ class Outbound:
         else:
             self._gathered += 1
 
-    def sweep(self) -> None:
-        """Send what a burst left behind."""
-        with self.lock:
+    def sweep(self, timeout: float | None = None) -> bool:
+        """Send what a burst left behind; False if somebody is stuck in sending for `timeout`
+        seconds."""
+        if not self.lock.acquire(timeout=_seconds(timeout)):
+            return False
+        try:
             if self._gathered and not self.broken:
-                try:
-                    self._flush()
-                except YarpError:
-                    self._break()
+                self._flush()
+        except YarpError:
+            self._break()
+        finally:
+            self.lock.release()
+        return True
 
     def start_background(self) -> None:
         """Give the link a thread that sends; `send` and `offer` then only hand over."""
@@ -189,8 +194,7 @@ class Outbound:
         """Wait until everything handed over was sent; False if `timeout` seconds were not
         enough."""
         done = self._queue.wait_empty(timeout) if self._queue is not None else True
-        self.sweep()
-        return done
+        return done and self.sweep(timeout)
 
     # -- what comes back --------------------------------------------------------------------------
 
@@ -206,13 +210,14 @@ class Outbound:
             )
         assert packet.key == CALL or packet.key == "a"
         deadline = None if timeout is None else time.monotonic() + timeout
-        self.drain(timeout)
-        with self.lock:
+        self._take_turn(timeout)
+        try:
             started = time.perf_counter()
             driver = self.driver
             try:
-                self._collect(wait=True)
-                self._send_question(packet)
+                self._collect(wait=True, deadline=deadline)
+                self.carrier.encode(driver.stream, packet)
+                self._flush()
                 reply = driver.run(self.carrier.expect_reply(driver.stream), deadline)
                 if self.carrier.acks:
                     driver.run(self.carrier.expect_ack(driver.stream), deadline)
@@ -231,25 +236,30 @@ class Outbound:
             if reply is not None:
                 reply.source = self.route.target
             return reply
+        finally:
+            self.lock.release()
 
-    def _send_question(self, packet: Packet) -> None:
+    def _take_turn(self, timeout: float | None) -> None:
+        """Take the lock once nothing waits to be sent. Raises Timeout, LinkClosed."""
+        if not (self.drain(timeout) and self.lock.acquire(timeout=_seconds(timeout))):
+            raise Timeout(f'"{self.route.target}" did not take earlier messages within {timeout} s')
         if self.broken:
+            self.lock.release()
             raise LinkClosed(f'the connection to "{self.route.target}" is gone')
-        self.carrier.encode(self.driver.stream, packet)
-        self._flush()
 
     def wait_acknowledged(self, timeout: float | None = None) -> None:
         """Wait until the peer has taken every message. Raises Timeout, LinkClosed."""
-        self.drain(timeout)
-        with self.lock:
-            try:
-                deadline = None if timeout is None else time.monotonic() + timeout
-                self._collect(wait=True, all_=True, deadline=deadline)
-            except Timeout:
-                raise
-            except YarpError:
-                self._break()
-                raise
+        deadline = None if timeout is None else time.monotonic() + timeout
+        self._take_turn(timeout)
+        try:
+            self._collect(wait=True, all_=True, deadline=deadline)
+        except Timeout:
+            raise
+        except YarpError:
+            self._break()
+            raise
+        finally:
+            self.lock.release()
 
     def _collect(self, wait: bool, all_: bool = False, deadline: float | None = None) -> None:
         """Read acknowledgements: those that are there; with `wait`, until half the window is
@@ -305,7 +315,8 @@ class Outbound:
 
     def close(self, quit_: bool = True) -> None:
         """End the connection: say `q`, wait a moment for its acknowledgement, hang up."""
-        self.drain(CLOSE_PATIENCE)
+        if not self.drain(CLOSE_PATIENCE):
+            self.driver.transport.interrupt()  # nothing is taken: free who is stuck in sending
         if self._queue is not None:
             self._queue.stop()
         with self.lock:
@@ -330,3 +341,8 @@ class Outbound:
     def snapshot(self) -> dict[str, Any]:
         """Counters as plain numbers."""
         return {**self.counter.as_dict(), "unacknowledged": self.unacknowledged}
+
+
+def _seconds(timeout: float | None) -> float:
+    """A time limit as locks want it."""
+    return -1 if timeout is None else timeout

@@ -106,8 +106,11 @@ class SocketTransport:
 
     def limit_waiting(self, seconds: float | None) -> None:
         value = timeval(seconds)
-        self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, value)
-        self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, value)
+        try:
+            self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, value)
+            self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, value)
+        except OSError:
+            pass  # closed by another thread meanwhile: whoever reads or writes is told
 
     def set_dscp(self, tos: int) -> None:
         if self.sock.family == socket.AF_INET6:

@@ -1,0 +1,62 @@
+"""Counters: how a link is doing, as numbers."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from yarpy.link.counter import Counter
+
+
+def test_regular_messages_have_a_period_and_no_jitter() -> None:
+    counter = Counter()
+    for number in range(100):
+        counter.count(number * 0.01)
+    assert counter.messages == 100
+    assert counter.period == pytest.approx(0.01)
+    assert counter.jitter == pytest.approx(0.0, abs=1e-9)
+
+
+def test_irregular_messages_have_jitter() -> None:
+    counter = Counter()
+    now = 0.0
+    for number in range(200):
+        now += 0.01 if number % 2 else 0.03
+        counter.count(now)
+    assert counter.period == pytest.approx(0.02, rel=0.1)
+    assert counter.jitter == pytest.approx(0.01, rel=0.2)
+
+
+def test_rate_falls_once_messages_stop() -> None:
+    counter = Counter()
+    assert counter.rate == 0.0
+    now = time.perf_counter()
+    for number in range(10):
+        counter.count(now - 0.001 * (10 - number))
+    assert counter.rate == pytest.approx(1000, rel=0.5)
+    counter.last -= 1.0
+    assert counter.rate < 1.1
+
+
+def test_latency_is_smoothed() -> None:
+    counter = Counter()
+    counter.measure(0.001)
+    assert counter.latency == 0.001
+    counter.measure(0.017)
+    assert counter.latency == pytest.approx(0.002)
+
+
+def test_numbers_by_name() -> None:
+    counter = Counter(since=5.0)
+    counter.count(1.0)
+    counter.drops = 3
+    counter.bytes = 70
+    found = counter.as_dict()
+    assert found["messages"] == 1
+    assert found["drops"] == 3
+    assert found["bytes"] == 70
+    assert found["since"] == 5.0
+    assert set(found) == {
+        *("messages", "bytes", "drops", "period", "jitter", "latency", "since", "rate"),
+    }

@@ -1,0 +1,189 @@
+"""The driver: steps against a transport, and errors of the system as ours."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+
+import pytest
+from support.transport import ScriptTransport, scripted
+
+from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
+from yarpy.link.driver import Driver, closed
+from yarpy.transports.base import SocketTransport
+from yarpy.transports.datagram import DatagramTransport
+from yarpy.wire.effects import Group, Open, Steps, Switch
+from yarpy.wire.stream import ByteStream, DatagramStream
+
+
+def test_steps_run_to_their_end() -> None:
+    driver, transport = scripted(b"ab", b"cd")
+
+    def steps() -> Steps[bytes]:
+        driver.stream.write(b"hello")
+        first = yield from driver.stream.read_exact(3)
+        driver.stream.write(b"bye")
+        return bytes(first)
+
+    assert driver.run(steps()) == b"abc"
+    assert transport.said == b"hellobye"
+    assert driver.stream.waiting == 1
+    assert (driver.bytes_in, driver.bytes_out) == (4, 8)
+
+
+def test_what_was_written_leaves_before_waiting() -> None:
+    """Otherwise both sides would wait."""
+    driver, transport = scripted(b"x")
+    seen: list[bytes] = []
+
+    def steps() -> Steps[None]:
+        driver.stream.write(b"question")
+        yield None
+        seen.append(transport.said)
+
+    driver.run(steps())
+    assert seen == [b"question"]
+
+
+def test_end_of_the_peer() -> None:
+    driver, _ = scripted(b"123")
+    with pytest.raises(LinkClosed, match="middle"):
+        driver.run(driver.stream.read_exact(8))
+
+
+@pytest.mark.parametrize(
+    "error", [ConnectionResetError(104, "reset"), OSError(9, "bad"), BrokenPipeError(32, "pipe")]
+)
+def test_reset_is_an_end(error: OSError) -> None:
+    driver, _ = scripted(error)
+    with pytest.raises(LinkClosed):
+        driver.run(driver.stream.read_exact(1))
+
+
+def test_silence_is_a_timeout_and_what_came_is_kept() -> None:
+    left, right = socket.socketpair()
+    driver = Driver(SocketTransport(left))
+    right.sendall(b"12")
+    steps = driver.stream.read_exact(4)
+    started = time.monotonic()
+    with pytest.raises(Timeout):
+        driver.run(steps, time.monotonic() + 0.05)
+    assert time.monotonic() - started < 2
+    right.sendall(b"34")
+    assert driver.run(driver.stream.read_exact(4), time.monotonic() + 5) == b"1234"
+    # and the limit is gone: this waits as long as it takes
+    threading.Timer(0.1, right.sendall, (b"5",)).start()
+    assert driver.run(driver.stream.read_exact(1)) == b"5"
+    left.close()
+    right.close()
+
+
+def test_deadline_that_has_passed() -> None:
+    driver, _ = scripted(b"abc")
+    with pytest.raises(Timeout):
+        driver.run(driver.stream.read_exact(1), time.monotonic() - 1)
+
+
+@pytest.mark.parametrize(
+    ("error", "wanted"),
+    [
+        (BrokenPipeError(32, "Broken pipe"), LinkClosed),
+        (ConnectionResetError(104, "Connection reset"), LinkClosed),
+        (BlockingIOError(11, "again"), Timeout),
+        (TimeoutError("timed out"), Timeout),
+        (OSError(9, "Bad file descriptor"), LinkClosed),
+        (LinkClosed("ours"), LinkClosed),
+    ],
+)
+def test_errors_while_sending(error: OSError, wanted: type[Exception]) -> None:
+    assert type(closed(error)) is wanted
+
+
+def test_failing_send_is_our_error() -> None:
+    driver, transport = scripted(open_ended=True)
+    transport.fails_after = 0
+    driver.stream.write(b"x")
+    with pytest.raises(LinkClosed, match="Broken pipe"):
+        driver.flush()
+
+
+def test_trying_takes_what_is_there() -> None:
+    driver, _ = scripted(b"abc", open_ended=True)
+    assert driver.try_fill()
+    assert not driver.try_fill()
+    assert driver.stream.waiting == 3
+    ended, _ = scripted()
+    assert ended.try_fill()
+    with pytest.raises(LinkClosed):
+        next(ended.stream.read_exact(1))
+
+
+# ---------------------------------------------------------------------------------- effects
+
+
+def test_moving_to_another_place() -> None:
+    """What was written goes out by the old way first; the old transport is closed."""
+    driver, old = scripted(b"", open_ended=True)
+    new = ScriptTransport([b"there"])
+    fresh = ByteStream()
+
+    def steps() -> Steps[bytes]:
+        driver.stream.write(b"I move")
+        yield Switch(new, fresh)
+        return bytes((yield from fresh.read_exact(5)))
+
+    assert driver.run(steps()) == b"there"
+    assert old.said == b"I move"
+    assert old.closed
+    assert driver.transport is new
+    assert driver.stream is fresh
+
+
+def test_udp_is_opened_on_request() -> None:
+    driver, _ = scripted(open_ended=True)
+
+    def steps() -> Steps[int]:
+        handle = yield Open("udp", listen=True)
+        yield Switch(handle, DatagramStream())
+        return int(handle.port)
+
+    number = driver.run(steps())
+    assert isinstance(driver.transport, DatagramTransport)
+    assert 0 < number < 65536
+    driver.transport.close()
+
+
+def test_group_is_asked_for() -> None:
+    transport = ScriptTransport()
+    asked: list[str] = []
+
+    def group(host: str) -> tuple[str, int]:
+        asked.append(host)
+        return "224.1.1.3", 21604
+
+    def steps() -> Steps[tuple[str, int]]:
+        found: tuple[str, int] = yield Group()
+        return found
+
+    assert Driver(transport, group=group).run(steps()) == ("224.1.1.3", 21604)
+    assert asked == ["127.0.0.1"]
+    with pytest.raises(LocalProtocolError, match="multicast"):
+        Driver(transport).run(steps())
+
+
+def test_what_cannot_be_done() -> None:
+    driver, _ = scripted()
+
+    def steps() -> Steps[None]:
+        yield Open("carrier pigeon", listen=False)
+
+    with pytest.raises(LocalProtocolError, match="pigeon"):
+        driver.run(steps())
+
+
+def test_limit_reaches_the_stream() -> None:
+    transport = ScriptTransport([b"x" * 100])
+    driver = Driver(transport, limit=1000)
+    with pytest.raises(RemoteProtocolError):
+        driver.run(driver.stream.read_exact(20_000))

@@ -1,0 +1,490 @@
+"""Outbound links: sending, acknowledgements read late, background sending, exact counting."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import pytest
+from support.capture import load_capture
+from support.transport import ScriptTransport, scripted
+
+from yarpy.carriers.base import Carrier
+from yarpy.carriers.tcp import FastTcp, Tcp
+from yarpy.carriers.text import TextAck
+from yarpy.carriers.udp import Udp
+from yarpy.contact import Route
+from yarpy.data.bottle import Bottle
+from yarpy.data.value import Vocab
+from yarpy.errors import LinkClosed, LocalProtocolError, Timeout
+from yarpy.link import outbound as module
+from yarpy.link.driver import Driver
+from yarpy.link.outbound import WINDOW, Outbound
+from yarpy.transports.base import SocketTransport
+from yarpy.wire import framing
+from yarpy.wire.message import CALL, Packet
+
+ACK = framing.ACK
+
+
+def link_on(transport_driver: tuple[Driver, ScriptTransport], kind: type[Carrier]) -> Outbound:
+    driver, _ = transport_driver
+    return Outbound(driver, kind(Route("/here", "/peer", kind.name)))
+
+
+def open_link(kind: type[Carrier], *incoming: bytes) -> tuple[Outbound, ScriptTransport]:
+    """A link to a peer that says this and then nothing, without hanging up."""
+    pair = scripted(*incoming, open_ended=True)
+    return link_on(pair, kind), pair[1]
+
+
+def total(link: Outbound) -> int:
+    return link.counter.messages + link.counter.drops
+
+
+@contextmanager
+def connected(kind: type[Carrier] = Tcp) -> Iterator[tuple[Outbound, socket.socket]]:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        near = socket.create_connection(listener.getsockname())
+        far, _ = listener.accept()
+    far.settimeout(5)
+    far.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    link = Outbound(Driver(SocketTransport(near)), kind(Route("/here", "/peer", kind.name)))
+    try:
+        yield link, far
+    finally:
+        far.close()
+        link.close(quit_=False)
+
+
+def read_messages(far: socket.socket, count: int, ack: bool = True) -> list[bytes]:
+    """Read so many messages of one size, acknowledging each."""
+    size = len(b"".join(framing.encode(Packet([0]))))  # type: ignore[arg-type]
+    found = []
+    for _ in range(count):
+        data = b""
+        while len(data) < size:
+            part = far.recv(size - len(data))
+            assert part
+            data += part
+        found.append(data)
+        if ack:
+            far.sendall(ACK)
+    return found
+
+
+def wait_until(condition: Callable[[], object], patience: float = 5.0) -> None:
+    deadline = time.monotonic() + patience
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.002)
+
+
+# ---------------------------------------------------------------------------------- sending
+
+
+def test_golden_stream() -> None:
+    """What the link sends from the first message to the goodbye is what C++ sent."""
+    capture = load_capture("conn_tcp_stream_envelope")
+    said = b"".join(s.data for s in capture.steps[2:] if s.sender == "a")
+    acks = b"".join(s.data for s in capture.steps[2:] if s.sender == "b")
+    link, transport = open_link(Tcp, acks)
+    nested = [["a", [1, 2]], [1.5, "x y"]]
+    for envelope, value in (
+        (b"1 0.25", []),
+        (b"2 1.25", [1, "ping", 3.14]),
+        (b"3 2.25", [*nested, Vocab("set")]),
+    ):
+        link.send(Packet(value, envelope))
+    link.close()
+    assert transport.said == said
+    assert transport.closed
+    assert link.counter.messages == 3
+    assert link.counter.drops == 0
+
+
+def test_messages_and_bytes_are_counted() -> None:
+    link, transport = open_link(FastTcp)
+    for number in range(10):
+        link.send(Packet([number]))
+        time.sleep(0.0005)
+    assert link.counter.messages == 10
+    assert link.counter.bytes == len(transport.said)
+    assert link.snapshot()["messages"] == 10
+
+
+def test_burst_is_gathered_and_nothing_is_left_behind() -> None:
+    """The first messages leave at once; a flood shares its sends; a timer sends the rest."""
+    link, transport = open_link(FastTcp)
+    count = 2000
+    for number in range(count):
+        link.send(Packet([number]))
+    size = len(b"".join(framing.encode(Packet([0]))))  # type: ignore[arg-type]
+    wait_until(lambda: len(transport.said) == count * size)
+    assert transport.sends < count
+    assert link.counter.messages == count
+    link.close()
+
+
+def test_value_that_cannot_be_sent_is_the_writers_error() -> None:
+    link, transport = open_link(Tcp, ACK)
+    with pytest.raises(TypeError, match="cannot be sent"):
+        link.send(Packet(object()))
+    assert not link.broken
+    assert transport.said == b""
+    link.send(Packet([1]))
+    assert link.counter.messages == 1
+
+
+def test_large_buffers_are_sent_from_where_they_are() -> None:
+    link, transport = open_link(FastTcp)
+    pixels = bytearray(1 << 20)
+    seen: list[bool] = []
+    transport.send = lambda buffers: seen.append(  # type: ignore[method-assign]
+        any(getattr(b, "obj", None) is pixels for b in buffers)
+    )
+    link.send(Packet([memoryview(pixels)]))
+    assert seen == [True]
+
+
+# --------------------------------------------------------------------------------- acknowledgements
+
+
+def test_acknowledgements_are_read_late_but_within_a_window() -> None:
+    with connected() as (link, far):
+        done = threading.Event()
+
+        def flood() -> None:
+            for number in range(2 * WINDOW):
+                link.send(Packet([number]))
+            done.set()
+
+        threading.Thread(target=flood, daemon=True).start()
+        read_messages(far, 10, ack=False)
+        assert not done.wait(0.1), "a sender runs ahead of a reader that does not acknowledge"
+        assert link.unacknowledged <= WINDOW
+        far.sendall(ACK * 10)
+        read_messages(far, 2 * WINDOW - 10)
+        assert done.wait(5)
+        link.wait_acknowledged(5)
+        assert link.unacknowledged == 0
+
+
+def test_waiting_for_acknowledgements() -> None:
+    with connected() as (link, far):
+        link.send(Packet([1]))
+        with pytest.raises(Timeout):
+            link.wait_acknowledged(0.05)
+        assert not link.broken
+        read_messages(far, 1)
+        link.wait_acknowledged(5)
+        assert link.unacknowledged == 0
+        far.close()
+        with pytest.raises(LinkClosed):
+            link.send(Packet([2]))
+            link.send(Packet([3]))
+            link.wait_acknowledged(5)
+        assert link.broken
+
+
+def test_slow_reader_holds_its_sender_up() -> None:
+    """After some milliseconds without an acknowledgement a send waits, as it does in C++."""
+    with connected() as (link, far):
+        link.send(Packet([1]))
+        time.sleep(2 * module.WINDOW_SECONDS)
+        threading.Timer(0.1, far.sendall, (ACK,)).start()
+        started = time.monotonic()
+        link.send(Packet([2]))
+        assert time.monotonic() - started > 0.05
+        assert link.unacknowledged == 1
+
+
+# ---------------------------------------------------------------------------------- calling
+
+
+def test_question_and_answer() -> None:
+    reply = Bottle(["ok", 1]).to_bytes()
+    link, transport = open_link(Tcp, reply + ACK)
+    message = link.call(Packet(["ask"], key=CALL), 5)
+    assert message is not None
+    assert message.value == ["ok", 1]
+    assert message.source == "/peer"
+    assert link.counter.latency > 0
+    assert transport.said == b"".join(framing.encode(Packet(["ask"], key=CALL)))  # type: ignore[arg-type]
+
+
+def test_question_without_an_answer() -> None:
+    link, _ = open_link(Tcp, ACK)
+    assert link.call(Packet(["ask"], key=CALL), 5) is None
+    link, _ = open_link(TextAck, b"<ACK>\r\n")
+    assert link.call(Packet(["ask"], key=CALL), 5) is None
+
+
+def test_acknowledgements_of_earlier_messages_come_first() -> None:
+    reply = Bottle(["ok"]).to_bytes()
+    link, _ = open_link(Tcp, ACK * 3 + reply + ACK)
+    for number in range(3):
+        link.send(Packet([number]))
+    message = link.call(Packet(["ask"], key=CALL), 5)
+    assert message is not None
+    assert message.value == ["ok"]
+
+
+def test_answer_that_is_late_never_answers_the_next_question() -> None:
+    with connected() as (link, far):
+        with pytest.raises(Timeout, match="did not reply within"):
+            link.call(Packet(["slow"], key=CALL), 0.05)
+        assert link.broken
+        with pytest.raises(LinkClosed):
+            link.call(Packet(["next"], key=CALL), 0.05)
+        assert far.recv(1000)
+        while far.recv(1000):
+            pass  # our side has hung up
+
+
+def test_one_way_carrier_answers_nothing() -> None:
+    link, _ = open_link(Udp)
+    with pytest.raises(LocalProtocolError, match="connect to"):
+        link.call(Packet([1], key=CALL))
+
+
+def test_server_that_hangs_up() -> None:
+    link = link_on(scripted(Bottle(["half"]).to_bytes()[:5]), Tcp)
+    with pytest.raises(LinkClosed):
+        link.call(Packet(["ask"], key=CALL), 5)
+    assert link.broken
+
+
+# -------------------------------------------------------------------------------- failures, counted
+
+
+@pytest.mark.parametrize("sends", [0, 1, 5, 17])
+@pytest.mark.parametrize("kind", [FastTcp, Tcp])
+def test_sent_is_delivered_and_drops(kind: type[Carrier], sends: int) -> None:
+    """Whatever number of sends succeed, no message is counted twice or not at all."""
+    link, transport = open_link(kind)
+    transport.fails_after = sends
+    attempts = 0
+    with pytest.raises(LinkClosed):
+        for number in range(1000):
+            attempts += 1
+            link.send(Packet([number]))
+    assert link.broken
+    assert transport.closed
+    assert total(link) == attempts
+    assert 0 <= link.counter.messages <= sends
+    if kind is Tcp:  # nothing was acknowledged, so nothing is known to have arrived
+        assert link.counter.messages == 0
+    with pytest.raises(LinkClosed):
+        link.send(Packet(["more"]))
+    assert total(link) == attempts + 1
+
+
+@pytest.mark.parametrize("acks", [0, 1, 31, 32, 40, 64])
+def test_what_was_acknowledged_counts_as_delivered(acks: int) -> None:
+    """The peer takes some messages and goes."""
+    link = link_on(scripted(ACK * acks), Tcp)
+    attempts = 0
+    with pytest.raises(LinkClosed):
+        for number in range(1000):
+            attempts += 1
+            link.send(Packet([number]))
+            if attempts % 50 == 0:
+                link.wait_acknowledged(1)
+    assert link.counter.messages == acks
+    assert total(link) == attempts
+
+
+def test_gathered_messages_that_never_left_are_drops() -> None:
+    link, transport = open_link(FastTcp)
+    attempts = 0
+    for number in range(200):  # a flood: the last ones wait for the timer
+        attempts += 1
+        link.send(Packet([number]))
+        if link._gathered > 3:
+            break
+    waiting = link._gathered
+    assert waiting
+    sent = attempts - waiting
+    transport.fails_after = transport.sends
+    wait_until(lambda: link.broken)
+    assert link.counter.messages == sent
+    assert total(link) == attempts
+
+
+def test_end_of_the_peer_is_noticed_without_sending() -> None:
+    with connected() as (link, far):
+        assert not link.ended()
+        link.send(Packet([1]))
+        read_messages(far, 1)
+        far.close()
+        wait_until(link.ended)
+        assert link.counter.messages == 1  # it was acknowledged, though nobody had looked
+        assert link.counter.drops == 0
+
+
+def test_end_behind_unread_acknowledgements_is_noticed() -> None:
+    with connected() as (link, far):
+        for number in range(5):
+            link.send(Packet([number]))
+        read_messages(far, 5)
+        assert link.unacknowledged
+        far.close()
+        wait_until(link.ended)
+        assert link.broken
+        assert link.counter.messages == 5
+
+
+# -------------------------------------------------------------------------------- in the background
+
+
+def test_background_link_drops_what_comes_too_early() -> None:
+    with connected() as (link, far):
+        taken = sum(link.offer(Packet([number])) for number in range(50))
+        wait_until(lambda: link.counter.messages == taken)
+        assert 1 <= taken < 50
+        assert link.counter.drops == 50 - taken
+        read_messages(far, taken)
+        wait_until(lambda: link._caught_up())
+        assert link.offer(Packet([1]))
+        assert link.drain(5)
+        assert total(link) == 51
+
+
+def test_background_link_can_send_every_message() -> None:
+    with connected() as (link, far):
+        link.start_background()
+        reader = threading.Thread(target=read_messages, args=(far, 100))
+        reader.start()
+        for number in range(100):
+            link.send(Packet([number]))
+        assert link.drain(5)
+        reader.join(5)
+        assert not reader.is_alive()
+        assert link.counter.messages == 100
+        assert link.counter.drops == 0
+
+
+def test_background_link_whose_peer_goes() -> None:
+    with connected() as (link, far):
+        link.start_background()
+        far.close()
+        attempts = 0
+        with pytest.raises(LinkClosed):
+            for number in range(100_000):
+                attempts += 1
+                link.send(Packet([number]))
+        assert link.thread is not None
+        link.thread.join(5)
+        assert not link.thread.is_alive()
+        assert total(link) == attempts
+
+
+def test_drain_has_a_limit() -> None:
+    with connected() as (link, _):
+        link.start_background()
+        link.send(Packet([bytes(10_000_000)]))
+        started = time.monotonic()
+        assert not link.drain(0.05)
+        assert time.monotonic() - started < 2
+        link.driver.transport.interrupt()
+
+
+# ---------------------------------------------------------------------------------- goodbye
+
+
+def test_goodbye_is_acknowledged() -> None:
+    link, transport = open_link(Tcp, ACK)
+    link.close()
+    assert transport.said == framing.QUIT
+    assert transport.closed
+    link.close()
+    assert transport.said == framing.QUIT
+
+
+def test_goodbye_to_a_peer_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "CLOSE_PATIENCE", 0.05)
+    with connected() as (link, far):
+        link.send(Packet([1]))
+        started = time.monotonic()
+        link.close()
+        assert time.monotonic() - started < 2
+        assert link.counter.messages == 0
+        assert link.counter.drops == 1  # never acknowledged
+        assert far.recv(1000)
+
+
+@pytest.mark.parametrize("background", [False, True])
+def test_link_to_a_peer_that_takes_nothing_can_be_closed(
+    background: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever is stuck in sending is freed, and gets an error."""
+    monkeypatch.setattr(module, "CLOSE_PATIENCE", 0.1)
+    with connected(FastTcp) as (link, _):
+        if background:
+            link.start_background()
+        ended: list[Exception] = []
+
+        def write() -> None:
+            try:
+                for _ in range(3):
+                    link.send(Packet([bytes(10_000_000)]))
+            except LinkClosed as error:
+                ended.append(error)
+
+        writer = threading.Thread(target=write)
+        writer.start()
+        time.sleep(0.1)
+        started = time.monotonic()
+        link.close()
+        assert time.monotonic() - started < 3
+        writer.join(5)
+        assert len(ended) == 1
+        assert link.counter.messages == 0
+
+
+def test_call_behind_a_stuck_message_has_its_limit_too() -> None:
+    with connected(Tcp) as (link, _):
+
+        def write() -> None:
+            with pytest.raises(LinkClosed):
+                link.send(Packet([bytes(10_000_000)]))
+
+        writer = threading.Thread(target=write)
+        writer.start()
+        time.sleep(0.05)
+        started = time.monotonic()
+        with pytest.raises(Timeout):
+            link.call(Packet(["ask"], key=CALL), 0.1)
+        with pytest.raises(Timeout):
+            link.wait_acknowledged(0.1)
+        assert time.monotonic() - started < 3
+        link.driver.transport.interrupt()
+        writer.join(5)
+        assert not writer.is_alive()
+
+
+def test_call_to_a_peer_that_does_not_acknowledge_has_its_limit() -> None:
+    with connected(Tcp) as (link, _):
+        link.send(Packet([1]))
+        with pytest.raises(Timeout, match="did not reply"):
+            link.call(Packet(["ask"], key=CALL), 0.1)
+
+
+def test_goodbye_waits_for_what_is_on_its_way() -> None:
+    with connected() as (link, far):
+        link.start_background()
+        for number in range(5):
+            link.send(Packet([number]))
+        thread = threading.Thread(target=link.close)
+        thread.start()
+        found = read_messages(far, 5)
+        assert len(found) == 5
+        assert far.recv(1000) == framing.QUIT
+        far.sendall(ACK)
+        thread.join(5)
+        assert link.counter.messages == 5
+        assert link.counter.drops == 0

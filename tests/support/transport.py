@@ -1,0 +1,88 @@
+"""A transport that is a script: what the peer says is known beforehand, what is sent is kept.
+
+Rules: no sockets. `incoming` holds bytes, or an exception to raise; after the last item the peer
+has hung up, or (`open_ended`) is silent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from yarpy.link.driver import Driver
+from yarpy.wire.stream import Buffer
+
+Item = bytes | OSError
+
+
+class ScriptTransport:
+    """One side of a byte pipe whose other side is a list."""
+
+    def __init__(self, incoming: Iterable[Item] = (), open_ended: bool = False) -> None:
+        self.incoming = list(incoming)
+        self.open_ended = open_ended
+        self.sent: list[bytes] = []
+        self.sends = 0
+        self.closed = False
+        self.interrupted = False
+        self.waits: list[float | None] = []
+        self.fails_after: int | None = None
+        self.local = ("127.0.0.1", 21602)
+        self.remote = ("127.0.0.1", 50000)
+        self.port = 0
+        self.tos = 0
+
+    def ready(self) -> None:
+        """Nothing to wait for."""
+
+    def recv_into(self, view: memoryview) -> int:
+        if not self.incoming or self.interrupted:
+            if self.open_ended and not self.interrupted:
+                raise BlockingIOError("silent")
+            return 0
+        item = self.incoming.pop(0)
+        if isinstance(item, OSError):
+            raise item
+        part, rest = item[: len(view)], item[len(view) :]
+        view[: len(part)] = part
+        if rest:
+            self.incoming.insert(0, rest)
+        return len(part)
+
+    def try_recv_into(self, view: memoryview) -> int:
+        if not self.incoming and self.open_ended and not self.interrupted:
+            return -1
+        return self.recv_into(view)
+
+    def send(self, buffers: Sequence[Buffer]) -> None:
+        if self.closed:
+            raise OSError(9, "Bad file descriptor")
+        if self.fails_after is not None and self.sends >= self.fails_after:
+            raise BrokenPipeError(32, "Broken pipe")
+        self.sends += 1
+        self.sent += [bytes(b) for b in buffers]
+
+    def limit_waiting(self, seconds: float | None) -> None:
+        self.waits.append(seconds)
+
+    def set_dscp(self, tos: int) -> None:
+        self.tos = tos
+
+    def ended(self) -> bool:
+        return not self.incoming and not self.open_ended
+
+    def interrupt(self) -> None:
+        self.interrupted = True
+
+    def close(self) -> None:
+        self.closed = True
+
+    @property
+    def said(self) -> bytes:
+        """Everything that was sent, as one."""
+        return b"".join(self.sent)
+
+
+def scripted(*incoming: Item, open_ended: bool = False) -> tuple[Driver, ScriptTransport]:
+    """A driver on such a transport."""
+    transport = ScriptTransport(incoming, open_ended)
+    return Driver(transport), transport
