@@ -264,6 +264,17 @@ def test_numbers_lent_are_never_shared(steps: list[tuple[object, ...]]) -> None:
     assert store._size == 0 and not store._addresses
 
 
+def test_numbers_of_strangers_are_not_lent() -> None:
+    strangers = {("s", 10002), ("s", 10003)}
+    store = NameStore("s", 10000, is_taken=lambda host, number: (host, number) in strangers)
+    assert store.register("/a", peer="s").port == 10004
+    assert store.register("/b", peer="t").port == 10005
+    store.unregister("/a")
+    strangers.add(("s", 10004))
+    assert store.register("/a", peer="s").port == 10006, "not even by habit"
+    assert store.register("/c", "tcp", "s", 10003).port == 10003, "who says a number gets it"
+
+
 def test_fast_and_small_at_ten_thousand_names() -> None:
     store = NameStore("h", 10000)
     tracemalloc.start()

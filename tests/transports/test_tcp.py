@@ -9,7 +9,7 @@ import pytest
 from support.port import free_port
 
 from yarpy.errors import AddressError
-from yarpy.transports.tcp import TcpListener, TcpTransport, dial
+from yarpy.transports.tcp import TcpListener, TcpTransport, dial, is_taken
 
 
 def test_dial_reaches_a_listener_and_sends_without_delay() -> None:
@@ -100,3 +100,16 @@ def test_close_wakes_who_waits() -> None:
     listener.close()
     assert done.wait(5)
     assert listener.wait({}, 0) == []
+
+
+def test_numbers_that_somebody_has() -> None:
+    number = free_port()
+    assert not is_taken(number)
+    listener = TcpListener(number)
+    assert is_taken(number)
+    near = dial("127.0.0.1", number)
+    assert is_taken(near.local[1]), "one dials from it"
+    near.close()
+    listener.close()
+    listener.release()
+    assert not is_taken(number)

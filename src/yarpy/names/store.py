@@ -96,13 +96,21 @@ def _group(counter: int) -> str:
 class NameStore:
     """All registrations. `host` and `port` are the server's own address.
 
-    Port numbers go out from port + 2 to port + 9999, one at a time for the whole network.
+    Port numbers go out from port + 2 to port + 9999, one at a time for the whole network; none that
+    `is_taken(host, number)` by somebody who did not register.
     `on_change(kind, key)` hears of everything a database must write: kinds `port` (a name),
     `regid`, `tmpid`, `mcastCursor` (a value of that pool).
     """
 
-    def __init__(self, host: str = "127.0.0.1", port: int = 10000, limits: Limits | None = None):
+    def __init__(
+        self,
+        host: str = "127.0.0.1",
+        port: int = 10000,
+        limits: Limits | None = None,
+        is_taken: Callable[[str, int], bool] = lambda host, number: False,
+    ) -> None:
         self.host = host
+        self._is_taken = is_taken
         self.port = port
         self.limits = limits if limits is not None else Limits()
         self.numbers = Pool(
@@ -304,12 +312,14 @@ class NameStore:
                 if carrier == "topic" and port == 0:
                     port = self.port
                 else:
-                    taken = self._addresses
-                    port = int(self.numbers.take(name, lambda number: taken[host, int(number)] > 0))
+                    port = int(self.numbers.take(name, lambda n: self._is_used(host, int(n))))
         except AddressError:
             self._give_back(Contact(carrier, name, host, 0))
             raise
         return Contact(carrier, name, host, port)
+
+    def _is_used(self, host: str, number: int) -> bool:
+        return self._addresses[host, number] > 0 or self._is_taken(host, number)
 
     def _give_back(self, contact: Contact) -> None:
         # What was lent comes back, whatever `set NAME socket N` made of the address since. The

@@ -33,6 +33,7 @@ from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
 from yarpy.services.collector import Collector
+from yarpy.transports.tcp import is_taken
 from yarpy.wire.message import Lines, Message, Packet
 
 if TYPE_CHECKING:
@@ -47,15 +48,26 @@ MAX_EVENTS: Final = 10_000
 
 
 class _Desk(Mailbox):
-    """Answers commands in the thread of the connection that brings them."""
+    """Answers commands in the thread of the connection that brings them; who comes early waits."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.answer: Callable[[Inbound, Message], None] | None = None
+        self._answer: Callable[[Inbound, Message], None] | None = None
+        self._opened = threading.Event()
+
+    def open(self, answer: Callable[[Inbound, Message], None]) -> None:
+        """From now on `answer` gets what comes."""
+        self._answer = answer
+        self._opened.set()
 
     def put(self, link: Inbound, message: Message) -> None:
-        if self.answer is not None and not self.stopped:
-            self.answer(link, message)
+        self._opened.wait()
+        if self._answer is not None and not self.stopped:
+            self._answer(link, message)
+
+    def interrupt(self) -> None:
+        super().interrupt()
+        self._opened.set()
 
 
 class NameServer:
@@ -85,7 +97,9 @@ class NameServer:
         self.host = host
         self.port = self._hub.port
         self.name = name
-        self.service = NameService(NameStore(host, self.port), Topology(time.time))
+        self.service = NameService(
+            NameStore(host, self.port, is_taken=self._is_taken), Topology(time.time)
+        )
         self._database: Database | None = None
         self._responder: Responder | None = None
         self._collector: Collector | None = None
@@ -105,7 +119,7 @@ class NameServer:
         except BaseException:
             self.close()
             raise
-        desk.answer = self._answer
+        desk.open(self._answer)
         self.client = client_of(Server(host, self.port))
 
     @property
@@ -124,6 +138,11 @@ class NameServer:
         return self._hub
 
     # -- commands ---------------------------------------------------------------------------------
+
+    def _is_taken(self, host: str, number: int) -> bool:
+        """Whether somebody on this computer listens there without having told us, such as a port
+        that outlived the server before us. (C++ lends the number, and the new port cannot open.)"""
+        return (host == self.host or is_loopback(host)) and is_taken(number)
 
     def _answer(self, link: Inbound, message: Message) -> None:
         peer = link.driver.transport.remote[0]

@@ -31,6 +31,19 @@ def dial(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TcpTransport
     return TcpTransport(socket.create_connection((host, port), timeout))
 
 
+def is_taken(port: int) -> bool:
+    """Whether nobody could listen on that number of this computer now: somebody does, or dials
+    from it."""
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as sock:
+        try:
+            if sys.platform != "win32":
+                sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            sock.bind(("", port))
+        except OSError:
+            return True
+    return False
+
+
 class TcpListener:
     """A listening socket on all IPv4 addresses, `port` 0 for any free number.
 
