@@ -31,6 +31,8 @@ class Mailbox:
         self.stopped = False
         self.drops = 0
         self._ready: SimpleQueue[object] = SimpleQueue()
+        # A message goes in, or the mailbox stops: what came in between would wait for ever.
+        self._gate = threading.Lock()
 
     def put(self, link: Inbound, message: Message) -> None:
         """Take a message that came over `link`."""
@@ -58,17 +60,20 @@ class Mailbox:
     @property
     def waiting(self) -> int:
         """Messages that came and were not taken."""
-        return self._ready.qsize()
+        return 0 if self.stopped else self._ready.qsize()
 
     def interrupt(self) -> None:
         """Drop what waits and what comes; readers get PortClosed."""
-        self.stopped = True
-        self._clear()
-        self._ready.put(_STOP)
+        with self._gate:
+            self.stopped = True
+            self._clear()
+            self._ready.put(_STOP)
 
     def resume(self) -> None:
         """Undo `interrupt`."""
-        self.stopped = False
+        with self._gate:
+            self._clear()
+            self.stopped = False
 
     def _next(self, token: object) -> Message | None:
         raise NotImplementedError
@@ -86,6 +91,7 @@ class Mailbox:
         self.drops += 1
 
     def _drop(self, link: Inbound) -> None:
+        """Count a drop; inside the gate, since several connections may."""
         self.drops += 1
         link.counter.drops += 1
 
@@ -95,28 +101,26 @@ class Latest(Mailbox):
 
     def __init__(self) -> None:
         super().__init__()
-        self._item: tuple[Inbound, Message] | None = None
-        self._lock = threading.Lock()  # several connections put, several readers take
+        self._item: tuple[Inbound, Message] | None = None  # changed inside the gate only
 
     def put(self, link: Inbound, message: Message) -> None:
-        with self._lock:
+        with self._gate:
+            if self.stopped:
+                self._drop(link)
+                return
             older, self._item = self._item, (link, message)
-        if self.stopped:
-            self._item = None
-            self._drop(link)
-        elif older is None:
-            self._ready.put(None)  # exactly one token while there is an item
-        else:
-            self._drop(older[0])
+            if older is None:
+                self._ready.put(None)  # exactly one token while there is an item
+            else:
+                self._drop(older[0])
 
     def _next(self, token: object) -> Message | None:
-        with self._lock:
+        with self._gate:
             item, self._item = self._item, None
         return item[1] if item else None
 
     def _discard(self, token: object) -> None:
-        with self._lock:
-            item, self._item = self._item, None
+        item, self._item = self._item, None
         if item:
             self._drop(item[0])
 
@@ -136,11 +140,12 @@ class Fifo(Mailbox):
             if self._bytes > self._limit:
                 self._room.wait_for(lambda: self._bytes <= self._limit or self.stopped)
             self._bytes += size
-        if self.stopped:
-            self._free(size)
+        with self._gate:
+            if not self.stopped:
+                self._ready.put((size, link, message))
+                return
             self._drop(link)
-            return
-        self._ready.put((size, link, message))
+        self._free(size)
 
     def _next(self, token: object) -> Message | None:
         assert isinstance(token, tuple)
@@ -185,9 +190,6 @@ class Rendezvous(Mailbox):
         self._pending: _Offer | None = None
 
     def put(self, link: Inbound, message: Message) -> None:
-        if self.stopped:
-            self._drop(link)
-            return
         offer = _Offer(link, message)
         if message.answer is not None:
             answer = message.answer
@@ -199,7 +201,11 @@ class Rendezvous(Mailbox):
                     offer.done.set()
 
             message.answer = reply
-        self._ready.put(offer)
+        with self._gate:
+            if self.stopped:
+                self._drop(link)
+                return
+            self._ready.put(offer)
         offer.done.wait()
 
     def take(self, timeout: float | None = None) -> Message | None:
@@ -243,9 +249,13 @@ class Callback(Mailbox):
         self._lock = threading.Lock() if lock else None  # the user asked for one call at a time
 
     def put(self, link: Inbound, message: Message) -> None:
-        if self.stopped:
-            self._drop(link)
+        if not (self.stopped or self._fails(link, message)):
             return
+        with self._gate:
+            self._drop(link)
+
+    def _fails(self, link: Inbound, message: Message) -> bool:
+        """Call the function; whether it failed."""
         try:
             if self._lock is None:
                 self._handler(message)
@@ -253,13 +263,14 @@ class Callback(Mailbox):
                 with self._lock:
                     self._handler(message)
         except PortClosed:
-            self._drop(link)
+            return True
         except YarpError as error:
-            self._drop(link)
             log.warning("%s: message from %s: %s", link.owner.name, link.route.source, error)
+            return True
         except Exception:
-            self._drop(link)
             log.exception("%s: the callback failed on %r", link.owner.name, message)
+            return True
+        return False
 
     def take(self, timeout: float | None = None) -> Message | None:
         raise PortClosed("this port hands its messages to a callback; there is nothing to read")
