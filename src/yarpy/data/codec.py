@@ -179,6 +179,8 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
     if type_ is object or type_ is Any:
         return cast(T, decode(view))
     origin = getattr(type_, "__origin__", None)
+    origin = getattr(origin, "__value__", origin)  # `type` aliases, as NDArray is from 3.12 on
+    origin = getattr(origin, "__origin__", origin)
     if isinstance(origin, type):  # list[int]: what is in the list is the caller's business
         return cast(T, decode_as(view, origin))
     if type_.__name__ == "ndarray" and type_.__module__ == "numpy":
