@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 
 import pytest
+from support.wait import wait_until
 
 from yarpy.link import acceptor as module
 from yarpy.link.acceptor import Acceptor
@@ -40,13 +41,6 @@ def echo(sock: socket.socket) -> None:
 
 def threads() -> int:
     return sum(thread.name.startswith("yarpy /here <- ") for thread in threading.enumerate())
-
-
-def wait_until(condition: Callable[[], bool], patience: float = 5.0) -> None:
-    deadline = time.monotonic() + patience
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.002)
 
 
 def test_connection_is_served_once_it_speaks() -> None:

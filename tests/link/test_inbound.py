@@ -15,6 +15,7 @@ from contextlib import contextmanager
 import pytest
 from support.capture import load_capture
 from support.transport import ScriptTransport, scripted
+from support.wait import wait_until
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.tcp import FastTcp, Tcp
@@ -248,14 +249,6 @@ def linked(kind: type[Carrier] = Tcp) -> Iterator[tuple[socket.socket, Inbound, 
         near.close()
         link.thread.join(5)
         assert not link.thread.is_alive()
-
-
-def wait_until(condition: object, patience: float = 5.0) -> None:
-    assert callable(condition)
-    deadline = time.monotonic() + patience
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.002)
 
 
 def test_close_from_another_thread_wakes_the_reader() -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 import pytest
 from support.capture import load_capture
 from support.transport import ScriptTransport, scripted
+from support.wait import wait_until
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.tcp import FastTcp, Tcp
@@ -74,13 +75,6 @@ def read_messages(far: socket.socket, count: int, ack: bool = True) -> list[byte
         if ack:
             far.sendall(ACK)
     return found
-
-
-def wait_until(condition: Callable[[], object], patience: float = 5.0) -> None:
-    deadline = time.monotonic() + patience
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.002)
 
 
 # ---------------------------------------------------------------------------------- sending

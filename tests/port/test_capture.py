@@ -18,6 +18,7 @@ from collections.abc import Iterator
 import pytest
 from support.capture import Capture, Step, groups, load_capture
 from support.difference import LIVE_DIFFERENT, NOT_REPLAYED
+from support.wait import wait_until
 
 from yarpy import network
 from yarpy.data.bottle import Bottle
@@ -355,11 +356,3 @@ def test_reader_that_dials(name: str, piece: int) -> None:
                 if acks and number < len(acks):
                     say(sock, acks[number], piece)
             assert hear(sock, len(wanted)) == wanted
-
-
-def wait_until(condition: object) -> None:
-    assert callable(condition)
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.005)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Callable
 
 import pytest
+from support.wait import wait_until
 
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError, PortClosed
@@ -42,13 +42,6 @@ def put(box: Mailbox, link: Link, value: object) -> None:
 def taken(box: Mailbox, timeout: float = 1.0) -> object:
     found = box.take(timeout)
     return None if found is None else found.value[0]
-
-
-def wait_until(condition: Callable[[], object]) -> None:
-    deadline = time.monotonic() + 5
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.001)
 
 
 # ---------------------------------------------------------------------------------- latest
