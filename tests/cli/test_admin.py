@@ -9,6 +9,7 @@ def test_rpc(cli, names):
         yarpy.Port("/admin/b", names=names) as other,
     ):
         other.connect("/admin/a")
+        assert port.wait_for_inputs(timeout=5)
         text = '[ver]\n[list] [in]\n[help]\n[prop] [set] k "v w"\n[prop] [get] k\nnonsense'
         said = cli.run("admin", "rpc", "/admin/a", input=text)
         assert (said.returncode, said.stderr) == (0, "")
@@ -24,7 +25,6 @@ def test_rpc(cli, names):
             'Response: "v w"',
             'Response: [fail] "send [help] for list of valid commands"',
         ]
-        assert port.inputs
 
 
 def test_write(cli, names):

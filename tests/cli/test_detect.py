@@ -49,3 +49,14 @@ def test_nobody(lone):
     assert said.returncode == 1
     assert "try 3 of max 3\n" in said.stdout
     assert "== PROBLEM\n== No valid YARP name server was found.\n" in said.stdout
+
+
+def test_no_multicast(here, monkeypatch):
+    def refuse(*args, **options):
+        raise OSError(19, "No such device")
+
+    monkeypatch.delenv("YARPY_SERVER")
+    monkeypatch.setattr("yarpy.names.discovery.search", refuse)
+    said = here("detect")
+    assert said.code == 1 and "== PROBLEM\n" in said.out
+    assert said.err == "error: this computer has no multicast: No such device\n"

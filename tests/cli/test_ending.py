@@ -7,6 +7,8 @@ import time
 
 import pytest
 
+from yarpy.cli.ending import Interrupted, held
+
 ENDINGS = [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
 
 
@@ -79,7 +81,10 @@ def yarpy_process(code):
 
 
 def test_is_no_exception_that_code_swallows():
-    from yarpy.cli.ending import Interrupted
-
     assert not issubclass(Interrupted, Exception)
     assert Interrupted(15).number == 15
+
+
+def test_held_without_a_watch_holds_nothing():
+    with pytest.raises(ZeroDivisionError), held():
+        raise ZeroDivisionError

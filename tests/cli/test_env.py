@@ -16,4 +16,4 @@ def test_one_variable(here, monkeypatch):
 
 def test_missing_variable(here):
     said = here("env", "YARP_NO_SUCH")
-    assert said == (1, "", "Could not find environment variable 'YARP_NO_SUCH'\n")
+    assert said == (1, "", "error: Could not find environment variable 'YARP_NO_SUCH'\n")

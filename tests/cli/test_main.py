@@ -13,7 +13,17 @@ from yarpy import registry
 from yarpy.cli import main as frame
 
 SOURCE = Path(frame.__file__).parent
-FRAME = {"main", "ending", "journal", "opening", "prompt", "relay", "service", "spelling"}
+FRAME = {
+    "main",
+    "complaint",
+    "ending",
+    "journal",
+    "opening",
+    "prompt",
+    "relay",
+    "service",
+    "spelling",
+}
 
 
 def test_every_verb_has_a_module_and_every_module_is_a_verb():

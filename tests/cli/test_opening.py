@@ -1,14 +1,22 @@
 """Ports that commands open."""
 
+import os
+import signal
+import time
+
+import click
 import pytest
 
 import yarpy
+from yarpy.cli import ending
 from yarpy.cli.opening import hear_from, open_port, send_to
 
 
 @pytest.fixture(autouse=True)
-def quiet(here):
-    """The log as it was, and the environment of this file's server."""
+def context(here):
+    """Those of a command: with the environment of this file's server, and its own log."""
+    with click.Context(click.Command("test")) as context:
+        yield context
 
 
 def test_with_a_name_server(names):
@@ -55,3 +63,31 @@ def test_without_a_name_server(monkeypatch, capsys):
         writer.wait_for_outputs(timeout=5)
         writer.write(["again"])
         assert reader.read(timeout=5).value == ["again"]
+
+
+def test_ports_close_with_the_command(names):
+    with click.Context(click.Command("other")):
+        port = open_port(yarpy.Port, "/opening/h")
+        assert names.query("/opening/h") is not None
+    assert port.closed
+    assert names.query("/opening/h") is None
+
+
+def test_a_signal_while_a_port_opens(names, monkeypatch):
+    """It is heard when the port is open, and closes it."""
+    before = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)
+    hangup = signal.getsignal(signal.SIGHUP)
+    ending.watch()
+
+    def slow(name, **options):
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0.01)
+        return yarpy.Port(name, **options)
+
+    try:
+        with pytest.raises(ending.Interrupted), click.Context(click.Command("other")):
+            open_port(slow, "/opening/i")
+    finally:
+        for number, handler in zip(("TERM", "INT", "HUP"), (*before, hangup), strict=True):
+            signal.signal(getattr(signal, f"SIG{number}"), handler)
+    assert names.query("/opening/i") is None

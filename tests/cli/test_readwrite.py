@@ -1,5 +1,12 @@
 """`yarpy readwrite`."""
 
+import subprocess
+from subprocess import PIPE
+
+from support.command_line import YARPY
+
+import yarpy
+
 
 def test_two_people_talk(cli):
     with (
@@ -22,9 +29,25 @@ def test_two_people_talk(cli):
 
 
 def test_a_port_that_is_taken(here, names):
-    import yarpy
-
     with yarpy.Port("/talk/taken", names=names):
         said = here("readwrite", "/talk/c", "/talk/taken")
         assert said.code == 1 and '"/talk/taken" is in use' in said.err
     assert names.query("/talk/c") is None
+
+
+def test_nobody_reads_what_it_prints(cli, names):
+    command = [*YARPY, "readwrite", "/talk/d:i", "/talk/d:o"]
+    with (
+        yarpy.Port("/talk/source", names=names) as source,
+        subprocess.Popen(
+            command, env=cli.environment, stdin=PIPE, stdout=PIPE, stderr=PIPE, text=True
+        ) as process,
+    ):
+        process.stdout.close()
+        assert yarpy.wait_for("/talk/d:o", timeout=10, names=names)
+        source.connect("/talk/d:i")
+        for _ in range(3):
+            source.write(["x"])
+        process.stdin.close()
+        assert process.wait(10) in (0, 1)
+        assert "Traceback" not in process.stderr.read()

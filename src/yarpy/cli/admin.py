@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import click
 
+import yarpy
 from yarpy.cli import prompt, rpc
 
 
@@ -36,12 +37,11 @@ def admin_rpc(port: str, name: str) -> int:
 @click.argument("remotes", nargs=-1, metavar="REMOTE...", required=True)
 def admin_write(port: str, remotes: tuple[str, ...]) -> int:
     """Send administrative commands from standard input, in the name of PORT, to each REMOTE."""
-    from yarpy import Bottle
 
     targets = [rpc.Target(remote, port, admin=True) for remote in remotes]
     for line in prompt.lines(history=f"admin_{port}"):
         for target in targets:
-            target.ask(Bottle.from_text(line))
+            target.ask(yarpy.Bottle.from_text(line))
     for target in targets:
         target.close()
     return 0

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import click
 
+import yarpy
 from yarpy.cli import journal
 from yarpy.cli.spelling import print_line
 
@@ -17,7 +18,6 @@ NUMBER = 42
 @click.command()
 def command() -> int:
     """Try whether ports work here."""
-    import yarpy
     from yarpy.cli.service import server
 
     _step("This is `yarpy check`", "It is a very simple sanity check for your installation")
@@ -47,7 +47,6 @@ def command() -> int:
 
 def _try(names: object) -> None:
     """Raises YarpError, saying what does not work."""
-    import yarpy
 
     local = isinstance(names, yarpy.LocalNames)
     ends = ("/check/in", "/check/out") if local else ("...", "...")

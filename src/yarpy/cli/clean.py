@@ -10,14 +10,12 @@ numbers that another port has taken over are found. Exit codes: 0 done; 1 no nam
 from __future__ import annotations
 
 import socket
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 
+import yarpy
 from yarpy.cli.spelling import print_line
-
-if TYPE_CHECKING:
-    from yarpy import Contact
 
 TIMEOUT: Final = 3.0
 AT_ONCE: Final = 16
@@ -65,7 +63,7 @@ def command(timeout: float | None) -> int:
     return 0
 
 
-def is_kept(contact: Contact, own: tuple[str, int]) -> bool:
+def is_kept(contact: yarpy.Contact, own: tuple[str, int]) -> bool:
     """Whether a registration is none of our business: groups, topics, the server itself."""
     return (
         contact.carrier in ("mcast", "topic")
@@ -74,7 +72,7 @@ def is_kept(contact: Contact, own: tuple[str, int]) -> bool:
     )
 
 
-def reason_of_death(contact: Contact, timeout: float) -> str:
+def reason_of_death(contact: yarpy.Contact, timeout: float) -> str:
     """Why nobody can reach this port, "" if somebody can or may."""
     try:
         socket.create_connection((contact.host, contact.port), timeout).close()
@@ -82,12 +80,11 @@ def reason_of_death(contact: Contact, timeout: float) -> str:
         return "No response"
     if contact.carrier != "tcp":
         return ""  # a camera or a ROS node: it listens, and speaks no YARP
-    from yarpy import YarpError
     from yarpy.port import probe
 
     try:
         lines = probe.describe(contact, timeout=timeout)
-    except (YarpError, OSError):
+    except (yarpy.YarpError, OSError):
         return ""
     words = lines[0].split() if lines else []
     named = words[:2] == ["This", "is"] and len(words) > 2

@@ -19,6 +19,7 @@ from typing import Any
 
 import click
 
+import yarpy
 from yarpy.cli.spelling import print_line
 
 
@@ -48,7 +49,6 @@ def command(
         return _list(source or "", describe=mode is None)
     if mode is not None:
         return _persist(source, target, carrier or "", "" if mode == "always" else mode)
-    import yarpy
 
     existing = _existing(source, target)
     if existing:
@@ -59,7 +59,6 @@ def command(
 
 def _existing(source: str, target: str) -> str:
     """The carrier of the connection that is there already, "" if none is."""
-    import yarpy
     from yarpy.network import Route
 
     try:
@@ -86,7 +85,6 @@ def _list(port: str, describe: bool) -> int:
     from yarpy.network import ask_server
 
     if port and describe:
-        import yarpy
         from yarpy.cli.ping import as_shown
 
         for line in yarpy.ping(port):

@@ -9,6 +9,7 @@ import os
 
 import click
 
+from yarpy.cli.complaint import complain
 from yarpy.cli.spelling import print_line
 from yarpy.cli.where import framed
 
@@ -33,7 +34,11 @@ def command(write: bool) -> int:
     contact = None
     for number in range(1, TRIES + 1):
         print_line(f"Polling for name server (using multicast), try {number} of max {TRIES}")
-        contact = search(found.namespace, default_port(os.environ), timeout=1.0, tries=1)
+        try:
+            contact = search(found.namespace, default_port(os.environ), timeout=1.0, tries=1)
+        except OSError as error:
+            complain(f"this computer has no multicast: {error.strerror}")
+            break
         if contact is not None:
             break
         print_line("No response to search for server")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import click
 
+from yarpy.cli.complaint import complain
 from yarpy.cli.spelling import print_line
 
 
@@ -17,7 +18,6 @@ from yarpy.cli.spelling import print_line
 @click.option("--persist", is_flag=True, help="Forget the persistent connection.")
 def command(source: str, target: str, persist: bool) -> int:
     """Have the port SOURCE no longer send to the port TARGET."""
-    from yarpy.cli.main import complain
     from yarpy.network import ask_server, disconnect
 
     if persist:

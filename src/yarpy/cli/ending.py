@@ -11,6 +11,8 @@ from __future__ import annotations
 import os
 import signal
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import FrameType
 from typing import Final
 
@@ -36,16 +38,36 @@ def watch() -> None:
         signal.signal(number, handler)
 
 
+@contextmanager
+def held() -> Iterator[None]:
+    """Let a signal wait until the block is done: for what must not be left half open."""
+    handler = signal.getsignal(signal.SIGTERM)
+    if not isinstance(handler, _Handler):
+        yield
+        return
+    handler.holding = True
+    try:
+        yield
+    finally:
+        handler.holding = False
+    if handler.waiting is not None:
+        raise Interrupted(handler.waiting)
+
+
 class _Handler:
     """What a signal does; it knows whether it is the first."""
 
     def __init__(self) -> None:
+        self.holding = False
+        self.waiting: int | None = None
         self._first: float | None = None
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         now = time.monotonic()
         if self._first is None:
             self._first = now
-            raise Interrupted(number)
-        if now - self._first > PATIENCE:
+            if not self.holding:
+                raise Interrupted(number)
+            self.waiting = number
+        elif now - self._first > PATIENCE:
             os._exit(128 + number)

@@ -10,6 +10,7 @@ import os
 
 import click
 
+from yarpy.cli.complaint import complain
 from yarpy.cli.spelling import print_line
 
 
@@ -18,7 +19,7 @@ from yarpy.cli.spelling import print_line
 def command(variable: str | None) -> int:
     """Print the environment, or one VARIABLE of it."""
     if variable is not None and variable not in os.environ:
-        click.echo(f"Could not find environment variable '{variable}'", err=True)
+        complain(f"Could not find environment variable '{variable}'")
         return 1
     for name in [variable] if variable is not None else sorted(os.environ):
         print_line(f"{name}={os.environ[name]}")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import click
 
+import yarpy
 from yarpy.cli.spelling import print_json
 
 
@@ -16,7 +17,6 @@ from yarpy.cli.spelling import print_json
 @click.option("--json", "as_json", is_flag=True, help="Print the answer as a JSON object.")
 def command(port: str, target: str | None, as_json: bool) -> int:
     """Tell by the exit code whether PORT is alive, or whether PORT sends to TARGET."""
-    import yarpy
 
     if target is None:
         found = yarpy.exists(port)

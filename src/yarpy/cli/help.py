@@ -10,13 +10,13 @@ import click
 @click.pass_context
 def command(ctx: click.Context, verb: str | None) -> None:
     """List the commands, or explain one."""
-    from yarpy.cli.main import yarpy
+    from yarpy.cli import main
 
-    root = ctx.find_root()
+    top = ctx.find_root()
     if verb is None:
-        click.echo(yarpy.get_help(root))
+        click.echo(main.root.get_help(top))
         return
-    name, found, _ = yarpy.resolve_command(root, [verb])
+    name, found, _ = main.root.resolve_command(top, [verb])
     assert found is not None
-    with click.Context(found, info_name=name, parent=root) as inner:
+    with click.Context(found, info_name=name, parent=top) as inner:
         click.echo(found.get_help(inner))

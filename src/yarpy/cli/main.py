@@ -17,6 +17,7 @@ from typing import Any, Final, NoReturn
 import click
 
 from yarpy.cli import ending
+from yarpy.cli.complaint import complain
 from yarpy.errors import UnknownPlugin, YarpError
 
 VERBS: Final = {
@@ -126,7 +127,7 @@ def _advice(name: str, known: Sequence[str]) -> str:
 )
 @click.option("--version", is_flag=True, help="Print the version.")
 @click.pass_context
-def yarpy(ctx: click.Context, version: bool) -> int:
+def root(ctx: click.Context, version: bool) -> int:
     """Named ports and the tools around them, compatible with YARP.
 
     `yarpy COMMAND --help` explains a command.
@@ -141,7 +142,7 @@ def yarpy(ctx: click.Context, version: bool) -> int:
 def run(arguments: Sequence[str]) -> int:
     """Run `yarpy ARGUMENTS` in this process; the exit code."""
     try:
-        code = yarpy.main([*arguments], "yarpy", standalone_mode=False)
+        code = root.main([*arguments], "yarpy", standalone_mode=False)
     except ending.Interrupted as signal:
         return 128 + signal.number
     except click.Abort:  # click's word for ^C and for the end of input at one of its prompts
@@ -161,12 +162,6 @@ def run(arguments: Sequence[str]) -> int:
         complain(f"{error.strerror or error}" + (f": {error.filename}" if error.filename else ""))
         return 1
     return code if isinstance(code, int) else 0
-
-
-def complain(text: str) -> None:
-    """Say on standard error what went wrong, on one line."""
-    label = click.style("error:", fg="red", bold=True)
-    click.echo(f"{label} {' '.join(text.split())}", err=True)
 
 
 def main() -> NoReturn:

@@ -19,6 +19,8 @@ from typing import Any
 
 import click
 
+import yarpy
+from yarpy.cli.complaint import complain
 from yarpy.cli.opening import hear_from, open_port
 from yarpy.cli.spelling import print_line
 
@@ -38,12 +40,11 @@ class Merger:
 
     def take(self, number: int, elements: Any) -> None:
         """Source `number` sent `elements`: send all that is known."""
-        from yarpy import Bottle, Stamp
 
         with self._lock:
             self._newest[number] = elements
-            merged = Bottle(item for part in self._newest for item in part)
-            self._send(merged, Stamp(self._sent, time.time()))
+            merged = yarpy.Bottle(item for part in self._newest for item in part)
+            self._send(merged, yarpy.Stamp(self._sent, time.time()))
             self._sent += 1
 
 
@@ -57,8 +58,6 @@ def command(
     ports: tuple[str, ...], first: str | None, output: str, worker: str, carrier: str
 ) -> int:
     """Concatenate what PORTS send."""
-    import yarpy
-    from yarpy.cli.main import complain
 
     sources = [first, *ports] if first else list(ports)
     if not sources:

@@ -15,14 +15,12 @@ Exit codes: 0 answered; 1 `query` finds nothing, or no server.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+import yarpy
 from yarpy.cli.spelling import print_json, print_line
-
-if TYPE_CHECKING:
-    from yarpy import Contact
 
 END = "*** end of message"
 _BOTTLES = frozenset({"bot", "announce", "subscribe", "unsubscribe", "topic", "untopic", "type"})
@@ -33,7 +31,6 @@ _BOTTLES = frozenset({"bot", "announce", "subscribe", "unsubscribe", "topic", "u
 @click.option("--json", "as_json", is_flag=True, help="Print list, query, get ... as JSON.")
 def command(words: tuple[str, ...], as_json: bool) -> int:
     """Send a command to the name server: `name list`, `name query /port`, `name help` ..."""
-    from yarpy import UnknownName
     from yarpy.cli.service import server
     from yarpy.names.option import parse_value
     from yarpy.port.wiring import unknown
@@ -43,7 +40,7 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
     if verb == "query" and len(arguments) == 1:
         contact = client.query(arguments[0])
         if contact is None:
-            raise UnknownName(f"{arguments[0]} not known: {unknown(arguments[0], client)}")
+            raise yarpy.UnknownName(f"{arguments[0]} not known: {unknown(arguments[0], client)}")
         _print_contact(contact, as_json)
     elif verb == "list" and as_json:
         print_json([as_dict(contact) for contact in client.list(*arguments[:1])])
@@ -77,7 +74,7 @@ def parse_address(words: tuple[str, ...]) -> list[Any]:
     return [words[0], *values]
 
 
-def as_dict(contact: Contact) -> dict[str, Any]:
+def as_dict(contact: yarpy.Contact) -> dict[str, Any]:
     """A registration for JSON."""
     return {
         "name": contact.name,
@@ -87,7 +84,7 @@ def as_dict(contact: Contact) -> dict[str, Any]:
     }
 
 
-def _print_contact(contact: Contact, as_json: bool) -> None:
+def _print_contact(contact: yarpy.Contact, as_json: bool) -> None:
     from yarpy.names.line import registration_line
 
     print_json(as_dict(contact)) if as_json else print_line(registration_line(contact))

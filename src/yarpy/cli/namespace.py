@@ -10,6 +10,8 @@ import os
 
 import click
 
+import yarpy
+from yarpy.cli.complaint import warn
 from yarpy.cli.spelling import print_line
 
 
@@ -17,21 +19,20 @@ from yarpy.cli.spelling import print_line
 @click.argument("names", nargs=-1)
 def command(names: tuple[str, ...]) -> int:
     """Show the namespaces in use, or set them: the first one is where ports are registered."""
-    from yarpy import AddressError, Bottle
     from yarpy.names.configuration import ROOT, conf_directory, namespaces, write_namespaces
 
     directory = conf_directory(os.environ)
     if names:
         for name in names:
             if not name.startswith("/"):
-                raise AddressError(f'a namespace begins with "/" (given: "{name}")')
+                raise yarpy.AddressError(f'a namespace begins with "/" (given: "{name}")')
         print_line(f"Setting namespace in: {write_namespaces(directory, names)}")
         print_line(f"Remove this file to revert to the default namespace ({ROOT})")
         if os.environ.get("YARP_NAMESPACE"):
-            click.echo("YARP_NAMESPACE is set here, and wins over the file", err=True)
+            warn("YARP_NAMESPACE is set here, and wins over the file")
     found = namespaces(os.environ, directory)
     if len(found) == 1:
         print_line(f"YARP namespace: {found[0]}")
     else:
-        print_line(f"YARP namespaces: {Bottle(found).to_text()}")
+        print_line(f"YARP namespaces: {yarpy.Bottle(found).to_text()}")
     return 0

@@ -9,7 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from yarpy.cli import journal
+import click
+
+import yarpy
+from yarpy.cli import ending, journal
+from yarpy.cli.complaint import warn
 
 if TYPE_CHECKING:
     from yarpy.port.base import BasePort
@@ -20,27 +24,25 @@ ANY = "..."
 
 
 def open_port(kind: Callable[..., P], name: str, **options: Any) -> P:
-    """`kind(name, **options)`, with the library's log shown. Raises AddressError, NoNameServer."""
-    from yarpy.errors import NoNameServer
+    """`kind(name, **options)`, with the library's log shown. Raises AddressError, NoNameServer.
 
+    The port closes with the command, at the latest: also when a signal comes while it opens.
+    """
     journal.show()
-    try:
-        return kind(name, **options)
-    except NoNameServer:
-        if name != ANY:
-            raise
-    port = kind("", **options)
-    import logging
-
-    logging.getLogger("yarpy.cli").warning(
-        "no name server: this port has no name, others reach it at /%s", port.address
-    )
+    with ending.held():
+        try:
+            port = kind(name, **options)
+        except yarpy.NoNameServer:
+            if name != ANY:
+                raise
+            port = kind("", **options)
+            warn(f"no name server: this port has no name, others reach it at /{port.address}")
+        click.get_current_context().call_on_close(port.close)
     return port
 
 
 def send_to(port: BasePort, target: str, carrier: str | None = None) -> None:
     """Send what `port` writes to `target`, which may be decorated (`udp://x`, `topic://t`)."""
-    import yarpy
 
     if _registered(port):
         yarpy.connect(port.name, target, carrier)
@@ -50,7 +52,6 @@ def send_to(port: BasePort, target: str, carrier: str | None = None) -> None:
 
 def hear_from(port: BasePort, source: str, carrier: str | None = None) -> None:
     """Have `source`, which may be decorated, send to `port`."""
-    import yarpy
 
     if _registered(port):
         yarpy.connect(source, port.name, carrier)
@@ -59,7 +60,6 @@ def hear_from(port: BasePort, source: str, carrier: str | None = None) -> None:
 
 
 def _registered(port: BasePort) -> bool:
-    import yarpy
 
     try:
         return yarpy.query(port.name) is not None

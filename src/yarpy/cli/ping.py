@@ -15,14 +15,12 @@ import time
 from collections.abc import Sequence
 from itertools import pairwise
 from statistics import fmean, pstdev
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+import yarpy
 from yarpy.cli.spelling import print_json, print_line
-
-if TYPE_CHECKING:
-    from yarpy import Contact
 
 ROUNDS = 10
 
@@ -39,7 +37,6 @@ def command(port: str, timed: bool, rate: bool, duration: float, as_json: bool) 
         return _measure_time(port, as_json)
     if rate:
         return _measure_rate(port, duration, as_json)
-    import yarpy
 
     description = yarpy.ping(port)
     if as_json:
@@ -52,9 +49,8 @@ def command(port: str, timed: bool, rate: bool, duration: float, as_json: bool) 
 
 def as_shown(line: str) -> str:
     """A line of a description as C++ shows it: names and addresses in quotes."""
-    from yarpy import Bottle
 
-    return Bottle.from_text(line).to_text()
+    return yarpy.Bottle.from_text(line).to_text()
 
 
 def read_description(lines: Sequence[str]) -> dict[str, Any]:
@@ -73,7 +69,6 @@ def read_description(lines: Sequence[str]) -> dict[str, Any]:
 
 
 def _measure_time(port: str, as_json: bool) -> int:
-    from yarpy import Vocab
     from yarpy.network import find
     from yarpy.port import probe
 
@@ -83,9 +78,9 @@ def _measure_time(port: str, as_json: bool) -> int:
     whole: list[float] = []
     for number in range(1, ROUNDS + 1):
         started = time.perf_counter()
-        contact: Contact = find(port)
+        contact: yarpy.Contact = find(port)
         found = time.perf_counter()
-        probe.ask(contact, [Vocab("ver")])
+        probe.ask(contact, [yarpy.Vocab("ver")])
         ended = time.perf_counter()
         connecting.append(ended - found)
         whole.append(ended - started)
@@ -103,7 +98,6 @@ def _measure_time(port: str, as_json: bool) -> int:
 
 
 def _measure_rate(port: str, duration: float, as_json: bool) -> int:
-    import yarpy
     from yarpy.cli.opening import ANY, hear_from, open_port
 
     times: list[float] = []

@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from yarpy.cli.complaint import complain
 from yarpy.cli.spelling import print_json, print_line
 
 
@@ -20,7 +21,6 @@ from yarpy.cli.spelling import print_json, print_line
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def command(name: str | None, names_only: bool, as_json: bool) -> int:
     """List the plug-ins that are installed, or tell about one."""
-    from yarpy.cli.main import complain
 
     found = [entry for entry in installed() if name in (None, entry[1])]
     if not found:

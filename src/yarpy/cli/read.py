@@ -12,16 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+import yarpy
+from yarpy.cli.complaint import complain
 from yarpy.cli.ending import Interrupted
 from yarpy.cli.opening import ANY, hear_from, open_port
 from yarpy.cli.spelling import print_json, print_line
-
-if TYPE_CHECKING:
-    from yarpy import BufferedPort, Message
 
 TRIM = 80
 
@@ -60,11 +59,10 @@ class Printer:
         self._trim = trim
         self._json = as_json
 
-    def show(self, message: Message) -> bool:
+    def show(self, message: yarpy.Message) -> bool:
         """Print `message`; False when it says that there will be no more."""
-        from yarpy import Bottle
 
-        bottle = message.as_(Bottle)
+        bottle = message.as_(yarpy.Bottle)
         verbatim = len(bottle) == 2 and type(bottle[0]) is int and type(bottle[1]) is str
         if verbatim and bottle[0] == 1:
             return False
@@ -83,16 +81,14 @@ class Printer:
         print_line(line[: self._trim] if self._trim else line)
         return True
 
-    def follow(self, port: BufferedPort, once: bool = False) -> None:
+    def follow(self, port: yarpy.BufferedPort, once: bool = False) -> None:
         """Print what arrives until the port closes or the messages say that they end."""
-        from yarpy import DecodeError
-        from yarpy.cli.main import complain
 
         for message in port:
             try:
                 if not self.show(message):
                     return
-            except DecodeError as error:
+            except yarpy.DecodeError as error:
                 complain(f"a message from {message.source} cannot be printed: {error}")
             if once:
                 return
@@ -119,8 +115,6 @@ def command(
 
     PORT may be `...`, any name that is free.
     """
-    from yarpy import YarpError
-    from yarpy.cli.main import complain
 
     wish = parse_words(words)
     printer = Printer(envelope or wish.envelope, trim or wish.trim, as_json)
@@ -129,7 +123,7 @@ def command(
             for remote in wish.remotes:
                 try:
                     hear_from(reader, remote)
-                except YarpError as error:
+                except yarpy.YarpError as error:
                     complain(str(error))
             try:
                 printer.follow(reader, once or wish.once)
@@ -140,9 +134,8 @@ def command(
     return 0
 
 
-def open_reader(name: str, type_: str = "") -> BufferedPort:
+def open_reader(name: str, type_: str = "") -> yarpy.BufferedPort:
     """A port that keeps every message. Raises AddressError with the hint that C++ gives."""
-    import yarpy
 
     try:
         return open_port(yarpy.BufferedPort, name, strict=True, type_=type_)

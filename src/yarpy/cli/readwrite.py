@@ -6,10 +6,12 @@ input. Exit codes: 0; 1 a port cannot be opened, or after ^C.
 
 from __future__ import annotations
 
+import contextlib
 import threading
 
 import click
 
+import yarpy
 from yarpy.cli import prompt
 from yarpy.cli.ending import Interrupted
 from yarpy.cli.opening import open_port
@@ -22,16 +24,13 @@ from yarpy.cli.write import feed
 @click.argument("out_port", metavar="OUT")
 def command(in_port: str, out_port: str) -> int:
     """Print what arrives at IN while lines of standard input are sent, verbatim, from OUT."""
-    import yarpy
 
     try:
         with (
             open_reader(in_port) as reader,
             open_port(yarpy.Port, out_port, callback=lambda message: None) as writer,
         ):
-            threading.Thread(
-                target=Printer().follow, args=(reader,), name="yarpy print", daemon=True
-            ).start()
+            threading.Thread(target=_print, args=(reader,), name="yarpy print", daemon=True).start()
             try:
                 feed(writer, prompt.lines(history=f"write_{out_port}"), verbatim=True)
             except Interrupted:
@@ -40,3 +39,8 @@ def command(in_port: str, out_port: str) -> int:
     except Interrupted:
         return 1
     return 0
+
+
+def _print(reader: yarpy.BufferedPort) -> None:
+    with contextlib.suppress(BrokenPipeError):  # nobody reads what we print; sending goes on
+        Printer().follow(reader)

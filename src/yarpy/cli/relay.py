@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from yarpy import Message
+import yarpy
 
 
 class Whole:
@@ -19,7 +19,7 @@ class Whole:
         return (self._payload,)
 
 
-def forwardable(message: Message) -> object:
+def forwardable(message: yarpy.Message) -> object:
     """What to write in order to send `message` on. Raises DecodeError."""
     if message.spelling == "binary":
         return Whole(message.payload)

@@ -9,6 +9,7 @@ import threading
 
 import click
 
+import yarpy
 from yarpy.cli.opening import open_port
 from yarpy.cli.relay import forwardable
 
@@ -17,7 +18,6 @@ from yarpy.cli.relay import forwardable
 @click.argument("port")
 def command(port: str) -> None:
     """Send on what arrives at PORT."""
-    import yarpy
 
     ready = threading.Event()
 

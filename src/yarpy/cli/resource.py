@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import click
 
+from yarpy.cli.complaint import complain
 from yarpy.cli.spelling import print_line
 
 
@@ -30,7 +31,6 @@ def command(
     verbose: bool,
 ) -> int:
     """Print the path of a configuration file."""
-    from yarpy.cli.main import complain
     from yarpy.names.resource import Search
 
     wanted = configuration or name

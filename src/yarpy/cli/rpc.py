@@ -18,7 +18,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+import yarpy
 from yarpy.cli import prompt
+from yarpy.cli.complaint import complain
 from yarpy.cli.spelling import print_line
 from yarpy.errors import LinkClosed, UnknownName, YarpError
 
@@ -74,13 +76,11 @@ class Target:
 
 def converse(ask: Ask, history: str, label: str = "Response: ") -> None:
     """Ask line by line and print the replies."""
-    from yarpy import Bottle, DecodeError
-    from yarpy.cli.main import complain
 
     for line in prompt.lines(history=history, complete=lambda: commands_of(ask)):
         try:
-            question = Bottle.from_text(line)
-        except DecodeError as error:
+            question = yarpy.Bottle.from_text(line)
+        except yarpy.DecodeError as error:
             complain(str(error))
             continue
         print_reply(ask(question), label)
@@ -102,9 +102,8 @@ def print_reply(reply: Any, label: str = "Response: ") -> None:
 
 def many(reply: Any) -> list[Any] | None:
     """The elements behind `[many]`, None for any other reply."""
-    from yarpy import Vocab
 
-    if not reply or not isinstance(reply[0], Vocab) or reply[0] != "many":
+    if not reply or not isinstance(reply[0], yarpy.Vocab) or reply[0] != "many":
         return None
     items = list(reply[1:])
     return list(items[0]) if len(items) == 1 and isinstance(items[0], list) else items
@@ -112,11 +111,10 @@ def many(reply: Any) -> list[Any] | None:
 
 def commands_of(ask: Ask) -> list[str]:
     """The words that the target's `help` lists, [] when it has no such list."""
-    from yarpy import Bottle
     from yarpy.data.text import plain_text
 
     try:
-        reply = ask(Bottle(["help"]))
+        reply = ask(yarpy.Bottle(["help"]))
     except YarpError:
         return []
     items = many(reply)
@@ -128,7 +126,6 @@ def commands_of(ask: Ask) -> list[str]:
 
 def talk(port: str, name: str = "", admin: bool = False) -> int:
     """`yarpy rpc PORT [NAME]` and `yarpy admin rpc PORT [NAME]`."""
-    from yarpy.cli.main import complain
 
     try:
         target = Target(port, name, admin)
@@ -145,7 +142,6 @@ def talk(port: str, name: str = "", admin: bool = False) -> int:
 
 def be_client(name: str, server: str) -> int:
     """`yarpy rpc --client NAME [SERVER]`."""
-    import yarpy
     from yarpy.cli.opening import open_port, send_to
 
     with open_port(lambda name: yarpy.RpcClient(name=name), name) as client:
@@ -161,9 +157,8 @@ def be_client(name: str, server: str) -> int:
 
 
 def _bottle(message: Any) -> Any:
-    from yarpy import Bottle
 
-    return Bottle() if message is None else message.as_(Bottle)
+    return yarpy.Bottle() if message is None else message.as_(yarpy.Bottle)
 
 
 @click.command()

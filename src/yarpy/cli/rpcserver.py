@@ -9,17 +9,15 @@ Exit codes: 0 with `--stop`; 1 the port cannot be opened, or after ^C.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import click
 
+import yarpy
 from yarpy.cli import prompt
+from yarpy.cli.complaint import complain
 from yarpy.cli.ending import Interrupted
 from yarpy.cli.opening import open_port
 from yarpy.cli.spelling import print_line
-
-if TYPE_CHECKING:
-    from yarpy import Message, Port
 
 
 @click.command()
@@ -30,7 +28,6 @@ if TYPE_CHECKING:
 @click.argument("port")
 def command(single: bool, stop: bool, echo: bool, type_: str, port: str) -> int:
     """Print what PORT is asked, and reply with lines of standard input."""
-    import yarpy
 
     try:
         with open_port(yarpy.Port, port, type_=type_) as server:
@@ -44,7 +41,7 @@ def command(single: bool, stop: bool, echo: bool, type_: str, port: str) -> int:
     return 0
 
 
-def serve(server: Port, single: bool, stop: bool, echo: bool) -> None:
+def serve(server: yarpy.Port, single: bool, stop: bool, echo: bool) -> None:
     """Answer until the port closes, or once."""
     answers = prompt.lines(prompt="")
     print_line("Waiting for a message...")
@@ -59,21 +56,19 @@ def serve(server: Port, single: bool, stop: bool, echo: bool) -> None:
         print_line("Waiting for a message...")
 
 
-def _answer(message: Message, answers: Iterator[str], echo: bool) -> None:
-    from yarpy import Bottle, DecodeError, LinkClosed
-    from yarpy.cli.main import complain
+def _answer(message: yarpy.Message, answers: Iterator[str], echo: bool) -> None:
 
     try:
-        question = message.as_(Bottle)
-    except DecodeError as error:
+        question = message.as_(yarpy.Bottle)
+    except yarpy.DecodeError as error:
         complain(f"a message from {message.source} cannot be printed: {error}")
-        question = Bottle()
+        question = yarpy.Bottle()
     print_line(f"Message: {question.to_text()}")
     if not message.wants_reply:
         return
     print_line("Reply: ")
-    reply = question if echo else Bottle.from_text(next(answers, ""))
+    reply = question if echo else yarpy.Bottle.from_text(next(answers, ""))
     try:
         message.reply(reply)
-    except LinkClosed as error:
+    except yarpy.LinkClosed as error:
         complain(f"{message.source} did not wait for the reply: {error}")

@@ -11,6 +11,7 @@ import time
 
 import click
 
+import yarpy
 from yarpy.cli.opening import hear_from, open_port
 from yarpy.cli.relay import forwardable
 from yarpy.cli.spelling import print_line
@@ -32,7 +33,6 @@ def command(
     show: bool,
 ) -> None:
     """Send on what arrives at PORT at a constant rate."""
-    import yarpy
 
     if (period is None) == (rate is None):
         raise click.UsageError("give either --period or --rate")

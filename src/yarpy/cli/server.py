@@ -27,7 +27,9 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+import yarpy
 from yarpy.cli import journal
+from yarpy.cli.complaint import warn
 from yarpy.cli.ending import Interrupted
 from yarpy.cli.spelling import print_line
 from yarpy.errors import AddressError
@@ -185,7 +187,7 @@ def command(
     found = configuration(os.environ)
     place = decide(found, ip=ip, socket=socket, read=read, write=write)
     if place.note:
-        click.echo(f"warning: {place.note}", err=True)
+        warn(place.note)
     say = _nothing if silent else print_line
     try:
         _serve(found, place, portdb, subdb, cautious, say)
@@ -198,18 +200,17 @@ def _serve(
     found: Configuration, place: Place, portdb: str, subdb: str, cautious: bool, say: object
 ) -> None:
     """Serve until a signal comes."""
-    from yarpy import NameServer, __version__
     from yarpy.names.configuration import write_server
 
     assert callable(say)
-    say(f"yarpy name server {__version__}")
+    say(f"yarpy name server {yarpy.__version__}")
     say(f"Using port database: {portdb}")
     say(f"Using subscription database: {subdb}")
     if {portdb, subdb} != {MEMORY}:
         say("[If you ever need to clear the name server's state, just delete those files.]")
     server = place.server
     try:
-        service = NameServer(
+        service = yarpy.NameServer(
             server.port,
             server.host,
             name=server.namespace,
@@ -228,7 +229,7 @@ def _serve(
             try:
                 say(f"Address stored in {write_server(found.directory, server)}")
             except OSError as error:
-                click.echo(f"warning: the address cannot be stored: {error}", err=True)
+                warn(f"the address cannot be stored: {error}")
         if say is not _nothing:
             scribe = Scribe()
             service.on_command = scribe.command
@@ -247,12 +248,11 @@ def _nothing(text: str) -> None:
 
 def _explained(server: Server, error: AddressError) -> AddressError:
     """Who has the port number, if it is a name server."""
-    from yarpy import NoNameServer, YarpNameClient
 
     try:
-        with YarpNameClient("127.0.0.1", server.port, timeout=1.0) as client:
+        with yarpy.YarpNameClient("127.0.0.1", server.port, timeout=1.0) as client:
             known = client.query(server.namespace)
-    except (NoNameServer, OSError):
+    except (yarpy.NoNameServer, OSError):
         known = None
     if known is None:
         return error

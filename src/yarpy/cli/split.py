@@ -7,24 +7,22 @@ longer one does. Runs until interrupted. Exit codes: 255 PORT cannot be connecte
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+import yarpy
+from yarpy.cli.complaint import complain
 from yarpy.cli.opening import ANY, hear_from, open_port
 from yarpy.cli.spelling import print_line
-
-if TYPE_CHECKING:
-    from yarpy import Port
 
 FAILED = 255
 
 
 def part(element: Any) -> Any:
     """What an element is sent as."""
-    from yarpy import Bottle
 
-    return element if isinstance(element, list) else Bottle([element])
+    return element if isinstance(element, list) else yarpy.Bottle([element])
 
 
 @click.command()
@@ -32,10 +30,8 @@ def part(element: Any) -> Any:
 @click.option("--carrier", default="udp", help="How PORT is connected (udp).")
 def command(port: str, carrier: str) -> int:
     """Send each element of the messages of PORT to a port of its own."""
-    import yarpy
-    from yarpy.cli.main import complain
 
-    outputs: list[Port] = []
+    outputs: list[yarpy.Port] = []
     with open_port(yarpy.BufferedPort, ANY, strict=True) as reader:
         try:
             hear_from(reader, port, carrier)

@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+import yarpy
+from yarpy.cli.complaint import complain
 from yarpy.cli.ending import Interrupted
 from yarpy.cli.opening import ANY, hear_from, open_port
 from yarpy.cli.spelling import print_json, print_line
-
-if TYPE_CHECKING:
-    from yarpy import Message
 
 FAILED = 255
 
@@ -65,7 +64,7 @@ class Tally:
         }
 
 
-def size_of(message: Message) -> int:
+def size_of(message: yarpy.Message) -> int:
     """Bytes of the payload; what travels as an object has none."""
     return len(message.payload) if message.spelling != "object" else 0
 
@@ -81,8 +80,6 @@ def size_of(message: Message) -> int:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON objects.")
 def command(port: str, port_type: str, duration: float | None, protocol: str, as_json: bool) -> int:
     """Measure what PORT sends."""
-    import yarpy
-    from yarpy.cli.main import complain
 
     kind: Any = yarpy.Port if port_type == "Port" else yarpy.BufferedPort
     options = {} if port_type == "Port" else {"strict": True}
@@ -104,7 +101,6 @@ def command(port: str, port_type: str, duration: float | None, protocol: str, as
 
 def _measure(reader: Any, whole: Tally, end: float | None, as_json: bool) -> None:
     """Read until `end`, telling once a second."""
-    from yarpy import Timeout
 
     while end is None or time.perf_counter() < end:
         second = Tally()
@@ -112,7 +108,7 @@ def _measure(reader: Any, whole: Tally, end: float | None, as_json: bool) -> Non
         while (left := until - time.perf_counter()) > 0:
             try:
                 size = size_of(reader.read(timeout=left))
-            except Timeout:
+            except yarpy.Timeout:
                 break
             second.count(size)
             whole.count(size)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import click
 
+import yarpy
 from yarpy.cli.spelling import print_line
 
 
@@ -17,7 +18,6 @@ from yarpy.cli.spelling import print_line
 @click.argument("name")
 def command(name: str) -> int:
     """Ask the program that listens at NAME/quit to end."""
-    import yarpy
     from yarpy.network import find
     from yarpy.port import probe
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import click
 
+import yarpy
 from yarpy.cli.spelling import print_json, print_line
 
 
@@ -23,7 +24,6 @@ def command(
     name: str | None, structure: str | None, listing: bool, remove: bool, as_json: bool
 ) -> int:
     """Make the topic NAME, whose messages look like STRUCTURE."""
-    from yarpy import UnknownName
     from yarpy.network import ask_server
 
     if listing:
@@ -37,7 +37,7 @@ def command(
         raise click.UsageError("Please supply the topic name (or: --list, --remove NAME)")
     if remove:
         if name not in ask_server(None, ["topic"]):
-            raise UnknownName(f'no topic "{name}"; `yarpy topic --list` shows all')
+            raise yarpy.UnknownName(f'no topic "{name}"; `yarpy topic --list` shows all')
         ask_server(None, ["untopic", name])
         print_line(f"Topic {name} deleted")
     else:

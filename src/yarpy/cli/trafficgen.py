@@ -10,6 +10,7 @@ import time
 
 import click
 
+import yarpy
 from yarpy.cli.opening import open_port
 from yarpy.cli.spelling import print_line
 
@@ -45,7 +46,6 @@ def command(
     duration: float | None,
 ) -> int:
     """Send messages of a given size at a given rate from PORT."""
-    import yarpy
 
     bandwidth, period, size = plan(bandwidth, period, size)
     shown = f"{duration:.3f}(s)" if duration else "unlimited"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import click
 
-from yarpy import __version__
+import yarpy
 
 
 @click.command()
 def command() -> None:
     """Print the version."""
-    click.echo(f"yarpy version {__version__}")
+    click.echo(f"yarpy version {yarpy.__version__}")

@@ -11,6 +11,8 @@ import time
 
 import click
 
+import yarpy
+from yarpy.cli.complaint import complain
 from yarpy.cli.spelling import print_line
 
 REMIND = 3.0  # seconds between reminders that it still waits
@@ -22,8 +24,6 @@ REMIND = 3.0  # seconds between reminders that it still waits
 @click.option("--timeout", type=float, metavar="S", help="Give up after S seconds.")
 def command(port: str, target: str | None, timeout: float | None) -> int:
     """Wait until PORT is alive, or until PORT sends to TARGET."""
-    import yarpy
-    from yarpy.cli.main import complain
 
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:

@@ -11,31 +11,29 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+import yarpy
 from yarpy.cli import prompt
+from yarpy.cli.complaint import complain
 from yarpy.cli.ending import Interrupted
 from yarpy.cli.opening import open_port, send_to
-
-if TYPE_CHECKING:
-    from yarpy import Port
 
 EOF = (1, "<EOF>")
 
 
 def value_of(line: str, verbatim: bool) -> Any:
     """What a line is sent as. Raises DecodeError for hundreds of brackets."""
-    from yarpy import Bottle
 
-    return Bottle([0, line]) if verbatim else Bottle.from_text(line)
+    return yarpy.Bottle([0, line]) if verbatim else yarpy.Bottle.from_text(line)
 
 
-def feed(port: Port, lines: Iterable[str], verbatim: bool = False, period: float = 0.0) -> None:
+def feed(
+    port: yarpy.Port, lines: Iterable[str], verbatim: bool = False, period: float = 0.0
+) -> None:
     """Send `lines`; with `period`, the last one again and again, that many seconds apart."""
-    from yarpy import DecodeError
-    from yarpy.cli.main import complain
 
     repeater = _Repeater(port, period)
     if period:
@@ -43,7 +41,7 @@ def feed(port: Port, lines: Iterable[str], verbatim: bool = False, period: float
     for line in lines:
         try:
             repeater.value = value_of(line, verbatim)
-        except DecodeError as error:
+        except yarpy.DecodeError as error:
             complain(str(error))
             continue
         port.write(repeater.value)
@@ -56,7 +54,7 @@ def feed(port: Port, lines: Iterable[str], verbatim: bool = False, period: float
 class _Repeater(threading.Thread):
     """Sends `value` every `period` seconds, from when there is one."""
 
-    def __init__(self, port: Port, period: float) -> None:
+    def __init__(self, port: yarpy.Port, period: float) -> None:
         super().__init__(name="yarpy repeat", daemon=True)
         self.value: Any = None
         self.stopped = threading.Event()
@@ -64,13 +62,12 @@ class _Repeater(threading.Thread):
         self._period = period
 
     def run(self) -> None:
-        from yarpy import PortClosed
 
         while not self.stopped.wait(self._period):
             if self.value is not None:
                 try:
                     self._port.write(self.value)
-                except PortClosed:
+                except yarpy.PortClosed:
                     return
 
 
@@ -93,7 +90,6 @@ def command(
     type_: str,
 ) -> int:
     """Open PORT and send it the lines of standard input, to each REMOTE and whoever connects."""
-    import yarpy
 
     verbatim = verbatim or "verbatim" in words
     try:

@@ -1,0 +1,17 @@
+"""What went wrong, on standard error: `error: ...`, always one line."""
+
+from __future__ import annotations
+
+import click
+
+
+def complain(text: str) -> None:
+    """Say on standard error what went wrong."""
+    label = click.style("error:", fg="red", bold=True)
+    click.echo(f"{label} {' '.join(text.split())}", err=True)
+
+
+def warn(text: str) -> None:
+    """Say on standard error what may surprise."""
+    label = click.style("warning:", fg="yellow", bold=True)
+    click.echo(f"{label} {' '.join(text.split())}", err=True)
