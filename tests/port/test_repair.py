@@ -9,6 +9,7 @@ from support.port import free_port
 from support.process import Process
 
 import yarpy
+from yarpy.port import probe
 
 RECOVERY = 5.0  # generous on a busy machine; the goal is 2 s, and the benchmark tells
 
@@ -123,6 +124,25 @@ def test_what_was_disconnected_stays_disconnected() -> None:
         time.sleep(1.2)
         assert not writer.outputs
         assert not reader.inputs
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text", "udp"])
+def test_what_the_receiver_disconnected_stays_disconnected(carrier: str) -> None:
+    """Its sender is told, and takes it for no failure. The way back is another connection."""
+    with (
+        yarpy.NameServer(),
+        yarpy.BufferedPort("/repair/out") as writer,
+        yarpy.BufferedPort("/repair/in") as reader,
+    ):
+        writer.connect("/repair/in", carrier)
+        reader.connect("/repair/out")
+        assert reader.wait_for_inputs(timeout=2)
+        answer = probe.drop_input(reader.contact, "/repair/out")
+        assert answer == "Removing connection from /repair/out to /repair/in"
+        time.sleep(1.2)
+        assert not reader.inputs
+        assert carrier == "udp" or not writer.outputs, "datagrams go on into the void, as in C++"
+        assert [link.name for link in writer.inputs] == ["/repair/in"]
 
 
 def test_a_closed_reader_is_not_dialled_again_under_the_same_name() -> None:

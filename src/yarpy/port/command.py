@@ -237,6 +237,12 @@ def disconnect_output(hub: Hub, target: str) -> tuple[bool, str]:
 def disconnect_input(hub: Hub, source: str) -> tuple[bool, str]:
     """Remove the inputs from `source`; whether there were any, and the line that says so."""
     found = [link for link in hub.inputs if link.route.source == source]
+    rooted = source.startswith("/") and source != hub.name
+    if rooted and any(not (link.carrier.connectionless or link.asking) for link in found):
+        try:
+            repair.ask_to_disconnect(hub, source)
+        except (YarpError, OSError):
+            pass  # it will notice by itself
     for link in found:
         link.close()
     for link in found:

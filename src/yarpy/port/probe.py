@@ -57,17 +57,27 @@ def describe(
 
 def drop_input(
     contact: Contact, source: str, timeout: float = TIMEOUT, secret_: bytes | None = None
-) -> None:
-    """Ask a port to drop what comes from `source`: how connectionless senders say goodbye."""
+) -> str:
+    """Ask a port to drop what comes from `source`: how connectionless senders say goodbye.
+
+    Returns the line it says.
+    """
     route = Route("admin", contact.name, "text")
     driver, _ = greet(contact, route, key=secret() if secret_ is None else secret_, timeout=timeout)
     try:
         driver.stream.write(f"~{source}\r\nq\r\n".encode())
         driver.flush()
-        for _ in range(2):  # the welcome and the result
-            driver.run(driver.stream.read_line(), _deadline(timeout))
+        driver.run(driver.stream.read_line(), _deadline(timeout))  # the welcome
+        return driver.run(driver.stream.read_line(), _deadline(timeout)).decode("utf-8", "replace")
     finally:
         driver.transport.close()
+
+
+def drop_output(
+    contact: Contact, target: str, timeout: float = TIMEOUT, secret_: bytes | None = None
+) -> None:
+    """Ask a port to stop sending to `target`; it ends the connection in good order."""
+    _lines(contact, f"!{target}", "admin", timeout, secret_)
 
 
 def is_alive(contact: Contact, key: bytes = b"") -> bool:

@@ -268,7 +268,7 @@ def _is_address(name: str) -> bool:
 
 
 def ask_to_disconnect(hub: Hub, source: str) -> None:
-    """Ask the port `source` to drop its connection to us."""
+    """Ask the port `source` to drop its connection to us: it would take the end for a failure."""
     contact: Contact | None = hub.names.query(source) if hub.names is not None else None
     if contact is not None and contact.carrier == "tcp":
-        probe.ask(contact, [Vocab("del"), hub.name], timeout=1.0, secret_=hub.key)
+        probe.drop_output(contact, hub.name, timeout=1.0, secret_=hub.key)
