@@ -1,9 +1,12 @@
 """Buffered ports: writing does not wait, and what it does not send it counts."""
 
+import threading
+import time
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from support.wait import wait_until
 
 import yarpy
 
@@ -52,3 +55,128 @@ def test_an_array_may_be_changed_after_writing(ports):
         image[:] = 255
         assert int(reader.read(timeout=5).value.array.max()) == turn
         writer.flush(timeout=5)
+
+
+# ---------------------------------------------------------------------------------- policies
+
+
+def wait_until_sent(port: yarpy.BufferedPort, count: int) -> None:
+    wait_until(lambda: sum(o.stats["messages"] + o.stats["drops"] for o in port.outputs) == count)
+
+
+def test_reader_gets_the_newest(names):
+    with (
+        yarpy.Port("/writer", names=names) as writer,
+        yarpy.BufferedPort("/reader", names=names) as reader,
+    ):
+        writer.connect("/reader")
+        for number in range(20):
+            writer.write([number], wait=True)
+        assert reader.waiting == 1
+        assert reader.read(timeout=5).value == [19]
+        assert reader.poll() is None
+        assert reader.inputs[0].stats["drops"] == 19
+        with pytest.raises(yarpy.Timeout):
+            reader.read(timeout=0.01)
+
+
+def test_strict_reader_gets_everything(names):
+    with (
+        yarpy.Port("/writer", names=names) as writer,
+        yarpy.BufferedPort("/reader", strict=True, names=names) as reader,
+    ):
+        writer.connect("/reader")
+        for number in range(200):
+            writer.write([number])
+        assert [reader.read(timeout=5).value[0] for _ in range(200)] == list(range(200))
+        assert reader.inputs[0].stats["drops"] == 0
+
+
+def test_writer_does_not_wait_for_a_slow_reader(names):
+    with (
+        yarpy.BufferedPort("/writer", names=names) as writer,
+        yarpy.Port("/reader", names=names) as reader,
+    ):
+        writer.connect("/reader")
+        started = time.monotonic()
+        taken = sum(writer.write([number]) for number in range(100))
+        assert time.monotonic() - started < 1
+        assert 1 <= taken < 100
+        wait_until_sent(writer, 100)
+        assert reader.read(timeout=5).value == [0]
+
+
+def test_strict_writer_waits_and_loses_nothing(names):
+    with (
+        yarpy.BufferedPort("/writer", strict=True, names=names) as writer,
+        yarpy.Port("/reader", names=names) as reader,
+    ):
+        writer.connect("/reader")
+        thread = threading.Thread(target=lambda: [writer.write([n]) for n in range(500)])
+        thread.start()
+        assert [reader.read(timeout=5).value[0] for _ in range(500)] == list(range(500))
+        thread.join(5)
+        assert writer.outputs[0].stats["drops"] == 0
+
+
+def test_one_slow_reader_does_not_hold_up_the_other(names):
+    quick = []
+    with (
+        yarpy.BufferedPort("/writer", names=names) as writer,
+        yarpy.Port("/slow", names=names),
+        yarpy.Port("/quick", names=names, callback=quick.append),
+    ):
+        writer.connect("/slow")
+        writer.connect("/quick")
+        for number in range(30):
+            writer.write([number])
+            wait_until(lambda number=number: len(quick) > number)
+        assert [m.value[0] for m in quick] == list(range(30))
+        by_name = {o.target: o.stats for o in writer.outputs}
+        assert by_name["/quick"]["drops"] == 0
+        assert by_name["/slow"]["drops"] >= 28
+
+
+def test_callback_sees_every_message(names):
+    heard = []
+    with (
+        yarpy.BufferedPort("/writer", strict=True, names=names) as writer,
+        yarpy.BufferedPort("/reader", names=names, callback=heard.append) as reader,
+    ):
+        writer.connect("/reader")
+        for number in range(50):
+            writer.write([number])
+        writer.flush(timeout=5)
+        assert [m.value[0] for m in heard] == list(range(50))
+        with pytest.raises(yarpy.PortClosed):
+            reader.read(timeout=0)
+
+
+def test_iteration_ends_with_the_port(names):
+    with (
+        yarpy.BufferedPort("/writer", strict=True, names=names) as writer,
+        yarpy.BufferedPort("/reader", strict=True, names=names) as reader,
+    ):
+        writer.connect("/reader")
+        found = []
+        thread = threading.Thread(target=lambda: found.extend(m.value[0] for m in reader))
+        thread.start()
+        for number in range(5):
+            writer.write([number])
+        writer.flush(timeout=5)
+        wait_until(lambda: len(found) == 5)
+        reader.close()
+        thread.join(5)
+        assert found == [0, 1, 2, 3, 4]
+
+
+def test_call_to_a_buffered_port_gets_an_empty_answer_or_the_readers(names):
+    """A question is a message too; who reads it quickly enough may answer."""
+    with (
+        yarpy.BufferedPort("/reader", strict=True, names=names) as reader,
+        yarpy.RpcClient("/reader", names=names) as client,
+    ):
+        assert client.call("x", timeout=5) == []
+        message = reader.read(timeout=5)
+        assert message.value == ["x"]
+        assert not message.wants_reply

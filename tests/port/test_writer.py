@@ -1,0 +1,286 @@
+"""Writing: to many readers with one encoding, every message delivered or counted as a drop."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from contextlib import ExitStack
+
+import pytest
+from support.wait import wait_until
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.stamp import Stamp
+from yarpy.errors import PortClosed
+from yarpy.names.local import LocalNames
+from yarpy.port.buffered import BufferedPort
+from yarpy.port.port import Port
+from yarpy.port.writer import Writer, envelope_of
+from yarpy.wire.message import Message
+
+ENVELOPES = [
+    (Stamp(7, 1.25), b"7 1.25"),
+    ("any text", b"any text"),
+    (b"bytes", b"bytes"),
+    ("cut\nhere", b"cut"),
+    ("cut \u00e9 here", b"cut "),  # as C++, at the first byte that is not ASCII
+    ("", b""),
+]
+
+
+@pytest.mark.parametrize(("stamp", "wanted"), ENVELOPES)
+def test_envelope_of_a_stamp_or_text(stamp: Stamp | str | bytes, wanted: bytes) -> None:
+    assert envelope_of(stamp) == wanted
+
+
+class Counting:
+    """Something that knows how often it was encoded."""
+
+    def __init__(self) -> None:
+        self.encoded = 0
+
+    def to_wire(self) -> tuple[bytes]:
+        self.encoded += 1
+        return (Bottle(["x"]).to_bytes(),)
+
+
+@pytest.mark.parametrize("kind", [Port, BufferedPort])
+def test_twenty_readers_cost_one_encoding(kind: type[Writer], names: LocalNames) -> None:
+    carriers = ["tcp", "fast_tcp", "udp", "mcast", "unix_stream"] * 4
+    heard: list[str] = []
+    with kind("/out", names=names) as out, ExitStack() as stack:  # type: ignore[call-arg]
+        for number, carrier in enumerate(carriers):
+            name = f"/in{number}"
+            stack.enter_context(
+                Port(name, names=names, callback=lambda m, name=name: heard.append(name))
+            )
+            out.connect(name, carrier)
+        thing = Counting()
+        sent = out.write(thing)
+        # of the multicast connections one sends for all
+        assert sent == 17
+        wait_until(lambda: len(heard) == 20)
+        assert sorted(heard) == sorted(f"/in{number}" for number in range(20))
+        assert thing.encoded == 1
+
+
+def test_both_spellings_are_made_once(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, ExitStack() as stack:
+        heard: list[Message] = []
+        for number in range(6):
+            name = f"/in{number}"
+            stack.enter_context(Port(name, names=names, callback=heard.append))
+            out.connect(name, "text" if number % 2 else "tcp")
+        thing = Counting()
+        out.write(thing)
+        wait_until(lambda: len(heard) == 6)
+        assert {m.spelling for m in heard} == {"text", "binary"}
+        assert thing.encoded <= 2  # the text is read out of the binary spelling
+
+
+# ---------------------------------------------------------------------------------- counting
+
+
+class Heard:
+    """What a reader got, in its own time."""
+
+    def __init__(self, pause: float = 0.0) -> None:
+        self.pause = pause
+        self.count = 0
+
+    def __call__(self, message: Message) -> None:
+        self.count += 1
+        time.sleep(self.pause)
+
+
+MODES = [
+    # writer, reader, carrier
+    ("plain", "callback", "tcp"),
+    ("plain", "callback", "fast_tcp"),
+    ("plain", "callback", "text"),
+    ("plain", "callback", "text_ack"),
+    ("plain", "callback", "unix_stream"),
+    ("plain", "callback", "unix_stream+ack"),
+    ("plain", "callback", "local"),
+    ("plain", "callback", "udp"),
+    ("plain", "latest", "tcp"),
+    ("plain", "latest", "fast_tcp"),
+    ("plain", "strict", "tcp"),
+    ("plain", "plain", "tcp"),
+    ("buffered", "callback", "tcp"),
+    ("buffered", "latest", "tcp"),
+    ("buffered", "latest", "fast_tcp"),
+    ("buffered", "strict", "tcp"),
+    ("strict", "latest", "tcp"),
+    ("strict", "strict", "fast_tcp"),
+]
+
+
+@pytest.mark.parametrize(("writes", "reads", "carrier"), MODES)
+def test_sent_is_delivered_and_drops(
+    writes: str, reads: str, carrier: str, names: LocalNames
+) -> None:
+    """For every mode and on both sides: what was written was delivered or counted."""
+    count = 400 if carrier == "udp" else 1000
+    heard = Heard()
+    out = make("/out", writes, names, None)
+    in_ = make("/in", reads, names, heard)
+    with out, in_:
+        out.connect("/in", carrier)
+        assert in_.wait_for_inputs(timeout=5)
+        done = threading.Event()
+        reader = threading.Thread(target=read_all, args=(in_, heard, done))
+        if reads != "callback":
+            reader.start()
+        for number in range(count):
+            out.write([number])
+            if carrier == "udp" and number % 20 == 0:
+                time.sleep(0.001)
+        out.flush(timeout=10)
+        sender = out.outputs[0]
+        receiver = in_.inputs[0]
+        wait_until(lambda: sender.stats["messages"] + sender.stats["drops"] == count)
+        sent = sender.stats["messages"]
+        wait_until(lambda: receiver.stats["messages"] + lost(receiver) >= sent)
+        wait_until(lambda: heard.count + receiver.stats["drops"] == sent)
+        done.set()
+        in_.interrupt()
+        if reads != "callback":
+            reader.join(5)
+        assert heard.count + receiver.stats["drops"] + sender.stats["drops"] == count
+        if writes == "strict" or (writes == "plain" and carrier != "udp"):
+            assert sender.stats["drops"] == 0
+        if reads in ("strict", "callback", "plain") and carrier != "udp":
+            assert receiver.stats["drops"] == 0
+
+
+def lost(receiver: object) -> int:
+    """What never came to be a message: the drops that the kernel and the protocol counted."""
+    stats = receiver.stats  # type: ignore[attr-defined]
+    return int(stats["drops"])
+
+
+def make(name: str, mode: str, names: LocalNames, callback: Heard | None) -> Port | BufferedPort:
+    if mode == "callback":
+        return Port(name, names=names, callback=callback)
+    if mode == "plain":
+        return Port(name, names=names)
+    return BufferedPort(name, strict=mode == "strict", names=names)
+
+
+def read_all(port: Port | BufferedPort, heard: Heard, done: threading.Event) -> None:
+    try:
+        for message in port:
+            heard(message)
+    except PortClosed:
+        pass
+
+
+def test_drops_of_a_slow_reader_are_on_the_side_that_dropped(names: LocalNames) -> None:
+    with BufferedPort("/out", names=names) as out, Port("/in", names=names) as in_:
+        out.connect("/in")
+        for number in range(100):
+            out.write([number])
+            time.sleep(0.0005)
+        stats = out.outputs[0].stats
+        assert stats["drops"] > 50  # the reader has not taken the first one yet
+        assert stats["messages"] + stats["drops"] == 100
+        assert in_.read(timeout=5).value == [0]
+        assert in_.inputs[0].stats["drops"] == 0
+
+
+def test_reader_that_dies_is_counted_and_forgotten(names: LocalNames) -> None:
+    """A bare socket that greets, reads nothing and goes."""
+    with Port("/out", names=names) as out:
+        sock = socket.create_connection(("127.0.0.1", out.contact.port), 5)
+        sock.sendall(b"CONNECT reader\r\nr\r\n")
+        assert out.wait_for_outputs(timeout=5)
+        link = out._hub.outputs[0]
+        sock.close()
+        written = 0
+        deadline = time.monotonic() + 5
+        while out.outputs and time.monotonic() < deadline:
+            out.write([written])
+            written += 1
+        assert out.outputs == []
+        # The last one may have been written when nobody was connected any more.
+        assert link.counter.messages + link.counter.drops in (written - 1, written)
+        assert out.write([1]) == 0
+
+
+# ---------------------------------------------------------------------------------- waiting
+
+
+def test_wait_means_taken_by_every_reader_that_acknowledges(names: LocalNames) -> None:
+    slow = Heard(pause=0.05)
+    with (
+        Port("/out", names=names) as out,
+        Port("/in", names=names, callback=slow),
+        Port("/other", names=names, callback=Heard()),
+    ):
+        out.connect("/in")
+        out.connect("/other", "fast_tcp")
+        started = time.monotonic()
+        assert out.write([1], wait=True) == 2
+        assert time.monotonic() - started >= 0.05
+        assert slow.count == 1
+
+
+def test_flush_waits_for_what_was_written(names: LocalNames) -> None:
+    slow = Heard(pause=0.02)
+    with Port("/out", names=names) as out, Port("/in", names=names, callback=slow):
+        out.connect("/in")
+        for number in range(5):
+            out.write([number])
+        assert out.flush(timeout=5)
+        assert slow.count == 5
+        assert out.flush(timeout=5)  # nothing left
+
+
+def test_flush_has_a_limit(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        out.connect("/in")
+        out.write([1])
+        started = time.monotonic()
+        assert not out.flush(timeout=0.05)
+        assert time.monotonic() - started < 2
+        assert in_.read(timeout=5).value == [1]
+        assert out.flush(timeout=5)
+
+
+def test_value_may_be_changed_after_writing(names: LocalNames) -> None:
+    """Also in a burst, where messages are gathered into one send."""
+    with Port("/out", names=names) as out, BufferedPort("/in", strict=True, names=names) as in_:
+        out.connect("/in", "fast_tcp")
+        blob = bytearray(100)
+        for number in range(200):
+            blob[:] = bytes([number]) * 100
+            out.write([blob])
+        found = [in_.read(timeout=5).value[0] for _ in range(200)]
+        assert found == [bytes([number]) * 100 for number in range(200)]
+
+
+def test_writer_to_a_stuck_reader_can_be_closed(names: LocalNames) -> None:
+    """A reader that takes nothing must not keep the port, or the writing thread, for ever."""
+    with Port("/out", names=names) as out:
+        sock = socket.create_connection(("127.0.0.1", out.contact.port), 5)
+        sock.sendall(b"CONNECT stuck\r\nr\r\n")
+        assert out.wait_for_outputs(timeout=5)
+
+        def write() -> None:
+            for _ in range(10):
+                try:
+                    out.write(["x" * 5_000_000])
+                except PortClosed:
+                    return
+
+        thread = threading.Thread(target=write)
+        thread.start()
+        time.sleep(0.2)
+        started = time.monotonic()
+        out.close()
+        assert time.monotonic() - started < 5
+        thread.join(5)
+        assert not thread.is_alive()
+        sock.close()
