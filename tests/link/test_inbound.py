@@ -29,7 +29,9 @@ from yarpy.link.handshake import recognise
 from yarpy.link.inbound import MAX_UNSENT_ACKS, Inbound
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
+from yarpy.wire.effects import Steps
 from yarpy.wire.message import Message, Packet
+from yarpy.wire.stream import ByteStream
 
 
 class Owner:
@@ -385,3 +387,70 @@ def test_link_closed_is_what_a_late_reply_gets() -> None:
     assert transport.closed
     with pytest.raises(LinkClosed):
         answers(["late"])
+
+
+# ---------------------------------------------------------------------------------- short talks
+
+
+class Brief(TextAck):
+    """A carrier that is done after one message, and has little patience."""
+
+    name = "brief"
+    patience = 0.05
+
+    def encode_ack(self, stream: ByteStream) -> None:
+        if not self.finished:
+            stream.write(b"bye\r\n")
+        self.finished = True
+
+
+def test_finished_carrier_ends_without_waiting_for_the_peer() -> None:
+    driver, transport = scripted(b"d\r\n1\r\n", open_ended=True)
+    owner = Owner()
+    Inbound(owner, driver, Brief(Route("/peer", "/here", "brief"))).serve()
+    assert transport.said == b"bye\r\n"
+    assert owner.ended == [("", True)]
+
+
+def test_silence_beyond_the_carriers_patience_ends_quietly(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    near, far = socket.socketpair()
+    with far:
+        owner = Owner()
+        link = Inbound(
+            owner, Driver(SocketTransport(near)), Brief(Route("/peer", "/here", "brief"))
+        )
+        started = time.monotonic()
+        link.serve()
+        assert 0.02 < time.monotonic() - started < 2.0
+    assert owner.ended == [("the peer is silent", False)]
+    assert not caplog.records
+
+
+class Interim(TextAck):
+    """A carrier that says something in the middle of a message."""
+
+    name = "interim"
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        yield from stream.read_line()
+        stream.write(b"go on\r\n")
+        yield from stream.read_line()
+        return Message("q")
+
+
+def test_what_is_written_while_reading_leaves_before_waiting() -> None:
+    near, far = socket.socketpair()
+    with far:
+        far.settimeout(5)
+        link = Inbound(
+            Owner(), Driver(SocketTransport(near)), Interim(Route("/peer", "/here", "interim"))
+        )
+        thread = threading.Thread(target=link.serve, daemon=True)
+        thread.start()
+        far.sendall(b"one\r\n")
+        assert far.recv(100) == b"go on\r\n"
+        far.sendall(b"two\r\n")
+        thread.join(5)
+        assert not thread.is_alive()

@@ -482,3 +482,40 @@ def test_goodbye_waits_for_what_is_on_its_way() -> None:
         thread.join(5)
         assert link.counter.messages == 5
         assert link.counter.drops == 0
+
+
+# ---------------------------------------------------------------------------------- onlookers
+
+
+class Shown(FastTcp):
+    """A carrier for people who look on: they miss messages rather than hold a writer up."""
+
+    name = "shown"
+    lossy = True
+    backlog = 4
+
+
+def test_stalled_reader_of_a_lossy_carrier_costs_its_writer_nothing() -> None:
+    with connected(Shown) as (link, _):
+        started = time.monotonic()
+        for _ in range(30):
+            link.send(Packet([bytes(1 << 20)]))
+        link.wait_acknowledged()
+        assert time.monotonic() - started < 2.0
+        assert link.counter.drops > 10
+        link.driver.transport.interrupt()
+        wait_until(lambda: link.broken)
+        with pytest.raises(LinkClosed):
+            link.send(Packet([1]))
+
+
+def test_reader_of_a_lossy_carrier_gets_a_short_burst_whole() -> None:
+    with connected(Shown) as (link, far):
+        with link.lock:  # nothing leaves meanwhile
+            link.send(Packet([0]))
+            wait_until(lambda: link._queue is not None and link._queue._busy)
+            for number in range(1, 7):
+                link.send(Packet([number]))
+        found = read_messages(far, 5, ack=False)
+        assert found == [b"".join(framing.encode(Packet([n]))) for n in range(5)]  # type: ignore[arg-type]
+        assert link.counter.drops == 2

@@ -40,11 +40,17 @@ class Carrier:
     push: ClassVar[bool] = True
     acks: bool = False  # the receiver confirms each message
     replies: ClassVar[bool] = True
-    spelling: ClassVar[Spelling] = "binary"
+    spelling: Spelling = "binary"  # what `encode` uses of a packet
     escapes: ClassVar[bool] = True  # messages begin with a port command, so admin works
     gathers: ClassVar[bool] = True  # small messages of a burst may leave in one send
     connectionless: ClassVar[bool] = False  # closing must be told to the peer some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
+    patience: ClassVar[float | None] = None  # seconds an accepted peer may be silent
+    lossy: bool = False  # who reads too slowly misses messages; its writer never waits
+    backlog: int = 0  # messages that may wait for such a reader
+    interval: float = 0.0  # seconds between the messages of a lossy connection, at least
+    structured: bool = False  # the peer wants values, not lines for a person to read
+    finished: bool = False  # everything was said: the link ends without waiting for the peer
 
     def __init__(self, route: Route) -> None:
         self.route = route
@@ -80,6 +86,14 @@ class Carrier:
         self.route.source, self.route.carrier = read_specifier(text, self.route.carrier)
 
     # -- messages ---------------------------------------------------------------------------------
+
+    def prepare(self, packet: Packet) -> bool:
+        """Make what `encode` will write, in the thread of the writer, into memory of its own.
+
+        False: this message is not for this protocol; it is dropped, and counted.
+        """
+        packet.own(self.spelling)
+        return True
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         """Write one message."""

@@ -1,7 +1,7 @@
 """Sending from other threads than the writer's: a link's own thread, and the one that sweeps up.
 
 Rules: both take the link's lock for one message at a time. The queue of a link's own thread holds
-one message, so that what is sent is never old.
+one message, so that what is sent is never old; a carrier for people may allow a few more.
 """
 
 from __future__ import annotations
@@ -31,15 +31,22 @@ class Background:
         self._stopped = False
         self._changed = threading.Condition()  # writer and sender pass packets
 
-    def put(self, packet: Packet) -> bool:
-        """Take the packet if the link is idle; else count a drop."""
+    def put(self, packet: Packet, backlog: int = 0) -> bool:
+        """Take the packet if the link is idle, or if fewer than `backlog` wait; else count a
+        drop."""
         with self._changed:
-            if self._busy or self._waiting or self._stopped:
+            busy = self._busy or bool(self._waiting)
+            if self._stopped or (busy and len(self._waiting) >= backlog):
                 self._link.counter.drops += 1
                 return False
             self._waiting.append(packet)
             self._changed.notify_all()
             return True
+
+    def has_room(self, backlog: int) -> bool:
+        """Whether `put` would take a packet now."""
+        waiting = len(self._waiting)
+        return not self._stopped and (waiting < backlog or not (waiting or self._busy))
 
     def wait_put(self, packet: Packet) -> None:
         """Take the packet; wait while an earlier one has not begun to leave."""

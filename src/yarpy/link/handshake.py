@@ -68,6 +68,7 @@ def greet(
 
     Raises UnknownPlugin, LinkClosed (nobody there, hung up), Timeout, RemoteProtocolError.
     """
+    route.host, route.port = contact.host, contact.port
     carrier = find_carrier(route.carrier)(route)
     deadline = time.monotonic() + timeout
     try:

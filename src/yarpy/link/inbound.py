@@ -91,6 +91,8 @@ class Inbound:
     def serve(self) -> None:
         """Read until the connection ends. Runs in the link's own thread."""
         reason = ""
+        if self.carrier.patience is not None:
+            self._limit(None)
         try:
             while not self._quit and not self._reversed:
                 with self._turn:
@@ -101,7 +103,8 @@ class Inbound:
             reason = str(error)
         except YarpError as error:
             reason = f"{error}"
-            self._tell(error)
+            if self.carrier.patience is None or not isinstance(error, Timeout):
+                self._tell(error)  # silence beyond a carrier's patience is nobody's fault
         except Exception as error:
             reason = f"{type(error).__name__}: {error}"
             log.exception("%s: connection %s fails on a defect", self.owner.name, self.route)
@@ -144,6 +147,9 @@ class Inbound:
         self.wanted = self._leaving = False
 
     def _limit(self, seconds: float | None) -> None:
+        """Let each wait for bytes take so long; None: as long as the carrier has patience."""
+        if seconds is None:
+            seconds = self.carrier.patience
         try:
             self.driver.transport.limit_waiting(seconds)
         except OSError:
@@ -173,8 +179,11 @@ class Inbound:
                 except BaseException:
                     self._steps = None  # whoever reads next meets the same end
                     raise
-            if self._unsent_acks:
+            if self._unsent_acks or driver.stream.pending:
                 self._send_acks()
+            if carrier.finished:
+                message = Message(QUIT)
+                break
             driver.fill(deadline)
             if self._steps is None and not driver.stream.waiting:
                 self._steps = carrier.decode(driver.stream)  # meets the end, and says how

@@ -17,6 +17,7 @@ from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
 from yarpy.link.background import GATHER_SECONDS, Background, Sweeper
 from yarpy.link.counter import Counter
 from yarpy.qos import Sched
+from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import CALL, Message, Packet
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ WINDOW: Final = 256
 WINDOW_BYTES: Final = 1 << 16
 WINDOW_SECONDS: Final = 0.005
 ASK_EVERY: Final = 32  # messages after which acknowledgements are looked for
+UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may hold back
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
 # Gathering. A writer that comes back within RUSH seconds, BURST times in a row, is flooding.
@@ -51,6 +53,7 @@ class Outbound:
         self.unacknowledged = 0
         self._ahead_since = 0.0
         self._ahead_from = 0
+        self._due = 0.0  # when the carrier's interval is over
         self.broken = False
         self.sched = Sched()  # what somebody asked for; -1: nothing
         self.tos = 0
@@ -67,17 +70,23 @@ class Outbound:
 
     # -- sending ----------------------------------------------------------------------------------
 
-    def send(self, packet: Packet) -> None:
-        """Send one message. Returns once the kernel, or the gathering of a burst, has it.
+    def send(self, packet: Packet) -> bool:
+        """Send one message; False if it was dropped. Returns once the kernel, or the gathering of a burst, has it.
 
-        Blocks while the peer is WINDOW acknowledgements behind. Raises LinkClosed.
+        Blocks while the peer is WINDOW acknowledgements behind; where the carrier is lossy it never
+        blocks, and the message may be dropped instead. Raises LinkClosed.
         """
+        if self.carrier.lossy:
+            if self.broken:
+                raise LinkClosed(f'the connection to "{self.route.target}" is gone')
+            return self.offer(packet)
         if self._queue is not None:
             packet.own(self.carrier.spelling)  # what cannot be sent is the writer's error
             self._queue.wait_put(packet)
-            return
+            return True
         with self.lock:
             self.send_now(packet)
+        return True
 
     def offer(self, packet: Packet) -> bool:
         """Send in the background unless the previous message is still going: then drop, and
@@ -87,9 +96,23 @@ class Outbound:
         if self.unacknowledged and not self._caught_up():
             self.counter.drops += 1
             return False
-        assert self._queue is not None
-        packet.own(self.carrier.spelling)
-        return self._queue.put(packet)
+        queue, carrier = self._queue, self.carrier
+        assert queue is not None
+        if carrier.lossy and not (queue.has_room(carrier.backlog) and self._timely()):
+            self.counter.drops += 1  # before anything is made of a message that does not go
+            return False
+        if not carrier.prepare(packet):
+            self.counter.drops += 1
+            return False
+        return queue.put(packet, carrier.backlog)
+
+    def _timely(self) -> bool:
+        """Whether the carrier's interval is over. On the average, so that no beat is missed."""
+        now = time.perf_counter()
+        if now < self._due:
+            return False
+        self._due = max(self._due + self.carrier.interval, now)
+        return True
 
     def _caught_up(self) -> bool:
         """Whether the reader has taken the last message."""
@@ -184,6 +207,9 @@ class Outbound:
         """Give the link a thread that sends; `send` and `offer` then only hand over."""
         with self.lock:
             if self._queue is None and not self.broken:
+                transport = self.driver.transport
+                if self.carrier.lossy and isinstance(transport, TcpTransport):
+                    transport.limit_unsent(UNSENT)  # else the kernel is the growing queue
                 self._queue = Background(self)
                 self.thread = threading.Thread(
                     target=self._queue.run, name=f"yarpy {self.route}", daemon=True
@@ -248,7 +274,10 @@ class Outbound:
             raise LinkClosed(f'the connection to "{self.route.target}" is gone')
 
     def wait_acknowledged(self, timeout: float | None = None) -> None:
-        """Wait until the peer has taken every message. Raises Timeout, LinkClosed."""
+        """Wait until the peer has taken every message, unless it may miss some. Raises Timeout,
+        LinkClosed."""
+        if self.carrier.lossy:
+            return
         deadline = None if timeout is None else time.monotonic() + timeout
         self._take_turn(timeout)
         try:

@@ -158,6 +158,8 @@ class RpcClient(BasePort):
         """The connection to the server: the one there is, if it lives, else a new one."""
         target, carrier = self._target, self._carrier
         for link in self._hub.outputs:
+            if link.carrier.lossy:
+                continue  # somebody looks on
             if not link.ended():
                 return link
             # The server was restarted, or the last call did not end well.
@@ -165,7 +167,7 @@ class RpcClient(BasePort):
             self._hub.drop_output(link, "the server hung up")
         if target:
             super().connect(target, carrier)
-            return self._hub.outputs[0]
+            return next(link for link in self._hub.outputs if not link.carrier.lossy)
         raise LocalProtocolError(
             f'"{self.name}" is not connected to a server: connect("/server"), or from outside '
             f"`yarpy connect {self.name} /server`"
