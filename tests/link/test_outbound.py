@@ -511,6 +511,7 @@ def test_stalled_reader_of_a_lossy_carrier_costs_its_writer_nothing() -> None:
 
 def test_reader_of_a_lossy_carrier_gets_a_short_burst_whole() -> None:
     with connected(Shown) as (link, far):
+        link.start_background()
         with link.lock:  # nothing leaves meanwhile
             link.send(Packet([0]))
             wait_until(lambda: link._queue is not None and link._queue._busy)
