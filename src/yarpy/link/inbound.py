@@ -281,10 +281,10 @@ class Inbound:
             self._acknowledge(message)
 
     def _reply(self, value: object) -> None:
-        self._answering = None
         stream = self.driver.stream
         self._owe_acks()
-        self.carrier.encode_reply(stream, value)
+        self.carrier.encode_reply(stream, value)  # a TypeError leaves the question open
+        self._answering = None
         if self.carrier.acks:
             self.carrier.encode_ack(stream)
         self.driver.flush()

@@ -197,8 +197,12 @@ class Rendezvous(Mailbox):
             def reply(value: object) -> None:
                 try:
                     answer(value)
-                finally:
+                except TypeError:
+                    raise  # it cannot be sent: the question is still open
+                except BaseException:
                     offer.done.set()
+                    raise
+                offer.done.set()
 
             message.answer = reply
         with self._gate:

@@ -69,7 +69,11 @@ class RpcServer(BasePort):
         answer = Bottle() if reply is None else reply
         self._forward(message, answer)
         if message.answer is not None:
-            message.reply(answer)
+            try:
+                message.reply(answer)
+            except TypeError as error:
+                log.error("%s: the answer of the handler: %s", self.name, error)
+                message.reply(Bottle([Vocab("fail"), str(error)]))
 
     def _forward(self, message: Message, answer: object) -> None:
         """Tell connected loggers (`+log.in`) what was asked and answered."""

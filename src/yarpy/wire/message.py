@@ -172,7 +172,8 @@ class Message:
     def reply(self, value: object) -> None:
         """Answer the sender. Once, and only if it asked: `wants_reply` tells.
 
-        Raises LocalProtocolError otherwise, LinkClosed if the sender has gone.
+        Raises LocalProtocolError otherwise, LinkClosed if the sender has gone; TypeError for what
+        cannot be sent, which leaves the question open.
         """
         answer = self.answer
         if answer is None:
@@ -181,7 +182,11 @@ class Message:
                 "answered already; call it with an RpcClient to get replies"
             )
         self.answer = None
-        answer(value)
+        try:
+            answer(value)
+        except TypeError:
+            self.answer = answer
+            raise
 
     def __repr__(self) -> str:
         try:

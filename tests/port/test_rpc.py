@@ -1,0 +1,373 @@
+"""Remote procedure calls: answers, failures, limits, servers that come and go."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+from support.wait import wait_until
+
+from yarpy import network
+from yarpy.data.bottle import Bottle
+from yarpy.data.stamp import Stamp
+from yarpy.data.value import Vocab
+from yarpy.data.vector import Vector
+from yarpy.errors import (
+    DecodeError,
+    LinkClosed,
+    LocalProtocolError,
+    PortClosed,
+    Timeout,
+    UnknownName,
+)
+from yarpy.names.local import LocalNames
+from yarpy.port.port import Port
+from yarpy.port.rpc import RpcClient, RpcServer
+from yarpy.wire.message import Message
+
+
+def echo(message: Message) -> object:
+    return message.value
+
+
+CALLS = [
+    # arguments, what the server hears
+    ((), []),
+    (("add", 1, 2), ["add", 1, 2]),
+    (("one",), ["one"]),
+    ((5,), [5]),
+    ((True,), [True]),
+    ((["a", "list"],), ["a", "list"]),
+    (({"key": 1},), [["key", 1]]),
+    ((Vector([1.0, 2.0]),), [1.0, 2.0]),
+]
+
+
+@pytest.mark.parametrize(("arguments", "heard"), CALLS)
+def test_arguments_are_the_message(
+    arguments: tuple[object, ...], heard: object, names: LocalNames
+) -> None:
+    with (
+        RpcServer("/server", lambda m: ["heard", m.as_(Bottle)], names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        assert client.call(*arguments, timeout=5) == ["heard", heard]
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text_ack", "unix_stream", "local"])
+def test_calls_over_carriers(carrier: str, names: LocalNames) -> None:
+    with (
+        RpcServer("/server", echo, names=names),
+        RpcClient("/server", carrier=carrier, names=names) as client,
+    ):
+        for number in range(50):
+            assert client.call("n", number, timeout=5) == ["n", number]
+        assert client.outputs[0].carrier == carrier
+        assert client.outputs[0].stats["messages"] == 50
+        assert client.outputs[0].stats["latency"] > 0
+
+
+def test_answer_may_be_anything_or_nothing(names: LocalNames) -> None:
+    answers = iter([None, [], "text", 7, [1, [2]], {"a": 1}, Stamp(1, 2.5), Vector([1.5])])
+    with (
+        RpcServer("/server", lambda message: next(answers), names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        assert client.call("x", timeout=5) == []
+        assert client.call("x", timeout=5) == []
+        assert client.call("x", timeout=5) == "text"
+        assert client.call("x", timeout=5) == 7
+        assert client.call("x", timeout=5) == [1, [2]]
+        assert client.call("x", timeout=5) == [["a", 1]]
+        reply = client.ask(["x"], 5)
+        assert reply is not None
+        assert reply.as_(Stamp) == Stamp(1, 2.5)
+        assert list(client.call("x", timeout=5)) == [1.5]
+
+
+def test_handler_may_answer_itself(names: LocalNames) -> None:
+    def handle(message: Message) -> object:
+        message.reply(["mine"])
+        return ["ignored"]
+
+    with (
+        RpcServer("/server", handle, names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        assert [client.call("x", timeout=5) for _ in range(3)] == [["mine"]] * 3
+
+
+def test_failing_handler_says_why_and_goes_on(
+    names: LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
+    def handle(message: Message) -> object:
+        return [10 / message.value[0]]
+
+    with (
+        RpcServer("/server", handle, names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        answer = client.call(0, timeout=5)
+        assert answer[0] == Vocab("fail")
+        assert "ZeroDivisionError" in answer[1]
+        assert client.call(5, timeout=5) == [2.0]
+    assert "Traceback" in caplog.text
+
+
+def test_message_that_cannot_be_decoded_is_refused(names: LocalNames) -> None:
+    with (
+        RpcServer("/server", lambda m: [m.as_(Stamp).count], names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        answer = client.call("no stamp", timeout=5)
+        assert answer[0] == Vocab("fail")
+        assert client.call(Stamp(5, 1.0), timeout=5) == [5]
+
+
+def test_answer_that_cannot_be_sent_is_an_answer_too(
+    names: LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The asker does not wait for ever for an object that has no spelling."""
+    with (
+        RpcServer("/server", lambda message: object(), names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        answer = client.call("x", timeout=5)
+        assert answer[0] == Vocab("fail")
+        assert "cannot be sent" in answer[1]
+        assert client.call("x", timeout=5)[0] == Vocab("fail")
+
+
+def test_reader_that_answers_with_something_odd_may_answer_again(names: LocalNames) -> None:
+    with Port("/server", names=names) as server, RpcClient("/server", names=names) as client:
+        answers: list[object] = []
+        thread = threading.Thread(target=lambda: answers.append(client.call("x", timeout=5)))
+        thread.start()
+        message = server.read(timeout=5)
+        with pytest.raises(TypeError, match="cannot be"):
+            message.reply([object()])
+        message.reply(["better"])
+        thread.join(5)
+        assert answers == [["better"]]
+
+
+def test_client_decodes_only_when_asked(names: LocalNames) -> None:
+    with (
+        RpcServer("/server", echo, names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        reply = client.ask([1, 2], 5)
+        assert reply is not None
+        assert reply.source == "/server"
+        with pytest.raises(DecodeError):
+            reply.as_(Stamp)
+
+
+# ---------------------------------------------------------------------------------- limits
+
+
+def test_slow_server_is_a_timeout_and_its_late_answer_is_lost(names: LocalNames) -> None:
+    pauses = [0.3, 0.0]
+
+    def handle(message: Message) -> object:
+        time.sleep(pauses.pop(0) if pauses else 0)
+        return message.value
+
+    with (
+        RpcServer("/server", handle, names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        started = time.monotonic()
+        with pytest.raises(Timeout, match=r'"/server" did not reply within 0\.05 s'):
+            client.call("slow", timeout=0.05)
+        assert time.monotonic() - started < 1
+        assert client.call("quick", timeout=5) == ["quick"]
+
+
+def test_clients_are_served_side_by_side(names: LocalNames) -> None:
+    meeting = threading.Barrier(3)
+
+    def handle(message: Message) -> object:
+        meeting.wait(5)
+        return ["met"]
+
+    with RpcServer("/server", handle, names=names):
+        answers: list[object] = []
+
+        def ask() -> None:
+            with RpcClient("/server", names=names) as client:
+                answers.append(client.call("x", timeout=5))
+
+        threads = [threading.Thread(target=ask) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(10)
+        assert answers == [["met"]] * 3
+
+
+def test_locked_server_takes_one_at_a_time(names: LocalNames) -> None:
+    inside = 0
+    most = 0
+
+    def handle(message: Message) -> object:
+        nonlocal inside, most
+        inside += 1
+        most = max(most, inside)
+        time.sleep(0.01)
+        inside -= 1
+        return []
+
+    with RpcServer("/server", handle, names=names, lock=True):
+
+        def ask() -> None:
+            with RpcClient("/server", names=names) as client:
+                for _ in range(3):
+                    client.call("x", timeout=5)
+
+        threads = [threading.Thread(target=ask) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(10)
+        assert most == 1
+
+
+def test_one_client_may_be_used_by_several_threads(names: LocalNames) -> None:
+    with (
+        RpcServer("/server", echo, names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        wrong: list[object] = []
+
+        def ask(who: int) -> None:
+            for number in range(100):
+                if client.call(who, number, timeout=5) != [who, number]:
+                    wrong.append((who, number))
+
+        threads = [threading.Thread(target=ask, args=(who,)) for who in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(10)
+        assert wrong == []
+
+
+# --------------------------------------------------------------------------------- coming and going
+
+
+def test_no_server(names: LocalNames) -> None:
+    with pytest.raises(UnknownName, match='did you mean "/server"'), Port("/server", names=names):
+        RpcClient("/servr", names=names)
+    with (
+        RpcClient(name="/client", names=names) as client,
+        pytest.raises(LocalProtocolError, match="not connected to a server"),
+    ):
+        client.call("x")
+
+
+def test_server_that_is_restarted_is_found_by_the_next_call(names: LocalNames) -> None:
+    with RpcServer("/server", echo, names=names):
+        client = RpcClient("/server", names=names)
+        assert client.call(1, timeout=5) == [1]
+    with client:
+        with pytest.raises((UnknownName, LinkClosed)):
+            client.call(2, timeout=5)
+        with RpcServer("/server", echo, names=names):
+            assert client.call(3, timeout=5) == [3]
+
+
+def test_server_that_goes_away_during_the_call(names: LocalNames) -> None:
+    import socket
+
+    with (
+        socket.create_server(("127.0.0.1", 0)) as listener,
+        RpcClient(name="/client", names=names) as client,
+    ):
+
+        def serve() -> None:
+            sock, _ = listener.accept()
+            sock.recv(100)
+            sock.sendall(b"YA\x01\0\0\0RP")
+            sock.recv(1000)
+            listener.close()
+            sock.close()
+
+        threading.Thread(target=serve, daemon=True).start()
+        client.connect(f"/127.0.0.1:{listener.getsockname()[1]}")
+        with pytest.raises(LinkClosed):
+            client.call("x", timeout=5)
+
+
+def test_client_is_connected_from_outside(names: LocalNames) -> None:
+    """`yarp connect /client /server`, as for any port; once only."""
+    with (
+        RpcServer("/server", echo, names=names),
+        RpcServer("/other", echo, names=names),
+        RpcClient(name="/client", names=names) as client,
+    ):
+        network.connect("/client", "/server", names=names)
+        assert client.call("x", timeout=5) == ["x"]
+        with pytest.raises(LocalProtocolError, match="RPC output already connected"):
+            network.connect("/client", "/other", names=names)
+        assert client.call("y", timeout=5) == ["y"]
+        network.disconnect("/client", "/server", names=names)
+        network.connect("/client", "/other", names=names)
+        assert client.call("z", timeout=5) == ["z"]
+
+
+def test_server_takes_no_outputs(names: LocalNames) -> None:
+    with RpcServer("/server", echo, names=names) as server, Port("/in", names=names):
+        with pytest.raises(LocalProtocolError, match="Outputs not allowed"):
+            server.connect("/in")
+        with pytest.raises(LocalProtocolError, match="Outputs not allowed"):
+            network.connect("/server", "/in", names=names)
+
+
+def test_closed_client(names: LocalNames) -> None:
+    with RpcServer("/server", echo, names=names) as server:
+        client = RpcClient("/server", names=names)
+        assert client.call("x", timeout=5) == ["x"]
+        client.close()
+        with pytest.raises(PortClosed):
+            client.call("x")
+        wait_until(lambda: not server.inputs)
+
+
+def test_unnamed_clients_do_not_displace_each_other(names: LocalNames) -> None:
+    with (
+        RpcServer("/server", echo, names=names) as server,
+        RpcClient("/server", names=names) as first,
+        RpcClient("/server", names=names) as second,
+    ):
+        assert first.name != second.name
+        for number in range(3):
+            assert first.call(number, timeout=5) == [number]
+            assert second.call(number, timeout=5) == [number]
+        assert len(server.inputs) == 2
+
+
+# ---------------------------------------------------------------------------------- log.in
+
+
+def test_logger_hears_questions_and_answers(names: LocalNames) -> None:
+    """A connection with `+log.in` gets what the server is asked, and what it answers."""
+    with (
+        RpcServer("/server", lambda m: ["yes", *m.value], names=names),
+        RpcClient("/server", names=names) as client,
+        Port("/logger", names=names) as logger,
+        Port("/writer", names=names) as writer,
+    ):
+        line = network.connect("/server", "/logger", "tcp+log.in", names=names)
+        assert line == (
+            "Added connection from /server to tcp+log.in://logger; "
+            "/server will forward messages and replies (if any) to /logger"
+        )
+        assert client.call("ask", 1, timeout=5) == ["yes", "ask", 1]
+        assert logger.read(timeout=5).value == [Vocab("rpc"), ["ask", 1], ["yes", "ask", 1]]
+        writer.connect("/server")
+        writer.write(["told"])
+        assert logger.read(timeout=5).value == ["told"]
+        with pytest.raises(LocalProtocolError, match=r"only log\.in is supported"):
+            network.connect("/server", "/logger", "tcp+log.out", names=names)
