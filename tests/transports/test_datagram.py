@@ -56,6 +56,22 @@ def test_receiver_cannot_send() -> None:
     far.close()
 
 
+def test_sender_hears_that_nobody_listens_any_more() -> None:
+    near, far = pair()
+    near.send([b"x"])
+    assert not near.ended()
+    far.close()
+    near.send([b"lost"])
+    deadline = time.monotonic() + 5
+    while not near.ended() and time.monotonic() < deadline:
+        time.sleep(0.001)
+    with pytest.raises(ConnectionRefusedError):
+        for _ in range(100):
+            near.send([b"lost"])
+            time.sleep(0.001)
+    near.close()
+
+
 def test_empty_datagram_is_not_an_end() -> None:
     """Anybody can send one."""
     near, far = pair()

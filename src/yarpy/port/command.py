@@ -66,7 +66,7 @@ def obey(hub: Hub, link: Inbound, message: Message) -> list[str]:
         return [disconnect_output(hub, rest)[1]]
     if key == "~":
         asked_for_itself = link.route.source == rest
-        _, line = disconnect_input(hub, rest)
+        _, line = disconnect_input(hub, rest, by_sender=True)
         return [] if asked_for_itself else [line]
     if key == "*":
         return describe(hub)
@@ -234,11 +234,15 @@ def disconnect_output(hub: Hub, target: str) -> tuple[bool, str]:
     return False, f"Could not find an outgoing connection to {target}"
 
 
-def disconnect_input(hub: Hub, source: str) -> tuple[bool, str]:
-    """Remove the inputs from `source`; whether there were any, and the line that says so."""
+def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bool, str]:
+    """Remove the inputs from `source`; whether there were any, and the line that says so.
+
+    `by_sender`: in the way in which senders of datagrams say goodbye, so they need not be told.
+    """
     found = [link for link in hub.inputs if link.route.source == source]
+    told = [link for link in found if link.asking or (by_sender and link.carrier.connectionless)]
     rooted = source.startswith("/") and source != hub.name
-    if rooted and any(not (link.carrier.connectionless or link.asking) for link in found):
+    if rooted and len(told) < len(found):
         try:
             repair.ask_to_disconnect(hub, source)
         except (YarpError, OSError):

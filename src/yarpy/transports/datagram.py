@@ -1,7 +1,8 @@
 """UDP and multicast sockets: each send is one datagram, each receive is one datagram.
 
 Rules: receive buffers are asked for generously, since what the kernel drops is lost. What it had to
-drop it counts (SO_RXQ_OVFL on Linux), and `dropped` tells.
+drop it counts (SO_RXQ_OVFL on Linux), and `dropped` tells. A UDP sender is connected, so that a
+host where nobody receives any more can say so.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ class DatagramTransport(SocketTransport):
     def __init__(self, sock: socket.socket, target: Address | None = None) -> None:
         super().__init__(sock)
         self._target = target
+        self._connected = False
         self._woken = False
         self.dropped = 0  # datagrams the kernel threw away for want of room
         for size in (RECEIVE_BUFFER, RECEIVE_BUFFER // 8):
@@ -70,10 +72,19 @@ class DatagramTransport(SocketTransport):
         for datagram in buffers:
             if self._target is None:
                 raise OSError("this datagram socket only receives")
-            self.sock.sendto(datagram, self._target)
+            if self._connected:
+                self.sock.send(datagram)
+            else:
+                self.sock.sendto(datagram, self._target)
+
+    def connect(self) -> None:
+        """Hear from the target's host when nobody listens there; sending raises it then."""
+        if self._target is not None:
+            self.sock.connect(self._target)
+            self._connected = True
 
     def ended(self) -> bool:
-        return False
+        return self._connected and self.sock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) != 0
 
     def interrupt(self) -> None:
         self._woken = True
@@ -103,7 +114,9 @@ def open_udp(listen: bool, local: Address, remote: Address, port: int) -> Datagr
             sock.bind(
                 ("", 0)
             )  # taken by somebody else; C++ does not check where datagrams are from
-        return DatagramTransport(sock, (remote[0], port))
+        sender = DatagramTransport(sock, (remote[0], port))
+        sender.connect()
+        return sender
     except OSError:
         sock.close()
         raise
