@@ -22,7 +22,7 @@ def test_dialogue(cli, server):
     assert (said.returncode, said.stdout) == (0, "Unregistered name.\n")
     said = cli.run("name", "query", "/cam")
     assert (said.returncode, said.stdout) == (1, "")
-    assert said.stderr.startswith("error: /cam not known: ")
+    assert said.stderr.startswith('error: no port "/cam" is registered: ')
 
 
 def test_properties(here):

@@ -2,6 +2,8 @@
 
 import os
 import re
+import select
+import subprocess
 import sys
 import time
 
@@ -22,14 +24,27 @@ for line in prompt.lines(history="test /prompt", complete=lambda: ["home", "hove
 """
 
 
+# Makes its standard input the terminal that ^C is typed at, then becomes the command.
+AT_TERMINAL = (
+    "import fcntl, os, sys, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0);"
+    "os.execvp(sys.argv[1], sys.argv[1:])"
+)
+
+
 class Terminal:
     """A program at a terminal, and a person in front of it."""
 
     def __init__(self, command, env):
-        pid, self._fd = pty.fork()
-        if pid == 0:
-            os.execvpe(command[0], command, {**env, "TERM": "dumb"})
-        self.pid = pid
+        self._fd, end = pty.openpty()
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", AT_TERMINAL, *command],
+            env={**env, "TERM": "dumb"},
+            stdin=end,
+            stdout=end,
+            stderr=end,
+            start_new_session=True,
+        )
+        os.close(end)
         self.said = b""
 
     def type(self, text):
@@ -37,8 +52,6 @@ class Terminal:
 
     def wait(self, text, timeout=10.0):
         """Wait until `text` was said behind what was waited for before."""
-        import select
-
         deadline = time.monotonic() + timeout
         while text.encode() not in CONTROL.sub(b"", self.said):
             ready, _, _ = select.select([self._fd], [], [], max(0, deadline - time.monotonic()))
@@ -53,22 +66,14 @@ class Terminal:
 
     def end(self):
         """The exit code, once the program has ended by itself."""
-        deadline = time.monotonic() + 10
-        while time.monotonic() < deadline:
-            pid, status = os.waitpid(self.pid, os.WNOHANG)
-            if pid:
-                self.pid = 0
-                return os.waitstatus_to_exitcode(status)
-            time.sleep(0.02)
-        raise AssertionError("it does not end")
+        return self._process.wait(10)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *details):
-        if self.pid:
-            os.kill(self.pid, 9)
-            os.waitpid(self.pid, 0)
+        self._process.kill()
+        self._process.wait(10)
         os.close(self._fd)
 
 
@@ -161,8 +166,6 @@ def test_pipes_have_no_prompt(cli):
     ],
 )
 def test_piped(text, lines):
-    import subprocess
-
     code = f"import sys; sys.stdin.reconfigure(errors='surrogateescape')\n{PRINT}".replace(
         "repr(line)", "ascii(line)"
     )

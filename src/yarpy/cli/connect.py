@@ -72,10 +72,10 @@ def _persist(source: str, target: str, carrier: str, mode: str) -> int:
     from yarpy.network import ask_server
 
     if carrier:
-        from yarpy.contact import parse_contact
-        from yarpy.link.handshake import find_carrier
+        from yarpy.contact import base_carrier, parse_contact
+        from yarpy.registry import carriers
 
-        find_carrier(carrier)
+        carriers.load(base_carrier(carrier))  # a wrong one shall not be stored
         target = f"{carrier}:/{parse_contact(target).name}"
     ask_server(None, ["subscribe", source, target, *([mode] if mode else [])])
     return 0

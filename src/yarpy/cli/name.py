@@ -33,15 +33,12 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
     """Send a command to the name server: `name list`, `name query /port`, `name help` ..."""
     from yarpy.cli.service import server
     from yarpy.names.option import parse_value
-    from yarpy.port.wiring import unknown
+    from yarpy.network import find
 
     client = server()
     verb, arguments = (words[0], words[1:]) if words else ("help", ())
     if verb == "query" and len(arguments) == 1:
-        contact = client.query(arguments[0])
-        if contact is None:
-            raise yarpy.UnknownName(f"{arguments[0]} not known: {unknown(arguments[0], client)}")
-        _print_contact(contact, as_json)
+        _print_contact(client.query(arguments[0]) or find(arguments[0], client), as_json)
     elif verb == "list" and as_json:
         print_json([as_dict(contact) for contact in client.list(*arguments[:1])])
     elif verb == "register" and arguments:
