@@ -15,7 +15,7 @@ from yarpy.cli.spelling import jsonable, print_json, print_line
         (yarpy.Bottle([["a", 1], {"k": (2,)}]), '[["a", 1], {"k": [2]}]'),
         (yarpy.Int64(7), "7"),
         (yarpy.Float32(0.5), "0.5"),
-        (b"\0\1", '{"base64": "AAE="}'),
+        (b"\0\1", '{"type": "blob", "base64": "AAE="}'),
         (float("inf"), '"inf"'),
         (float("-inf"), '"-inf"'),
         (float("nan"), '"nan"'),

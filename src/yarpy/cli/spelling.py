@@ -1,8 +1,9 @@
 """Values as people and scripts see them: lines of text and of JSON.
 
 Rules: JSON keeps what it can: lists and dicts as they are, a vocab as `"[ok]"`, bytes as
-`{"base64": "..."}`, numbers that JSON lacks as the strings "nan", "inf", "-inf". One object per
-line, so that a stream of them can be read line by line.
+`{"type": "blob", "base64": "..."}`, numbers that JSON lacks as the strings "nan", "inf", "-inf".
+(The JSON of web pages, `yarpy.data.json`, is another: it makes objects of lists that look so.)
+One value per line, so that a stream of them can be read line by line.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ def jsonable(value: Any) -> Any:
     if isinstance(value, bytes | bytearray | memoryview):
         import base64
 
-        return {"base64": base64.b64encode(value).decode("ascii")}
+        return {"type": "blob", "base64": base64.b64encode(value).decode("ascii")}
     if isinstance(value, dict):
         return {plain_text(key): jsonable(item) for key, item in value.items()}
     return [jsonable(item) for item in value]
