@@ -371,3 +371,24 @@ def test_logger_hears_questions_and_answers(names: LocalNames) -> None:
         assert logger.read(timeout=5).value == ["told"]
         with pytest.raises(LocalProtocolError, match=r"only log\.in is supported"):
             network.connect("/server", "/logger", "tcp+log.out", names=names)
+
+
+def test_a_question_that_comes_while_the_server_still_opens_is_answered():
+    """The name is known, and a client that waits for it asks, before the constructor is done."""
+    answers = []
+
+    class Eager(LocalNames):
+        def announce(self, name: str, ok: bool = True) -> None:
+            if name == "/server":
+                asking.start()
+                time.sleep(0.2)
+
+    def ask() -> None:
+        with RpcClient("/server", names=names) as client:
+            answers.append(client.call(1, 2, timeout=5))
+
+    names = Eager()
+    asking = threading.Thread(target=ask)
+    with RpcServer("/server", echo, names=names):
+        asking.join(5)
+    assert answers == [[1, 2]]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -44,20 +45,25 @@ class RpcServer(BasePort):
         register: bool = True,
     ) -> None:
         self._handler = handler
-        super().__init__(
-            Hub(
-                name,
-                Callback(self._answer, lock),
-                names,
-                port=port,
-                type_=type_,
-                admits_outputs=False,
-                limit=limit,
-                register=register,
+        self._opened = threading.Event()  # a client may be there before this constructor is done
+        try:
+            super().__init__(
+                Hub(
+                    name,
+                    Callback(self._answer, lock),
+                    names,
+                    port=port,
+                    type_=type_,
+                    admits_outputs=False,
+                    limit=limit,
+                    register=register,
+                )
             )
-        )
+        finally:
+            self._opened.set()
 
     def _answer(self, message: Message) -> None:
+        self._opened.wait()
         try:
             reply = self._handler(message)
         except DecodeError as error:
