@@ -52,10 +52,11 @@ def test_twenty_readers_cost_one_encoding(kind: type[Writer], names: LocalNames)
     with kind("/out", names=names) as out, ExitStack() as stack:  # type: ignore[call-arg]
         for number, carrier in enumerate(carriers):
             name = f"/in{number}"
-            stack.enter_context(
+            in_ = stack.enter_context(
                 Port(name, names=names, callback=lambda m, name=name: heard.append(name))
             )
             out.connect(name, carrier)
+            assert in_.wait_for_inputs(timeout=5)
         thing = Counting()
         sent = out.write(thing)
         # of the multicast connections one sends for all

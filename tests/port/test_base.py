@@ -1,0 +1,200 @@
+"""What every kind of port can do."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+from support.wait import wait_until
+
+from yarpy import network
+from yarpy.errors import (
+    LinkClosed,
+    LocalProtocolError,
+    PortClosed,
+    UnknownName,
+    UnknownPlugin,
+)
+from yarpy.names.local import LocalNames
+from yarpy.port.base import BasePort
+from yarpy.port.buffered import BufferedPort
+from yarpy.port.port import Port
+from yarpy.port.rpc import RpcClient, RpcServer
+from yarpy.wire.message import Message
+
+
+def make(kind: str, names: LocalNames) -> BasePort:
+    if kind == "Port":
+        return Port("/it", names=names)
+    if kind == "BufferedPort":
+        return BufferedPort("/it", names=names)
+    if kind == "RpcServer":
+        return RpcServer("/it", lambda message: None, names=names)
+    return RpcClient(name="/it", names=names)
+
+
+@pytest.mark.parametrize("kind", ["Port", "BufferedPort", "RpcServer", "RpcClient"])
+def test_every_kind_is_a_port(kind: str, names: LocalNames) -> None:
+    with make(kind, names) as port:
+        assert isinstance(port, BasePort)
+        assert port.name == "/it"
+        assert port.address == f"127.0.0.1:{port.contact.port}"
+        assert repr(port) == f"<{kind} /it ({port.address})>"
+        assert (port.inputs, port.outputs, port.closed) == ([], [], False)
+        assert network.exists("/it", names=names)
+        assert network.ping("/it", names=names)[0] == f"This is /it at tcp://{port.address}/"
+    assert port.closed
+    assert repr(port) == f"<{kind} /it (closed)>"
+    port.close()
+    assert not network.exists("/it", names=names)
+
+
+# ---------------------------------------------------------------------------------- connecting
+
+
+def test_connecting_in_every_spelling(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        address = f"127.0.0.1:{in_.contact.port}"
+        for target, carrier, seen in (
+            ("/in", "tcp", ("/in", "tcp")),
+            ("/in", "fast_tcp", ("/in", "fast_tcp")),
+            ("udp://in", "tcp", ("/in", "udp")),
+            (f"/{address}", "tcp", (f"/{address}/", "tcp")),
+            (f"tcp://{address}/", "tcp", (f"/{address}/", "tcp")),
+            (address, "fast_tcp", (f"/{address}/", "fast_tcp")),
+        ):
+            assert out.connect(target, carrier) is out
+            (connection,) = out.outputs
+            assert (connection.target, connection.carrier) == seen
+            assert in_.wait_for_inputs(timeout=5)
+            out.write([target])
+            assert in_.read(timeout=5).value == [target]
+            assert out.disconnect(connection.target)
+            wait_until(lambda: not in_.inputs)
+        assert not out.disconnect("/in")
+
+
+def test_what_can_go_wrong_says_what_to_do(names: LocalNames) -> None:
+    with (
+        Port("/out", names=names) as out,
+        Port("/in", names=names),
+        RpcServer("/server", lambda m: None, names=names) as server,
+    ):
+        with pytest.raises(UnknownName, match='did you mean "/in"'):
+            out.connect("/inn")
+        with pytest.raises(UnknownName, match="yarpy name list"):
+            out.connect("/nothing/like/it")
+        with pytest.raises(UnknownPlugin, match='did you mean "tcp"'):
+            out.connect("/in", "tpc")
+        with pytest.raises(LinkClosed):
+            out.connect("/127.0.0.1:1")
+        with pytest.raises(LocalProtocolError, match="Outputs not allowed"):
+            server.connect("/in")
+        assert out.outputs == []
+
+
+def test_failed_connect_keeps_the_others(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names):
+        out.connect("/in")
+        with pytest.raises(UnknownName):
+            out.connect("/none")
+        with pytest.raises(UnknownPlugin):
+            out.connect("/in", "nosuch")
+        assert [o.target for o in out.outputs] == ["/in"]
+
+
+def test_waiting_for_a_port_that_comes_later(names: LocalNames) -> None:
+    with Port("/out", names=names) as out:
+        started = time.monotonic()
+        with pytest.raises(UnknownName):
+            out.connect("/in", timeout=0.1)
+        assert 0.1 <= time.monotonic() - started < 2
+        later: list[Port] = []
+        threading.Timer(0.1, lambda: later.append(Port("/in", names=names))).start()
+        out.connect("/in", timeout=5)
+        assert out.write([1]) == 1
+        assert later[0].read(timeout=5).value == [1]
+        later[0].close()
+
+
+def test_asking_somebody_to_send_here(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        assert in_.listen_to("/out", "fast_tcp") is in_
+        assert [(o.target, o.carrier) for o in out.outputs] == [("/in", "fast_tcp")]
+        out.write([1])
+        assert in_.read(timeout=5).value == [1]
+        with pytest.raises(UnknownName):
+            in_.listen_to("/none")
+        with (
+            RpcServer("/server", lambda m: None, names=names),
+            pytest.raises(LocalProtocolError, match="does not send"),
+        ):
+            in_.listen_to("/server")
+
+
+def test_waiting_for_connections(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        assert not out.wait_for_outputs(timeout=0.02)
+        assert not in_.wait_for_inputs(timeout=0.02)
+        threading.Timer(0.05, out.connect, ("/in",)).start()
+        assert in_.wait_for_inputs(timeout=5)
+        assert out.wait_for_outputs(timeout=5)
+        assert not out.wait_for_outputs(2, timeout=0.02)
+
+
+def test_connection_to_oneself_can_be_made_and_ended(names: LocalNames) -> None:
+    """Deleting such a connection deadlocks the C++ port."""
+    with BufferedPort("/it", strict=True, names=names) as port:
+        port.connect("/it")
+        port.write([1])
+        assert port.read(timeout=5).value == [1]
+        assert network.disconnect("/it", "/it", names=names)
+        wait_until(lambda: not port.inputs and not port.outputs)
+        port.connect("/it")
+        started = time.monotonic()
+    assert time.monotonic() - started < 4
+
+
+# ---------------------------------------------------------------------------------- administration
+
+
+def test_own_administrative_commands(names: LocalNames) -> None:
+    with Port("/it", names=names) as port:
+        asked: list[Message] = []
+
+        def answer(message: Message) -> object:
+            asked.append(message)
+            return ["mine", message.value[0]] if message.value[0] == "known" else None
+
+        port.on_admin(answer)
+        assert network.admin("/it", "known", 1, names=names) == ["mine", "known"]
+        assert network.admin("/it", "unknown", names=names)[0] == "fail"
+        assert network.admin("/it", "ver", names=names)[0] == "ver"
+        assert len(asked) == 2
+        port.on_admin(None)
+        assert network.admin("/it", "known", names=names)[0] == "fail"
+
+
+def test_failing_administrative_callback_ends_that_connection_alone(
+    names: LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fail(message: Message) -> object:
+        raise ValueError("oh")
+
+    with Port("/it", names=names) as port:
+        port.on_admin(fail)
+        with pytest.raises(LinkClosed):
+            network.admin("/it", "unknown", names=names)
+        assert network.exists("/it", names=names)
+    assert "oh" in caplog.text
+
+
+def test_closed_port_refuses(names: LocalNames) -> None:
+    port = Port("/it", names=names)
+    port.close()
+    with pytest.raises(PortClosed, match='"/it" is closed'):
+        port.write([1])
+    with Port("/in", names=names), pytest.raises(LinkClosed):
+        port.connect("/in")
+    assert port.outputs == []
