@@ -1,0 +1,120 @@
+"""Port commands: how destinations are understood, and what becomes of connections."""
+
+from __future__ import annotations
+
+import socket
+
+import pytest
+from support.wait import wait_until
+
+from yarpy.errors import UnknownPlugin
+from yarpy.names.local import LocalNames
+from yarpy.port import command
+from yarpy.port.port import Port
+from yarpy.port.rpc import RpcServer
+
+JOINED = [
+    # destination, carrier, as one text
+    ("/in", "", "/in"),
+    ("/in", "tcp", "tcp://in"),
+    ("/in", "tcp+recv.x", "tcp+recv.x://in"),
+    ("udp://in", "tcp", "tcp://in"),
+    ("/127.0.0.1:10002", "tcp", "tcp://127.0.0.1:10002"),
+    ("tcp://127.0.0.1:10002/", "udp", "udp://127.0.0.1:10002"),
+]
+
+
+@pytest.mark.parametrize(("destination", "carrier", "text"), JOINED)
+def test_destination_and_carrier_as_one(destination: str, carrier: str, text: str) -> None:
+    assert command.joined(destination, carrier) == text
+
+
+REFUSALS = [
+    ("/none", "Do not know how to connect to /none"),
+    ("", "Do not know how to connect to "),
+    ("nosuch://in", "Cannot connect to nosuch://in"),
+    ("tcp+log.out://in", "Logger configured as log.out, but only log.in is supported"),
+    ("/127.0.0.1:99999999", "Do not know how to connect to /127.0.0.1:99999999"),
+    ("/127.0.0.1:1", "Cannot connect to /127.0.0.1:1"),
+    ("no_slash", "Do not know how to connect to no_slash"),
+]
+
+
+@pytest.mark.parametrize(("text", "line"), REFUSALS)
+def test_refusals_are_the_lines_of_cpp(text: str, line: str, names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names):
+        with pytest.raises(command.Refused) as caught:
+            command.connect(out._hub, text)
+        assert str(caught.value) == line
+        assert out.outputs == []
+
+
+def test_refusal_knows_more_for_programs(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names):
+        with pytest.raises(command.Refused) as caught:
+            command.connect(out._hub, "nosuch://in")
+        assert isinstance(caught.value.__cause__, UnknownPlugin)
+
+
+def test_description_lists_every_connection(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        assert command.describe(out._hub) == [
+            f"This is /out at tcp://{out.address}/",
+            "There are no outgoing connections",
+            "There are no incoming connections",
+        ]
+        out.connect("/in", "udp")
+        assert in_.wait_for_inputs(timeout=5)
+        assert command.describe(out._hub)[1] == (
+            "There is an output connection from /out to /in using udp"
+        )
+        assert command.describe(in_._hub)[2] == (
+            "There is an input connection from /out to /in using udp"
+        )
+
+
+def test_connectionless_goodbye_reaches_the_receiver(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        for carrier in ("udp", "mcast"):
+            out.connect("/in", carrier)
+            assert in_.wait_for_inputs(timeout=5)
+            assert command.disconnect_output(out._hub, "/in") == (
+                True,
+                "Removed connection from /out to /in",
+            )
+            assert in_.inputs == []  # it was asked, and has answered
+        assert command.disconnect_output(out._hub, "/in") == (
+            False,
+            "Could not find an outgoing connection to /in",
+        )
+
+
+def test_inputs_are_removed_on_request(names: LocalNames) -> None:
+    with Port("/in", names=names) as in_:
+        socks = [socket.create_connection(("127.0.0.1", in_.contact.port)) for _ in range(2)]
+        for sock in socks:
+            sock.sendall(b"CONNECT visitor\r\n")
+        wait_until(lambda: len(in_.inputs) == 2)
+        assert command.disconnect_input(in_._hub, "visitor") == (
+            True,
+            "Removing connection from visitor to /in",
+        )
+        assert in_.inputs == []
+        assert command.disconnect_input(in_._hub, "visitor") == (
+            False,
+            "Could not find an incoming connection from visitor",
+        )
+        for sock in socks:
+            sock.settimeout(5)
+            assert sock.recv(100) == b"Welcome visitor\r\n"
+            assert sock.recv(100) == b""
+            sock.close()
+
+
+def test_port_without_outputs(names: LocalNames) -> None:
+    with RpcServer("/server", lambda m: None, names=names) as server, Port("/in", names=names):
+        with pytest.raises(command.Refused, match="Outputs not allowed"):
+            command.connect(server._hub, "/in")
+        # a connection for the log is allowed
+        line = command.connect(server._hub, "tcp+log.in://in")
+        assert "will forward messages and replies" in line

@@ -1,0 +1,182 @@
+"""`prop get` and `prop set`: processes, threads, priorities of connections."""
+
+from __future__ import annotations
+
+import os
+import socket
+import threading
+
+import pytest
+from support.wait import wait_until
+
+from yarpy import network
+from yarpy.data.bottle import Bottle
+from yarpy.data.value import Vocab
+from yarpy.names.local import LocalNames
+from yarpy.port.buffered import BufferedPort
+from yarpy.port.port import Port
+from yarpy.port.rpc import RpcClient, RpcServer
+
+
+def admin(names: LocalNames, name: str, text: str) -> Bottle:
+    return network.admin(name, *Bottle.from_text(text), names=names)
+
+
+def group(reply: Bottle, key: str) -> dict[str, object]:
+    """One group of a reply; over text its dict has become a list of pairs."""
+    return dict(reply.find(key))
+
+
+def may_schedule() -> bool:
+    """Whether the system lets a thread of ours have SCHED_FIFO."""
+    allowed: list[bool] = []
+
+    def attempt() -> None:
+        try:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(5))
+            allowed.append(True)
+        except (OSError, AttributeError):
+            allowed.append(False)
+
+    thread = threading.Thread(target=attempt)
+    thread.start()
+    thread.join()
+    return allowed[0]
+
+
+def test_what_a_port_says_of_itself(names: LocalNames) -> None:
+    with Port("/it", names=names, type_="image") as port:
+        reply = admin(names, "/it", "prop get /it")
+        sched = group(reply, "sched")
+        assert sched["tid"] in {t.native_id for t in threading.enumerate()}
+        process = group(reply, "process")
+        assert process["pid"] == os.getpid()
+        assert len(str(process["arguments"])) <= 256
+        assert group(reply, "platform")["hostname"] == port.contact.host
+        assert group(reply, "port") == {
+            "is_input": 1,
+            "is_output": 1,
+            "is_rpc": 0,
+            "type": "image",
+        }
+
+
+@pytest.mark.parametrize(
+    ("kind", "flags"), [("server", (1, 0, 0)), ("client", (1, 1, 1)), ("buffered", (1, 1, 0))]
+)
+def test_kinds_of_ports(kind: str, flags: tuple[int, int, int], names: LocalNames) -> None:
+    made = {
+        "server": lambda: RpcServer("/it", lambda m: None, names=names),
+        "client": lambda: RpcClient(name="/it", names=names),
+        "buffered": lambda: BufferedPort("/it", names=names),
+    }[kind]
+    with made():
+        found = group(admin(names, "/it", "prop get /it"), "port")
+        assert (found["is_input"], found["is_output"], found["is_rpc"]) == flags
+
+
+def test_packet_priority_reaches_the_socket(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        out.connect("/in")
+        assert in_.wait_for_inputs(timeout=5)
+        for name, peer, port in (("/out", "/in", out), ("/in", "/out", in_)):
+            for words, tos in (
+                ("priority HIGH", 144),
+                ("dscp AF12", 48),
+                ("dscp 10", 40),
+                ("tos 12", 12),
+            ):
+                reply = admin(names, name, f"prop set {peer} (qos (({words})))")
+                assert reply == [Vocab("ok")]
+                links = port._hub.outputs or port._hub.inputs
+                sock = links[0].driver.transport.sock  # type: ignore[attr-defined]
+                assert sock.getsockopt(socket.IPPROTO_IP, socket.IP_TOS) == tos
+                assert group(admin(names, name, f"prop get {peer}"), "qos") == {"tos": tos}
+
+
+REFUSED = [
+    "prop set /in (qos ((priority BAD)))",
+    "prop set /in (qos ((dscp 64)))",
+    "prop set /in (qos ((dscp NOSUCH)))",
+    "prop set /in (qos ((tos -1)))",
+    "prop set /in (qos ((tos 256)))",
+    "prop set /in (qos)",
+    "prop set /in (qos ())",
+    "prop set /in (sched)",
+    "prop set /in (sched ((policy NOSUCH)))",
+    "prop set /in (sched ((policy 1) (priority high)))",
+    "prop set /in",
+    "prop set /none (qos ((tos 12)))",
+    "prop set /out (process)",
+    "prop set /out",
+]
+
+
+@pytest.mark.parametrize("command", REFUSED)
+def test_what_is_refused(command: str, names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        out.connect("/in")
+        assert admin(names, "/out", command) == [Vocab("fail")]
+        assert network.is_connected("/out", "/in", names=names)
+        out.write([1])
+        assert in_.read(timeout=5).value == [1]
+
+
+def test_dict_is_refused_as_in_cpp(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names):
+        out.connect("/in")
+        reply = network.admin("/out", "prop", "set", "/in", ["qos", {"tos": 12}], names=names)
+        # over text a dict becomes a list
+        assert reply == [Vocab("ok")]
+        with RpcClient(names=names) as client:
+            client.connect("/out")
+            packet = [Vocab("prop"), Vocab("set"), "/in", ["qos", {"tos": 8}]]
+            from yarpy.wire.message import Packet
+
+            found = client._hub.outputs[0].call(Packet(packet, key="a"), 5)
+            assert found is not None
+            assert found.value == [Vocab("fail")]
+
+
+def test_scheduling_of_an_output_waits_for_its_thread(names: LocalNames) -> None:
+    with BufferedPort("/out", names=names) as out, Port("/in", names=names):
+        out.connect("/in")
+        assert group(admin(names, "/out", "prop get /in"), "sched") == {
+            "policy": -1,
+            "priority": -1,
+            "tid": -1,
+        }
+        words = "prop set /in (sched ((policy SCHED_OTHER) (priority 0)))"
+        assert admin(names, "/out", words) == [Vocab("ok")]
+        assert group(admin(names, "/out", "prop get /in"), "sched")["policy"] == 0
+        out.write([1])  # starts the thread
+        wait_until(lambda: group(admin(names, "/out", "prop get /in"), "sched")["tid"] != -1)
+
+
+@pytest.mark.skipif(not may_schedule(), reason="this process may not ask for real-time scheduling")
+def test_scheduling_of_an_input_is_its_threads(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        out.connect("/in")
+        assert in_.wait_for_inputs(timeout=5)
+        words = "prop set /out (sched ((policy 1) (priority 5)))"
+        assert admin(names, "/in", words) == [Vocab("ok")]
+        thread = in_._hub.inputs[0].thread
+        assert thread is not None
+        assert thread.native_id is not None
+        assert os.sched_getscheduler(thread.native_id) == os.SCHED_FIFO
+        assert os.sched_getparam(thread.native_id).sched_priority == 5
+        found = group(admin(names, "/in", "prop get /out"), "sched")
+        assert found == {"policy": 1, "priority": 5, "tid": thread.native_id}
+        assert admin(names, "/in", "prop set /out (sched ((priority 0) (policy 0)))") == [
+            Vocab("ok")
+        ]
+        out.write([1])
+        assert in_.read(timeout=5).value == [1]
+
+
+def test_user_properties(names: LocalNames) -> None:
+    with Port("/it", names=names):
+        assert admin(names, "/it", "prop get") == []
+        assert admin(names, "/it", "prop set color (red 3)") == [Vocab("ok")]
+        assert admin(names, "/it", "prop get color") == [["red", 3]]
+        assert admin(names, "/it", "prop get") == [["color", ["red", 3]]]

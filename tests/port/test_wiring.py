@@ -1,0 +1,49 @@
+"""Refusals for people become errors for programs."""
+
+from __future__ import annotations
+
+import pytest
+
+from yarpy.errors import LinkClosed, LocalProtocolError, UnknownName, UnknownPlugin, YarpError
+from yarpy.names.local import LocalNames
+from yarpy.port import wiring
+from yarpy.port.command import Refused
+from yarpy.port.port import Port
+
+
+def refusal(text: str, cause: Exception | None = None) -> Refused:
+    error = Refused(text)
+    error.__cause__ = cause
+    return error
+
+
+CASES = [
+    (refusal("Do not know how to connect to /in"), UnknownName, "is registered"),
+    (refusal("Cannot connect to /in"), LinkClosed, "no answer"),
+    (refusal("Cannot connect to /in", LinkClosed("nobody answers")), LinkClosed, "nobody answers"),
+    (refusal("Cannot connect to x://in", UnknownPlugin("no carrier")), UnknownPlugin, "no carrier"),
+    (refusal("Outputs not allowed"), LocalProtocolError, "Outputs not allowed"),
+    (refusal("RPC output already connected"), LocalProtocolError, "already connected"),
+]
+
+
+@pytest.mark.parametrize(("error", "kind", "words"), CASES)
+def test_error_that_fits(
+    error: Refused, kind: type[YarpError], words: str, names: LocalNames
+) -> None:
+    with Port("/out", names=names) as out:
+        found = wiring.explained(out._hub, "/in", "tcp", error)
+        assert type(found) is kind
+        assert words in str(found)
+
+
+def test_nearest_name_is_suggested(names: LocalNames) -> None:
+    with Port("/camera/left", names=names), Port("/camera/right", names=names):
+        assert 'did you mean "/camera/left"' in str(wiring.unknown("/camera/lef", names))
+        assert "is its program running" in str(wiring.unknown("/something", names))
+    assert "is its program running" in str(wiring.unknown("/x", None))
+
+
+def test_own_multicast_group_does_not_count_as_a_name(names: LocalNames) -> None:
+    with pytest.raises(UnknownName), Port("/out", names=names) as out:
+        out.connect("/nobody", "mcast")
