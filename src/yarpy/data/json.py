@@ -1,0 +1,254 @@
+"""JSON of messages, and messages of JSON: what web pages understand.
+
+    [1, ["a", 2], True]             [1, ["a", 2], "true"]
+    x (a 1) (b 2)                   {"type": "x", "a": 1, "b": 2}
+    Property, dict                  {"a": 1, "b": 2}
+    bytes                           {"type": "blob", "base64": "AQL/"}
+
+Rules: every message gives valid JSON. Where C++ gives valid JSON this is the same value (core-4
+7.7), so booleans, which are vocabs, are the strings "true" and "false", and a list of pairs is an
+object; but only if its keys are different words, where C++ repeats keys or writes numbers as keys.
+What JSON has no word for (nan, infinities) is null. Reading, an object is a list of pairs, its
+`type` is the word in front of them, and null is the vocab `null`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, Final, Literal, TypeAlias
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.data.value import MAX_DEPTH, Vocab
+from yarpy.errors import DecodeError
+
+Outer: TypeAlias = Literal["auto", "list", "dict"]
+
+_TYPE: Final = "type"
+_INT64: Final = range(-(1 << 63), 1 << 63)
+
+
+def to_json(value: object, outer: Outer = "auto") -> str:
+    """The JSON text of a message or of anything that can be sent as one; TypeError for the rest.
+
+    outer: whether the outermost list becomes an array or an object; `auto`: what it looks like.
+    """
+    import json
+
+    plain = _plain_top(value, outer)
+    text = json.dumps(plain, ensure_ascii=False, allow_nan=False)
+    return text if text.isascii() or _encodable(text) else _mended(text)
+
+
+def from_json(text: str | bytes | bytearray | memoryview) -> Any:
+    """The value that a JSON text stands for: a Bottle, a string or a number.
+
+    DecodeError if it is no JSON, or holds what no message can.
+    """
+    import json
+
+    data = text if isinstance(text, str) else bytes(text)
+    try:
+        if not isinstance(data, str):
+            data = data.decode("utf-8")
+        found = json.loads(data, parse_constant=_no_constant)
+    except RecursionError:
+        raise DecodeError(f"JSON nested more than {MAX_DEPTH} deep") from None
+    except ValueError as error:
+        raise DecodeError(f"this is no JSON: {error}") from None
+    return _message(found, 0)
+
+
+# ---------------------------------------------------------------------------------- to JSON
+
+
+def _plain_top(value: object, outer: Outer) -> Any:
+    if isinstance(value, (list, tuple)):
+        return _list(value, outer, 0)
+    if isinstance(value, Mapping) or _is_scalar(value):
+        return _plain(value, 0)
+    # Vector, Image, Stamp, arrays ...: what a reader of the message would find in it.
+    from yarpy.data import codec
+
+    if outer == "auto" and (described := _described(value)) is not None:
+        return described
+    message = b"".join(codec.encode(value))
+    return _list(Bottle.from_bytes(message), outer, 0)
+
+
+def _described(value: object) -> Any:
+    """Images, matrices and sounds by their parts; None for other kinds."""
+    from yarpy.data.image import Image
+    from yarpy.data.matrix import Matrix
+    from yarpy.data.sound import Sound
+    from yarpy.data.vector import Vector
+
+    if isinstance(value, Image):
+        pixels = value.array.tobytes()
+        return {
+            _TYPE: "image",
+            "width": value.width,
+            "height": value.height,
+            "pixel": str(value.code),
+            "base64": _base64(pixels),
+        }
+    if isinstance(value, Matrix):
+        return [[_number(item) for item in row] for row in value.array.tolist()]
+    if isinstance(value, Vector):
+        return [_number(item) for item in value.array.tolist()]
+    if isinstance(value, Sound):
+        return {
+            _TYPE: "sound",
+            "frequency": value.frequency,
+            "channels": value.array.tolist(),
+        }
+    return None
+
+
+def _plain(value: object, depth: int) -> Any:
+    """What `json` makes the right text of."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int):
+        return int(value)
+    if isinstance(value, float):
+        return _number(value)
+    if isinstance(value, (bytes, bytearray, memoryview)):
+        return {_TYPE: "blob", "base64": _base64(value)}
+    if depth > MAX_DEPTH:
+        raise DecodeError(f"a message nested more than {MAX_DEPTH} deep")
+    if isinstance(value, (list, tuple)):
+        return _list(value, "auto", depth)
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item, depth + 1) for key, item in value.items()}
+    if value is None:
+        return None
+    from yarpy.data import codec
+
+    inner = codec.decode(b"".join(codec.encode(value)))  # numpy numbers, vectors inside lists
+    if isinstance(inner, (list, tuple, Mapping)) or _is_scalar(inner):
+        return _plain(inner, depth)
+    return _described(inner)
+
+
+def _list(items: Sequence[Any], outer: Outer, depth: int) -> Any:
+    if outer == "auto" and items and isinstance(items[0], str):
+        if items[0] == "list":
+            outer, items = "list", items[1:]
+        elif items[0] == "dict":
+            outer, items = "dict", items[1:]
+    if outer == "dict" or (outer == "auto" and _is_object(items)):
+        return _object(items, depth)
+    return [_plain(item, depth + 1) for item in items]
+
+
+def _is_object(items: Sequence[Any]) -> bool:
+    """More than one element, all of them pairs but perhaps the first, under different words."""
+    if len(items) < 2:
+        return False
+    keys = set()
+    first = 0
+    if not isinstance(items[0], (list, tuple)):
+        if isinstance(items[0], Mapping):
+            return False
+        first = 1
+        keys.add(_TYPE)
+    for item in items[first:]:
+        if not isinstance(item, (list, tuple)) or len(item) != 2:
+            return False
+        key = item[0]
+        if not isinstance(key, str) or key in keys:
+            return False
+        keys.add(str(key))
+    return True
+
+
+def _object(items: Sequence[Any], depth: int) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for place, item in enumerate(items):
+        if isinstance(item, (list, tuple)):
+            if item:
+                value = _plain(item[1], depth + 2) if len(item) > 1 else None
+                found[plain_text(item[0])] = value
+        elif place == 0:
+            found[_TYPE] = _plain(item, depth + 1)
+    return found
+
+
+def _is_scalar(value: object) -> bool:
+    return value is None or isinstance(value, (str, int, float, bytes, bytearray, memoryview))
+
+
+def _number(value: Any) -> Any:
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def _base64(data: bytes | bytearray | memoryview) -> str:
+    from binascii import b2a_base64
+
+    return b2a_base64(data, newline=False).decode("ascii")
+
+
+def _encodable(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def _mended(text: str) -> str:
+    """Bytes that were no UTF-8 as the mark for that; nothing else of JSON can hold them."""
+    raw = text.encode("utf-8", "surrogatepass")
+    try:
+        raw = text.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError:
+        pass  # half a surrogate pair, which somebody wrote as \\ud800
+    return raw.decode("utf-8", "replace")
+
+
+# ---------------------------------------------------------------------------------- from JSON
+
+
+def _no_constant(word: str) -> Any:
+    raise ValueError(f"{word} is no JSON number")
+
+
+def _message(value: Any, depth: int) -> Any:
+    if isinstance(value, (bool, float)):
+        return value
+    if isinstance(value, str):
+        return value if value.isascii() or _encodable(value) else _mended(value)
+    if value is None:
+        return Vocab("null")
+    if isinstance(value, int):
+        if value not in _INT64:
+            raise DecodeError(f"the number {value:.6g} does not fit in 64 bits")
+        return value
+    if depth > MAX_DEPTH:
+        raise DecodeError(f"JSON nested more than {MAX_DEPTH} deep")
+    if isinstance(value, list):
+        return Bottle(_message(item, depth + 1) for item in value)
+    return _pairs(value, depth)
+
+
+def _pairs(value: dict[str, Any], depth: int) -> Any:
+    kind = value.get(_TYPE)
+    if kind == "blob" and value.keys() == {_TYPE, "base64"} and isinstance(value["base64"], str):
+        from binascii import Error, a2b_base64
+
+        try:
+            return a2b_base64(value["base64"], strict_mode=True)
+        except (Error, ValueError) as error:
+            raise DecodeError(f"a blob that is no base64: {error}") from None
+    front = isinstance(kind, (str, int, float))
+    items = Bottle([_message(kind, depth + 1)] if front else [])
+    for key, item in value.items():
+        if not (front and key == _TYPE):
+            items.append(Bottle([_message(key, depth + 1), _message(item, depth + 2)]))
+    return items
