@@ -62,12 +62,14 @@ class Contact:
 
 @dataclass(slots=True)
 class Route:
-    """Who talks to whom over what: one connection. `port` is the accepting side's TCP port."""
+    """Who talks to whom over what: one connection. `port` is the accepting side's TCP port,
+    `host` its address, where we dialled it."""
 
     source: str
     target: str
     carrier: str = "tcp"
     port: int = 0
+    host: str = ""
 
     def __str__(self) -> str:
         return f"{self.source} -> {self.target} ({self.carrier})"

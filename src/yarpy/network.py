@@ -19,6 +19,7 @@ from yarpy.errors import (
     AddressError,
     LinkClosed,
     LocalProtocolError,
+    RemoteProtocolError,
     Timeout,
     UnknownName,
 )
@@ -103,19 +104,48 @@ class Route:
             )
         self.asked = asked
         self.peer = _route_name(from_ if self.pull else to)
+        # Perhaps a camera, which does not understand us: its watcher is asked first.
+        self.plain = from_.reachable and not from_.name and not self.pull
 
     def admin(self, *words: object) -> Bottle:
         """Ask the port in charge. Raises LinkClosed when it does not answer."""
         try:
             return probe.ask(self.asked, list(words), timeout=10.0)
-        except (LinkClosed, Timeout) as error:
+        except (LinkClosed, Timeout, RemoteProtocolError) as error:
             name = self.target_text if self.pull else self.source_text
             raise LinkClosed(f"Cannot connect to port {name}: {error}") from error
 
     def existing(self) -> str:
         """The carrier of the connection that exists now, "" if there is none."""
-        listed = self.admin(Vocab("list"), Vocab("in" if self.pull else "out"), self.peer)
+        words = Vocab("list"), Vocab("in" if self.pull else "out"), self.peer
+        listed = Bottle() if self.plain else self.admin(*words)
+        if not listed:
+            listed = self.ask_back(Vocab("list"), Vocab("in"))
+            if listed.find("push") != 0:
+                listed = self.admin(*words) if self.plain else Bottle()
         return plain_text(listed.find("carrier", "")) if listed else ""
+
+    def delete(self) -> bool:
+        """Have the connection ended; False if neither end knows of it."""
+        if self.plain and _done(self.ask_back(Vocab("del"))):
+            return True
+        if _done(self.admin(Vocab("del"), self.peer)):
+            return True
+        return not self.plain and _done(self.ask_back(Vocab("del")))
+
+    def ask_back(self, *words: object) -> Bottle:
+        """Ask the destination about a connection that it may have dialled itself, as it does with
+        pull carriers. An empty answer if it is the one in charge anyway, or cannot be asked."""
+        if self.pull or not _competent(self.there):
+            return Bottle()
+        try:
+            return probe.ask(self.there, [*words, _route_name(self.source)], timeout=10.0)
+        except (LinkClosed, Timeout, RemoteProtocolError):
+            return Bottle()
+
+
+def _done(reply: Bottle) -> bool:
+    return bool(reply) and reply[0] == 0
 
 
 def _end(text: str, what: str) -> Contact:
@@ -203,8 +233,7 @@ def disconnect(source: str, target: str, *, names: NameClient | None = None) -> 
     if route.topical:
         ask_server(names, ["unsubscribe", source, target])
         return True
-    reply = route.admin(Vocab("del"), route.peer)
-    return bool(reply) and reply[0] == 0
+    return route.delete()
 
 
 def is_connected(

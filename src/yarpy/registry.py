@@ -27,6 +27,8 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "unix_stream": "yarpy.carriers.unix_stream:UnixStream",
         "local": "yarpy.carriers.local:Local",
         "name_ser": "yarpy.carriers.name_ser:NameSer",
+        "http": "yarpy.carriers.http:Http",
+        "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
     },
 }
 

@@ -71,10 +71,11 @@ class Outbound:
     # -- sending ----------------------------------------------------------------------------------
 
     def send(self, packet: Packet) -> bool:
-        """Send one message; False if it was dropped. Returns once the kernel, or the gathering of a burst, has it.
+        """Send one message; False if it was dropped.
 
-        Blocks while the peer is WINDOW acknowledgements behind; where the carrier is lossy it never
-        blocks, and the message may be dropped instead. Raises LinkClosed.
+        Returns once the kernel, or the gathering of a burst, has it. Blocks while the peer is
+        WINDOW acknowledgements behind; where the carrier is lossy it never blocks, and the message
+        may be dropped instead. Raises LinkClosed.
         """
         if self.carrier.lossy:
             if self.broken:

@@ -126,6 +126,8 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
             raise Refused("Outputs not allowed")
         if hub.rpc and any(modifier(link.route.carrier, "log") is None for link in hub.outputs):
             raise Refused("RPC output already connected")
+    if not kind.push and not hub.admits_inputs:
+        raise Refused("Inputs not allowed")
     open_output(hub, contact, target, carrier, text)
     line = f"Added connection from {hub.name} to {text}"
     if log_taps == "in":

@@ -2,8 +2,9 @@
 
 Rules: one daemon thread for the process, started with the first registered port, asleep most of the
 time. What somebody disconnected on purpose stays disconnected; what broke is tried again until it
-works or is given up. A lost output is dialled again by us; a lost input is asked for again from its
-sender, once that is back. A name server is watched through a connection of its own.
+works or is given up. A lost output is dialled again by us, and so is a camera; any other lost
+input is asked for again from its sender, once that is back. A name server is watched through a
+connection of its own.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING, Final
 from yarpy.contact import Contact, Route, modifier, parse_contact
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
+from yarpy.link.handshake import find_carrier
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.several import SeveralNames
@@ -176,7 +178,7 @@ class Repairer:
             done = self._mend_input(item) if item.incoming else self._mend_output(item)
         except (YarpError, OSError):
             pass  # not yet
-        if item.incoming and now - item.since > INPUT_PATIENCE:
+        if item.incoming and not _is_pulled(item.route) and now - item.since > INPUT_PATIENCE:
             done = True
         if done:
             with self._lock:
@@ -201,6 +203,8 @@ class Repairer:
         hub, route = item.hub, item.route
         if any(link.route.source == route.source for link in hub.inputs):
             return True
+        if _is_pulled(route):
+            return self._dial_again(hub, route)
         contact = hub.names.query(route.source) if hub.names is not None else None
         if contact is None or not probe.is_alive(contact, hub.key):
             item.seen_gone = True
@@ -215,6 +219,20 @@ class Repairer:
             return True
         probe.ask(contact, [Vocab("add"), f"{carrier}:/{hub.name}"], secret_=hub.key)
         return True
+
+    def _dial_again(self, hub: Hub, route: Route) -> bool:
+        """Dial a camera, or another source that we fetch from, once more."""
+        contact = command.locate(hub, parse_contact(route.source))
+        if contact is None:
+            return False
+        command.open_output(hub, contact, route.source, route.carrier)
+        log.info("%s: the connection from %s is back", hub.name, route.source)
+        return True
+
+
+def _is_pulled(route: Route) -> bool:
+    """Whether the receiver of such a connection is the one that dials."""
+    return not find_carrier(route.carrier).push
 
 
 def _servers(names: NameClient | None) -> list[YarpNameClient]:
@@ -255,7 +273,7 @@ def output_lost(hub: Hub, route: Route) -> None:
 
 def input_lost(hub: Hub, route: Route) -> None:
     """An input ended without a goodbye."""
-    if route.source.startswith("/") and not _is_address(route.source):
+    if _is_pulled(route) or (route.source.startswith("/") and not _is_address(route.source)):
         REPAIR.add(hub, route, incoming=True)
 
 

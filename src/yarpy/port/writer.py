@@ -38,10 +38,9 @@ class Writer(BasePort):
             if not link.active or is_log(link):
                 continue
             try:
-                link.send(packet)
+                sent += link.send(packet)
                 if wait:
                     link.wait_acknowledged()
-                sent += 1
             except LinkClosed as error:
                 self._hub.drop_output(link, str(error), lost=True)
             except YarpError as error:

@@ -23,6 +23,12 @@ class TcpTransport(SocketTransport):
         if sock.family != getattr(socket, "AF_UNIX", None):
             sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
+    def limit_unsent(self, size: int) -> None:
+        """Let no more than `size` bytes wait in the kernel for a slow network, where it can."""
+        option = getattr(socket, "TCP_NOTSENT_LOWAT", None)
+        if option is not None:
+            self.sock.setsockopt(socket.IPPROTO_TCP, option, size)
+
 
 def dial(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TcpTransport:
     """Connect to a port. Raises OSError (ConnectionRefusedError, TimeoutError ...)."""

@@ -54,7 +54,7 @@ class Packet:
     `key` is the port command: `D` data, `d` data with a reply wanted, `a` administrative.
     """
 
-    __slots__ = ("_blocks", "_line", "envelope", "framed", "key", "value")
+    __slots__ = ("_blocks", "_forms", "_line", "envelope", "framed", "key", "value")
 
     def __init__(self, value: object, envelope: bytes = b"", key: str = DATA) -> None:
         self.value = value
@@ -63,6 +63,14 @@ class Packet:
         self._blocks: tuple[Buffer, ...] | None = None
         self._line: bytes | None = None
         self.framed: list[Buffer] | None = None  # kept by the framing that several carriers share
+        self._forms: dict[object, tuple[Buffer, ...]] | None = None
+
+    @property
+    def forms(self) -> dict[object, tuple[Buffer, ...]]:
+        """What carriers made of it for themselves, each by a key of its own."""
+        if self._forms is None:
+            self._forms = {}
+        return self._forms
 
     @property
     def blocks(self) -> tuple[Buffer, ...]:

@@ -1,0 +1,267 @@
+"""mjpeg: pictures for browsers, and from network cameras: JPEG files in an endless HTTP answer.
+
+    GET /?action=stream HTTP/1.1            the one who dials is the one who watches
+
+    HTTP/1.0 200 OK ... Content-Type: multipart/x-mixed-replace;boundary=boundarydonotcross
+    --boundarydonotcross
+    Content-Type: image/jpeg
+    Content-Length: 734
+
+Rules: a watcher who is too slow gets fewer pictures, its port never waits for it. A picture is
+compressed once for all watchers that want the same quality (`/?action=stream&quality=50&rate=10`,
+or `mjpeg+quality.50+rate.10` between ports; pictures per second). What is no picture is not sent,
+and counted. The envelope is the comment in the JPEG file. Cameras are understood that order, spell
+or leave out headers in their own way; a damaged picture is dropped, and counted in `lost`.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.contact import Route, modifier
+from yarpy.data import jpeg
+from yarpy.data.image import Image, is_image
+from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
+from yarpy.wire.effects import Steps
+from yarpy.wire.message import DATA, Message, Packet
+from yarpy.wire.stream import Buffer, ByteStream
+
+MAX_LINE: Final = 1 << 14  # bytes of a header line, or of rubbish without a line end
+MAX_LINES: Final = 200  # header lines
+MAX_FRAME: Final = 1 << 26  # bytes of one JPEG file
+
+_BOUNDARY: Final = b"--boundarydonotcross\r\n"
+_ANSWER: Final = (
+    b"HTTP/1.0 200 OK\r\n"
+    b"Connection: close\r\n"
+    b"Server: yarp/mjpeg_carrier/0.1\r\n"
+    b"Cache-Control: no-store, no-cache, must-revalidate, pre-check=0, post-check=0, max-age=0\r\n"
+    b"Pragma: no-cache\r\n"
+    b"Expires: Mon, 3 Jan 2000 12:34:56 GMT\r\n"
+    b"Content-Type: multipart/x-mixed-replace;boundary=boundarydonotcross\r\n"
+    b"\r\n"
+)
+
+
+class Mjpeg(Carrier):
+    """Images only, from the port that was dialled to the one that dialled."""
+
+    name = "mjpeg"
+    magic = b"GET /?ac"
+    push = False
+    replies = False
+    escapes = False
+    gathers = False
+    lossy = True
+    backlog = 1
+
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        self.quality = jpeg.QUALITY
+        self._mark = b"--"  # what a line between two pictures contains
+        self._past_mark = False  # that line has begun: its end is next
+
+    # -- the sender -------------------------------------------------------------------------------
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        line = yield from stream.read_line(MAX_LINE)
+        yield from _read_head(stream, line)
+        self.route.source = "null"  # as C++ calls it: watchers have no names
+        self._obey(line.decode("latin-1").partition(" ")[0])
+        stream.write(_ANSWER + _BOUNDARY)
+
+    def _obey(self, query: str) -> None:
+        """Take the wishes out of a request: `quality` and `rate`."""
+        from urllib.parse import parse_qs
+
+        wishes = parse_qs(query, max_num_fields=20) if query.count("&") < 20 else {}
+        quality = _number(wishes.get("quality", [""])[-1])
+        rate = _number(wishes.get("rate", [""])[-1])
+        if quality:
+            self.quality = max(1, min(100, int(quality)))
+            self.route.carrier += f"+quality.{self.quality}"
+        if rate:
+            self.interval = 1 / rate
+            self.route.carrier += f"+rate.{rate:g}"
+
+    def prepare(self, packet: Packet) -> bool:
+        return bool(self._frame(packet))
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        stream.write(*self._frame(packet))
+
+    def _frame(self, packet: Packet) -> tuple[Buffer, ...]:
+        """The part of the answer that shows a packet's picture; empty if it is none."""
+        key = (self.name, self.quality)
+        frame = packet.forms.get(key)
+        if frame is None:
+            frame = packet.forms[key] = _compressed(packet, self.quality)
+        return frame
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        """Nothing ends the answer but closing."""
+
+    # -- the receiver -----------------------------------------------------------------------------
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        stream.write(self._request())
+        line = yield from stream.read_line(MAX_LINE)
+        words = line.split(None, 2)
+        if len(words) < 2 or not words[0].startswith(b"HTTP/") or words[1] != b"200":
+            text = line[:80].decode("utf-8", "replace")
+            raise RemoteProtocolError(
+                f'asked for {self._path()} the camera says "{text}"; the carrier '
+                "mjpeg+path.<path> says what to ask for"
+            )
+        headers = yield from _read_head(stream, line)
+        kind, _, options = headers.get("content-type", "").partition(";")
+        if kind.strip().lower().partition("/")[0] != "multipart":
+            raise RemoteProtocolError(
+                f"{self._path()} is no stream of pictures but {kind.strip() or 'of no known type'}"
+                "; the carrier mjpeg+path.<path> says what to ask for"
+            )
+        if "chunked" in headers.get("transfer-encoding", "").lower():
+            raise RemoteProtocolError("the camera answers in chunks, which HTTP/1.0 does not have")
+        for option in options.split(";"):
+            key, _, value = option.partition("=")
+            if key.strip().lower() == "boundary":
+                self._mark = b"--" + value.strip().strip('"').lstrip("-").encode("latin-1")
+
+    def _request(self) -> bytes:
+        route = self.route
+        host = f"[{route.host}]" if ":" in route.host else route.host
+        # 1.0, so that the answer comes as it is, not in chunks.
+        lines = [
+            f"GET {self._path()} HTTP/1.0",
+            f"Host: {host}:{route.port}",
+            "User-Agent: yarpy",
+            "Accept: multipart/x-mixed-replace, image/jpeg",
+            "\r\n",
+        ]
+        return "\r\n".join(lines).encode()
+
+    def _path(self) -> str:
+        carrier = self.route.carrier
+        path = modifier(carrier, "path")
+        if path is None:
+            path = "?action=stream"
+            for wish in ("quality", "rate"):
+                value = modifier(carrier, wish)
+                if value is not None:
+                    path += f"&{wish}={value}"
+        if not path.isprintable() or " " in path:
+            raise LocalProtocolError(f"a path without blanks, please, not {path!r}")
+        return "/" + path.removeprefix("/")
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        while True:
+            data = yield from self._read_part(stream)
+            try:
+                picture = jpeg.decode(data, stream.limit)
+            except DecodeError:
+                self.lost += 1
+                continue
+            return Message(DATA, picture, jpeg.comment(data))
+
+    def _read_part(self, stream: ByteStream) -> Steps[bytes | memoryview | bytearray]:
+        """The next JPEG file."""
+        while True:
+            if not self._past_mark:
+                yield from self._skip_to_mark(stream)
+            elif (yield from stream.read_line(MAX_LINE)).startswith(b"--"):
+                raise LinkClosed("the camera has ended its stream")
+            self._past_mark = False
+            headers = yield from _read_head(stream)
+            kind = headers.get("content-type", "image/jpeg").partition(";")[0].strip().lower()
+            size = headers.get("content-length", "")
+            if not (size.isascii() and size.isdigit()):
+                data: bytes | memoryview | bytearray = yield from self._read_unmeasured(stream)
+            elif len(size) > 9 or int(size) > MAX_FRAME:
+                raise RemoteProtocolError(
+                    f"a picture of {size[:20]} bytes is announced; the limit is {MAX_FRAME} bytes"
+                )
+            else:
+                data = yield from stream.read_exact(int(size))
+            if kind in ("image/jpeg", "image/jpg", "image/pjpeg") and data:
+                return data
+            self.lost += 1
+
+    def _skip_to_mark(self, stream: ByteStream) -> Steps[None]:
+        """Read up to the line that begins a part, whatever is before it."""
+        while True:
+            line = yield from stream.read_line(MAX_FRAME)
+            if line.startswith(b"--") and self._mark in line and len(line) < 200:
+                if line.endswith(b"--") and len(line) > len(self._mark) and line != self._mark:
+                    raise LinkClosed("the camera has ended its stream")
+                return
+
+    def _read_unmeasured(self, stream: ByteStream) -> Steps[bytearray]:
+        """A JPEG file of unknown length: up to its end, or to the line that begins the next."""
+        data = bytearray()
+        extent = jpeg.Extent()
+        whole = True  # as far as it goes
+        mark = b"\n" + self._mark
+        while True:
+            yield from stream.more(1)
+            searched = max(0, len(data) - len(mark))
+            data += stream.buffer[stream.head : stream.tail]
+            stop = data.find(mark, searched)
+            end = extent.advance(data) if whole else -1
+            whole = end >= 0
+            if end > 0 and (stop < 0 or end <= stop):
+                stream.head = stream.tail - (len(data) - end)
+                del data[end:]
+                return data
+            if stop >= 0:
+                stream.head = stream.tail - (len(data) - stop - len(mark))
+                self._past_mark = True
+                del data[stop:]
+                return data
+            stream.head = stream.tail
+            if len(data) > MAX_FRAME:
+                raise RemoteProtocolError(f"a picture of more than {MAX_FRAME} bytes")
+
+
+def _compressed(packet: Packet, quality: int) -> tuple[Buffer, ...]:
+    value = packet.value
+    if not isinstance(value, Image):
+        blocks = packet.blocks
+        if not (blocks and is_image(blocks[0] if len(blocks) > 1 else memoryview(blocks[0]))):
+            return ()
+        try:
+            value = Image.from_wire(b"".join(blocks))
+        except DecodeError:
+            return ()
+    try:
+        data = jpeg.encode(value, quality)
+    except ValueError:
+        return ()
+    if packet.envelope:
+        data = jpeg.commented(data, packet.envelope)
+    head = b"Content-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n" % len(data)
+    return head, data, b"\r\n" + _BOUNDARY
+
+
+def _read_head(stream: ByteStream, line: bytes = b"-") -> Steps[dict[str, str]]:
+    """Header lines up to an empty one; names in small letters."""
+    found: dict[str, str] = {}
+    for _ in range(MAX_LINES):
+        line = yield from stream.read_line(MAX_LINE)
+        if not line:
+            return found
+        name, _, value = line.decode("latin-1").partition(":")
+        found[name.strip().lower()] = value.strip()
+    raise RemoteProtocolError(f"more than {MAX_LINES} header lines")
+
+
+def _number(text: str) -> float:
+    """A positive number, or 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        return 0.0
+    return value if 0 < value < 1e6 else 0.0
+
+
+__all__ = ["MAGIC_SIZE", "Mjpeg"]

@@ -1,0 +1,328 @@
+"""Pictures to and from programs that know nothing of YARP: a web camera, curl, ffmpeg."""
+
+from __future__ import annotations
+
+import shutil
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+import numpy as np
+import pytest
+from support.port import free_port
+from support.process import Process
+from support.wait import wait_until
+
+import yarpy
+from yarpy import network
+from yarpy.data import jpeg
+from yarpy.port.repair import pending
+
+Y, X = np.mgrid[:48, :64]
+PICTURE = yarpy.Image(np.stack([X * 3, Y * 5, X + Y], -1).astype("u1"))
+PATIENCE = 10.0
+
+
+class Camera(ThreadingHTTPServer):
+    """A web camera with ten pictures a second at /mjpg/video.mjpg?camera=1, and nothing else."""
+
+    daemon_threads = True
+    allow_reuse_address = True
+
+    def __init__(self, port: int = 0) -> None:
+        super().__init__(("127.0.0.1", port), Show)
+        self.asked: list[str] = []
+        self.shown: list[socket.socket] = []
+        threading.Thread(target=self.serve_forever, args=(0.02,), daemon=True).start()
+
+    @property
+    def name(self) -> str:
+        return f"/127.0.0.1:{self.server_port}"
+
+    def leave(self) -> None:
+        self.shutdown()
+        self.server_close()
+        for sock in self.shown:
+            with suppress(OSError):
+                sock.shutdown(socket.SHUT_RDWR)
+
+
+class Show(BaseHTTPRequestHandler):
+    server: Camera
+
+    def do_GET(self) -> None:
+        self.server.asked.append(self.path)
+        if self.path != "/mjpg/video.mjpg?camera=1":
+            self.send_error(404)
+            return
+        assert self.headers["Host"] == f"127.0.0.1:{self.server.server_port}"
+        self.server.shown.append(self.connection)
+        self.send_response(200)
+        self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
+        self.end_headers()
+        data = jpeg.encode(PICTURE)
+        try:
+            while True:
+                self.wfile.write(b"--frame\r\ncontent-length: %d\r\n" % len(data))
+                self.wfile.write(b"content-type: image/jpeg\r\n\r\n" + data + b"\r\n")
+                time.sleep(0.1)
+        except OSError:
+            pass
+
+    def log_message(self, *args: object) -> None:
+        pass
+
+
+CARRIER = "mjpeg+path.mjpg/video.mjpg?camera=1"
+
+
+@contextmanager
+def viewer(name: str = "/view") -> Iterator[tuple[yarpy.LocalNames, yarpy.BufferedPort]]:
+    names = yarpy.LocalNames()
+    with yarpy.BufferedPort(name, names=names) as view:
+        yield names, view
+
+
+def is_the_picture(image: yarpy.Image) -> bool:
+    difference = image.array.astype(int) - PICTURE.array.astype(int)
+    return image.code == "rgb" and float(np.abs(difference).mean()) < 4
+
+
+def test_camera_is_seen_comes_back_and_is_let_go() -> None:
+    with viewer() as (names, view):
+        camera = Camera()
+        name, port = camera.name, camera.server_port
+        line = network.connect(name, "/view", CARRIER, names=names)
+        assert line == f"Added connection from /view to {CARRIER}:/{name}"
+        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        (link,) = view.inputs
+        assert (link.source, link.carrier) == (f"{name}/", CARRIER)
+        assert network.is_connected(name, "/view", names=names)
+        camera.leave()
+        wait_until(lambda: not view.inputs, PATIENCE)
+        camera = Camera(port)
+        wait_until(lambda: view.inputs, PATIENCE)
+        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert network.disconnect(name, "/view", names=names)
+        wait_until(lambda: not view.inputs, PATIENCE)
+        assert not network.is_connected(name, "/view", names=names)
+        count = len(camera.asked)
+        time.sleep(1.0)
+        assert len(camera.asked) == count, "a connection that somebody ended comes back"
+        camera.leave()
+
+
+def test_camera_that_went_away_can_be_let_go() -> None:
+    with viewer() as (names, view):
+        camera = Camera()
+        network.connect(camera.name, "/view", CARRIER, names=names)
+        view.read(timeout=PATIENCE)
+        camera.leave()
+        wait_until(lambda: not view.inputs, PATIENCE)
+        network.admin("/view", "del", f"{camera.name}/", names=names)
+        camera = Camera(camera.server_port)
+        time.sleep(1.0)
+        assert not camera.asked
+        camera.leave()
+
+
+def test_camera_with_a_name() -> None:
+    camera = Camera()
+    with viewer() as (names, view):
+        names.register("/cam", CARRIER, "127.0.0.1", camera.server_port)
+        network.connect("/cam", "/view", names=names)
+        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert view.inputs[0].source == "/cam"
+        assert network.is_connected("/cam", "/view", names=names)
+        assert network.disconnect("/cam", "/view", names=names)
+        wait_until(lambda: not view.inputs, PATIENCE)
+    camera.leave()
+
+
+def test_wrong_path_is_told() -> None:
+    camera = Camera()
+    with viewer() as (names, view):
+        with pytest.raises(yarpy.LocalProtocolError, match="Cannot connect"):
+            network.connect(camera.name, "/view", "mjpeg+path.wrong", names=names)
+        assert not view.inputs
+        assert camera.asked == ["/wrong"]
+    camera.leave()
+
+
+# ---------------------------------------------------------------------------------------- browsers
+
+
+class Browser:
+    """A socket that asks for a stream, and reads as it likes."""
+
+    def __init__(self, port: yarpy.Port | yarpy.BufferedPort, wishes: str = "") -> None:
+        self.sock = socket.socket()
+        self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 14)
+        self.sock.settimeout(PATIENCE)
+        self.sock.connect((port.contact.host, port.contact.port))
+        self.sock.sendall(f"GET /?action=stream{wishes} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
+        self.file = self.sock.makefile("rb")
+        assert self.file.readline() == b"HTTP/1.0 200 OK\r\n"
+        while self.file.readline().strip():
+            pass
+
+    def frame(self) -> bytes:
+        assert self.file.readline().startswith(b"--")
+        size = 0
+        while line := self.file.readline().strip():
+            if line.lower().startswith(b"content-length:"):
+                size = int(line.split()[1])
+        data = self.file.read(size)
+        assert self.file.read(2) == b"\r\n"
+        return data
+
+    def close(self) -> None:
+        self.file.close()
+        self.sock.close()
+
+
+NOISE = yarpy.Image(np.random.default_rng(1).integers(0, 255, (240, 320, 3), "u1"))
+
+
+@pytest.mark.parametrize("make", [yarpy.Port, yarpy.BufferedPort])
+def test_slow_browser_costs_its_port_nothing(make: Callable[..., yarpy.Port]) -> None:
+    with make("/cam", names=yarpy.LocalNames()) as port:
+        slow, quick = Browser(port), Browser(port)
+        wait_until(lambda: len(port.outputs) == 2)
+        longest = 0.0
+        for number in range(150):
+            started = time.perf_counter()
+            port.write(NOISE, f"{number} 0.5")
+            longest = max(longest, time.perf_counter() - started)
+            assert jpeg.comment(quick.frame()) == f"{number} 0.5"
+        assert longest < 0.5
+        stalled, free = sorted(port.outputs, key=lambda link: -int(link.stats["drops"]))
+        assert free.stats["drops"] == 0
+        assert stalled.stats["drops"] > 50
+        assert stalled.stats["drops"] + stalled.stats["messages"] >= 148
+        # What it did not see was not kept for it: a few old pictures, then the newest.
+        found: list[str] = []
+        while "900 0.5" not in found:
+            port.write(NOISE, "900 0.5")
+            found.append(jpeg.comment(slow.frame()))
+        assert len(found) < 60
+        slow.close()
+        quick.close()
+        wait_until(lambda: not port.outputs)
+
+
+def test_rate_and_quality() -> None:
+    with yarpy.Port("/cam", names=yarpy.LocalNames()) as port:
+        browsers = [Browser(port), Browser(port, "&quality=10"), Browser(port, "&rate=10")]
+        wait_until(lambda: len(port.outputs) == 3)
+        sizes: list[list[int]] = [[], [], []]
+
+        def look(index: int) -> None:
+            try:
+                while True:
+                    sizes[index].append(len(browsers[index].frame()))
+            except (OSError, AssertionError, ValueError):
+                pass
+
+        threads = [threading.Thread(target=look, args=(index,)) for index in range(3)]
+        for thread in threads:
+            thread.start()
+        started = time.monotonic()
+        while time.monotonic() - started < 1.5:
+            port.write(NOISE)
+            time.sleep(0.02)
+        rates = [int(link.stats["messages"]) / 1.5 for link in port.outputs]
+    for thread in threads:
+        thread.join(PATIENCE)
+    for browser in browsers:
+        browser.close()
+    assert sizes[1][0] < sizes[0][0] / 2
+    assert min(rates) <= 11.5
+    assert min(rates) >= 7
+    assert max(rates) > 20
+
+
+def test_port_that_shows_something_else_counts_it() -> None:
+    with yarpy.Port("/cam", names=yarpy.LocalNames()) as port:
+        browser = Browser(port)
+        wait_until(lambda: port.outputs)
+        assert port.write([1, "no picture"]) == 0
+        assert port.write(PICTURE) == 1
+        assert browser.frame()
+        assert port.outputs[0].stats["drops"] == 1
+        browser.close()
+
+
+def test_pictures_between_two_ports_with_their_stamps() -> None:
+    names = yarpy.LocalNames()
+    with yarpy.Port("/cam", names=names) as cam, yarpy.Port("/view", names=names) as view:
+        network.connect("/cam", "/view", "mjpeg+quality.95", names=names)
+        assert cam.wait_for_outputs(timeout=PATIENCE)
+        assert cam.outputs[0].carrier == "mjpeg+quality.95"
+        cam.write(PICTURE, yarpy.Stamp(7, 1.5))
+        message = view.read(timeout=PATIENCE)
+        assert is_the_picture(message.value)
+        assert message.stamp == yarpy.Stamp(7, 1.5)
+
+
+# -------------------------------------------------------------------------------------- programs
+
+
+def test_curl_watches() -> None:
+    curl = shutil.which("curl")
+    if curl is None:
+        pytest.skip("no curl: install it (apt-get install curl)")
+    with yarpy.Port("/cam", names=yarpy.LocalNames()) as port:
+        url = f"http://127.0.0.1:{port.contact.port}/?action=stream"
+        with subprocess.Popen([curl, "-sN", "-m", "20", url], stdout=subprocess.PIPE) as process:
+            assert process.stdout is not None
+            assert port.wait_for_outputs(timeout=PATIENCE)
+            for _ in range(3):
+                port.write(PICTURE)
+                time.sleep(0.05)
+            data = jpeg.encode(PICTURE)
+            head = b"--boundarydonotcross\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n"
+            whole = (head % len(data) + data + b"\r\n") * 3
+            assert process.stdout.read(len(whole)) == whole
+            process.kill()
+        wait_until(lambda: not port.outputs)
+        assert not pending(port._hub)
+
+
+def ffmpeg() -> str:
+    found = shutil.which("ffmpeg")
+    if found is None:
+        pytest.skip("no ffmpeg: install it (apt-get install ffmpeg)")
+    return found
+
+
+def test_ffmpeg_is_a_camera() -> None:
+    number = free_port()
+    source = ["-f", "lavfi", "-re", "-i", "testsrc=size=64x48:rate=20", "-f", "mpjpeg"]
+    where = f"http://127.0.0.1:{number}/video"
+    args = [ffmpeg(), "-loglevel", "error", *source, "-listen", "1", where]
+    with viewer() as (names, view), Process(args):
+        address = f"/127.0.0.1:{number}"
+        network.connect(address, "/view", "mjpeg+path.video", names=names, timeout=PATIENCE)
+        image = view.read(timeout=PATIENCE).value
+        assert (image.width, image.height, image.code) == (64, 48, "rgb")
+
+
+def test_ffmpeg_watches() -> None:
+    with yarpy.Port("/cam", names=yarpy.LocalNames()) as port:
+        url = f"http://127.0.0.1:{port.contact.port}/?action=stream"
+        to = ["-frames:v", "3", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+        args = [ffmpeg(), "-loglevel", "error", "-f", "mpjpeg", "-i", url, *to]
+        with subprocess.Popen(args, stdout=subprocess.PIPE) as process:
+            assert process.stdout is not None
+            deadline = time.monotonic() + PATIENCE
+            while process.poll() is None and time.monotonic() < deadline:
+                port.write(PICTURE)
+                time.sleep(0.02)
+            frames = process.stdout.read()
+            process.kill()
+        assert len(frames) == 3 * 64 * 48 * 3
