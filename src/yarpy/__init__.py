@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     from yarpy.data.image import FlexImage as FlexImage
     from yarpy.data.image import Image as Image
     from yarpy.data.matrix import Matrix as Matrix
+    from yarpy.data.pointcloud import PointCloud as PointCloud
     from yarpy.data.property import Property as Property
     from yarpy.data.sound import Sound as Sound
     from yarpy.data.stamp import Stamp as Stamp

@@ -154,9 +154,9 @@ class NameServer:
             reply = self.service.answer(message.as_(Bottle), peer)
         if self.on_command is not None:
             self.on_command(Bottle(message.as_(Bottle)).to_text(), peer)
+        self._follow(reply)  # first, so that the events of one client keep their order
         if message.answer is not None:
             message.reply(reply.bottle if reply.bottle is not None else Lines(reply.lines))
-        self._follow(reply)
         words = message.as_(Bottle)
         if len(words) > 2 and words[0] == "announce" and not words[2] and self._collector:
             self._collector.suspect(plain_text(words[1]))
