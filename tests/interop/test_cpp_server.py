@@ -1,25 +1,16 @@
 """yarpy ports at the C++ name server: registering, asking, closing, and the server's death."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.environment import configured_for
+from support.patience import soon
 
 import yarpy
 from yarpy import Contact
-
-PATIENCE = 5.0  # generous on a busy machine; the goal is 2 s
-
-
-def soon(condition: Callable[[], object], what: str) -> None:
-    """Wait until `condition` holds."""
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline, what
-        time.sleep(0.02)
 
 
 def listing(programs: CppYarp) -> str:

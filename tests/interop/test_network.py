@@ -4,6 +4,7 @@ import time
 
 import pytest
 from support.cpp_program import CppProgram
+from support.patience import soon
 
 import yarpy
 from yarpy import Bottle
@@ -15,14 +16,6 @@ source, sink = yarp.Port(), yarp.BufferedPortBottle()
 assert source.open('/cpp/out') and sink.open('/cpp/in')
 sink.setStrict()
 """
-
-
-def wait_until_alone(port: yarpy.BufferedPort) -> None:
-    """Until the port sees that nobody sends to it: not every carrier confirms its goodbye."""
-    deadline = time.monotonic() + 5
-    while port.inputs:
-        assert time.monotonic() < deadline, port.inputs
-        time.sleep(0.005)
 
 
 def test_we_wire_their_ports(peer: CppProgram) -> None:
@@ -37,8 +30,7 @@ def test_we_wire_their_ports(peer: CppProgram) -> None:
         assert yarpy.is_connected("/cpp/out", "/cpp/in", carrier)
         assert not yarpy.is_connected("/cpp/out", "/cpp/in", "shmem")
         assert yarpy.exists("/cpp/out", "/cpp/in")
-        while "/cpp/out" not in yarpy.admin("/cpp/in", "list", "in"):
-            pass
+        soon(lambda: "/cpp/out" in yarpy.admin("/cpp/in", "list", "in"), "a member of the group")
         peer.do("source.write(yarp.Bottle('hello'))")
         assert peer.do("sink.read().toString()") == "hello"
         assert yarpy.disconnect("/cpp/out", "/cpp/in")
@@ -89,7 +81,7 @@ def test_they_wire_our_ports(peer: CppProgram) -> None:
             assert peer.do(f"{style}yarp.Network.isConnected('/out', '/in', style)")
             assert peer.do("yarp.Network.disconnect('/out', '/in')")
             assert source.outputs == []
-            wait_until_alone(sink)
+            soon(lambda: not sink.inputs, "not every carrier confirms its goodbye")
         assert not peer.do("yarp.Network.disconnect('/out', '/in')")
         assert not peer.do("yarp.Network.connect('/out', '/nope')")
         # By receiver: the sender is not asked.

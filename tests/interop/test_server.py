@@ -10,6 +10,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.environment import configured_for
+from support.patience import soon
 from support.port import free_block
 from support.process import Process
 
@@ -114,9 +115,7 @@ def test_streams_go_on_without_the_server(programs: CppYarp) -> None:
             port.write([2])
             assert peer.do("port.read().toString()") == "2"
         with serving(programs), port:
-            deadline = time.monotonic() + 5
-            while programs.run("exists", "/ours").returncode:
-                assert time.monotonic() < deadline, "/ours registers itself again"
+            soon(lambda: programs.run("exists", "/ours").returncode == 0, "/ours registers again")
             port.write([3])
             assert peer.do("port.read().toString()") == "3"
             peer.do("late = yarp.Port(); assert late.open('/late')")

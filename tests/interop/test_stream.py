@@ -1,9 +1,8 @@
 """Streams between C++ ports and yarpy ports: every carrier, both ways, envelopes, sizes, order."""
 
-import time
-
 import pytest
 from support.cpp_program import CppProgram
+from support.patience import soon
 
 import yarpy
 from yarpy import Bottle, Stamp, Vocab
@@ -27,17 +26,7 @@ def connect(port: yarpy.Port | yarpy.BufferedPort, name: str, carrier: str) -> N
     A multicast greeting gets no answer: its receiver may join the group after `connect` returned.
     """
     port.connect(name, carrier)
-    deadline = time.monotonic() + 5
-    while port.name not in yarpy.admin(name, "list", "in"):
-        assert time.monotonic() < deadline, f"{name} does not hear {port.name}"
-
-
-def wait_until_gone(port: yarpy.Port) -> None:
-    """Until the port sees that nobody sends to it any more."""
-    deadline = time.monotonic() + 5
-    while port.inputs:
-        assert time.monotonic() < deadline, port.inputs
-        time.sleep(0.005)
+    soon(lambda: port.name in yarpy.admin(name, "list", "in"), f"{name} hears {port.name}")
 
 
 @pytest.mark.parametrize("carrier", CARRIERS)
@@ -60,7 +49,7 @@ def test_cpp_sends(peer: CppProgram, carrier: str) -> None:
             assert peer.end() is True
         assert port.inputs[0].stats["messages"] == 3
         assert peer.do("yarp.Network.disconnect('/cpp', '/ours')")
-        wait_until_gone(port)
+        soon(lambda: not port.inputs, "the port sees that its sender left")
         assert peer.do("port.getOutputCount()") == 0
 
 

@@ -5,18 +5,11 @@ from collections.abc import Callable
 
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
+from support.patience import soon
 
 import yarpy
 
 PATIENCE = 10.0  # seconds for a server to make the connections that follow from names
-
-
-def soon(condition: Callable[[], object], what: str) -> None:
-    """Wait until `condition` holds."""
-    deadline = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < deadline, what
-        time.sleep(0.01)
 
 
 def flows(send: Callable[[int], object], port: yarpy.BufferedPort) -> None:
@@ -47,8 +40,8 @@ def test_topics(network: CppYarp, peer: CppProgram) -> None:
             flows(lambda n: writer.write([n]), reader)
             peer.do("got = yarp.BufferedPortBottle(); assert got.open('/cpp/in'); got.setStrict()")
             yarpy.connect("topic://news", "/cpp/in")
-            soon(lambda: yarpy.is_connected("/out", "/cpp/in"), "the late subscriber hears /out")
-            soon(lambda: yarpy.is_connected("/cpp/out", "/cpp/in"), "... and /cpp/out")
+            soon(lambda: yarpy.is_connected("/out", "/cpp/in"), "it hears /out", PATIENCE)
+            soon(lambda: yarpy.is_connected("/cpp/out", "/cpp/in"), "... and /cpp/out", PATIENCE)
             writer.write(["to all"])
             assert peer.do("got.read().toString()") == '"to all"'
         yarpy.disconnect("topic://news", "/in")
@@ -66,7 +59,7 @@ def test_persistent_connections(network: CppYarp, peer: CppProgram) -> None:
                 flows(lambda n: writer.write([n]), reader)
         # The next one of that name is a C++ program.
         peer.do("port = yarp.BufferedPortBottle(); assert port.open('/pr')")
-        soon(lambda: writer.outputs, "the connection to the C++ port is made")
+        soon(lambda: writer.outputs, "the connection to the C++ port is made", PATIENCE)
         writer.write([1, 2])
         assert peer.do("port.read().toString()") == "1 2"
         peer.do("port.close()")
