@@ -77,7 +77,7 @@ def interrupt(process: Process) -> None:
     """Ctrl-C: the program ends in good order, and says nothing about it."""
     process.signal(signal.SIGINT)
     assert process.wait(5) == 0, process.stderr
-    assert "Traceback" not in process.stderr
+    assert "Traceback" not in process.stderr, process.stderr
 
 
 @pytest.fixture
@@ -109,7 +109,7 @@ def test_alone(name: str):
             places = [number for number, line in enumerate(rest) if re.search(pattern, line)]
             assert places, f"no line {pattern!r} at its place in:\n{process.stdout}"
             del rest[: places[0] + 1]
-        assert "Traceback" not in process.stderr
+        assert "Traceback" not in process.stderr, process.stderr
 
 
 def test_talker_and_listener(server: yarpy.NameServer):
