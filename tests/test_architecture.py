@@ -1,0 +1,233 @@
+"""The architecture, enforced: layers, a test file per source file, light and portable imports.
+
+Rules: plain `ast` and fresh interpreters; nothing of yarpy is imported here. `LAYERS` is the table
+of the architecture page with the lowest room first; a room may import itself and the rooms before
+it, and within a row only what `BESIDE` lists.
+"""
+
+import ast
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCE = ROOT / "src" / "yarpy"
+TESTS = ROOT / "tests"
+
+# Rooms are packages, or single files of the top level.
+LAYERS: list[set[str]] = [
+    {"errors"},
+    {"registry", "contact"},
+    {"wire", "data", "idl"},
+    {"carriers", "transports"},
+    {"link", "monitors", "qos"},
+    {"names"},
+    {"port", "ros", "devices", "record"},
+    {"network", "module", "resource", "aio", "wrap", "realtime"},
+    {"services"},
+    {"cli", "testing"},
+    {"__main__"},
+]
+BESIDE = {
+    ("registry", "contact"),
+    ("link", "qos"),
+    ("monitors", "qos"),
+    ("ros", "port"),
+    ("devices", "port"),
+    ("record", "port"),
+    ("wrap", "network"),
+    ("aio", "network"),
+    ("module", "network"),
+    ("module", "resource"),
+}
+# The files of the wire that may know how messages are spelled.
+WIRE_KNOWS_DATA = {"message.py", "framing.py", "datagram.py"}
+
+PURE = ("wire", "data", "idl", "carriers")
+IMPURE_MODULES = {"socket", "threading", "asyncio", "time", "select", "selectors", "queue"}
+
+# Modules that do not exist, or not whole, outside Linux or Unix.
+UNIX_MODULES = {
+    "fcntl", "grp", "posix", "pty", "pwd", "readline", "resource", "spwd", "syslog", "termios",
+    "tty",
+}  # fmt: skip
+HEAVY_MODULES = ("numpy", "click", "rich", "sqlite3", "asyncio", "email", "http", "xml")
+
+FILES = sorted(SOURCE.rglob("*.py"))
+assert FILES, "no sources found"
+
+
+def relative(path: Path) -> str:
+    return str(path.relative_to(SOURCE))
+
+
+def room(path: Path) -> str:
+    parts = path.relative_to(SOURCE).parts
+    return parts[0] if len(parts) > 1 else path.stem
+
+
+def layer(name: str) -> int:
+    for number, rooms in enumerate(LAYERS):
+        if name in rooms:
+            return number
+    raise AssertionError(f"the room {name!r} is not in the table of layers")
+
+
+def imports(path: Path) -> Iterator[tuple[str, int]]:
+    """Every module that a file imports anywhere, with the line."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name, node.lineno
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}:{node.lineno}: a relative import"
+            module = node.module or ""
+            # `from yarpy.port import command` names the module yarpy.port.command
+            for alias in node.names:
+                yield (
+                    f"{module}.{alias.name}" if module.startswith("yarpy") else module,
+                    (node.lineno),
+                )
+
+
+def imported_rooms(path: Path) -> Iterator[tuple[str, int]]:
+    for module, line in imports(path):
+        parts = module.split(".")
+        if parts[0] == "yarpy" and len(parts) > 1:
+            yield parts[1], line
+
+
+def module_level(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """The statements that run when a module is imported; what is guarded is not among them."""
+    for node in body:
+        yield node
+        if isinstance(node, ast.ClassDef | ast.With):
+            yield from module_level(node.body)
+
+
+@pytest.mark.parametrize("path", FILES, ids=relative)
+def test_imports_point_down_or_stay_in_the_room(path: Path) -> None:
+    own = room(path)
+    if own == "__init__":
+        return  # the public face names everything and imports it when it is asked for
+    for other, line in imported_rooms(path):
+        if other in (own, "__version__"):
+            continue
+        fine = layer(other) < layer(own) or (own, other) in BESIDE
+        if (own, other) == ("wire", "data"):
+            fine = path.name in WIRE_KNOWS_DATA
+        assert fine, f"{relative(path)}:{line}: {own} imports {other}, which is not below it"
+
+
+@pytest.mark.parametrize("path", FILES, ids=relative)
+def test_pure_rooms_have_no_sockets_threads_or_clock(path: Path) -> None:
+    if room(path) not in PURE:
+        return
+    for module, line in imports(path):
+        top = module.partition(".")[0]
+        assert top not in IMPURE_MODULES, f"{relative(path)}:{line} imports {module}"
+
+
+@pytest.mark.parametrize("path", FILES, ids=relative)
+def test_module_says_what_it_is_for(path: Path) -> None:
+    tree = ast.parse(path.read_text())
+    if tree.body:
+        assert ast.get_docstring(tree), f"{relative(path)} does not begin with a docstring"
+
+
+@pytest.mark.parametrize("path", FILES, ids=relative)
+def test_module_has_its_test_file(path: Path) -> None:
+    if path.name == "__init__.py" or path.name == "__main__.py":
+        return
+    within = path.relative_to(SOURCE)
+    expected = TESTS / within.parent / f"test_{path.name}"
+    assert expected.exists(), f"{relative(path)} has no {expected.relative_to(ROOT)}"
+
+
+@pytest.mark.parametrize("path", FILES, ids=relative)
+def test_nothing_unix_only_is_imported_at_module_level(path: Path) -> None:
+    for node in module_level(ast.parse(path.read_text()).body):
+        names: list[str] = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names = [node.module or ""]
+        found = UNIX_MODULES.intersection(name.partition(".")[0] for name in names)
+        assert not found, f"{relative(path)}:{node.lineno} imports {found} wherever it runs"
+
+
+def run_python(code: str) -> str:
+    """What a fresh interpreter prints, started as a user would."""
+    environment = {
+        k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "COV_CORE_SOURCE")
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=30,
+        env=environment,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+LOADED = f"print(sorted(set({HEAVY_MODULES!r}) & sys.modules.keys()))"
+
+
+def test_import_loads_nothing_heavy() -> None:
+    assert run_python(f"import sys, yarpy; {LOADED}").strip() == "[]"
+
+
+def test_every_public_name_resolves_without_numpy() -> None:
+    """The classes of arrays too: numpy comes with the first array, not with its class."""
+    code = f"import sys, yarpy; [getattr(yarpy, name) for name in yarpy.__all__]; {LOADED}"
+    assert run_python(code).strip() == "[]"
+
+
+def test_public_names_are_complete() -> None:
+    """`dir(yarpy)`, `__all__` and what type checkers see are the same names."""
+    tree = ast.parse((SOURCE / "__init__.py").read_text())
+    typed = {
+        alias.asname or alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("yarpy.")
+        for alias in node.names
+    }
+    listed = set(run_python("import yarpy; print(*yarpy.__all__)").split()) - {"__version__"}
+    assert listed - typed == set()
+    assert typed - listed == set()
+
+
+def test_import_takes_less_than_30_ms() -> None:
+    """With everything that `Port` needs that would be 60; the best of some runs, for busy hosts."""
+    code = "import time; t = time.perf_counter(); import yarpy; print(time.perf_counter() - t)"
+    assert min(float(run_python(code)) for _ in range(5)) < 0.030
+
+
+def test_core_is_importable_where_unix_modules_are_missing() -> None:
+    """As on Windows: the modules are not there, and neither are the calls of Unix sockets."""
+    code = f"""
+import sys
+for name in {sorted(UNIX_MODULES - {"posix"})!r}:  # the standard library itself needs that one
+    sys.modules[name] = None
+import os, socket, select
+for module, names in ((socket, ("AF_UNIX", "SO_REUSEPORT", "MSG_DONTWAIT", "recvmsg_into")),
+                      (select, ("poll", "epoll")),
+                      (os, ("sched_setscheduler", "sched_getscheduler", "getuid", "fork"))):
+    for name in names:
+        if hasattr(module, name):
+            delattr(module, name)
+import yarpy
+for name in yarpy.__all__:
+    getattr(yarpy, name)
+with yarpy.NameServer() as server, yarpy.Port("/reader") as reader, yarpy.Port("/writer") as writer:
+    writer.connect("/reader")
+    writer.write([1, "two"])
+    print(reader.read(timeout=5).value.to_text())
+"""
+    assert run_python(code).strip() == "1 two"

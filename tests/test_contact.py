@@ -1,0 +1,157 @@
+"""Addresses and carrier strings: the forms of C++ YARP, both ways."""
+
+from __future__ import annotations
+
+import doctest
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from yarpy import contact
+from yarpy.contact import (
+    Contact,
+    Route,
+    base_carrier,
+    check_name,
+    modifier,
+    parse_contact,
+    read_specifier,
+    specifier,
+)
+from yarpy.errors import AddressError
+
+
+def test_examples_in_the_docstrings() -> None:
+    found = doctest.testmod(contact)
+    assert found.attempted >= 10
+    assert found.failed == 0
+
+
+FORMS = [
+    # text, carrier, name, host, port (spec core-3 section 6.1)
+    ("/foo", "", "/foo", "", 0),
+    ("tcp://foo", "tcp", "/foo", "", 0),
+    ("tcp:/foo", "tcp", "/foo", "", 0),
+    ("://foo", "", "/foo", "", 0),
+    ("topic://news", "topic", "/news", "", 0),
+    ("/127.0.0.1:10002", "tcp", "", "127.0.0.1", 10002),
+    ("/127.0.0.1:10002/", "tcp", "", "127.0.0.1", 10002),
+    ("tcp://127.0.0.1:10002", "tcp", "", "127.0.0.1", 10002),
+    ("tcp://127.0.0.1:10002/", "tcp", "", "127.0.0.1", 10002),
+    ("udp://host:10002/name", "udp", "/name", "host", 10002),
+    ("127.0.0.1:10002", "tcp", "", "127.0.0.1", 10002),
+    ("/foo:i", "", "/foo:i", "", 0),
+    ("/foo:1", "tcp", "", "foo", 1),
+    ("/foo:12/bar", "tcp", "/bar", "foo", 12),
+    ("mjpeg+path.a/b.c?x=1://cam", "mjpeg+path.a/b.c?x=1", "/cam", "", 0),
+    ("/[::1]:10002", "tcp", "", "::1", 10002),
+    ("foo", "", "foo", "", 0),
+    ("...", "", "...", "", 0),
+]
+
+
+@pytest.mark.parametrize(("text", "carrier", "name", "host", "port"), FORMS)
+def test_forms(text: str, carrier: str, name: str, host: str, port: int) -> None:
+    assert parse_contact(text) == Contact(carrier, name, host, port)
+
+
+@pytest.mark.parametrize("text", ["", "/host:65536", "/host:99999999999", "tcp://h:70000"])
+def test_what_is_no_address(text: str) -> None:
+    with pytest.raises(AddressError):
+        parse_contact(text)
+
+
+@given(st.text(max_size=40))
+def test_any_text_is_a_contact_or_an_address_error(text: str) -> None:
+    try:
+        found = parse_contact(text)
+    except AddressError:
+        return
+    assert 0 <= found.port < 65536
+
+
+@pytest.mark.parametrize(
+    ("found", "text", "address", "reachable"),
+    [
+        (Contact("tcp", "/a", "host", 5), "tcp://a", "host:5", True),
+        (Contact("", "/a"), "tcp://a", ":0", False),
+        (Contact("udp", "", "host", 5), "udp://host:5/", "host:5", True),
+        (Contact("tcp", "", "::1", 5), "tcp://[::1]:5/", "[::1]:5", True),
+    ],
+)
+def test_contacts_as_text(found: Contact, text: str, address: str, reachable: bool) -> None:
+    assert str(found) == text
+    assert found.address == address
+    assert found.reachable == reachable
+
+
+GOOD = ["/a", "/a/b", "/a:i", "/a:1x", "/a b".replace(" ", "_"), "/\u00e4", "/" + "x" * 800]
+BAD = ["", "a", "/a b", "/a\tb", "/a/", "/", "/a:1", "/a:1/b", "/" + "x" * 901, "/a\x00", "/a\x7f"]
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_names_of_ports(name: str) -> None:
+    assert check_name(name) == name
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_names_that_cannot_be(name: str) -> None:
+    with pytest.raises(AddressError, match="a port name"):
+        check_name(name)
+
+
+def test_long_name_is_not_repeated_in_full() -> None:
+    with pytest.raises(AddressError) as caught:
+        check_name("/" + "x" * 100_000)
+    assert len(str(caught.value)) < 200
+
+
+SPECIFIERS = [
+    # source, carrier, what travels, what arrives
+    ("/w", "tcp", "/w", "tcp"),
+    ("/w", "tcp+log", "/w (log)", "tcp+log"),
+    ("/w", "tcp+a.1+b.2", "/w (a 1) (b 2)", "tcp+a.1+b.2"),
+    ("/w", "tcp+recv.priority+tc.0.5", "/w (recv priority) (tc 0 5)", "tcp+recv.priority+tc.0"),
+    ("/w", "udp+file.my.lua", "/w (file my lua)", "udp+file.my"),
+    ("", "tcp", "", "tcp"),
+]
+
+
+@pytest.mark.parametrize(("source", "carrier", "text", "arrives"), SPECIFIERS)
+def test_specifiers(source: str, carrier: str, text: str, arrives: str) -> None:
+    assert specifier(source, carrier) == text
+    assert read_specifier(text, base_carrier(carrier)) == (source, arrives)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("/my port (recv x)", ("/my", "text+port+recv.x")),
+        ("/w (open", ("/w", "text")),
+        ("/w () x", ("/w", "text+x")),
+        ("/w  (a  b)", ("/w", "text+a.b")),
+    ],
+)
+def test_odd_specifiers(text: str, found: tuple[str, str]) -> None:
+    assert read_specifier(text, "text") == found
+
+
+@given(st.text(max_size=60))
+def test_any_specifier_is_read(text: str) -> None:
+    name, carrier = read_specifier(text, "tcp")
+    assert carrier.startswith("tcp")
+    assert " " not in name
+
+
+def test_modifiers_of_a_carrier() -> None:
+    assert modifier("tcp+log.in", "log") == "in"
+    assert modifier("tcp+logger.in", "log") is None
+    assert modifier("tcp", "log") is None
+    assert modifier("tcp+a.b.c+d.e", "a") == "b.c"
+    assert base_carrier("tcp+a.b") == "tcp"
+    assert base_carrier("") == ""
+
+
+def test_route_says_who_talks_to_whom() -> None:
+    assert str(Route("/a", "/b", "udp")) == "/a -> /b (udp)"

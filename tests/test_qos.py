@@ -1,0 +1,107 @@
+"""Priorities: names and numbers of packets and threads, and what the system says to them."""
+
+from __future__ import annotations
+
+import doctest
+import os
+import threading
+
+import pytest
+
+from yarpy import qos
+from yarpy.errors import LocalProtocolError
+from yarpy.qos import DSCP, Sched, policy_of, schedule, scheduled, tos_of
+
+
+def test_examples_in_the_docstrings() -> None:
+    found = doctest.testmod(qos)
+    assert found.attempted
+    assert found.failed == 0
+
+
+TOS = [
+    # the whole table of core-3 section 8.2
+    *((f"CS{n}", 32 * n) for n in range(8)),
+    *[("AF11", 40), ("AF12", 48), ("AF13", 56), ("AF21", 72), ("AF22", 80), ("AF23", 88)],
+    *[("AF31", 104), ("AF32", 112), ("AF33", 120), ("AF41", 136), ("AF42", 144), ("AF43", 152)],
+    *[("VA", 176), ("EF", 184)],
+    *[("LOW", 40), ("NORM", 0), ("HIGH", 144), ("CRIT", 176)],
+    *[("NORMAL", 0), ("high", 144), ("af12", 48)],
+    *[(0, 0), (10, 40), (63, 252)],
+]
+
+
+@pytest.mark.parametrize(("value", "tos"), TOS)
+def test_packet_priorities(value: str | int, tos: int) -> None:
+    assert tos_of(value) == tos
+
+
+@pytest.mark.parametrize("value", ["BAD", "", "AF44", "CS8", -1, 64])
+def test_what_is_no_priority(value: str | int) -> None:
+    with pytest.raises(ValueError, match=r"priority|DSCP"):
+        tos_of(value)
+
+
+def test_classes_are_complete() -> None:
+    assert len(DSCP) == 8 + 12 + 2
+
+
+POLICIES = [("SCHED_FIFO", 1), ("fifo", 1), ("RR", 2), ("SCHED_OTHER", 0), ("other", 0), (1, 1)]
+
+
+@pytest.mark.parametrize(("value", "policy"), POLICIES)
+def test_policies(value: str | int, policy: int) -> None:
+    assert policy_of(value) == policy
+
+
+def test_what_is_no_policy() -> None:
+    with pytest.raises(ValueError, match="scheduling policy"):
+        policy_of("LIFO")
+
+
+def in_a_thread(work: object) -> object:
+    """What `work` returns or raises in a thread whose scheduling nobody needs afterwards."""
+    assert callable(work)
+    found: list[object] = []
+
+    def run() -> None:
+        try:
+            found.append(work())
+        except Exception as error:
+            found.append(error)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join(5)
+    return found[0]
+
+
+def test_thread_is_scheduled_or_the_reason_is_told() -> None:
+    def fifo() -> Sched:
+        schedule(0, Sched(1, 5))
+        return scheduled(0)
+
+    found = in_a_thread(fifo)
+    if isinstance(found, LocalProtocolError):
+        assert "CAP_SYS_NICE" in str(found) or "does not let" in str(found)
+    else:
+        assert found == Sched(1, 5)
+    assert in_a_thread(lambda: schedule(0, Sched(0, 0))) is None
+    assert in_a_thread(lambda: scheduled(0)) == Sched(0, 0)
+
+
+def test_impossible_priority() -> None:
+    found = in_a_thread(lambda: schedule(0, Sched(1, 200)))
+    assert isinstance(found, LocalProtocolError)
+
+
+def test_thread_that_does_not_exist() -> None:
+    assert scheduled(2**22 - 1) == Sched()
+
+
+def test_system_without_scheduling(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(os, "sched_setscheduler", raising=False)
+    monkeypatch.delattr(os, "sched_getscheduler", raising=False)
+    assert scheduled(0) == Sched()
+    with pytest.raises(LocalProtocolError, match="does not let"):
+        schedule(0, Sched(1, 5))

@@ -1,0 +1,127 @@
+"""Plug-ins by name: shipped, installed by strangers, added by hand, broken."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from yarpy import registry
+from yarpy.carriers.base import Carrier
+from yarpy.errors import UnknownPlugin
+from yarpy.registry import SHIPPED, Registry
+
+
+def test_everything_shipped_loads_and_is_called_so() -> None:
+    for name in SHIPPED["carriers"]:
+        carrier = registry.carriers.load(name)
+        assert issubclass(carrier, Carrier)
+        assert carrier.name == name
+        assert registry.carriers.load(name) is carrier
+    assert list(SHIPPED["carriers"])[:1] == ["tcp"]
+    assert registry.carriers.names()[: len(SHIPPED["carriers"])] == list(SHIPPED["carriers"])
+
+
+def test_iteration_gives_them_all() -> None:
+    assert {carrier.name for carrier in registry.carriers} >= set(SHIPPED["carriers"])
+
+
+def test_unknown_name_comes_with_the_nearest() -> None:
+    with pytest.raises(UnknownPlugin, match='no carrier "tcpp": did you mean "tcp"'):
+        registry.carriers.load("tcpp")
+    with pytest.raises(UnknownPlugin, match=r"entry point group yarpy\.monitors"):
+        registry.monitors.load("nosuch")
+
+
+def test_added_by_hand_wins_until_it_is_removed() -> None:
+    own = Registry("carriers")
+    shipped = own.load("tcp")
+    mine = object()
+    own.add("tcp", mine)
+    own.add("mine", mine)
+    assert own.load("tcp") is own.load("mine") is mine
+    assert "mine" in own.names()
+    own.remove("tcp")
+    own.remove("mine")
+    own.remove("never there")
+    assert own.load("tcp") is shipped
+    assert "mine" not in own.names()
+
+
+def test_lookup_of_a_shipped_one_scans_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = Registry("carriers")
+    monkeypatch.setattr(own, "_entries", lambda: pytest.fail("installed packages were scanned"))
+    assert own.load("tcp").name == "tcp"
+
+
+def install(site: Path, name: str, group: str, line: str, code: str) -> None:
+    """As much of an installed distribution as the import system needs."""
+    info = site / f"{name}-1.0.dist-info"
+    info.mkdir(parents=True)
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(f"[{group}]\n{line}\n")
+    (site / f"{name}.py").write_text(code)
+
+
+def run(site: Path, code: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=20,
+        env={**os.environ, "PYTHONPATH": str(site)},
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+def test_strangers_come_by_entry_point(tmp_path: Path) -> None:
+    code = "from yarpy.carriers.base import Carrier\nclass Other(Carrier):\n    name = 'other'\n"
+    install(tmp_path, "stranger", "yarpy.carriers", "other = stranger:Other", code)
+    install(tmp_path, "monitor", "yarpy.monitors", "watch = monitor:Watch", "class Watch: pass\n")
+    out = run(
+        tmp_path,
+        "from yarpy import registry\n"
+        "import sys\n"
+        "print('stranger' in sys.modules, registry.carriers.names()[-1],\n"
+        "      registry.carriers.load('other').name, registry.monitors.load('watch').__name__)",
+    )
+    assert out == "False other other Watch"
+
+
+def test_broken_stranger_names_its_package_and_troubles_nobody(tmp_path: Path) -> None:
+    install(tmp_path, "broken", "yarpy.carriers", "odd = broken:Odd", "import no_such_module\n")
+    out = run(
+        tmp_path,
+        "from yarpy import registry, UnknownPlugin\n"
+        "print(len(list(registry.carriers)) > 5)\n"
+        "try:\n"
+        "    registry.carriers.load('odd')\n"
+        "except UnknownPlugin as error:\n"
+        "    print(error)",
+    )
+    first, second = out.splitlines()
+    assert first == "True"
+    for words in ('"odd" of broken', "ModuleNotFoundError", "repair or uninstall broken"):
+        assert words in second
+
+
+def test_shipped_name_cannot_be_taken_by_a_stranger(tmp_path: Path) -> None:
+    install(tmp_path, "thief", "yarpy.carriers", "tcp = thief:Tcp", "class Tcp: pass\n")
+    code = "from yarpy import registry; print(registry.carriers.load('tcp').__module__)"
+    assert run(tmp_path, code) == "yarpy.carriers.tcp"
+
+
+def test_several_threads_load_one_class() -> None:
+    own = Registry("carriers")
+    found: list[object] = []
+    threads = [threading.Thread(target=lambda: found.append(own.load("udp"))) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(5)
+    assert len(set(found)) == 1
