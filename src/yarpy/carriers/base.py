@@ -24,6 +24,7 @@ from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
 from yarpy.wire.stream import Buffer, ByteStream
 
 MAGIC_SIZE = 8  # bytes by which protocols are told apart
+PAGE = "page"  # what follows the port command `*` when a browser asks
 ASKS_FOR_KEY = "perhaps it asks for a key that this side has not (auth.conf)"
 
 
@@ -49,6 +50,7 @@ class Carrier:
     lossy: bool = False  # who reads too slowly misses messages; its writer never waits
     backlog: int = 0  # messages that may wait for such a reader
     interval: float = 0.0  # seconds between the messages of a lossy connection, at least
+    listens: bool = False  # `listen` is to be run while the link sends
     structured: bool = False  # the peer wants values, not lines for a person to read
     finished: bool = False  # everything was said: the link ends without waiting for the peer
 
@@ -110,6 +112,11 @@ class Carrier:
     def encode_quit(self, stream: ByteStream) -> None:
         """Write the message that ends the connection in good order, if there is one."""
         stream.write(framing.QUIT)
+
+    def listen(self, stream: ByteStream) -> Steps[None]:
+        """Deal with what a reader says while we send to it; returns when it wants no more."""
+        return
+        yield
 
     # -- what comes back --------------------------------------------------------------------------
 

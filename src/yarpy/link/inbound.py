@@ -109,6 +109,7 @@ class Inbound:
             reason = f"{type(error).__name__}: {error}"
             log.exception("%s: connection %s fails on a defect", self.owner.name, self.route)
         if self._reversed:
+            self._limit(None)
             self.owner.reverse(self)
             return
         self._finish()

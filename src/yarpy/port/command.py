@@ -30,6 +30,7 @@ from yarpy.wire.message import Message
 if TYPE_CHECKING:
     from yarpy.port.hub import Hub
 
+JOINING: Final = 0.5  # seconds for a receiver to join a multicast group
 HELP = (
     "This is a YARP port.  Here are the commands it responds to:",
     "*       Gives a description of this port",
@@ -124,7 +125,7 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
     if kind.push and log_taps is None:
         if not hub.admits_outputs:
             raise Refused("Outputs not allowed")
-        if hub.rpc and any(modifier(link.route.carrier, "log") is None for link in hub.outputs):
+        if hub.rpc and any(map(_asks, hub.outputs)):
             raise Refused("RPC output already connected")
     if not kind.push and not hub.admits_inputs:
         raise Refused("Inputs not allowed")
@@ -133,6 +134,11 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
     if log_taps == "in":
         line += f"; {hub.name} will forward messages and replies (if any) to {target}"
     return line
+
+
+def _asks(link: Outbound) -> bool:
+    """Whether an output is one that questions go to; not those of loggers and onlookers."""
+    return modifier(link.route.carrier, "log") is None and not link.carrier.lossy
 
 
 def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str = "") -> None:
@@ -146,10 +152,13 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
             if other is None:
                 raise
             driver, speaker = greet(other, route, key=hub.key, group=hub.group, limit=hub.limit)
+            contact = other
     except (YarpError, OSError) as error:
         _complain(hub, target, error)
         raise Refused(f"Cannot connect to {text or target}") from error
     if speaker.push:
+        if speaker.broadcast:
+            _wait_for_member(hub, contact)
         try:
             hub.add_output_link(Outbound(driver, speaker))
         except PortClosed as error:
@@ -158,6 +167,20 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
         # Who dials a pull carrier is the one that receives.
         route.source, route.target = target, hub.name
         threading.Thread(target=hub.run_input, args=(driver, speaker), daemon=True).start()
+
+
+def _wait_for_member(hub: Hub, contact: Contact) -> None:
+    """Wait until the receiver is in our group, lest the first messages miss it: it does not say so
+    by itself, the greeting of a multicast connection has no answer."""
+    deadline = time.monotonic() + JOINING
+    question = [Vocab("list"), Vocab("in")]
+    try:
+        while hub.name not in probe.ask(contact, question, timeout=JOINING, secret_=hub.key):
+            if time.monotonic() > deadline:
+                return
+            time.sleep(0.002)
+    except (YarpError, OSError):
+        pass  # a receiver that answers no questions
 
 
 def _other_address(hub: Hub, contact: Contact) -> Contact | None:

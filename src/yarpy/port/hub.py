@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from yarpy.carriers.base import Carrier
+from yarpy.carriers.base import PAGE, Carrier
 from yarpy.contact import Contact, check_name
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
@@ -27,6 +27,7 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.names.address import local_addresses, outward_address
 from yarpy.names.base import NameClient
+from yarpy.names.client import YarpNameClient
 from yarpy.names.configuration import port_name, port_number
 from yarpy.names.default import DEFAULT, secret
 from yarpy.port import admin, command, repair
@@ -77,6 +78,7 @@ class Hub:
         self.closing = False
         self.interrupted = False
         self.on_admin: Callable[[Message], object] | None = None
+        self.on_page: Callable[[], list[str]] = list  # more lines for people who browse
         self.on_inputs: Callable[[], None] = lambda: None  # the reader looks at them again
         self._greeting: set[threading.Thread] = set()  # connections that are being welcomed
         self.lock = threading.Lock()  # replaces the tuples of links
@@ -232,7 +234,17 @@ class Hub:
             return admin.failure(str(error))
 
     def command(self, link: Inbound, message: Message) -> list[str]:
-        return command.obey(self, link, message)
+        lines = command.obey(self, link, message)
+        if (message.key, message.text) == ("*", PAGE):
+            lines += self._whereabouts() + self.on_page()
+        return lines
+
+    def _whereabouts(self) -> list[str]:
+        """Where the other ports are to be found, if somebody knows."""
+        names = self.names
+        if isinstance(names, YarpNameClient):
+            return [f"Name server at http://{names.host}:{names.port}/"]
+        return []
 
     def reverse(self, link: Inbound) -> None:
         """The peer at the other end wants to read: its connection becomes an output of ours."""

@@ -119,6 +119,7 @@ class NameServer:
         except BaseException:
             self.close()
             raise
+        self._hub.on_page = self._page
         desk.open(self._answer)
         self.client = client_of(Server(host, self.port))
 
@@ -148,7 +149,10 @@ class NameServer:
         peer = link.driver.transport.remote[0]
         if is_loopback(peer):
             peer = self.host  # a program of this host: others reach it as they reach us
-        if message.spelling == "text":
+        structured = link.carrier.structured
+        if structured:  # as C++ says it behind a command that came by HTTP
+            reply = self.service.answer([*message.as_(Bottle), Bottle(["format", "json"])], peer)
+        elif message.spelling == "text":
             reply = self.service.answer_text(message.payload, peer)
         else:
             reply = self.service.answer(message.as_(Bottle), peer)
@@ -156,10 +160,18 @@ class NameServer:
             self.on_command(Bottle(message.as_(Bottle)).to_text(), peer)
         self._follow(reply)  # first, so that the events of one client keep their order
         if message.answer is not None:
-            message.reply(reply.bottle if reply.bottle is not None else Lines(reply.lines))
+            message.reply(
+                reply.first()
+                if structured
+                else (reply.bottle if reply.bottle is not None else Lines(reply.lines))
+            )
         words = message.as_(Bottle)
         if len(words) > 2 and words[0] == "announce" and not words[2] and self._collector:
             self._collector.suspect(plain_text(words[1]))
+
+    def _page(self) -> list[str]:
+        """Every port, for the page that browsers see."""
+        return [*self.service.answer(Bottle(["list"])).lines[:-1]]
 
     def _obey(self, command: Bottle) -> None:
         """Carry out a command of our own."""

@@ -1,0 +1,297 @@
+"""Ports in the hands of web clients: http.client, curl where it is installed, and rude ones."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Iterator
+from http.client import HTTPConnection, HTTPResponse
+
+import pytest
+from support.wait import wait_until
+
+import yarpy
+from yarpy.names.local import LocalNames
+
+FAST = 5.0  # seconds that nothing here needs
+
+
+@pytest.fixture
+def names() -> LocalNames:
+    return LocalNames()
+
+
+@pytest.fixture
+def echo(names: LocalNames) -> Iterator[yarpy.RpcServer]:
+    with yarpy.RpcServer("/echo", lambda m: ["ok", "echo", m.value], names=names) as server:
+        yield server
+
+
+def client(port: yarpy.RpcServer | yarpy.Port | yarpy.BufferedPort) -> HTTPConnection:
+    return HTTPConnection("127.0.0.1", port.contact.port, timeout=FAST)
+
+
+def get(connection: HTTPConnection, target: str, **headers: str) -> tuple[int, str]:
+    connection.request("GET", target, headers={k.replace("_", "-"): v for k, v in headers.items()})
+    response = connection.getresponse()
+    return response.status, response.read().decode()
+
+
+def test_many_requests_on_one_connection(echo: yarpy.RpcServer) -> None:
+    connection = client(echo)
+    for number in range(50):
+        status, body = get(connection, f"/?req=get+$n&n={number}")
+        assert (status, json.loads(body)) == (200, ["ok", "echo", ["get", number]])
+    assert len(echo.inputs) == 1
+    assert echo.inputs[0].stats["messages"] == 50
+    connection.close()
+    wait_until(lambda: not echo.inputs)
+
+
+def test_bodies_and_pages(echo: yarpy.RpcServer) -> None:
+    connection = client(echo)
+    connection.request("POST", "/form", '["set", {"a": 1}]', {"Content-Type": "application/json"})
+    assert json.load(connection.getresponse()) == ["ok", "echo", ["set", [["a", 1]]]]
+    connection.request(
+        "POST", "/form", "data=x", {"Content-Type": "application/x-www-form-urlencoded"}
+    )
+    page = connection.getresponse().read().decode()
+    assert "ok echo (x)" in page
+    assert "<h1>/echo</h1>" in page
+    _, page = get(connection, "/")
+    assert "There is an input connection from web to /echo using http" in page
+    assert json.loads(get(connection, "/?admin=1&req=ver")[1]) == ["ver", 1, 2, 3]
+    connection.close()
+
+
+def test_script_in_a_name(names: LocalNames) -> None:
+    with yarpy.Port("/<script>alert(1)</script>", names=names) as port:
+        connection = client(port)
+        assert "<script" not in get(connection, "/")[1]
+        assert "&lt;script&gt;" in get(connection, "/")[1]
+        connection.close()
+
+
+def test_port_that_never_replies(names: LocalNames) -> None:
+    with yarpy.BufferedPort("/in", names=names) as port:
+        connection = client(port)
+        assert get(connection, "/?req=hello+web") == (200, "[]\n")
+        assert port.read(timeout=FAST).value == ["hello", "web"]
+        assert get(connection, "/a/b")[0] == 204
+        connection.close()
+
+
+def test_reader_that_answers_later(names: LocalNames) -> None:
+    with yarpy.Port("/in", names=names) as port:
+
+        def read() -> None:
+            for _ in range(2):
+                message = port.read(timeout=FAST)
+                time.sleep(0.02)
+                message.reply(["got", *message.value])
+
+        thread = threading.Thread(target=read, daemon=True)
+        thread.start()
+        connection = client(port)
+        assert get(connection, "/?req=1")[1] == '["got", 1]\n'
+        assert get(connection, "/?req=2")[1] == '["got", 2]\n'
+        thread.join(FAST)
+        connection.close()
+
+
+def opened(port: yarpy.Port, target: str, count: int = 1) -> HTTPResponse:
+    connection = client(port)
+    connection.request("GET", target)
+    response = connection.getresponse()
+    assert port.wait_for_outputs(count, FAST)
+    return response
+
+
+def test_reading_a_port(names: LocalNames) -> None:
+    with yarpy.Port("/out", names=names) as port:
+        lines = opened(port, "/r")
+        events = opened(port, "/r?sse", 2)
+        assert events.getheader("Content-Type") == "text/event-stream"
+        assert events.readline() == b": reading\n"
+        port.write(["hi", 3], yarpy.Stamp(7, 1.25))
+        assert lines.readline() == b"hi 3\r\n"
+        assert [events.readline() for _ in range(4)] == [
+            b"\n",
+            b"id: 7 1.25\n",
+            b'data: ["hi", 3]\n',
+            b"\n",
+        ]
+        assert [link.target for link in port.outputs] == ["web", "web"]
+        port.close()
+        assert lines.read() == b""
+        assert events.read() == b""
+
+
+def test_reader_that_goes_is_dropped(names: LocalNames) -> None:
+    with yarpy.Port("/out", names=names) as port:
+        response = opened(port, "/r")
+        response.close()
+
+        def gone() -> bool:
+            port.write([1])
+            return not port.outputs
+
+        wait_until(gone)
+
+
+def test_stalled_browser_costs_the_port_nothing(names: LocalNames) -> None:
+    with yarpy.Port("/out", names=names) as port:
+        stalled = opened(port, "/r")
+        started = time.monotonic()
+        for _ in range(200):
+            port.write(["x" * 100_000])
+        port.flush()
+        assert time.monotonic() - started < FAST
+        assert port.outputs[0].stats["drops"] > 50
+        stalled.close()
+        started = time.monotonic()
+    assert time.monotonic() - started < FAST
+
+
+def test_browser_on_a_client_is_not_asked(names: LocalNames, echo: yarpy.RpcServer) -> None:
+    with yarpy.RpcClient("/echo", name="/asker", names=names) as asker:
+        connection = HTTPConnection("127.0.0.1", asker.contact.port, timeout=FAST)
+        connection.request("GET", "/r")
+        connection.getresponse()
+        wait_until(lambda: len(asker.outputs) == 2)
+        assert asker.call(1) == ["ok", "echo", [1]]
+        echo_link = next(link for link in asker.outputs if link.target == "/echo")
+        echo_link.close()
+        assert asker.call(2) == ["ok", "echo", [2]]
+        connection.close()
+
+
+def test_idle_and_unfinished_connections_hold_nobody_up(echo: yarpy.RpcServer) -> None:
+    idle = []
+    for number in range(60):
+        sock = socket.create_connection(("127.0.0.1", echo.contact.port), FAST)
+        sock.sendall(b"GET / HTTP/1.1\r\nHost: x\r\n" + (b"\r\n" if number % 2 else b"X: "))
+        idle.append(sock)
+    connection = client(echo)
+    assert get(connection, "/?req=x")[0] == 200
+    connection.close()
+    for sock in idle:
+        sock.close()
+
+
+def test_refusal_reaches_who_still_sends(echo: yarpy.RpcServer) -> None:
+    connection = client(echo)
+    connection.putrequest("POST", "/form")
+    connection.putheader("Content-Length", str(1 << 25))
+    connection.endheaders()
+    connection.send(b"x" * 500_000)
+    assert connection.getresponse().status == 413
+    connection.close()
+    assert get(client(echo), "/?req=x")[0] == 200
+
+
+def test_ports_talk_http(names: LocalNames, echo: yarpy.RpcServer) -> None:
+    with yarpy.RpcClient("/echo", carrier="http", names=names) as asker:
+        assert asker.call("add", 1, [2.5, "a $b"]) == ["ok", "echo", ["add", 1, [2.5, "a $b"]]]
+
+
+def test_name_server_in_a_browser() -> None:
+    with yarpy.NameServer() as server, yarpy.RpcServer("/x", lambda m: m.value) as port:
+        connection = HTTPConnection("127.0.0.1", server.port, timeout=FAST)
+
+        def ask(query: str) -> object:
+            return json.loads(get(connection, query)[1])
+
+        where = {
+            "type": "port",
+            "name": "/x",
+            "ip": "127.0.0.1",
+            "port_number": port.contact.port,
+            "carrier": "tcp",
+        }
+        assert ask("/?req=query+$port&port=/x") == where
+        assert ask("/?req=query+/no") == ["port", ["error", -2, "port not known"]]
+        listed = ask("/?req=list")
+        assert isinstance(listed, list)
+        assert listed[0] == "ports"
+        assert where in listed
+        ask("/?req=set+/x+pp+7")
+        assert ask("/?req=get+/x+pp") == [7]  # nothing of the request was stored with it
+        assert ask("/?req=check+/x+pp+7") == [
+            "port", "/x", "property", "pp", "value", 7, "present", "true",
+        ]  # fmt: skip
+        assert ask("/?req=route+/x+/y") == ["port", "/x", "route", "/y", "=", "tcp://y"]
+        assert ask("/?req=gc") == ["garbage", "collection", "done."]
+        assert ask("/?req=bogus") == ["***", "end", "of", "message"]
+        assert ask("/?req=subscribe+/a+/b") == ["ok"]
+        assert ask("/?req=subscribe") == [
+            "subscriptions",
+            {"type": "subscription", "src": "/a", "dest": "/b"},
+        ]
+        link = f'<a href="http://127.0.0.1:{port.contact.port}/">/x</a>'
+        assert link in get(connection, "/")[1]
+        assert link in get(connection, "/data=list")[1]
+        assert 'value="query $portname"' in get(connection, "/data=help")[1]
+        here = HTTPConnection("127.0.0.1", port.contact.port, timeout=FAST)
+        assert f'href="http://127.0.0.1:{server.port}/"' in get(here, "/")[1]
+        here.close()
+        connection.close()
+
+
+# ---------------------------------------------------------------------------------- curl
+
+CURL = shutil.which("curl")
+needs_curl = pytest.mark.skipif(CURL is None, reason="curl is not installed")
+
+
+def curl(*args: str) -> str:
+    done = subprocess.run(
+        [str(CURL), "-sS", "--noproxy", "*", *args], capture_output=True, text=True, timeout=20
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@needs_curl
+def test_curl(echo: yarpy.RpcServer) -> None:
+    url = f"http://{echo.address}"
+    assert curl(f"{url}/?req=get+encs") == '["ok", "echo", ["get", "encs"]]\n'
+    assert curl(f"{url}/set/pos/0/45") == "ok echo (set pos 0 45)\n"
+    assert "<pre>ok echo (1 2)" in curl("-d", "data=1 2", f"{url}/form")
+    kind = "Content-Type: application/json"
+    assert curl("-H", kind, "-d", '["a", 1]', f"{url}/form") == '["ok", "echo", ["a", 1]]\n'
+    head = curl("-I", f"{url}/")
+    assert head.startswith("HTTP/1.1 200 OK\n")
+    assert curl("-o", "-", "-w", "%{http_code}", "-X", "DELETE", url) == "405"
+    assert curl("--http1.0", f"{url}/?req=x") == '["ok", "echo", ["x"]]\n'
+
+
+@needs_curl
+def test_curl_with_a_large_body(echo: yarpy.RpcServer) -> None:
+    """It asks first whether the body is welcome."""
+    body = "(" + "1 " * 600_000 + ")"
+    done = subprocess.run(
+        [str(CURL), "-sS", "--noproxy", "*", "-H", "Content-Type: text/plain",
+         "-H", "Expect: 100-continue", "--data-binary", "@-", f"http://{echo.address}/form"],
+        input=body, capture_output=True, text=True, timeout=20,
+    )  # fmt: skip
+    assert done.stdout.startswith("ok echo ((1 1 1 ")
+
+
+@needs_curl
+def test_curl_reads(names: LocalNames) -> None:
+    with (
+        yarpy.Port("/out", names=names) as port,
+        subprocess.Popen(
+            [str(CURL), "-sSN", "--noproxy", "*", f"http://{port.address}/r"],
+            stdout=subprocess.PIPE,
+        ) as process,
+    ):
+        assert port.wait_for_outputs(1, FAST)
+        port.write(["hi", 3])
+        port.close()
+        assert process.communicate(timeout=FAST)[0] == b"hi 3\r\n"
