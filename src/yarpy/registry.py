@@ -29,6 +29,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "name_ser": "yarpy.carriers.name_ser:NameSer",
         "http": "yarpy.carriers.http:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
+        "websocket": "yarpy.carriers.websocket:WebSocket",
     },
 }
 

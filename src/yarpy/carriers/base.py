@@ -38,7 +38,7 @@ class Carrier:
 
     name: ClassVar[str] = ""
     magic: ClassVar[bytes] = b""  # what such a connection begins with (eight bytes, or fewer)
-    push: ClassVar[bool] = True
+    push: bool = True
     acks: bool = False  # the receiver confirms each message
     replies: ClassVar[bool] = True
     spelling: Spelling = "binary"  # what `encode` uses of a packet

@@ -18,7 +18,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.carriers.base import Carrier
+from yarpy.carriers.header import MAX_LINE, read_headers
 from yarpy.contact import Route, modifier
 from yarpy.data import jpeg
 from yarpy.data.image import Image, is_image
@@ -27,8 +28,6 @@ from yarpy.wire.effects import Steps
 from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.stream import Buffer, ByteStream
 
-MAX_LINE: Final = 1 << 14  # bytes of a header line, or of rubbish without a line end
-MAX_LINES: Final = 200  # header lines
 MAX_FRAME: Final = 1 << 26  # bytes of one JPEG file
 
 _BOUNDARY: Final = b"--boundarydonotcross\r\n"
@@ -66,7 +65,7 @@ class Mjpeg(Carrier):
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
         line = yield from stream.read_line(MAX_LINE)
-        yield from _read_head(stream, line)
+        yield from read_headers(stream)
         self.route.source = "null"  # as C++ calls it: watchers have no names
         self._obey(line.decode("latin-1").partition(" ")[0])
         stream.write(_ANSWER + _BOUNDARY)
@@ -114,7 +113,7 @@ class Mjpeg(Carrier):
                 f'asked for {self._path()} the camera says "{text}"; the carrier '
                 "mjpeg+path.<path> says what to ask for"
             )
-        headers = yield from _read_head(stream, line)
+        headers = yield from read_headers(stream)
         kind, _, options = headers.get("content-type", "").partition(";")
         if kind.strip().lower().partition("/")[0] != "multipart":
             raise RemoteProtocolError(
@@ -172,7 +171,7 @@ class Mjpeg(Carrier):
             elif (yield from stream.read_line(MAX_LINE)).startswith(b"--"):
                 raise LinkClosed("the camera has ended its stream")
             self._past_mark = False
-            headers = yield from _read_head(stream)
+            headers = yield from read_headers(stream)
             kind = headers.get("content-type", "image/jpeg").partition(";")[0].strip().lower()
             size = headers.get("content-length", "")
             if not (size.isascii() and size.isdigit()):
@@ -243,18 +242,6 @@ def _compressed(packet: Packet, quality: int) -> tuple[Buffer, ...]:
     return head, data, b"\r\n" + _BOUNDARY
 
 
-def _read_head(stream: ByteStream, line: bytes = b"-") -> Steps[dict[str, str]]:
-    """Header lines up to an empty one; names in small letters."""
-    found: dict[str, str] = {}
-    for _ in range(MAX_LINES):
-        line = yield from stream.read_line(MAX_LINE)
-        if not line:
-            return found
-        name, _, value = line.decode("latin-1").partition(":")
-        found[name.strip().lower()] = value.strip()
-    raise RemoteProtocolError(f"more than {MAX_LINES} header lines")
-
-
 def _number(text: str) -> float:
     """A positive number, or 0."""
     try:
@@ -262,6 +249,3 @@ def _number(text: str) -> float:
     except ValueError:
         return 0.0
     return value if 0 < value < 1e6 else 0.0
-
-
-__all__ = ["MAGIC_SIZE", "Mjpeg"]

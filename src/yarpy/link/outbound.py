@@ -33,6 +33,8 @@ WINDOW_BYTES: Final = 1 << 16
 WINDOW_SECONDS: Final = 0.005
 ASK_EVERY: Final = 32  # messages after which acknowledgements are looked for
 UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may hold back
+LISTEN_MOST: Final = 64  # reads at a time of what a reader says
+LISTEN_PATIENCE: Final = 0.1  # seconds for an answer to what a reader says while we send
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
 # Gathering. A writer that comes back within RUSH seconds, BURST times in a row, is flooding.
@@ -61,6 +63,7 @@ class Outbound:
         self.thread: threading.Thread | None = None
         self.lock = threading.Lock()  # one message at a time on the wire
         self._acks: Steps[None] | None = None
+        self._listening: Steps[None] | None = None
         self._queue: Background | None = None
         self._rush = 0
         self.left = 0.0  # when the last send ended
@@ -338,10 +341,44 @@ class Outbound:
         """Whether the peer has hung up, found out without sending anything."""
         if self.unacknowledged:
             self._caught_up()  # acknowledgements that nobody read hide the end behind them
+        if self.carrier.listens:
+            self._listen()
         if not self.broken and self.driver.transport.ended():
+            self.driver.transport.interrupt()  # frees who is stuck in sending
             with self.lock:
                 self._break()
         return self.broken
+
+    def _listen(self) -> None:
+        """Let the protocol deal with what the reader said meanwhile."""
+        if not self.lock.acquire(blocking=False):
+            return  # next time
+        try:
+            if self.broken:
+                return
+            driver = self.driver
+            if self._listening is None:
+                self._listening = self.carrier.listen(driver.stream)
+                next(self._listening)
+            for _ in range(LISTEN_MOST):
+                if not driver.try_fill():
+                    break
+                next(self._listening)
+            driver.transport.limit_waiting(LISTEN_PATIENCE)
+            driver.flush()
+            driver.transport.limit_waiting(None)
+        except (StopIteration, YarpError):
+            self._say_last_words()
+            self._break()
+        finally:
+            self.lock.release()
+
+    def _say_last_words(self) -> None:
+        try:
+            self.driver.transport.limit_waiting(LISTEN_PATIENCE)
+            self.driver.flush()
+        except YarpError:
+            pass  # nobody is there to hear them
 
     def close(self, quit_: bool = True) -> None:
         """End the connection: say `q`, wait a moment for its acknowledgement, hang up."""

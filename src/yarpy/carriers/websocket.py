@@ -1,0 +1,310 @@
+"""websocket: web pages read and write a port, over `ws://HOST:PORT/?ws`.
+
+    new WebSocket("ws://host:port/?ws")                     port commands and binary Bottles, as C++
+    new WebSocket("ws://host:port/?ws", "yarp.json")        each text frame is a message in JSON
+    new WebSocket("ws://host:port/?ws&read", "yarp.json")   everything that the port writes, as JSON
+
+Rules: binary, the payloads of all frames are one stream of bytes, as on a unix_stream connection;
+what goes out has a frame for each block. In JSON a frame is a message, a reply is a frame;
+`&admin` sends them to the administration, `&envelope` shows what is read as
+`{"envelope": "7 1.5", "data": [...]}`. Pings are answered, a close is answered and ends the
+connection. A page that reads too slowly misses messages. Which pages may write is said by
+`YARPY_WEB_ORIGINS`, as for http. Frames are wsproto's.
+"""
+
+from __future__ import annotations
+
+import os
+from base64 import b64encode
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from yarpy.carriers.base import Carrier
+from yarpy.carriers.header import MAX_LINE, read_headers
+from yarpy.contact import Route
+from yarpy.data import codec
+from yarpy.data.json import from_json, to_json
+from yarpy.data.value import Vocab
+from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError
+from yarpy.wire import framing
+from yarpy.wire.effects import Steps
+from yarpy.wire.message import ADMIN, CALL, QUIT, Message, Packet
+from yarpy.wire.stream import ByteStream
+
+if TYPE_CHECKING:
+    from wsproto.frame_protocol import FrameDecoder
+
+T = TypeVar("T")
+
+JSON: Final = "yarp.json"
+MAX_TEXT: Final = 1 << 24  # bytes of a message in JSON
+_TEXT = 0x1
+_BINARY = 0x2
+_CLOSE = 0x8
+_PING = 0x9
+_PONG = 0xA
+_PROTOCOL_ERROR = (1002).to_bytes(2, "big")
+_NO_MASK = bytes(4)  # a mask that changes nothing: no proxy is to be protected from us
+_REFUSAL: Final = (
+    "HTTP/1.1 {status}\r\n"
+    "Content-Type: text/plain\r\n"
+    "Content-Length: {size}\r\n"
+    "{more}Connection: close\r\n"
+    "\r\n"
+    "{text}"
+)
+
+
+class WebSocket(Carrier):
+    """One page's connection, or ours to another port."""
+
+    name = "websocket"
+    magic = b"GET /?ws"
+    gathers = False
+    backlog = 8
+
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        self.json = False
+        self.enveloped = False
+        self._masks = False  # who dials masks what it sends
+        self._key = CALL
+        self._frames: FrameDecoder | None = None
+        self._bytes = ByteStream()  # what the frames carry
+        self._rest = memoryview(b"")  # of a frame's payload
+        self._text = bytearray()  # of a message in JSON
+        self._ended = False  # a close frame came
+
+    # -- beginning --------------------------------------------------------------------------------
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        from wsproto.utilities import generate_accept_token
+
+        route = self.route
+        key = b64encode(os.urandom(16))
+        host = f"[{route.host}]" if ":" in route.host else route.host
+        stream.write(
+            f"GET /?ws HTTP/1.1\r\nHost: {host}:{route.port}\r\nUpgrade: websocket\r\n"
+            f"Connection: Upgrade\r\nSec-WebSocket-Key: {key.decode()}\r\n"
+            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: yarp\r\n\r\n".encode()
+        )
+        line = yield from stream.read_line(MAX_LINE)
+        headers = yield from read_headers(stream)
+        accepted = generate_accept_token(key)
+        if (
+            line.split()[1:2] != [b"101"]
+            or headers.get("sec-websocket-accept") != accepted.decode()
+        ):
+            text = line[:80].decode("utf-8", "replace")
+            raise RemoteProtocolError(f'no WebSocket is offered there; the answer is "{text}"')
+        self._masks = True
+        self._begin(stream)
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        from wsproto.utilities import generate_accept_token
+
+        line = yield from stream.read_line(MAX_LINE)
+        headers = yield from read_headers(stream)
+        self.route.source = "web"
+        wishes = line.decode("latin-1").partition(" ")[0].split("&")
+        self.push = "read" not in wishes
+        self._key = ADMIN if "admin" in wishes else CALL
+        self.enveloped = "envelope" in wishes
+        key = headers.get("sec-websocket-key", "")
+        if not key or "websocket" not in headers.get("upgrade", "").lower():
+            more = "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+            text = "This address is for WebSockets.\n"
+            yield from _refuse(stream, "426 Upgrade Required", text, more)
+        if self.push and not self._admits(headers):
+            text = "Pages of this origin may only read (&read), see YARPY_WEB_ORIGINS.\n"
+            yield from _refuse(stream, "403 Forbidden", text)
+        offered = headers.get("sec-websocket-protocol", "").replace(",", " ").split()
+        self.json = JSON in offered
+        answer = (
+            "HTTP/1.1 101 Switching Protocols\r\nUpgrade: WebSocket\r\nConnection: Upgrade\r\n"
+            f"Sec-WebSocket-Accept: {generate_accept_token(key.encode('latin-1')).decode()}\r\n"
+        )
+        if offered:
+            answer += f"Sec-WebSocket-Protocol: {JSON if self.json else offered[0]}\r\n"
+        stream.write(answer.encode("latin-1") + b"\r\n")
+        self.lossy = self.listens = True
+        self._begin(stream)
+
+    def _admits(self, headers: dict[str, str]) -> bool:
+        from yarpy.carriers.http import origins_of
+
+        return origins_of(os.environ.get("YARPY_WEB_ORIGINS", "*")).admits(headers)
+
+    def _begin(self, stream: ByteStream) -> None:
+        from wsproto.frame_protocol import FrameDecoder
+
+        self._frames = FrameDecoder(client=self._masks)
+        self._bytes = ByteStream(stream.limit)
+
+    # -- messages ---------------------------------------------------------------------------------
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        if self.json:
+            self._write(stream, _TEXT, self._as_json(packet))
+            return
+        self._write(stream, _BINARY, framing.encode_command(packet.key, packet.envelope))
+        for block in packet.blocks:
+            self._write(stream, _BINARY, block)
+
+    def prepare(self, packet: Packet) -> bool:
+        if self.json:
+            self._as_json(packet)
+        else:
+            packet.own("binary")
+        return True
+
+    def _as_json(self, packet: Packet) -> bytes:
+        key = (JSON, self.enveloped)
+        if key not in packet.forms:
+            text = to_json(packet.value)
+            if self.enveloped:
+                envelope = to_json(packet.envelope.decode("utf-8", "replace"))
+                text = f'{{"envelope": {envelope}, "data": {text}}}'
+            packet.forms[key] = (text.encode(),)
+        return bytes(packet.forms[key][0])
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        if self._masks:
+            self._write(stream, _BINARY, framing.encode_command("q"))
+        self._write(stream, _CLOSE, b"")
+
+    def encode_reply(self, stream: ByteStream, value: object) -> None:
+        if self.json:
+            self._write(stream, _TEXT, to_json(value).encode())
+            return
+        for block in codec.encode(value):
+            self._write(stream, _BINARY, block)
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        try:
+            if self.json:
+                return (yield from self._read_json(stream))
+            return (yield from self._through(stream, self._read_message()))
+        except LinkClosed:
+            if self._ended:
+                return Message(QUIT)
+            raise
+
+    def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
+        return Message(CALL, (yield from self._through(stream, framing.read_payload(self._bytes))))
+
+    def listen(self, stream: ByteStream) -> Steps[None]:
+        """While we write: answer pings, and return when the page says goodbye."""
+        while True:
+            yield from self._next_payload(stream)
+            self._rest = memoryview(b"")
+            if self._ended:
+                return
+
+    def _read_message(self) -> Steps[Message]:
+        command = yield from framing.read_command(self._bytes)
+        if command is None:
+            raise RemoteProtocolError("a message that does not begin with a port command")
+        message, _ = command
+        if message.key in ("d", "D", "a"):
+            message.payload = yield from framing.read_payload(self._bytes)
+        return message
+
+    def _read_json(self, stream: ByteStream) -> Steps[Message]:
+        """The next message in JSON; what is none is answered, and the page may go on."""
+        while True:
+            complete = False
+            while not complete:
+                complete = yield from self._next_payload(stream)
+                if self._ended:
+                    raise LinkClosed("the page has closed the connection")
+                self._text += self._rest
+                self._rest = memoryview(b"")
+                if len(self._text) > min(MAX_TEXT, stream.limit):
+                    self._write(stream, _CLOSE, (1009).to_bytes(2, "big"))
+                    raise RemoteProtocolError(f"a message of more than {MAX_TEXT} bytes in JSON")
+            text, self._text = self._text, bytearray()
+            try:
+                value = from_json(text)
+                payload = b"".join(map(bytes, codec.encode(value)))
+            except DecodeError as error:
+                self.encode_reply(stream, [Vocab("fail"), str(error)])
+                continue
+            return Message(self._key, payload)
+
+    # -- frames -----------------------------------------------------------------------------------
+
+    def _write(
+        self, stream: ByteStream, kind: int, payload: bytes | bytearray | memoryview
+    ) -> None:
+        size, mask = len(payload), 0x80 if self._masks else 0
+        head = bytes((0x80 | kind,))
+        if size < 126:
+            head += bytes((mask | size,))
+        elif size < 1 << 16:
+            head += bytes((mask | 126,)) + size.to_bytes(2, "big")
+        else:
+            head += bytes((mask | 127,)) + size.to_bytes(8, "big")
+        if mask:
+            head += _NO_MASK
+        if size < 1 << 12:
+            stream.write(head + payload)
+        else:
+            stream.write(head, payload)
+
+    def _through(self, stream: ByteStream, steps: Steps[T]) -> Steps[T]:
+        """Run `steps`, which read what the frames carry."""
+        while True:
+            try:
+                next(steps)
+            except StopIteration as stop:
+                value: T = stop.value
+                return value
+            while not self._rest:
+                yield from self._next_payload(stream)
+                if self._ended:
+                    raise LinkClosed("the peer has closed the connection")
+            room = len(self._bytes.get_buffer())
+            self._bytes.feed(self._rest[:room])
+            self._rest = self._rest[room:]
+
+    def _next_payload(self, stream: ByteStream) -> Steps[bool]:
+        """Put the next piece of a data frame into `_rest`; whether a message ends with it.
+
+        Control frames are dealt with on the way.
+        """
+        from wsproto.frame_protocol import ParseFailed
+
+        frames = self._frames
+        assert frames is not None
+        while True:
+            try:
+                frame = frames.process_buffer()
+            except ParseFailed as error:
+                self._write(stream, _CLOSE, _PROTOCOL_ERROR)
+                raise RemoteProtocolError(f"a broken WebSocket frame: {error}") from error
+            if frame is None:
+                yield from stream.more(1)
+                frames.receive_bytes(bytes(stream.buffer[stream.head : stream.tail]))
+                stream.head = stream.tail
+                continue
+            payload = frame.payload
+            assert isinstance(payload, bytes)
+            if frame.opcode == _CLOSE:
+                self._ended = True
+                self._write(stream, _CLOSE, payload[:2])
+                return True
+            elif frame.opcode == _PING:
+                self._write(stream, _PONG, payload)
+            elif frame.opcode != _PONG:
+                self._rest = memoryview(payload)
+                return frame.frame_finished and frame.message_finished
+
+
+def _refuse(stream: ByteStream, status: str, text: str, more: str = "") -> Steps[None]:
+    """Say no, give the peer the time to read it, and end."""
+    stream.write(_REFUSAL.format(status=status, size=len(text), more=more, text=text).encode())
+    try:
+        yield from stream.more(stream.waiting + 1)
+    except LinkClosed:
+        pass
+    raise RemoteProtocolError(f"a WebSocket was refused: {status}")
