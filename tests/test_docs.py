@@ -26,7 +26,7 @@ _LINK = re.compile(r"\[[^\]]*\]\(([^)\s#]+)(#[^)\s]*)?\)")
 
 @pytest.mark.parametrize("page", RUNNABLE, ids=lambda page: page.name)
 def test_code_and_sessions(page: Path, tmp_path: Path):
-    for program in ("bash", "nc"):
+    for program in ("bash", "nc", "curl"):
         if f" {program} " in page.read_text() and not shutil.which(program):
             pytest.skip(f"{program} is not installed")
     port = pages.free_port()

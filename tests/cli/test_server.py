@@ -29,13 +29,14 @@ def test_from_nothing(lone, port):
     """The first server on a computer: it says where it is, and other commands find it."""
     with lone.start("server", "--ip", "127.0.0.1", "--socket", str(port)) as process:
         process.wait_line(r"^Ok\. Ready!$", stream="out")
-        assert process.stdout.splitlines()[:7] == [
+        assert process.stdout.splitlines()[:8] == [
             f"yarpy name server {yarpy.__version__}",
             "Using port database: :memory:",
             "Using subscription database: :memory:",
             "IP address: 127.0.0.1",
             f"Port number: {port}",
             f"Address stored in {conf(lone)}",
+            f"Name server can be browsed at http://127.0.0.1:{port}/",
             "Ok. Ready!",
         ]
         assert conf(lone).read_text() == f"127.0.0.1 {port} yarp\n"

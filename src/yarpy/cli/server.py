@@ -233,6 +233,7 @@ def _serve(
         if say is not _nothing:
             scribe = Scribe()
             service.on_command = scribe.command
+        say(f"Name server can be browsed at http://{server.host}:{server.port}/")
         say("Ok. Ready!")
         while not threading.Event().wait(HAPPY):
             say("Name server running happily")
