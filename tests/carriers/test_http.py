@@ -16,7 +16,7 @@ import h11
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support.capture import load_capture
+from support.capture import CAPTURES, load_capture
 from support.steps import chop
 from support.transport import ScriptTransport
 
@@ -231,6 +231,28 @@ def test_answers_where_cpp_has_none(name: str, status: int) -> None:
     request, _ = recorded(name)
     found = responses(serve(request)[1], request.partition(b" ")[0].decode())
     assert [item[0] for item in found] == [status]
+
+
+NOT_HERE = ("http_read_stream", "http_get_no_headers_end", "http_post_other")
+STATUS = dict(DIFFERENT)
+
+
+@pytest.mark.parametrize(
+    "name",
+    sorted(p.stem for p in CAPTURES.glob("http_*.json") if p.stem not in NOT_HERE),
+)
+@pytest.mark.parametrize("piece", [0, 1])
+def test_every_recorded_request_is_answered_properly(name: str, piece: int) -> None:
+    """Valid HTTP, of the kind that C++ would have meant; and JSON that is JSON."""
+    request, theirs = recorded(name)
+    _, said = serve(*chop(request, piece))
+    ((status, headers, body),) = responses(said, request.partition(b" ")[0].decode())
+    assert status == STATUS.get(name, 200)
+    if b"Content-Type: application/json" in theirs:
+        json.loads(body)
+    if status == 200 and b"Content-Type: " in theirs and name not in ("http_post_form_json",):
+        kind = theirs.partition(b"Content-Type: ")[2].split()[0].decode()
+        assert headers["content-type"].startswith(kind) or name == "http_ns_web_missing"
 
 
 def test_unfinished_head_is_waited_for() -> None:
@@ -492,6 +514,20 @@ def test_page_that_goes_on() -> None:
     carrier, said = reader(b"GET /r HTTP/1.1\r\nHost: x\r\nAccept: text/html\r\n\r\n")
     assert b"Reading data from port..." in said
     assert b"&lt;b&gt;" in streamed(carrier, ["<b>"])
+
+
+class Foreign:
+    """A message whose bytes are no Bottle."""
+
+    def to_wire(self) -> tuple[bytes, ...]:
+        return (b"\xff\xff\xff",)
+
+
+def test_what_has_no_text_is_an_empty_line_or_a_blob() -> None:
+    carrier, _ = reader(b"GET /r HTTP/1.1\r\nHost: x\r\n\r\n")
+    assert streamed(carrier, Foreign()) == b"2\r\n\r\n\r\n"
+    carrier, _ = reader(b"GET /r?sse HTTP/1.1\r\nHost: x\r\n\r\n")
+    assert b'data: {"type": "blob", "base64": "////"}' in streamed(carrier, Foreign())
 
 
 def test_lines_of_json() -> None:

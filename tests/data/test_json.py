@@ -63,6 +63,13 @@ def test_outer_form_can_be_chosen() -> None:
     assert to_json(Bottle.from_text("(a) (b 1 2) 7"), "dict") == '{"a": null, "b": 1}'
 
 
+class Foreign:
+    """A message whose bytes are no Bottle."""
+
+    def to_wire(self) -> tuple[bytes, ...]:
+        return (b"\xff\xff\xff",)
+
+
 EVERY_KIND = [
     (5, "5"),
     ("x", '"x"'),
@@ -84,6 +91,11 @@ EVERY_KIND = [
         yarpy.Sound(numpy.array([[5, -6]], numpy.int16), 44100),
         '{"type": "sound", "frequency": 44100, "channels": [[5, -6]]}',
     ),
+    (
+        numpy.zeros((1, 2, 3), numpy.uint8),
+        '{"type": "image", "width": 2, "height": 1, "pixel": "rgb", "base64": "AAAAAAAA"}',
+    ),
+    (Foreign(), '{"type": "blob", "base64": "////"}'),
     (yarpy.Stamp(1, 2.5), "[1, 2.5]"),
     (numpy.arange(3), "[0, 1, 2]"),
     ([numpy.float32(1.5), numpy.int16(3)], "[1.5, 3]"),

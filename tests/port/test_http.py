@@ -15,6 +15,8 @@ import pytest
 from support.wait import wait_until
 
 import yarpy
+from yarpy.carriers.http import Http
+from yarpy.link import handshake
 from yarpy.names.local import LocalNames
 
 FAST = 5.0  # seconds that nothing here needs
@@ -181,6 +183,30 @@ def test_idle_and_unfinished_connections_hold_nobody_up(echo: yarpy.RpcServer) -
     connection.close()
     for sock in idle:
         sock.close()
+
+
+def test_greeting_that_never_ends_is_given_up(
+    echo: yarpy.RpcServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(handshake, "PATIENCE", 0.2)
+    with socket.create_connection(("127.0.0.1", echo.contact.port), FAST) as sock:
+        with pytest.raises(OSError):
+            for _ in range(200):
+                sock.sendall(b"GET /xx " if not _ else b"x")
+                time.sleep(0.01)
+        assert not echo.inputs
+
+
+def test_connection_that_says_nothing_more_ends(
+    echo: yarpy.RpcServer, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(Http, "patience", 0.1)
+    connection = client(echo)
+    assert get(connection, "/?req=x")[0] == 200
+    assert connection.sock is not None
+    assert connection.sock.recv(1) == b""
+    connection.close()
+    assert not [record for record in caplog.records if record.levelname == "WARNING"]
 
 
 def test_refusal_reaches_who_still_sends(echo: yarpy.RpcServer) -> None:

@@ -185,7 +185,7 @@ class Http(Carrier):
 
         if isinstance(wish, Refusal):
             text = f"{wish.text}\n" if wish.text else ""
-            self._respond(stream, wish.status, _TEXT, _encoded(text))
+            self._respond(stream, wish.status, wish.kind, _encoded(text))
             return None
         if wish.acts and not self.origins.admits(self._headers):
             self._respond(
@@ -365,10 +365,10 @@ class Http(Carrier):
             self._write_part(stream, b": reading\n\n")
 
     def prepare(self, packet: Packet) -> bool:
-        if self._streaming:
-            self._part(packet)
-            return True
-        return super().prepare(packet)
+        if not self._streaming:
+            return super().prepare(packet)
+        self._part(packet)
+        return True
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         if self._streaming:

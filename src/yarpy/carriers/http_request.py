@@ -84,6 +84,7 @@ class Refusal:
 
     status: int
     text: str = ""
+    kind: str = "text/plain; charset=utf-8"
 
 
 def read_wish(request: Request) -> Wish | Refusal:
@@ -100,6 +101,10 @@ def read_wish(request: Request) -> Wish | Refusal:
             return _posted(request, fields)
     except DecodeError as error:
         return Refusal(400, str(error))
+    if path == "web/main.css":  # what the pages of C++ ports want of their name server
+        from yarpy.carriers.http_page import STYLE
+
+        return Refusal(200, STYLE, "text/css")
     if path.startswith("favicon"):
         return Refusal(204)
     if path.startswith(_HABITS):

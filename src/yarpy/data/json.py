@@ -71,10 +71,15 @@ def _plain_top(value: object, outer: Outer) -> Any:
     # Vector, Image, Stamp, arrays ...: what a reader of the message would find in it.
     from yarpy.data import codec
 
-    if outer == "auto" and (described := _described(value)) is not None:
+    described = _described(value) if outer == "auto" else None
+    if described is not None:
         return described
     message = b"".join(codec.encode(value))
-    return _list(Bottle.from_bytes(message), outer, 0)
+    try:
+        described = _described(codec.decode(message)) if outer == "auto" else None
+        return _list(Bottle.from_bytes(message), outer, 0) if described is None else described
+    except DecodeError:
+        return _plain(message, 0)  # a format of somebody's own
 
 
 def _described(value: object) -> Any:
