@@ -79,6 +79,13 @@ def run(site: Path, code: str) -> str:
     return done.stdout.strip()
 
 
+def test_shipped_one_that_misses_a_library_troubles_nobody() -> None:
+    plugins = Registry("carriers", {**SHIPPED["carriers"], "odd": "yarpy.carriers.no_such:Odd"})
+    assert "tcp" in [carrier.name for carrier in plugins]
+    with pytest.raises(UnknownPlugin, match=r'"odd" cannot be loaded .*no_such'):
+        plugins.load("odd")
+
+
 def test_strangers_come_by_entry_point(tmp_path: Path) -> None:
     code = "from yarpy.carriers.base import Carrier\nclass Other(Carrier):\n    name = 'other'\n"
     install(tmp_path, "stranger", "yarpy.carriers", "other = stranger:Other", code)

@@ -67,7 +67,7 @@ class Registry:
             pass
         with self._lock:
             if name in self._shipped:
-                plugin = _resolve(self._shipped[name])
+                plugin = _resolve(name, self._shipped[name])
             else:
                 entry = self._entries().get(name)
                 if entry is None:
@@ -118,11 +118,17 @@ class Registry:
         )
 
 
-def _resolve(target: str) -> Any:
+def _resolve(name: str, target: str) -> Any:
     from importlib import import_module
 
     module, _, attribute = target.partition(":")
-    return getattr(import_module(module), attribute)
+    try:
+        return getattr(import_module(module), attribute)
+    except ImportError as error:  # a library that it needs; the others do without
+        raise UnknownPlugin(
+            f'"{name}" cannot be loaded ({error}): install what is missing, as `pip install yarpy` '
+            "does"
+        ) from error
 
 
 carriers: Final = Registry("carriers")
