@@ -10,6 +10,7 @@ from support.wait import wait_until
 from yarpy.errors import UnknownPlugin
 from yarpy.names.local import LocalNames
 from yarpy.port import command
+from yarpy.port.buffered import BufferedPort
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcServer
 
@@ -118,3 +119,16 @@ def test_port_without_outputs(names: LocalNames) -> None:
         # a connection for the log is allowed
         line = command.connect(server._hub, "tcp+log.in://in")
         assert "will forward messages and replies" in line
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "udp", "mcast", "text_ack"])
+def test_nothing_is_lost_after_connecting(carrier: str, names: LocalNames) -> None:
+    """What is written right after `connect` arrives, over datagrams too."""
+    with (
+        Port("/out", names=names) as out,
+        BufferedPort("/in", strict=True, names=names) as in_,
+    ):
+        for turn in range(6):
+            out.connect("/in", carrier)
+            out.write([turn])
+            assert in_.read(timeout=5).value == [turn]

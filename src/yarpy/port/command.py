@@ -8,10 +8,13 @@ says.
 from __future__ import annotations
 
 import threading
+import time
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from yarpy.contact import Contact, Route, base_carrier, modifier, parse_contact
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
 from yarpy.errors import (
     AddressError,
     LinkClosed,
@@ -158,7 +161,7 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
         raise Refused(f"Cannot connect to {text or target}") from error
     if speaker.push:
         if speaker.broadcast:
-            _wait_for_member(hub, contact)
+            _wait_for_member(hub, contact, speaker.name)
         try:
             hub.add_output_link(Outbound(driver, speaker))
         except PortClosed as error:
@@ -169,14 +172,15 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
         threading.Thread(target=hub.run_input, args=(driver, speaker), daemon=True).start()
 
 
-def _wait_for_member(hub: Hub, contact: Contact) -> None:
+def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:
     """Wait until the receiver is in our group, lest the first messages miss it: it does not say so
     by itself, the greeting of a multicast connection has no answer."""
     deadline = time.monotonic() + JOINING
-    question = [Vocab("list"), Vocab("in")]
+    question = [Vocab("list"), Vocab("in"), hub.name]
     try:
-        while hub.name not in probe.ask(contact, question, timeout=JOINING, secret_=hub.key):
-            if time.monotonic() > deadline:
+        while time.monotonic() < deadline:
+            input_ = probe.ask(contact, question, timeout=JOINING, secret_=hub.key)
+            if base_carrier(plain_text(input_.find("carrier", ""))) == carrier:
                 return
             time.sleep(0.002)
     except (YarpError, OSError):
