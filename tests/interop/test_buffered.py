@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
-from support.patience import soon
+from support.wait import wait_until
 
 import yarpy
 from yarpy import Message, Stamp
@@ -33,7 +33,7 @@ def test_we_keep_the_latest(peer: CppProgram) -> None:
         port.listen_to("/cpp")
         peer.do(f"for n in range({COUNT}): port.write(yarp.Bottle(str(n)))")
         [link] = port.inputs
-        soon(lambda: link.stats["messages"] == COUNT, "all have arrived")
+        wait_until(lambda: link.stats["messages"] == COUNT, what="all have arrived")
         assert list(poured(port)) == [COUNT - 1]
         assert link.stats["drops"] == COUNT - 1
 
@@ -48,7 +48,7 @@ def test_we_keep_all(peer: CppProgram) -> None:
             "port.waitForWrite()"
         )
         [link] = port.inputs
-        soon(lambda: link.stats["messages"] == COUNT, "all have arrived")
+        wait_until(lambda: link.stats["messages"] == COUNT, what="all have arrived")
         assert port.waiting == COUNT
         assert list(poured(port)) == list(range(COUNT))
         assert link.stats["drops"] == 0
@@ -102,7 +102,7 @@ def test_a_slow_reader_of_theirs_does_not_hold_us_up(peer: CppProgram, carrier: 
         assert link.stats["drops"] == COUNT - len(sent)
         if carrier != "fast_tcp":
             assert 1 <= len(sent) < 10, "the reader did not read while we wrote"
-        soon(lambda: port.write(["again"]), "a reader that caught up gets the next one")
+        wait_until(lambda: port.write(["again"]), what="a reader that caught up gets the next one")
         assert peer.do("port.read(bottle); bottle.toString()") == "again"
 
 

@@ -7,11 +7,12 @@ from collections.abc import Callable
 import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
-from support.patience import PATIENCE, soon
 from support.process import Process
+from support.wait import wait_until
 
 import yarpy
 
+PATIENCE = 5.0  # seconds; the goal is 2
 CARRIERS = ("tcp", "fast_tcp", "udp", "mcast", "text", "text_ack")
 TWO_PORTS = """
 a, b = yarp.Port(), yarp.BufferedPortBottle()
@@ -52,8 +53,8 @@ def test_they_close_first(peer: CppProgram, carrier: str) -> None:
         began = time.monotonic()
         peer.do("a.close(); b.close()")
         assert time.monotonic() - began < 3
-        soon(lambda: not sink.inputs, "the sender is gone")
-        soon(lambda: not source.outputs, "the receiver is gone")
+        wait_until(lambda: not sink.inputs, what="the sender is gone")
+        wait_until(lambda: not source.outputs, what="the receiver is gone")
         assert source.write(["nobody"]) == 0
         # The names are free for somebody else, who begins unconnected.
         peer.do("a, b = yarp.Port(), yarp.Port(); assert a.open('/cpp/a') and b.open('/cpp/b')")
@@ -74,7 +75,7 @@ def test_we_close_first(peer: CppProgram, carrier: str) -> None:
     source.close()
     sink.close()
     assert time.monotonic() - began < 3
-    soon(lambda: peer.do("[a.getOutputCount(), b.getInputCount()]") == [0, 0], "both see it")
+    wait_until(lambda: peer.do("[a.getOutputCount(), b.getInputCount()]") == [0, 0])
     assert peer.do("a.write(yarp.Bottle('x'))"), "the sender lives on"
     assert yarpy.query("/out") is None and yarpy.query("/in") is None
 
@@ -93,7 +94,7 @@ def test_their_receiver_drops_us(peer: CppProgram) -> None:
             source.connect("/cpp", carrier)
             source.write(["again"])
             assert source.flush(timeout=5)
-            soon(lambda: peer.do("b = port.read(False); b and b.toString()") == "again", carrier)
+            wait_until(lambda: peer.do("b = port.read(False); b and b.toString()") == "again")
             source.disconnect("/cpp")
 
 
@@ -158,7 +159,7 @@ def test_a_killed_sender_of_theirs(network: CppYarp, carrier: str) -> None:
         for _ in range(2):
             flows(port)
             writer.kill()
-            soon(lambda: not port.inputs, "its end is seen")
+            wait_until(lambda: not port.inputs, what="its end is seen")
             writer = network.python_popen(CPP_WRITER)
         flows(port)
         assert port.inputs[0].carrier == carrier
@@ -218,4 +219,4 @@ def test_we_are_killed(peer: CppProgram) -> None:
             assert peer.do("yarp.Network.connect('/ours', '/cpp')")
             assert peer.do("port.read().size()") == 1
             ours.kill()
-        soon(lambda: peer.do("port.getInputCount()") == 0, "it sees our end")
+        wait_until(lambda: peer.do("port.getInputCount()") == 0, what="it sees our end")

@@ -7,7 +7,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.environment import configured_for
-from support.patience import soon
+from support.wait import wait_until
 
 import yarpy
 from yarpy import Contact
@@ -106,7 +106,7 @@ def test_ports_register_again(cpp: CppYarp, server: CppYarp) -> None:
             assert reader.read(timeout=5).value == [turn], "a stream does not need the server"
             with cpp.server(port=server.port) as again:
                 for name, address in addresses.items():
-                    soon(lambda: yarpy.query(name) == address, f"{name} is registered again")  # noqa: B023
+                    wait_until(lambda: yarpy.query(name) == address, what=name)  # noqa: B023
                 assert again.run("exists", "/a").returncode == 0
                 assert "yarp/vector" in again.run("name", "get", "/a", "type").stdout
                 answer = again.run("rpc", "/b", input="x y\n")
@@ -122,7 +122,7 @@ def test_ports_register_again(cpp: CppYarp, server: CppYarp) -> None:
                     peer.do("port.write(yarp.Bottle('hello'))")
                     assert reader.read(timeout=5).value == ["hello"]
         with cpp.server(port=server.port) as again:
-            soon(lambda: yarpy.query("/c") is not None, "/c is registered")
+            wait_until(lambda: yarpy.query("/c") is not None, what="/c is registered")
             reader.close()
             assert yarpy.query("/c") is None
 

@@ -4,7 +4,7 @@ import time
 
 import pytest
 from support.cpp_program import CppProgram
-from support.patience import soon
+from support.wait import wait_until
 
 import yarpy
 from yarpy import Bottle
@@ -30,7 +30,7 @@ def test_we_wire_their_ports(peer: CppProgram) -> None:
         assert yarpy.is_connected("/cpp/out", "/cpp/in", carrier)
         assert not yarpy.is_connected("/cpp/out", "/cpp/in", "shmem")
         assert yarpy.exists("/cpp/out", "/cpp/in")
-        soon(lambda: "/cpp/out" in yarpy.admin("/cpp/in", "list", "in"), "a member of the group")
+        wait_until(lambda: "/cpp/out" in yarpy.admin("/cpp/in", "list", "in"))
         peer.do("source.write(yarp.Bottle('hello'))")
         assert peer.do("sink.read().toString()") == "hello"
         assert yarpy.disconnect("/cpp/out", "/cpp/in")
@@ -81,7 +81,7 @@ def test_they_wire_our_ports(peer: CppProgram) -> None:
             assert peer.do(f"{style}yarp.Network.isConnected('/out', '/in', style)")
             assert peer.do("yarp.Network.disconnect('/out', '/in')")
             assert source.outputs == []
-            soon(lambda: not sink.inputs, "not every carrier confirms its goodbye")
+            wait_until(lambda: not sink.inputs, what="not every carrier confirms its goodbye")
         assert not peer.do("yarp.Network.disconnect('/out', '/in')")
         assert not peer.do("yarp.Network.connect('/out', '/nope')")
         # By receiver: the sender is not asked.

@@ -10,9 +10,9 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.environment import configured_for
-from support.patience import soon
 from support.port import free_block
 from support.process import Process
+from support.wait import wait_until
 
 import yarpy
 
@@ -115,7 +115,9 @@ def test_streams_go_on_without_the_server(programs: CppYarp) -> None:
             port.write([2])
             assert peer.do("port.read().toString()") == "2"
         with serving(programs), port:
-            soon(lambda: programs.run("exists", "/ours").returncode == 0, "/ours registers again")
+            wait_until(
+                lambda: programs.run("exists", "/ours").returncode == 0, what="/ours is back"
+            )
             port.write([3])
             assert peer.do("port.read().toString()") == "3"
             peer.do("late = yarp.Port(); assert late.open('/late')")

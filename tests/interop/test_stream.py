@@ -2,7 +2,7 @@
 
 import pytest
 from support.cpp_program import CppProgram
-from support.patience import soon
+from support.wait import wait_until
 
 import yarpy
 from yarpy import Bottle, Stamp, Vocab
@@ -18,15 +18,6 @@ assert port.read(bottle)
 port.getEnvelope(stamp)
 [bottle.toString(), stamp.getCount(), stamp.getTime()]
 """
-
-
-def connect(port: yarpy.Port | yarpy.BufferedPort, name: str, carrier: str) -> None:
-    """Connect our port to theirs, and wait until they are ready for the first message.
-
-    A multicast greeting gets no answer: its receiver may join the group after `connect` returned.
-    """
-    port.connect(name, carrier)
-    soon(lambda: port.name in yarpy.admin(name, "list", "in"), f"{name} hears {port.name}")
 
 
 @pytest.mark.parametrize("carrier", CARRIERS)
@@ -49,7 +40,7 @@ def test_cpp_sends(peer: CppProgram, carrier: str) -> None:
             assert peer.end() is True
         assert port.inputs[0].stats["messages"] == 3
         assert peer.do("yarp.Network.disconnect('/cpp', '/ours')")
-        soon(lambda: not port.inputs, "the port sees that its sender left")
+        wait_until(lambda: not port.inputs, what="the port sees that its sender left")
         assert peer.do("port.getOutputCount()") == 0
 
 
@@ -57,7 +48,7 @@ def test_cpp_sends(peer: CppProgram, carrier: str) -> None:
 def test_yarpy_sends(peer: CppProgram, carrier: str) -> None:
     peer.do(OPEN)
     with yarpy.Port("/ours") as port:
-        connect(port, "/cpp", carrier)
+        port.connect("/cpp", carrier)
         for count in range(3):
             peer.begin(READ)
             assert port.write([*VALUE, count], Stamp(count, 5.25)) == 1
@@ -102,7 +93,7 @@ def test_sizes_and_envelopes_of_every_kind(peer: CppProgram) -> None:
     # A datagram carrier loses pieces of big messages on a busy machine.
     for carrier, most in (("tcp", 5), ("fast_tcp", 5), ("udp", 3), ("mcast", 3)):
         with yarpy.Port("/ours") as port:
-            connect(port, "/cpp", carrier)
+            port.connect("/cpp", carrier)
             for value in values[:most]:
                 peer.begin("bottle = yarp.Bottle(); port.read(bottle); measure(bottle)")
                 port.write(value)
@@ -146,7 +137,7 @@ def test_many_in_order(peer: CppProgram) -> None:
     count = 5000
     with yarpy.BufferedPort("/ours", strict=True) as port:
         for carrier in ("tcp", "fast_tcp"):
-            connect(port, "/cpp", carrier)
+            port.connect("/cpp", carrier)
             peer.begin(
                 "bottle = yarp.Bottle(); seen = []\n"
                 f"for _ in range({count}): port.read(bottle); seen.append(bottle.get(0).asInt32())"
@@ -179,8 +170,8 @@ def test_one_sender_to_many(peer: CppProgram) -> None:
     with yarpy.Port("/ours") as port, ours[0], ours[1]:
         carriers = ("mcast", "mcast", "tcp", "text_ack")
         for index, carrier in enumerate(carriers):
-            connect(port, f"/cpp{index}", carrier)
-        connect(port, "/in0", "mcast")
+            port.connect(f"/cpp{index}", carrier)
+        port.connect("/in0", "mcast")
         port.connect("/in1", "udp")
         peer.begin(
             "answers = []\n"

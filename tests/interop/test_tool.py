@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 from support.cpp import CppYarp
-from support.patience import soon
 from support.process import Process
+from support.wait import wait_until
 
 import yarpy
 from yarpy import Stamp
@@ -34,12 +34,12 @@ def test_write_to_us(network: CppYarp) -> None:
         assert (message.source, port.inputs[0].carrier) == ("/writer", "tcp")
         for carrier in CARRIERS:
             assert network.run("connect", "/writer", "/ours", carrier).returncode == 0
-            soon(lambda: [link.carrier for link in port.inputs] == [carrier], carrier)  # noqa: B023
+            wait_until(lambda: [link.carrier for link in port.inputs] == [carrier], what=carrier)  # noqa: B023
             writer.write_line(f"over {carrier}")
             assert port.read(timeout=5).value == ["over", carrier]
         writer.end_input()
         assert writer.wait() == 0
-        soon(lambda: not port.inputs, "the writer has left")
+        wait_until(lambda: not port.inputs, what="the writer has left")
 
 
 def test_read_from_us(network: CppYarp) -> None:
@@ -58,7 +58,7 @@ def test_read_from_us(network: CppYarp) -> None:
         reader.wait_line("^a line as it is$", stream="out")
         port.write([1, "<EOF>"])
         assert reader.wait() == 0
-        soon(lambda: port.write(["anybody?"]) == 0 and not port.outputs, "the reader has left")
+        wait_until(lambda: port.write(["anybody?"]) == 0 and not port.outputs)
 
 
 def test_connect_and_disconnect(
@@ -83,7 +83,7 @@ def test_connect_and_disconnect(
         assert answer.returncode == 0
         assert "Success: Removed connection from /from to /to" in answer.stdout
         assert source.outputs == []
-        soon(lambda: not sink.inputs, "the other end sees it too")
+        wait_until(lambda: not sink.inputs, what="the other end sees it too")
     failure = "[ERROR] |yarp.os.Network| Failure: "
     for words, text in (
         (["disconnect", "/from", "/to"], "no such connection"),

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
-from support.patience import soon
+from support.wait import wait_until
 
 import yarpy
 
@@ -40,8 +40,8 @@ def test_topics(network: CppYarp, peer: CppProgram) -> None:
             flows(lambda n: writer.write([n]), reader)
             peer.do("got = yarp.BufferedPortBottle(); assert got.open('/cpp/in'); got.setStrict()")
             yarpy.connect("topic://news", "/cpp/in")
-            soon(lambda: yarpy.is_connected("/out", "/cpp/in"), "it hears /out", PATIENCE)
-            soon(lambda: yarpy.is_connected("/cpp/out", "/cpp/in"), "... and /cpp/out", PATIENCE)
+            wait_until(lambda: yarpy.is_connected("/out", "/cpp/in"), PATIENCE, "it hears /out")
+            wait_until(lambda: yarpy.is_connected("/cpp/out", "/cpp/in"), PATIENCE, "and /cpp/out")
             writer.write(["to all"])
             assert peer.do("got.read().toString()") == '"to all"'
         yarpy.disconnect("topic://news", "/in")
@@ -59,7 +59,7 @@ def test_persistent_connections(network: CppYarp, peer: CppProgram) -> None:
                 flows(lambda n: writer.write([n]), reader)
         # The next one of that name is a C++ program.
         peer.do("port = yarp.BufferedPortBottle(); assert port.open('/pr')")
-        soon(lambda: writer.outputs, "the connection to the C++ port is made", PATIENCE)
+        wait_until(lambda: writer.outputs, PATIENCE, "the connection to the C++ port is made")
         writer.write([1, 2])
         assert peer.do("port.read().toString()") == "1 2"
         peer.do("port.close()")
