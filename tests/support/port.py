@@ -43,6 +43,9 @@ def _ceiling() -> int:
 def _is_free(number: int) -> bool:
     for kind in (socket.SOCK_STREAM, socket.SOCK_DGRAM):
         with socket.socket(socket.AF_INET, kind) as probe:
+            if kind == socket.SOCK_STREAM:
+                # What is left of closed connections is no obstacle to a listener.
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
                 # All addresses: a C++ server binds 0.0.0.0 whatever it is told.
                 probe.bind(("", number))
