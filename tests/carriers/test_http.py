@@ -581,7 +581,9 @@ def test_stream_ends_in_good_order() -> None:
 def test_first_bytes(first: bytes, ours: bool) -> None:
     assert (Http.recognises(first) > 0) == ours
     if ours:
-        assert recognise(first, [*registry.carriers, Http]) is Http
+        # xmlrpc looks at a POST to `/` first, and hands over what is no XML.
+        others = [carrier for carrier in registry.carriers if carrier.name != "xmlrpc"]
+        assert recognise(first, [*others, Http]) is Http
 
 
 class Camera(Carrier):
@@ -642,6 +644,7 @@ def test_other_pages_can_be_kept_from_acting(monkeypatch: pytest.MonkeyPatch) ->
         for target in ("/", "/?", "/?cmd=*"):
             status, headers, _ = get(target, evil)
             assert (status, headers["access-control-allow-origin"]) == (200, "*")
+        assert "frame-ancestors 'self'" in get("/")[1]["content-security-policy"]
         assert get("/?req=x")[0] == 200
         assert get("/?req=x", "Origin: http://x:1")[0] == 200
         preflight = get("/form", evil, method="OPTIONS")[1]

@@ -68,8 +68,7 @@ _COMMON: Final = [
 ]
 # Our own page needs neither scripts nor anything from elsewhere.
 _PAGE_POLICY: Final = (
-    "Content-Security-Policy",
-    "default-src 'none'; style-src 'unsafe-inline'; form-action 'self' http:; base-uri 'none'",
+    "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; base-uri 'none'"
 )
 # A page that a program made: its scripts run, but not as those of the port's own pages.
 _GUEST_POLICY: Final = (
@@ -285,7 +284,13 @@ class Http(Carrier):
 
         host = _hostname(self._headers.get("host", ""))
         body = page(self.route.target, lines, wish.shown, host)
-        self._respond(stream, 200, _HTML, body, [_PAGE_POLICY])
+        self._respond(stream, 200, _HTML, body, [self._policy()])
+
+    def _policy(self) -> tuple[str, str]:
+        """What browsers are told to refuse to the page; its form is not for others to frame."""
+        listed = self.origins.listed
+        frames = "" if listed is None else " ".join(["; frame-ancestors 'self'", *sorted(listed)])
+        return "Content-Security-Policy", _PAGE_POLICY + frames
 
     def _respond_text(self, stream: ByteStream, value: object) -> None:
         """The text of a reply, or the page that a program put under the key `web`."""
@@ -354,7 +359,7 @@ class Http(Carrier):
         assert talk is not None
         self._streaming, self._form = True, form
         self.acks, self.lossy, self.backlog = False, True, 16
-        policy = [_PAGE_POLICY] if form == "page" else []
+        policy = [self._policy()] if form == "page" else []
         kind = ("Content-Type", _STREAMS.get(form, _TEXT))
         headers = [*_COMMON, *policy, kind, ("Access-Control-Allow-Origin", "*")]
         head = h11.Response(status_code=200, headers=headers, reason=_REASONS[200])
