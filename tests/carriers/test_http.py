@@ -203,6 +203,15 @@ def test_pages_are_asked_for_as_recorded(name: str, answer: object, piece: int) 
         assert said_there.removeprefix(b"[ok] ").replace(b'"', b"&quot;") in body
 
 
+@pytest.mark.parametrize("name", ["query", "outer_dict", "outer_list"])
+def test_outer_form_as_recorded(name: str) -> None:
+    request, answer = recorded(f"http_ns_req_{name}")
+    port = '(name "/cap/srv") (ip "127.0.0.1") (port_number 21602) (carrier tcp)'
+    _, said = serve(request, answer=Bottle.from_text(f"port {port}"))
+    body = responses(said, "GET")[0][2]
+    assert body.strip() == answer.partition(b"\n\n")[2].strip()
+
+
 def test_paths_are_messages_as_recorded() -> None:
     """C++ answers without status line, and repeats the arguments."""
     for name, words in (("http_port_path", "foo bar 3"), ("http_port_path_query", "foo bar")):

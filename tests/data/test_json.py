@@ -59,7 +59,7 @@ def test_valid_where_cpp_is_not(text: str, expected: str) -> None:
 def test_outer_form_can_be_chosen() -> None:
     items = Bottle.from_text("port (name /x) (ip h)")
     assert to_json(items, "list") == '["port", ["name", "/x"], ["ip", "h"]]'
-    assert to_json(items, "dict") == '{"type": "port", "name": "/x", "ip": "h"}'
+    assert to_json(items, "dict") == '{"name": "/x", "ip": "h"}'
     assert to_json(Bottle.from_text("(a) (b 1 2) 7"), "dict") == '{"a": null, "b": 1}'
 
 

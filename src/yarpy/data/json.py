@@ -145,8 +145,10 @@ def _list(items: Sequence[Any], outer: Outer, depth: int) -> Any:
             outer, items = "list", items[1:]
         elif items[0] == "dict":
             outer, items = "dict", items[1:]
-    if outer == "dict" or (outer == "auto" and _is_object(items)):
-        return _object(items, depth)
+    if outer == "dict":
+        return _object(items, depth, "")
+    if outer == "auto" and _is_object(items):
+        return _object(items, depth, _TYPE)
     return [_plain(item, depth + 1) for item in items]
 
 
@@ -171,15 +173,16 @@ def _is_object(items: Sequence[Any]) -> bool:
     return True
 
 
-def _object(items: Sequence[Any], depth: int) -> dict[str, Any]:
+def _object(items: Sequence[Any], depth: int, front: str) -> dict[str, Any]:
+    """The pairs by their keys; what stands before them under the key `front`, if that is one."""
     found: dict[str, Any] = {}
     for place, item in enumerate(items):
         if isinstance(item, (list, tuple)):
             if item:
                 value = _plain(item[1], depth + 2) if len(item) > 1 else None
                 found[plain_text(item[0])] = value
-        elif place == 0:
-            found[_TYPE] = _plain(item, depth + 1)
+        elif place == 0 and front:
+            found[front] = _plain(item, depth + 1)
     return found
 
 
