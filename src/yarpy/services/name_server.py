@@ -96,6 +96,7 @@ class NameServer:
         self._hub = Hub(name, desk, None, port=port, host=host, register=False)
         self.host = host
         self.port = self._hub.port
+        self.client = client_of(Server(host, self.port))
         self.name = name
         self.service = NameService(
             NameStore(host, self.port, is_taken=self._is_taken), Topology(time.time)
@@ -121,7 +122,6 @@ class NameServer:
             raise
         self._hub.on_page = self._page
         desk.open(self._answer)
-        self.client = client_of(Server(host, self.port))
 
     @property
     def address(self) -> str:
@@ -253,6 +253,7 @@ class NameServer:
 
     def close(self) -> None:
         """Stop serving. Registered ports go on, and register again with the next server."""
+        self.client.close()
         self._hub.close()
         for queue in self._queues:
             queue.put(None)
