@@ -30,6 +30,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "http": "yarpy.carriers.http:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
         "websocket": "yarpy.carriers.websocket:WebSocket",
+        "xmlrpc": "yarpy.carriers.xmlrpc:XmlRpc",
     },
 }
 

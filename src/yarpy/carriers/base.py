@@ -50,6 +50,7 @@ class Carrier:
     lossy: bool = False  # who reads too slowly misses messages; its writer never waits
     backlog: int = 0  # messages that may wait for such a reader
     interval: float = 0.0  # seconds between the messages of a lossy connection, at least
+    instead: type[Carrier] | None = None  # set by `welcome`: who is to welcome this peer
     listens: bool = False  # `listen` is to be run while the link sends
     structured: bool = False  # the peer wants values, not lines for a person to read
     finished: bool = False  # everything was said: the link ends without waiting for the peer

@@ -125,4 +125,8 @@ def welcome(
     carrier = kind(Route("", target, kind.name, port))
     carrier.accepted = True
     driver.run(carrier.welcome(driver.stream, first), deadline)
+    if carrier.instead is not None:  # the first bytes alone did not tell
+        carrier = carrier.instead(Route("", target, carrier.instead.name, port))
+        carrier.accepted = True
+        driver.run(carrier.welcome(driver.stream, first), deadline)
     return driver, carrier

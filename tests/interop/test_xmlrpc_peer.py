@@ -1,0 +1,152 @@
+"""Python's own XML-RPC client and server, and ROS's questions, with real ports."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import threading
+import xmlrpc.client
+from collections.abc import Iterator
+from contextlib import contextmanager
+from shutil import which
+from typing import Any
+from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
+
+import pytest
+from support.wait import wait_until
+
+import yarpy
+from yarpy.data.value import Vocab
+
+PATIENCE = 10.0
+
+
+def proxy(port: yarpy.Port | yarpy.RpcServer, path: str = "/RPC2") -> xmlrpc.client.ServerProxy:
+    url = f"http://127.0.0.1:{port.contact.port}{path}"
+    return xmlrpc.client.ServerProxy(url, use_builtin_types=True, allow_none=True)
+
+
+def test_python_calls_a_port() -> None:
+    def answer(message: yarpy.Message) -> object:
+        return [Vocab("ok"), "echo", message.value]
+
+    with (
+        yarpy.RpcServer("/srv", answer, names=yarpy.LocalNames()) as server,
+        proxy(server) as remote,
+    ):
+        for _ in range(3):
+            assert remote.move(1, 2.5, "two words", [1, "x"], True, b"\0\1") == [
+                "[ok]",
+                "echo",
+                ["move", 1, 2.5, "two words", [1, "x"], True, b"\0\1"],
+            ]
+        assert remote.get({"a": 1}) == ["[ok]", "echo", ["get", {"a": 1}]]
+        assert len(server.inputs) == 1  # one connection for all
+        assert server.inputs[0].source == "rpc"
+        with pytest.raises(xmlrpc.client.ProtocolError):
+            proxy(server, "/RPC2").big("x" * (1 << 25))
+        assert remote.still("there")[1] == "echo"
+    wait_until(lambda: not server.inputs)
+
+
+def test_python_writes_to_a_port_that_says_nothing() -> None:
+    """C++ leaves it waiting for ever."""
+    with (
+        yarpy.BufferedPort("/in", strict=True, names=yarpy.LocalNames()) as port,
+        proxy(port) as remote,
+    ):
+        assert remote.hello(1) == ""
+        assert remote.hello(2) == ""
+        assert [port.read(timeout=PATIENCE).value for _ in range(2)] == [["hello", 1], ["hello", 2]]
+
+
+def test_questions_of_ros_nodes() -> None:
+    with yarpy.Port("/talker", names=yarpy.LocalNames()) as port:
+        for path in ("/", "/RPC2"):
+            with proxy(port, path) as remote:
+                assert remote.getPid("/rosnode") == [1, "", os.getpid()]
+                assert remote.getBusInfo("/rosnode") == [1, "", []]
+                assert remote.requestTopic("/rosnode", "/topic", [["TCPROS"]]) == [
+                    1,
+                    "/talker",
+                    ["TCPROS", port.contact.host, port.contact.port],
+                ]
+                assert remote.publisherUpdate("/master", "/topic", ["http://x:1/"]) == [1, "ok"]
+
+
+def test_entity_bomb_is_refused_and_the_port_lives() -> None:
+    bomb = (
+        b'<!DOCTYPE b [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
+        b"<methodCall><methodName>&b;</methodName></methodCall>"
+    )
+    curl = which("curl")
+    if curl is None:
+        pytest.skip("no curl: install it (apt-get install curl)")
+    with yarpy.RpcServer("/srv", lambda m: ["fine"], names=yarpy.LocalNames()) as server:
+        url = f"http://127.0.0.1:{server.contact.port}/RPC2"
+        args = [curl, "-s", "-m", "10", "-H", "Content-Type: text/xml", "--data-binary", "@-", url]
+        said = subprocess.run(args, input=bomb, capture_output=True, timeout=20).stdout
+        with pytest.raises(xmlrpc.client.Fault, match="no XML-RPC"):
+            xmlrpc.client.loads(said)
+        with proxy(server) as remote:
+            assert remote.still() == "fine"
+
+
+def test_other_posts_still_reach_http() -> None:
+    curl = which("curl")
+    if curl is None:
+        pytest.skip("no curl: install it (apt-get install curl)")
+    with yarpy.RpcServer("/srv", lambda m: ["fine", m.value], names=yarpy.LocalNames()) as server:
+        url = f"http://127.0.0.1:{server.contact.port}/"
+        kind = "Content-Type: application/json"
+        args = [curl, "-s", "-m", "10", "-H", kind, "-d", '["go", 1]', url]
+        said = subprocess.run(args, capture_output=True, timeout=20).stdout
+        assert b"fine" in said
+        assert b"xml" not in said
+
+
+class Handler(SimpleXMLRPCRequestHandler):
+    protocol_version = "HTTP/1.1"  # keeps the connection
+
+
+@contextmanager
+def python_server() -> Iterator[tuple[SimpleXMLRPCServer, list[Any]]]:
+    heard: list[Any] = []
+    server = SimpleXMLRPCServer(("127.0.0.1", 0), Handler, logRequests=False, allow_none=True)
+
+    def add(*numbers: float) -> float:
+        heard.append(numbers)
+        return sum(numbers)
+
+    server.register_function(add)
+    server.register_function(lambda *a: list(a), "echo")
+    server.register_function(lambda: {"a": 1}, "describe")
+    thread = threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    try:
+        yield server, heard
+    finally:
+        server.shutdown()
+        server.server_close()
+        thread.join(PATIENCE)
+
+
+def test_port_calls_python() -> None:
+    names = yarpy.LocalNames()
+    with python_server() as (server, heard):
+        names.register("/sum", "xmlrpc", "127.0.0.1", server.server_address[1])
+        with yarpy.RpcClient(name="/client", names=names) as client:
+            client.connect("/sum", "xmlrpc")
+            assert client.ask(["add", 1, 2.5], timeout=PATIENCE).value == [3.5]
+            assert client.ask(["echo", 1, "two words", [1, "x", 2]], timeout=PATIENCE).value == [
+                *(1, "two words", [1, "x", 2])
+            ]
+            assert client.ask(["describe"], timeout=PATIENCE).value == ["dict", ["a", 1]]
+            fault = client.ask(["nothing"], timeout=PATIENCE).value
+            assert fault[0] == "dict"
+            assert "not supported" in str(fault)
+        with yarpy.Port("/out", names=names) as out:
+            out.connect("/sum", "xmlrpc")
+            for number in range(5):
+                assert out.write(["add", number, 1], wait=True) == 1
+        assert heard == [(1, 2.5), *((number, 1) for number in range(5))]
