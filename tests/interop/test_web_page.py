@@ -96,6 +96,22 @@ def test_questions_in_json() -> None:
         wait_until(lambda: not server.inputs)
 
 
+@pytest.mark.parametrize("protocols", [(), ("yarp.json",)], ids=["binary", "json"])
+def test_many_messages_in_one_segment(protocols: tuple[str, ...]) -> None:
+    with (
+        yarpy.BufferedPort("/in", strict=True, names=yarpy.LocalNames()) as port,
+        page(port, "", *protocols) as web,
+    ):
+        data = b""
+        for number in range(100):
+            command = bytes.fromhex("00 00 00 00 7e 44 00 01")
+            binary = Bytes(command + Bottle([number]).to_bytes())
+            data += web.ws.send(Text(f"[{number}]") if protocols else binary)
+        web.sock.sendall(data)
+        found = [port.read(timeout=PATIENCE) for _ in range(100)]
+        assert [message.value for message in found if message] == [[n] for n in range(100)]
+
+
 def test_administration_in_json() -> None:
     with (
         yarpy.Port("/p", names=yarpy.LocalNames()) as port,

@@ -52,6 +52,7 @@ class Carrier:
     interval: float = 0.0  # seconds between the messages of a lossy connection, at least
     instead: type[Carrier] | None = None  # set by `welcome`: who is to welcome this peer
     listens: bool = False  # `listen` is to be run while the link sends
+    holding: bool = False  # bytes of the next message were already taken from the stream
     structured: bool = False  # the peer wants values, not lines for a person to read
     finished: bool = False  # everything was said: the link ends without waiting for the peer
 

@@ -200,6 +200,11 @@ class WebSocket(Carrier):
             if self._ended:
                 return
 
+    @property
+    def holding(self) -> bool:  # type: ignore[override]
+        frames = self._frames
+        return bool(self._rest or self._bytes.waiting or (frames and len(frames.buffer)))
+
     def _read_message(self) -> Steps[Message]:
         command = yield from framing.read_command(self._bytes)
         if command is None:

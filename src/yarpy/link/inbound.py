@@ -165,7 +165,7 @@ class Inbound:
         carrier = self.carrier
         while True:
             stream = driver.stream
-            if self._steps is None and stream.waiting:
+            if self._steps is None and (stream.waiting or carrier.holding):
                 message = carrier.parse(stream)
                 if message is not None:
                     break
@@ -203,6 +203,11 @@ class Inbound:
             return False
         return True
 
+    def release(self) -> None:
+        """The reader takes the turn no more: the link's thread reads on at once."""
+        self.wanted = False
+        self._woken.set()
+
     def give_back(self) -> None:
         """End of `borrow`."""
         self.visited = time.perf_counter()
@@ -215,7 +220,8 @@ class Inbound:
         """
         try:
             while True:
-                if spin and not self.driver.stream.waiting and not self._spin(deadline):
+                idle = not (self.driver.stream.waiting or self.carrier.holding)
+                if spin and idle and not self._spin(deadline):
                     return None
                 message = self.advance(deadline)
                 if message.key == DATA or message.key == CALL:
