@@ -39,6 +39,7 @@ def answering(serve: Callable[[socket.socket], Any]) -> Iterator[tuple[Contact, 
                 found.append(serve(sock))
             except YarpError as error:
                 found.append(error)
+                sock.close()  # as the port does
 
         thread = threading.Thread(target=run, daemon=True)
         thread.start()
