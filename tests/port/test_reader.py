@@ -173,6 +173,20 @@ def test_latest_skips_while_its_reader_is_away(names: LocalNames) -> None:
         assert in_.inputs[0].stats["drops"] == 9
 
 
+def test_latest_is_the_newest_for_a_reader_that_works_between_messages(names: LocalNames) -> None:
+    """Two milliseconds of work are not enough for the link's thread to take over by itself."""
+    with BufferedPort("/in", names=names) as in_, Port("/out", names=names) as out:
+        out.connect("/in")
+        number = newest = 0
+        for _ in range(50):
+            for _ in range(3):
+                number += 1
+                out.write([number])
+            time.sleep(0.002)
+            newest += in_.read(timeout=5).value == [number]
+        assert newest >= 40
+
+
 def test_polling_while_the_turn_is_out(names: LocalNames) -> None:
     """Who polls instead of reading gets what comes, a moment later at most."""
     with Port("/in", names=names) as in_, Port("/out", names=names) as out:

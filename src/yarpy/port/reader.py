@@ -12,11 +12,15 @@ from collections.abc import Iterator
 from yarpy.errors import PortClosed, Timeout
 from yarpy.link.inbound import PATIENCE, Inbound
 from yarpy.port.hub import Hub
+from yarpy.port.mailbox import Latest
 from yarpy.port.writer import Writer
 from yarpy.wire.message import Message
 
 # A reader that comes back within this many seconds may read the socket itself.
 _QUICK = 0.005
+# One that wants the newest and works longer than this between messages leaves reading to the link's
+# thread, which drops what is old and keeps no sender waiting.
+_NEWEST_QUICK = 0.0003
 
 
 class ReadingPort(Writer):
@@ -67,6 +71,7 @@ class Reader:
         self._left = 0.0
         self._asking: Message | None = None
         self._settle = getattr(hub.mailbox, "settle", None)
+        self._quick = _NEWEST_QUICK if isinstance(hub.mailbox, Latest) else _QUICK
         hub.on_inputs = self._look_again
 
     def poll(self) -> Message | None:
@@ -85,6 +90,7 @@ class Reader:
         """See Port.read."""
         deadline = None if timeout is None else time.monotonic() + timeout
         self._finish()
+        self._reconsider()
         while True:
             link = self._sole
             if link is not None and link.wanted and not self._hub.mailbox.waiting:
@@ -100,9 +106,17 @@ class Reader:
             if deadline is not None and time.monotonic() >= deadline:
                 raise Timeout(f'nothing came to "{self._hub.name}" within {timeout} s')
 
+    def _reconsider(self) -> None:
+        """Give the turn up after having been away for long."""
+        link = self._sole
+        if link is None or not link.wanted or self._spin:
+            return
+        if time.perf_counter() - link.visited > self._quick:
+            link.release()
+
     def _is_quick(self) -> bool:
         """Whether the reader comes back fast enough to be worth the turn."""
-        return self._spin or time.perf_counter() - self._left < _QUICK
+        return self._spin or time.perf_counter() - self._left < self._quick
 
     def _from_mailbox(self, link: Inbound | None, deadline: float | None) -> Message | None:
         left = None if deadline is None else max(0.0, deadline - time.monotonic())
