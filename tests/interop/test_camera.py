@@ -13,6 +13,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import numpy as np
 import pytest
+from support.capture import load_capture
 from support.port import free_port
 from support.process import Process
 from support.wait import wait_until
@@ -141,6 +142,29 @@ def test_camera_with_a_name() -> None:
         assert network.disconnect("/cam", "/view", names=names)
         wait_until(lambda: not view.inputs, PATIENCE)
     camera.leave()
+
+
+def test_cpp_asks_a_port_to_watch() -> None:
+    """The dialogues of C++'s `yarp connect /cam /cap/img` and `yarp disconnect`, byte for byte."""
+    names = yarpy.LocalNames()
+    with (
+        yarpy.Port("/away", names=yarpy.LocalNames()) as camera,
+        yarpy.BufferedPort("/cap/img", names=names) as view,
+    ):
+        names.register("/cam", "mjpeg", camera.contact.host, camera.contact.port)
+        for name in ("mjpeg_receiver_path_admin_1", "mjpeg_receiver_path_admin_2"):
+            where = view.contact.host, view.contact.port
+            with socket.create_connection(where, PATIENCE) as sock:
+                for step in load_capture(name).steps:
+                    if step.sender == "a":
+                        sock.sendall(step.data)
+                    else:
+                        assert sock.recv(len(step.data), socket.MSG_WAITALL) == step.data
+            wait_until(lambda name=name: bool(view.inputs) == name.endswith("1"))
+            if view.inputs:
+                assert camera.wait_for_outputs(timeout=PATIENCE)
+                assert camera.write(PICTURE) == 1
+                assert is_the_picture(view.read(timeout=PATIENCE).value)
 
 
 def test_wrong_path_is_told() -> None:
