@@ -117,6 +117,14 @@ def test_broken_stranger_names_its_package_and_troubles_nobody(tmp_path: Path) -
         assert words in second
 
 
+def test_shipped_plugin_whose_library_is_missing_troubles_nobody() -> None:
+    """Every incoming connection asks all carriers whether it is theirs."""
+    own = Registry("carriers", {"odd": "no_such_library.odd:Odd", **SHIPPED["carriers"]})
+    with pytest.raises(UnknownPlugin, match="install what is missing"):
+        own.load("odd")
+    assert "tcp" in [carrier.name for carrier in own]
+
+
 def test_shipped_name_cannot_be_taken_by_a_stranger(tmp_path: Path) -> None:
     install(tmp_path, "thief", "yarpy.carriers", "tcp = thief:Tcp", "class Tcp: pass\n")
     code = "from yarpy import registry; print(registry.carriers.load('tcp').__module__)"
