@@ -221,30 +221,25 @@ class CarrierConformance:
     def test_acknowledgements_in_bulk_are_single_ones(self) -> None:
         """Several written or taken at once are what one by one would be."""
         talk = self._greeted()
-        talk.send(self.values[0])
-        _, writing = talk.receiver
+        message = talk.send(self.values[0])
+        receiver, writing = talk.receiver
         sender, reading = talk.sender
         assert writing is not None
-        if not writing.acks or self.carrier.spelling == "object":
-            raise SkipTest(f"{self.carrier.name} does not acknowledge in bytes")
-        single, bulk = End(), End()
-        for _ in range(5):
-            writing.encode_ack(single.stream)
-        writing.encode_acks(bulk.stream, 5)
-        said = bulk.take()
-        assert said == single.take(), "encode_acks and encode_ack differ"
-        for most in (1, 3, 5, 9):
-            sender.feed(said)
-            taken = reading.parse_acks(sender.stream, most)
-            assert 0 <= taken <= most, f"{taken} acknowledgements were taken, {most} were due"
-            for _ in range(5 - taken):
+        if not writing.acks or message.key != DATA:
+            raise SkipTest(f"{self.carrier.name} acknowledges nothing, or calls one by one")
+        talk.acknowledge()
+        for count in (1, 2, 5):
+            for _ in range(count):
+                talk.send(self.values[0])
+            writing.encode_acks(receiver.stream, count)
+            talk.pump()
+            taken = reading.parse_acks(sender.stream, count - 1)
+            assert 0 <= taken < count, f"{taken} acknowledgements were taken at once"
+            for _ in range(count - taken):
                 sender.begin(reading.expect_ack(sender.stream))
-                assert sender.done, f"parse_acks took more bytes than those of {taken}"
-            assert not sender.stream.waiting, "parse_acks took fewer bytes than it says"
-            sender.feed(said[:3])
-            assert reading.parse_acks(sender.stream, most) == 0, "a part is taken for a whole"
-            assert sender.stream.waiting == 3, "parse_acks took what it did not count"
-            sender.begin(sender.stream.skip(3))
+                assert sender.done, f"{count} were written, {taken} taken at once, then one missing"
+            left = sender.stream.waiting
+            assert not left, f"{left} bytes are left of {count} acknowledgements"
 
     def test_quit_ends_in_good_order(self) -> None:
         """A carrier with a goodbye is understood; one without writes nothing."""
