@@ -21,7 +21,9 @@ def free_port() -> int:
 
 def free_block(size: int) -> int:
     """The first of `size` consecutive free port numbers (a name server hands out the others)."""
-    for _ in range(1000):
+    for attempt in range(1000):
+        if attempt == 500:
+            _given.clear()  # a long run has had them all; what is still in use is not free
         first = random.randrange(_LOWEST, _ceiling() - size)
         block = range(first, first + size)
         if _given.isdisjoint(block) and all(_is_free(number) for number in block):
