@@ -120,15 +120,18 @@ def test_number_that_somebody_took_meanwhile() -> None:
             assert port.read(timeout=5).value == [1]
 
 
-def test_name_server_that_refuses() -> None:
-    """Whatever the service says no to is an error that names the port."""
-
-    class Stubborn(LocalNames):
-        def register(self, *args: object, **kwargs: object) -> Contact:
-            raise AddressError("no numbers are left")
-
-    with pytest.raises(AddressError, match="no numbers"):
-        Port("/here", names=Stubborn())
+def test_name_server_that_has_no_numbers_left() -> None:
+    """The port says so and is not there; whoever has a number keeps it, or brings one."""
+    with NameServer() as server, Port("/first") as first:
+        server.service.store.numbers.last = server.service.store.numbers.counter
+        with pytest.raises(AddressError, match=r'refused "/second": .*ran out of port numbers'):
+            Port("/second")
+        assert server.client.query("/second") is None
+        with Port("/third", port=free_port()) as third, Port("/first2", port=free_port()) as out:
+            out.connect("/third")
+            out.write([1])
+            assert third.read(timeout=5).value == [1]
+        assert server.client.query("/first") == first.contact
 
 
 # ---------------------------------------------------------------------------------- closing
