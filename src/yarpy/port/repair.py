@@ -20,10 +20,12 @@ from yarpy.contact import Contact, Route, modifier, parse_contact
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
 from yarpy.link.handshake import find_carrier
+from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.several import SeveralNames
 from yarpy.port import command, probe
+from yarpy.port.pulse import Link, Pulse
 
 if TYPE_CHECKING:
     from yarpy.port.hub import Hub
@@ -56,6 +58,7 @@ class Repairer:
         self._lost: list[_Lost] = []
         self._dead_servers: set[int] = set()
         self._lines: dict[int, tuple[YarpNameClient, object]] = {}
+        self._pulse = Pulse(self._lose)
         self._thread: threading.Thread | None = None
         self._wake = threading.Event()
         self._lock = threading.Lock()  # ports come and go from any thread
@@ -113,6 +116,7 @@ class Repairer:
                     return
             try:
                 self._look_at_outputs(hubs)
+                self._pulse.look(hubs)
                 self._look_at_servers(hubs)
                 for item in lost:
                     self._mend(item)
@@ -124,6 +128,17 @@ class Repairer:
             for link in hub.outputs:
                 if link.ended():
                     hub.drop_output(link, "the peer hung up", lost=True)
+
+    def _lose(self, hub: Hub, link: Link) -> None:
+        """A datagram connection has died without a sign."""
+        if isinstance(link, Outbound):
+            hub.drop_output(link, "the receiver is gone", lost=True)
+            link.close(quit_=False)
+            return
+        link.close()
+        if link.thread is not None:
+            link.thread.join(2.0)
+        input_lost(hub, link.route)
 
     def _look_at_servers(self, hubs: list[Hub]) -> None:
         servers = {id(client): client for hub in hubs for client in _servers(hub.names)}
