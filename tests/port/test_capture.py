@@ -67,8 +67,9 @@ class World:
         return self.ports[name]
 
     def connect(self, source: str, target: str) -> None:
-        self.port(target)
+        before = len(self.port(target).inputs)
         self.port(source).connect(target)
+        assert self.port(target).wait_for_inputs(before + 1, timeout=PATIENCE)
 
     def admin(self, name: str, text: str) -> None:
         network.admin(name, *Bottle.from_text(text), names=self.names)

@@ -49,7 +49,7 @@ def test_both_sides_are_told(names: LocalNames, caplog: pytest.LogCaptureFixture
             ConnectionEvent(True, True, "/out", "/in", "fast_tcp"),
             ConnectionEvent(True, False, "/out", "/in", "fast_tcp"),
         ]
-        assert in_.inputs == []
+        wait_until(lambda: not in_.inputs)
     for text in ("Receiving input from /out to /in", "Removing output from /out to /in"):
         assert text in caplog.text
     assert "ping" not in caplog.text

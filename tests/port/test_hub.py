@@ -349,6 +349,7 @@ def test_garbage_first_then_a_good_connection(
         with socket.create_connection(("127.0.0.1", in_.contact.port)) as sock:
             sock.sendall(b"CONNECT test\r\nd\r\nhello 1\r\n")
             assert in_.read(timeout=5).value == ["hello", 1]
+        wait_until(lambda: "refused" in caplog.text)
     (line,) = [r for r in caplog.records if r.levelno >= logging.WARNING]
     assert "refused" in line.getMessage()
     assert "127.0.0.1:" in line.getMessage()
