@@ -260,6 +260,7 @@ def test_port_goes_on_after_a_connection_ended_itself(piece: int) -> None:
         with world.dial("/cap/self") as sock:
             replay(sock, load_capture("telnet_drop_self"), piece)
             nothing_more(sock)
+        wait_until(lambda: not world.port("/cap/self").inputs)
         with world.dial("/cap/self") as sock:
             replay(sock, load_capture("telnet_drop_self_after"), piece)
             nothing_more(sock)
