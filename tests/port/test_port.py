@@ -63,6 +63,21 @@ def test_every_message_comes_once_and_in_order(names: LocalNames) -> None:
         assert in_.inputs[0].stats["messages"] == count
 
 
+def test_busy_writer_of_the_same_process_does_not_slow_its_reader_down(names: LocalNames) -> None:
+    """Both share one interpreter, whose threads take turns of five milliseconds: the reader must
+    not need one of them for each message."""
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        out.connect("/in")
+        count = 5000
+        writer = threading.Thread(target=lambda: [out.write([n]) for n in range(count)])
+        started = time.monotonic()
+        writer.start()
+        for _ in range(count):
+            in_.read(timeout=5)
+        writer.join(5)
+        assert time.monotonic() - started < 3  # 0.05 s on an idle machine
+
+
 def test_several_writers_and_readers(names: LocalNames) -> None:
     """Four writers, three threads that read: every message of each comes once."""
     with Port("/in", names=names) as in_:

@@ -71,7 +71,8 @@ class Reader:
         self._left = 0.0
         self._asking: Message | None = None
         self._settle = getattr(hub.mailbox, "settle", None)
-        self._quick = _NEWEST_QUICK if isinstance(hub.mailbox, Latest) else _QUICK
+        self._newest = isinstance(hub.mailbox, Latest)
+        self._quick = _NEWEST_QUICK if self._newest else _QUICK
         hub.on_inputs = self._look_again
 
     def poll(self) -> Message | None:
@@ -90,7 +91,8 @@ class Reader:
         """See Port.read."""
         deadline = None if timeout is None else time.monotonic() + timeout
         self._finish()
-        self._reconsider()
+        if self._newest:
+            self._reconsider()
         while True:
             link = self._sole
             if link is not None and link.wanted and not self._hub.mailbox.waiting:
@@ -107,7 +109,11 @@ class Reader:
                 raise Timeout(f'nothing came to "{self._hub.name}" within {timeout} s')
 
     def _reconsider(self) -> None:
-        """Give the turn up after having been away for long."""
+        """Give the turn up after having been away for long.
+
+        Who wants every message keeps it: a busy writer in the same process makes every turn of its
+        reader late, and handing each message over by another thread would make it later still.
+        """
         link = self._sole
         if link is None or not link.wanted or self._spin:
             return
