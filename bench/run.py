@@ -15,6 +15,7 @@ import json
 import os
 import platform
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -178,7 +179,15 @@ def machine() -> dict[str, object]:
         "python": f"{platform.python_implementation()} {platform.python_version()}",
         "load_before": os.getloadavg(),
         "versions": versions,
+        "import_yarpy_ms": import_ms(),
     }
+
+
+def import_ms(module: str = "yarpy", runs: int = 9) -> float:
+    """How long a fresh interpreter imports a module: the best run, in milliseconds."""
+    code = f"import time; t = time.perf_counter(); import {module}; print(time.perf_counter() - t)"
+    command = [sys.executable, "-c", code]
+    return round(min(float(subprocess.check_output(command)) for _ in range(runs)) * 1e3, 1)
 
 
 def main() -> int:

@@ -3,7 +3,6 @@
 import importlib
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import click
@@ -135,20 +134,6 @@ def test_installed_command():
         pytest.skip("yarpy is not installed beside this interpreter")
     done = subprocess.run([script, "version"], capture_output=True, text=True, timeout=20)
     assert (done.returncode, done.stdout.split()[:2]) == (0, ["yarpy", "version"])
-
-
-@pytest.mark.parametrize("words", [("--help",), ("exists", "/nobody")])
-def test_starts_fast(cli, words):
-    """The best of some runs, for busy hosts; an interpreter alone takes a part of it."""
-
-    def seconds(command):
-        started = time.perf_counter()
-        subprocess.run(command, env=cli.environment, capture_output=True, timeout=20)
-        return time.perf_counter() - started
-
-    bare = min(seconds([sys.executable, "-c", "pass"]) for _ in range(3))
-    best = min(seconds([sys.executable, "-m", "yarpy", *words]) for _ in range(5))
-    assert best - bare < 0.150
 
 
 @pytest.mark.parametrize("verb", ["exists", "ping", "where", "name", "version"])

@@ -167,11 +167,11 @@ def test_a_server_with_many_clients(peer: CppProgram) -> None:
 def test_a_call_that_takes_too_long(peer: CppProgram) -> None:
     peer.do(CPP_SERVER)
     with yarpy.RpcClient("/server", name="/client") as client:
-        peer.begin("serve(1, lambda question: time.sleep(0.4) or 'too late')")
+        peer.begin("serve(1, lambda question: time.sleep(2) or 'too late')")
         began = time.monotonic()
         with pytest.raises(yarpy.Timeout):
             client.call("late", timeout=0.1)
-        assert time.monotonic() - began < 0.35
+        assert time.monotonic() - began < 1.8
         peer.end()
         peer.begin("serve(1)")
         assert client.call("again", timeout=5) == ["ok", "again"], "not the late answer"

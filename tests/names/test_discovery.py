@@ -163,7 +163,7 @@ def test_close_ends_the_thread(port: int) -> None:
     responder.close()
     responder.close()
     assert threading.active_count() == before
-    assert time.monotonic() - start < 1
+    assert time.monotonic() - start < 5
     responder.start()
     assert search("/again", port, group=GROUP) is not None
     responder.close()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 from support.wait import wait_until
 
 from yarpy.names.local import LocalNames
@@ -52,3 +54,6 @@ def test_either_side_may_end_it(names: LocalNames) -> None:
         assert in_.wait_for_inputs(timeout=5)
         in_.inputs[0].close()
         wait_until(lambda: not in_.inputs)
+        assert out.outputs == []  # its sender was told,
+        time.sleep(0.7)
+        assert in_.inputs == []  # and does not dial again

@@ -356,4 +356,4 @@ def test_command_does_not_wait_for_a_port_that_is_stuck() -> None:
         network.ask_server(server.client, ["subscribe", "/stuck", "/other"])
         server.client.announce("/stuck")
         assert server.client.query("/other") is not None
-        assert time.monotonic() - started < 1
+        assert time.monotonic() - started < 2

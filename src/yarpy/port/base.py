@@ -43,7 +43,11 @@ class BasePort:
     def inputs(self) -> list[Connection]:
         """The connections that bring messages here."""
         hub = self._hub
-        return [Connection(link, link.close) for link in hub.inputs if _shown(link.route.source)]
+        return [
+            Connection(link, lambda link=link: command.close_input(hub, link))  # type: ignore[misc]
+            for link in hub.inputs
+            if _shown(link.route.source)
+        ]
 
     @property
     def outputs(self) -> list[Connection]:

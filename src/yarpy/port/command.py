@@ -270,12 +270,8 @@ def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bo
     """
     found = [link for link in hub.inputs if link.route.source == source]
     told = [link for link in found if link.asking or (by_sender and link.carrier.connectionless)]
-    rooted = source.startswith("/") and source != hub.name
-    if rooted and len(told) < len(found):
-        try:
-            repair.ask_to_disconnect(hub, source)
-        except (YarpError, OSError):
-            pass  # it will notice by itself
+    if len(told) < len(found):
+        _tell_sender(hub, source)
     for link in found:
         link.close()
     for link in found:
@@ -284,6 +280,22 @@ def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bo
     if found:
         return True, f"Removing connection from {source} to {hub.name}"
     return False, f"Could not find an incoming connection from {source}"
+
+
+def close_input(hub: Hub, link: Inbound) -> None:
+    """End one input from our side."""
+    if not link.asking:
+        _tell_sender(hub, link.route.source)
+    link.close()
+
+
+def _tell_sender(hub: Hub, source: str) -> None:
+    """Let a sender know that we end the connection on purpose, so that it does not dial again."""
+    if source.startswith("/") and source != hub.name:
+        try:
+            repair.ask_to_disconnect(hub, source)
+        except (YarpError, OSError):
+            pass  # it will notice by itself
 
 
 def joined(dest: str, carrier: str) -> str:
