@@ -37,8 +37,9 @@ LISTEN_MOST: Final = 64  # reads at a time of what a reader says
 LISTEN_PATIENCE: Final = 0.1  # seconds for an answer to what a reader says while we send
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
-# Gathering. A writer that comes back within RUSH seconds, BURST times in a row, is flooding.
-RUSH: Final = 15e-6
+# Gathering. A writer that comes back within RUSH times what a send takes on this machine, BURST
+# times in a row, is flooding.
+RUSH: Final = 4.0
 BURST: Final = 16
 GATHER: Final = 64  # messages
 
@@ -66,6 +67,7 @@ class Outbound:
         self._listening: Steps[None] | None = None
         self._queue: Background | None = None
         self._rush = 0
+        self._cost = 5e-6  # what a send takes when nothing holds it up, in seconds
         self.left = 0.0  # when the last send ended
         self._gathered = 0  # messages that wait in the stream for the next send
         self._gathered_since = 0.0
@@ -144,12 +146,12 @@ class Outbound:
             ):
                 self._collect(wait=True, all_=True)
             carrier.encode(driver.stream, packet)
-            if now - self.left > RUSH:
+            if now - self.left > RUSH * self._cost:
                 self._rush = 0
-                self._flush()
+                self._flush_at_once(now)
             elif self._rush < BURST:
                 self._rush += 1
-                self._flush()
+                self._flush_at_once(now)
             elif carrier.gathers and packet.small:
                 self._gather(now)
             else:
@@ -180,6 +182,11 @@ class Outbound:
     def _flush(self) -> None:
         self.driver.flush()
         self._gathered = 0
+
+    def _flush_at_once(self, now: float) -> None:
+        """Send, and learn what that takes: the least of late, since a send may have to wait."""
+        self._flush()
+        self._cost = min(time.perf_counter() - now, self._cost * 1.02)
 
     def _gather(self, now: float) -> None:
         """Leave the message in the stream for the next send of many, which comes soon."""
