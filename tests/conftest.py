@@ -1,0 +1,3 @@
+"""What all tests share: a browser (`support/browser.py`)."""
+
+pytest_plugins = ["support.browser"]
