@@ -22,6 +22,7 @@ _WHERE = {
     "RpcClient": "yarpy.port.rpc",
     "ConnectionEvent": "yarpy.port.event",
     "Message": "yarpy.wire.message",
+    "Page": "yarpy.carriers.guest",
     "Contact": "yarpy.contact",
     "NameServer": "yarpy.services.name_server",
     "LocalNames": "yarpy.names.local",
@@ -66,6 +67,7 @@ _WHERE = {
 __all__ = ["__version__", *_WHERE]
 
 if TYPE_CHECKING:
+    from yarpy.carriers.guest import Page as Page
     from yarpy.contact import Contact as Contact
     from yarpy.data.bottle import Bottle as Bottle
     from yarpy.data.image import FlexImage as FlexImage

@@ -11,6 +11,7 @@ from yarpy.carriers.http_request import (
     Refusal,
     Request,
     Wish,
+    page_asked,
     read_fields,
     read_wish,
     substitute,
@@ -207,3 +208,27 @@ def test_any_request_means_something(method: str, target: str, kind: str, body: 
         _ = found.message()
     else:
         assert 200 <= found.status < 500
+
+
+@pytest.mark.parametrize(
+    ("target", "asked"),
+    [
+        ("/", ("/", {})),
+        ("/a/b.js", ("/a/b.js", {})),
+        ("http://h:1/a%20b?x=1&y=a+b&z", ("/a b", {"x": "1", "y": "a b"})),
+        ("/?x=1#y", ("/", {"x": "1"})),
+        ("/*", ("/*", {})),
+        ("/r", None),
+        ("/r?sse", None),
+        ("/?", None),
+        ("/data=help", None),
+        ("/x?req=1", None),
+        ("/x?data=1", None),
+        ("/x?cmd=*", None),
+        ("/x?" + "a=1&" * (MAX_FIELDS + 1), None),
+    ],
+)
+def test_what_programs_may_answer(target: str, asked: object) -> None:
+    assert page_asked(Request("GET", target, {})) == asked
+    assert page_asked(Request("HEAD", target, {})) == asked
+    assert page_asked(Request("POST", target, {})) is None

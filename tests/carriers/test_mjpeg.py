@@ -116,6 +116,15 @@ def test_wishes_of_a_browser() -> None:
         )
 
 
+def test_scripts_of_other_pages_may_look() -> None:
+    end, speaker = End(), Mjpeg(Route("", "/p", "mjpeg"))
+    end.begin(speaker.welcome(end.stream, b"GET /?ac"))
+    end.feed(b"tion=stream HTTP/1.1\r\nHost: x\r\nOrigin: http://h:1\r\n\r\n")
+    head, _, rest = end.take().partition(b"\r\n\r\n")
+    assert head.endswith(b"\r\nAccess-Control-Allow-Origin: *")
+    assert rest == b"--boundarydonotcross\r\n"
+
+
 def test_wishes_travel_between_ports() -> None:
     talk = Dialogue(Mjpeg, "+quality.20+rate.5")
     talk.greet()

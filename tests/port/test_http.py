@@ -8,7 +8,7 @@ import socket
 import subprocess
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from http.client import HTTPConnection, HTTPResponse
 
 import pytest
@@ -265,6 +265,61 @@ def test_name_server_in_a_browser() -> None:
         here = HTTPConnection("127.0.0.1", port.contact.port, timeout=FAST)
         assert f'href="http://127.0.0.1:{server.port}/"' in get(here, "/")[1]
         here.close()
+        connection.close()
+
+
+# ---------------------------------------------------------------------------------- pages
+
+
+def shown(path: str, fields: Mapping[str, str]) -> yarpy.Page | str | None:
+    match path:
+        case "/":
+            return "<h1>mine</h1>"
+        case "/n.json":
+            return yarpy.Page(json.dumps(dict(fields)), "application/json")
+        case "/gone":
+            return yarpy.Page(b"gone", "text/plain", 404)
+        case "/broken":
+            raise ValueError("a defect")
+    return None
+
+
+def test_a_program_shows_pages(echo: yarpy.RpcServer, caplog: pytest.LogCaptureFixture) -> None:
+    echo.on_page(shown)
+    connection = client(echo)
+    assert get(connection, "/") == (200, "<h1>mine</h1>")
+    assert get(connection, "/n.json?a=1&b=x+y") == (200, '{"a": "1", "b": "x y"}')
+    assert get(connection, "/gone") == (404, "gone")
+    connection.request("HEAD", "/n.json")
+    response = connection.getresponse()
+    assert (response.getheader("Content-Type"), response.read()) == ("application/json", b"")
+    assert response.getheader("Content-Security-Policy") is None
+    # What it leaves, and every message, is the port's.
+    assert "<h1>/echo</h1>" in get(connection, "/*")[1]
+    assert "Here are the commands" in get(connection, "/?")[1]
+    assert get(connection, "/?req=x") == (200, '["ok", "echo", ["x"]]\n')
+    assert get(connection, "/set/pos") == (200, "ok echo (set pos)\r\n")
+    status, body = get(connection, "/broken")
+    assert status == 500
+    assert "defect" not in body
+    assert "defect" in caplog.text
+    echo.on_page(None)
+    assert "<h1>/echo</h1>" in get(connection, "/")[1]
+    connection.close()
+
+
+def test_pages_are_read_by_all_and_framed_by_few(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("YARPY_WEB_ORIGINS", "http://dash:8080")
+    with yarpy.Port("/p", names=names) as port:
+        port.on_page(shown)
+        connection = client(port)
+        connection.request("GET", "/", headers={"Origin": "http://evil.test"})
+        response = connection.getresponse()
+        assert (response.status, response.read()) == (200, b"<h1>mine</h1>")
+        policy = response.getheader("Content-Security-Policy")
+        assert policy == "frame-ancestors 'self' http://dash:8080"
         connection.close()
 
 

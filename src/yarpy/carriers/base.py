@@ -14,8 +14,10 @@ The initiator of a *push* carrier sends the data; of a pull carrier (`push = Fal
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Callable, Mapping
+from typing import ClassVar, TypeAlias
 
+from yarpy.carriers.guest import Page
 from yarpy.contact import Route, read_specifier, specifier
 from yarpy.data import codec
 from yarpy.wire import framing
@@ -26,6 +28,10 @@ from yarpy.wire.stream import Buffer, ByteStream
 MAGIC_SIZE = 8  # bytes by which protocols are told apart
 PAGE = "page"  # what follows the port command `*` when a browser asks
 ASKS_FOR_KEY = "perhaps it asks for a key that this side has not (auth.conf)"
+
+
+#: a page of the port's program by path and arguments
+Shown: TypeAlias = Callable[[str, Mapping[str, str]], Page | None]
 
 
 class Carrier:
@@ -59,6 +65,7 @@ class Carrier:
     def __init__(self, route: Route) -> None:
         self.route = route
         self.accepted = False  # whether the peer dialled us; set by the link
+        self.pages: Shown | None = None  # what the program shows to browsers; set by the port
         self.lost = 0
 
     @classmethod

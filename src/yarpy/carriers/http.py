@@ -138,7 +138,7 @@ class Http(Carrier):
         """The next request, unless it is answered without the port."""
         import h11
 
-        from yarpy.carriers.http_request import Request, read_wish
+        from yarpy.carriers.http_request import Request, page_asked, read_wish
 
         talk = self._h11 = h11.Connection(h11.SERVER, max_incomplete_event_size=MAX_HEAD)
         self._headers, self._head_only = {}, False
@@ -175,8 +175,15 @@ class Http(Carrier):
             self._respond(stream, 405, _TEXT, b"", [("Allow", "GET, HEAD, POST, OPTIONS")])
             return None
         target = head.target.decode("latin-1")
-        wish = read_wish(Request(method, target, self._headers, bytes(body)))
-        return self._screened(stream, wish)
+        request = Request(method, target, self._headers, bytes(body))
+        asked = page_asked(request)
+        guest = self.pages(*asked) if asked and self.pages is not None else None
+        if guest is not None:
+            frames = self._frames()
+            policy = [("Content-Security-Policy", frames)] if frames else []
+            self._respond(stream, guest.status, guest.kind, guest.to_bytes(), policy)
+            return None
+        return self._screened(stream, read_wish(request))
 
     def _screened(self, stream: ByteStream, wish: Wish | Refusal) -> Wish | None:
         """Answer what needs no port, or must not come to it."""
@@ -288,9 +295,13 @@ class Http(Carrier):
 
     def _policy(self) -> tuple[str, str]:
         """What browsers are told to refuse to the page; its form is not for others to frame."""
+        frames = self._frames()
+        return "Content-Security-Policy", _PAGE_POLICY + (f"; {frames}" if frames else "")
+
+    def _frames(self) -> str:
+        """Who may frame pages that may act: where only some may act, nobody else."""
         listed = self.origins.listed
-        frames = "" if listed is None else " ".join(["; frame-ancestors 'self'", *sorted(listed)])
-        return "Content-Security-Policy", _PAGE_POLICY + frames
+        return "" if listed is None else " ".join(["frame-ancestors 'self'", *sorted(listed)])
 
     def _respond_text(self, stream: ByteStream, value: object) -> None:
         """The text of a reply, or the page that a program put under the key `web`."""

@@ -89,8 +89,7 @@ class Refusal:
 
 def read_wish(request: Request) -> Wish | Refusal:
     """What a GET, HEAD or POST request is about."""
-    target = _ABSOLUTE.sub("", request.target, count=1)
-    path, mark, query = target.partition("#")[0].removeprefix("/").partition("?")
+    path, mark, query = _parts(request.target)
     if not query and "=" in path:
         path, query = "", path  # `/data=list`
     try:
@@ -124,6 +123,19 @@ def read_wish(request: Request) -> Wish | Refusal:
     return _by_fields(request, fields)
 
 
+def page_asked(request: Request) -> tuple[str, dict[str, str]] | None:
+    """The path and the arguments of a request that a program may answer with a page of its own."""
+    path, mark, query = _parts(request.target)
+    whole = path + mark + query
+    if request.method not in ("GET", "HEAD") or whole == "?" or path == "r" or "=" in path:
+        return None
+    try:
+        fields = read_fields(query)
+    except DecodeError:
+        return None
+    return None if fields.keys() & {"cmd", "req", "data"} else ("/" + _decoded(path), fields)
+
+
 def read_fields(query: str) -> dict[str, str]:
     """The arguments of a query or of a form; those without a name or a value do not count."""
     pairs = query.split("&")
@@ -144,6 +156,12 @@ def substitute(text: str, fields: Mapping[str, str]) -> str:
 
 
 # ---------------------------------------------------------------------------------- inside
+
+
+def _parts(target: str) -> tuple[str, str, str]:
+    """The path without its first slash, the question mark if there is one, and the query."""
+    target = _ABSOLUTE.sub("", target, count=1)
+    return target.partition("#")[0].removeprefix("/").partition("?")
 
 
 def _posted(request: Request, fields: dict[str, str]) -> Wish | Refusal:

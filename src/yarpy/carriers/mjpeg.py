@@ -39,7 +39,6 @@ _ANSWER: Final = (
     b"Pragma: no-cache\r\n"
     b"Expires: Mon, 3 Jan 2000 12:34:56 GMT\r\n"
     b"Content-Type: multipart/x-mixed-replace;boundary=boundarydonotcross\r\n"
-    b"\r\n"
 )
 
 
@@ -65,10 +64,12 @@ class Mjpeg(Carrier):
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
         line = yield from stream.read_line(MAX_LINE)
-        yield from read_headers(stream)
+        headers = yield from read_headers(stream)
         self.route.source = "null"  # as C++ calls it: watchers have no names
         self._obey(line.decode("latin-1").partition(" ")[0])
-        stream.write(_ANSWER + _BOUNDARY)
+        # Scripts of other pages may look too, as they may at everything that ports show.
+        shared = b"Access-Control-Allow-Origin: *\r\n\r\n" if "origin" in headers else b"\r\n"
+        stream.write(_ANSWER + shared + _BOUNDARY)
 
     def _obey(self, query: str) -> None:
         """Take the wishes out of a request: `quality` and `rate`."""

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
+from yarpy.carriers.guest import Pages
 from yarpy.contact import Contact
 from yarpy.errors import PortClosed
 from yarpy.port import command, wiring
@@ -98,6 +99,16 @@ class BasePort:
     def on_admin(self, callback: Callable[[Message], object] | None) -> None:
         """Let `callback` answer administrative messages that the port itself does not know."""
         self._hub.on_admin = callback
+
+    def on_page(self, callback: Pages | None) -> None:
+        """Let `callback(path, fields)` show pages to browsers: a Page, a string of HTML, or
+        None for what the port shows there by itself.
+
+        It is called for GET requests that carry no message (`/`, `/picture.png?size=2`), in the
+        threads of their connections; `path` begins with a slash, `fields` are the arguments. See
+        `yarpy.Page`.
+        """
+        self._hub.on_page = callback
 
     def interrupt(self) -> None:
         """Stop reading and writing: who waits in `read` gets PortClosed; connections stay."""

@@ -12,10 +12,11 @@ import os
 import socket
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from yarpy.carriers.base import PAGE, Carrier
+from yarpy.carriers.guest import Page, Pages
 from yarpy.contact import Contact, check_name
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
@@ -78,7 +79,8 @@ class Hub:
         self.closing = False
         self.interrupted = False
         self.on_admin: Callable[[Message], object] | None = None
-        self.on_page: Callable[[], list[str]] = list  # more lines for people who browse
+        self.on_page: Pages | None = None  # what the program shows to browsers
+        self.lines_for_people: Callable[[], list[str]] = list  # more of them on the port's page
         self.on_inputs: Callable[[], None] = lambda: None  # the reader looks at them again
         self._greeting: set[threading.Thread] = set()  # connections that are being welcomed
         self.lock = threading.Lock()  # replaces the tuples of links
@@ -200,6 +202,7 @@ class Hub:
             self._serve_reader(driver, carrier)
             return
         link = Inbound(self, driver, carrier)
+        carrier.pages = self.page
         link.thread = threading.current_thread()
         link.thread.name = f"yarpy {link.route}"
         if link.route.source.startswith("/"):
@@ -236,8 +239,19 @@ class Hub:
     def command(self, link: Inbound, message: Message) -> list[str]:
         lines = command.obey(self, link, message)
         if (message.key, message.text) == ("*", PAGE):
-            lines += self._whereabouts() + self.on_page()
+            lines += self._whereabouts() + self.lines_for_people()
         return lines
+
+    def page(self, path: str, fields: Mapping[str, str]) -> Page | None:
+        """What the program shows at `path`, None if it leaves that to the port."""
+        if self.on_page is None:
+            return None
+        try:
+            found = self.on_page(path, fields)
+            return Page(found) if isinstance(found, str) else found
+        except Exception:
+            log.exception("%s: the page %s failed", self.name, path)
+            return Page("the program of this port fails on this page\n", "text/plain", 500)
 
     def _whereabouts(self) -> list[str]:
         """Where the other ports are to be found, if somebody knows."""

@@ -120,7 +120,7 @@ class NameServer:
         except BaseException:
             self.close()
             raise
-        self._hub.on_page = self._page
+        self._hub.lines_for_people = self._page
         desk.open(self._answer)
 
     @property
