@@ -23,8 +23,8 @@ T = TypeVar("T")
 
 # Waking a sleeping thread takes some 30 us. When the last wait was about that short, the next bytes
 # are looked for, for a while, before sleeping; each time in vain makes that rarer.
-SOON: Final = 150e-6
-LOOKING: Final = 60e-6
+SOON: Final = 200e-6
+LOOKING: Final = 120e-6
 FIRST_PENALTY: Final = 32
 LAST_PENALTY: Final = 512
 _CORES: Final = os.cpu_count() or 1

@@ -126,7 +126,7 @@ class SocketTransport:
         if not MSG_DONTWAIT and not self._readable():
             return False
         try:
-            return not self.sock.recv(1, socket.MSG_PEEK | MSG_DONTWAIT)
+            return not self.sock.recv(1, _MSG_PEEK)
         except BlockingIOError:
             return False
         except OSError:
@@ -142,7 +142,9 @@ class SocketTransport:
         self.sock.close()
 
 
-MSG_DONTWAIT: int = getattr(socket, "MSG_DONTWAIT", 0)
+# Plain numbers: combining the enumerations of `socket` costs as much as a system call.
+MSG_DONTWAIT: int = int(getattr(socket, "MSG_DONTWAIT", 0))
+_MSG_PEEK: int = int(socket.MSG_PEEK) | MSG_DONTWAIT
 _IOV_MAX = 512
 _MANY = 3
 _LITTLE = 1 << 17
