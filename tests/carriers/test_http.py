@@ -318,6 +318,8 @@ def test_page_that_a_program_made() -> None:
     status, headers, body = get("/a/page", answer=answer)
     assert (status, headers["content-type"], body) == (200, "text/html", b"<b>hi</b>")
     assert headers["content-security-policy"].startswith("sandbox")
+    assert get("/a/page", "Accept: text/html", answer=answer)[2] == b"<b>hi</b>"
+    assert get("/?data=page", answer=answer)[2] == b"<b>hi</b>"
     assert json.loads(get("/?req=x", answer=answer)[2]) == {"web": "<b>hi</b>", "mime": "text/html"}
     evil = [["web", "x"], ["mime", "text/html\r\nEvil: 1"]]
     assert "evil" not in get("/a/page", answer=evil)[1]

@@ -197,3 +197,10 @@ def test_demo_and_every_line_it_tells_to_try():
             with shell(line) as process:
                 process.wait_line(pattern, timeout=15)
         interrupt(demo)
+
+
+def test_page_is_quoted_as_it_is():
+    """The browser's side of a WebSocket, which a browser runs in tests/interop/test_browser.py."""
+    page = (EXAMPLES / "websocket.html").read_text()
+    assert len(page.splitlines()) <= 40
+    assert f"```html\n{page}```" in (ROOT / "docs" / "web.md").read_text()

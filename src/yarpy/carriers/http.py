@@ -123,6 +123,8 @@ class Http(Carrier):
                 self._answer_nothing(stream)  # the next request waits already
                 continue
             wish = yield from self._read_wish(stream)
+            if self.successor is not None:
+                return Message("r")
             if wish is None:
                 continue
             self._taken += 1
@@ -176,6 +178,9 @@ class Http(Carrier):
             return None
         target = head.target.decode("latin-1")
         request = Request(method, target, self._headers, bytes(body))
+        if method == "GET" and target.startswith("/?action="):
+            self._show_pictures(stream, target)
+            return None
         asked = page_asked(request)
         guest = self.pages(*asked) if asked and self.pages is not None else None
         if guest is not None:
@@ -184,6 +189,15 @@ class Http(Carrier):
             self._respond(stream, guest.status, guest.kind, guest.to_bytes(), policy)
             return None
         return self._screened(stream, read_wish(request))
+
+    def _show_pictures(self, stream: ByteStream, target: str) -> None:
+        """A browser asks for MJPEG on a connection that it has used for a page before."""
+        from yarpy.carriers.mjpeg import Mjpeg
+
+        old = self.route
+        self.successor = mjpeg = Mjpeg(Route("", old.target, "mjpeg", old.port, old.host))
+        mjpeg.accepted = True
+        mjpeg.begin(stream, target, "origin" in self._headers)
 
     def _screened(self, stream: ByteStream, wish: Wish | Refusal) -> Wish | None:
         """Answer what needs no port, or must not come to it."""
@@ -246,10 +260,12 @@ class Http(Carrier):
                 self._respond(stream, 200, _JSON, _json_body(value, wish))
             elif wish.form == "none":
                 self._respond(stream, 204, _TEXT, b"")
+            elif self._show_guest(stream, value):
+                pass
             elif wish.form == "page":
                 self._show(stream, wish, _lines(value))
             else:
-                self._respond_text(stream, value)
+                self._respond(stream, 200, _TEXT, _text_body(value))
         except (TypeError, ValueError, YarpError):
             if self._wish is not None:
                 self._respond(stream, 500, _TEXT, b"the port's answer cannot be sent\n")
@@ -303,18 +319,18 @@ class Http(Carrier):
         listed = self.origins.listed
         return "" if listed is None else " ".join(["frame-ancestors 'self'", *sorted(listed)])
 
-    def _respond_text(self, stream: ByteStream, value: object) -> None:
-        """The text of a reply, or the page that a program put under the key `web`."""
+    def _show_guest(self, stream: ByteStream, value: object) -> bool:
+        """Answer with the page that a program put under the key `web`; False if there is none."""
         guest = Bottle(value).group("web") if isinstance(value, (list, tuple)) else None
-        if guest is not None and len(guest) > 1 and isinstance(value, (list, tuple)):
-            kind = Bottle(value).group("mime")
-            mime = str(kind[1]) if kind is not None and len(kind) > 1 else _HTML
-            body = guest[1] if isinstance(guest[1], bytes) else _encoded(str(guest[1]))
-            if mime.isascii() and mime.isprintable():
-                self._respond(stream, 200, mime, body, [_GUEST_POLICY])
-                return
-        text = value.to_text() if isinstance(value, Lines) else codec.encode_text(value) + b"\r\n"
-        self._respond(stream, 200, _TEXT, text)
+        if guest is None or len(guest) < 2 or not isinstance(value, (list, tuple)):
+            return False
+        kind = Bottle(value).group("mime")
+        mime = str(kind[1]) if kind is not None and len(kind) > 1 else _HTML
+        if not (mime.isascii() and mime.isprintable()):
+            return False
+        body = guest[1] if isinstance(guest[1], bytes) else _encoded(str(guest[1]))
+        self._respond(stream, 200, mime, body, [_GUEST_POLICY])
+        return True
 
     def _preflight(self, stream: ByteStream) -> None:
         acting = ", POST" if self.origins.admits(self._headers) else ""
@@ -558,6 +574,10 @@ def _json_body(value: object, wish: Wish) -> bytes:
     if isinstance(value, Lines):
         value = ["list", *value]
     return (to_json(value, wish.outer) + "\n").encode()
+
+
+def _text_body(value: object) -> bytes:
+    return value.to_text() if isinstance(value, Lines) else codec.encode_text(value) + b"\r\n"
 
 
 def _lines(value: object) -> list[str]:

@@ -32,12 +32,13 @@ nav{border-bottom:1px solid var(--line)}
 a{color:var(--link)}
 form{display:flex;flex-wrap:wrap;gap:.5rem;margin:1rem 0;align-items:center}
 input{font:inherit;padding:.4rem .6rem;border:1px solid var(--line);border-radius:.4rem;min-width:0}
-input[name=data]{flex:1 1 16rem}
+input[name=data]{flex:1 1 12rem}
 pre{background:var(--soft);padding:.8rem;border-radius:.4rem}
 pre{white-space:pre-wrap;overflow-wrap:anywhere}
 ul{list-style:none;padding:0}
-li{display:flex;flex-wrap:wrap;gap:0 1rem;padding:.35rem 0;border-bottom:1px solid var(--line)}
-li a{flex:1;overflow-wrap:anywhere}
+li{display:flex;flex-wrap:wrap;align-items:baseline;gap:0 1rem}
+li{padding:.35rem 0;border-bottom:1px solid var(--line)}
+li>:first-child{flex:1;overflow-wrap:anywhere}
 small{opacity:.7}
 """.strip().replace("\n", "")  # fmt: skip
 
