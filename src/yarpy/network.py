@@ -215,11 +215,11 @@ def _connect(source: str, target: str, carrier: str | None, names: NameClient | 
     address = f"/{active.address}" if active.reachable else active.name
     reply = route.admin(Vocab("add"), f"{route.carrier}:/{address}")
     text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
-    if not reply or reply[0] != 0:
-        raise LocalProtocolError(
-            f'"{source}" -> "{target}" over {route.carrier} was refused: {text or "no answer"}'
-        )
-    return text
+    if reply and reply[0] == 0:
+        return text
+    # The other end may not be there yet: a camera that still starts, a program that died.
+    kind = LinkClosed if text.startswith("Cannot connect") else LocalProtocolError
+    raise kind(f'"{source}" -> "{target}" over {route.carrier} was refused: {text or "no answer"}')
 
 
 def _decorated(text: str, carrier: str) -> str:

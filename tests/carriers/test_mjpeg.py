@@ -243,6 +243,22 @@ def test_habits_of_cameras(habit: str, piece: int) -> None:
     assert all(m.value == Image.from_wire(jpeg.decode(FRAME)) for m in found)
 
 
+@pytest.mark.parametrize("size", [1, 10, 500, 5000])
+@pytest.mark.parametrize("piece", PIECES)
+def test_chunks_of_ffmpeg(size: int, piece: int) -> None:
+    """As ffmpeg answers with `-f mpjpeg -listen 1`, whatever it is asked."""
+    head = b"HTTP/1.1 200 OK\r\nContent-Type: application/octet-stream\r\n"
+    head += b"Transfer-Encoding: chunked\r\n\r\na\r\n--ffmpeg\r\n\r\n"
+    one = b"Content-type: image/jpeg\r\nContent-length: %d\r\n\r\n" % len(FRAME)
+    body = (one + FRAME + b"\r\n--ffmpeg\r\n") * 4
+    cuts = [body[at : at + size] for at in range(0, len(body), size)]
+    chunked = b"".join(b"%x\r\n" % len(cut) + cut + b"\r\n" for cut in cuts)
+    carrier, found = watch(head + chunked, 4, piece)
+    assert len(found) == 4
+    assert carrier.lost == 0
+    assert all(m.value == Image.from_wire(jpeg.decode(FRAME)) for m in found)
+
+
 def part(data: bytes, size: object = None, kind: bytes = b"image/jpeg") -> bytes:
     length = b"" if size == "" else b"Content-Length: %d\r\n" % (size or len(data))
     return b"--x\r\nContent-Type: " + kind + b"\r\n" + length + b"\r\n" + data + b"\r\n"
@@ -289,7 +305,7 @@ def test_length_that_covers_the_next_boundary() -> None:
         b"SSH-2.0-OpenSSH_9\r\n",
         b"HTTP/1.1 200 OK\r\n" + b"a: b\r\n" * 1000,
         b"HTTP/1.1 200 OK\r\nx: " + b"a" * 100_000,
-        answer(b"boundary=x\r\nTransfer-Encoding: chunked"),
+        answer(b"boundary=x\r\nTransfer-Encoding: chunked") + b"no size\r\n",
     ],
 )
 def test_answers_that_are_no_stream(data: bytes) -> None:

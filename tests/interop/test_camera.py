@@ -170,7 +170,7 @@ def test_cpp_asks_a_port_to_watch() -> None:
 def test_wrong_path_is_told() -> None:
     camera = Camera()
     with viewer() as (names, view):
-        with pytest.raises(yarpy.LocalProtocolError, match="Cannot connect"):
+        with pytest.raises(yarpy.LinkClosed, match="Cannot connect"):
             network.connect(camera.name, "/view", "mjpeg+path.wrong", names=names)
         assert not view.inputs
         assert camera.asked == ["/wrong"]

@@ -11,6 +11,7 @@ import time
 from collections.abc import Iterator, Mapping
 from http.client import HTTPConnection, HTTPResponse
 
+import numpy as np
 import pytest
 from support.wait import wait_until
 
@@ -321,6 +322,26 @@ def test_pages_are_read_by_all_and_framed_by_few(
         policy = response.getheader("Content-Security-Policy")
         assert policy == "frame-ancestors 'self' http://dash:8080"
         connection.close()
+
+
+def test_pictures_on_a_connection_that_was_used_for_a_page(names: LocalNames) -> None:
+    """Browsers ask again on the connection they have."""
+    with yarpy.BufferedPort("/cam", names=names) as port:
+        connection = client(port)
+        assert "<h1>/cam</h1>" in get(connection, "/")[1]
+        connection.request("GET", "/?action=stream&quality=20")
+        response = connection.getresponse()
+        assert response.getheader("Content-Type", "").startswith("multipart/x-mixed-replace")
+        assert port.wait_for_outputs(1, FAST)
+        wait_until(lambda: not port.inputs)
+        (link,) = port.outputs
+        assert (link.target, link.carrier) == ("null", "mjpeg+quality.20")
+        assert port.write(yarpy.Image(np.zeros((8, 8, 3), "u1"))) == 1
+        assert response.readline() == b"--boundarydonotcross\r\n"
+        assert response.readline() == b"Content-Type: image/jpeg\r\n"
+        response.close()
+        connection.close()
+        wait_until(lambda: not port.outputs)
 
 
 # ---------------------------------------------------------------------------------- curl

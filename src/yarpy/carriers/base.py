@@ -67,6 +67,7 @@ class Carrier:
         self.accepted = False  # whether the peer dialled us; set by the link
         self.pages: Shown | None = None  # what the program shows to browsers; set by the port
         self.lost = 0
+        self.successor: Carrier | None = None  # who goes on when the peer turns to reading
 
     @classmethod
     def recognises(cls, first: bytes) -> int:

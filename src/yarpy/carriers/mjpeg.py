@@ -11,7 +11,8 @@ Rules: a watcher who is too slow gets fewer pictures, its port never waits for i
 compressed once for all watchers that want the same quality (`/?action=stream&quality=50&rate=10`,
 or `mjpeg+quality.50+rate.10` between ports; pictures per second). What is no picture is not sent,
 and counted. The envelope is the comment in the JPEG file. Cameras are understood that order, spell
-or leave out headers in their own way; a damaged picture is dropped, and counted in `lost`.
+or leave out headers in their own way, or send in chunks; a damaged picture is dropped, and counted
+in `lost`.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from __future__ import annotations
 from typing import Final
 
 from yarpy.carriers.base import Carrier
+from yarpy.carriers.chunk import Chunks
 from yarpy.carriers.header import MAX_LINE, read_headers
 from yarpy.contact import Route, modifier
 from yarpy.data import jpeg
@@ -59,17 +61,22 @@ class Mjpeg(Carrier):
         self.quality = jpeg.QUALITY
         self._mark = b"--"  # what a line between two pictures contains
         self._past_mark = False  # that line has begun: its end is next
+        self._chunks: Chunks | None = None  # what a camera's server has put the pictures into
 
     # -- the sender -------------------------------------------------------------------------------
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
         line = yield from stream.read_line(MAX_LINE)
         headers = yield from read_headers(stream)
+        self.begin(stream, line.decode("latin-1").partition(" ")[0], "origin" in headers)
+
+    def begin(self, stream: ByteStream, query: str, shared: bool) -> None:
+        """Answer a request. `shared`: it comes from another page."""
         self.route.source = "null"  # as C++ calls it: watchers have no names
-        self._obey(line.decode("latin-1").partition(" ")[0])
+        self._obey(query)
         # Scripts of other pages may look too, as they may at everything that ports show.
-        shared = b"Access-Control-Allow-Origin: *\r\n\r\n" if "origin" in headers else b"\r\n"
-        stream.write(_ANSWER + shared + _BOUNDARY)
+        more = b"Access-Control-Allow-Origin: *\r\n" if shared else b""
+        stream.write(_ANSWER + more + b"\r\n" + _BOUNDARY)
 
     def _obey(self, query: str) -> None:
         """Take the wishes out of a request: `quality` and `rate`."""
@@ -116,13 +123,15 @@ class Mjpeg(Carrier):
             )
         headers = yield from read_headers(stream)
         kind, _, options = headers.get("content-type", "").partition(";")
-        if kind.strip().lower().partition("/")[0] != "multipart":
+        kind = kind.strip().lower()
+        # ffmpeg as a server says octet-stream, whatever it sends.
+        if kind != "application/octet-stream" and not kind.startswith("multipart/"):
             raise RemoteProtocolError(
-                f"{self._path()} is no stream of pictures but {kind.strip() or 'of no known type'}"
+                f"{self._path()} is no stream of pictures but {kind or 'of no known type'}"
                 "; the carrier mjpeg+path.<path> says what to ask for"
             )
         if "chunked" in headers.get("transfer-encoding", "").lower():
-            raise RemoteProtocolError("the camera answers in chunks, which HTTP/1.0 does not have")
+            self._chunks = Chunks(stream.limit)  # which HTTP/1.0 does not have
         for option in options.split(";"):
             key, _, value = option.partition("=")
             if key.strip().lower() == "boundary":
@@ -155,6 +164,14 @@ class Mjpeg(Carrier):
         return "/" + path.removeprefix("/")
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
+        chunks = self._chunks
+        if chunks is None:
+            return (yield from self._read_picture(stream))
+        message = yield from chunks.through(stream, self._read_picture(chunks.inner))
+        self.holding = chunks.inner.waiting > 0
+        return message
+
+    def _read_picture(self, stream: ByteStream) -> Steps[Message]:
         while True:
             data = yield from self._read_part(stream)
             try:

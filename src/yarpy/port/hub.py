@@ -263,7 +263,7 @@ class Hub:
     def reverse(self, link: Inbound) -> None:
         """The peer at the other end wants to read: its connection becomes an output of ours."""
         self._forget_input(link)
-        self._serve_reader(link.driver, link.carrier)
+        self._serve_reader(link.driver, link.carrier.successor or link.carrier)
 
     def _serve_reader(self, driver: Driver, carrier: Carrier) -> None:
         """Make a connection that somebody else opened an output of ours."""
