@@ -17,11 +17,15 @@ REPLAYS = [
     TESTS / "names" / "test_discovery.py",
     TESTS / "services" / "test_name_server.py",
     TESTS / "carriers" / "test_local.py",
+    TESTS / "carriers" / "test_mjpeg.py",
+    TESTS / "carriers" / "test_websocket.py",
+    TESTS / "carriers" / "test_xmlrpc.py",
+    TESTS / "interop" / "test_camera.py",
 ]
 # Groups and prefixes from which a replay takes every capture there is.
 WHOLE_GROUPS = {"administration", "telnet", "malformed"}
 WHOLE_PREFIXES = ("conn_tcp", "conn_fast_tcp", "conn_text", "conn_name_ser", "conn_udp",
-                  "conn_mcast", "reverse_")  # fmt: skip
+                  "conn_mcast", "reverse_", "http_")  # fmt: skip
 
 
 def words(path: Path) -> set[str]:
@@ -59,6 +63,10 @@ def test_groups_are_complete() -> None:
         "telnet": 18,
         "malformed": 32,
         "unix_stream": 3,
+        "http": 48,
+        "mjpeg": 4,
+        "websocket": 6,
+        "xmlrpc": 8,
     }
 
 
@@ -81,3 +89,4 @@ def test_replays_take_whole_groups() -> None:
     assert carriers >= WHOLE_GROUPS
     assert port >= WHOLE_GROUPS
     assert {"conn_", "reverse_"} <= carriers
+    assert "http_*.json" in words(TESTS / "carriers" / "test_http.py")
