@@ -34,6 +34,7 @@ LAYERS: list[set[str]] = [
 ]
 BESIDE = {
     ("registry", "contact"),
+    ("link", "monitors"),
     ("link", "qos"),
     ("monitors", "qos"),
     ("ros", "port"),

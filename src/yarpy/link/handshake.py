@@ -49,7 +49,16 @@ def recognise(
 
 def find_carrier(name: str) -> type[Carrier]:
     """The carrier class of a carrier string. Raises UnknownPlugin with the nearest match."""
-    carrier: type[Carrier] = registry.carriers.load(base_carrier(name) or "tcp")
+    base = base_carrier(name) or "tcp"
+    try:
+        carrier: type[Carrier] = registry.carriers.load(base)
+    except UnknownPlugin:
+        if base not in registry.monitors.names():
+            raise
+        raise UnknownPlugin(
+            f'"{base}" is no carrier but a monitor, which rides on one: use tcp+recv.{base}, or '
+            f"tcp+send.{base} at the sender's end"
+        ) from None
     if not (isinstance(carrier, type) and issubclass(carrier, Carrier)):
         raise UnknownPlugin(f'"{base_carrier(name)}" is installed, but is not a Carrier class')
     return carrier

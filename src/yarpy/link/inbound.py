@@ -26,6 +26,7 @@ from yarpy.wire.stream import LARGE
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
     from yarpy.contact import Route
+    from yarpy.monitors.chain import Chain
     from yarpy.wire.effects import Steps
 
 log = logging.getLogger("yarpy.link")
@@ -68,6 +69,8 @@ class Inbound:
         self.thread: threading.Thread | None = None
         self.sched = Sched()  # what somebody asked for; -1: nothing
         self.tos = 0
+        self.own_chain: Chain | None = None  # the monitors that ride on it
+        self.chain: Chain | None = None  # those, and the port's
         self.wanted = False  # a reader would like the turn
         self.visited = 0.0  # when a reader with the turn was last here
         self._turn = threading.Lock()  # who may read: the thread, or a reader that borrowed it
@@ -120,6 +123,12 @@ class Inbound:
         while not self._quit and not self._reversed:
             message = self.advance(None)
             if message.key == DATA or message.key == CALL:
+                if self.chain is not None:
+                    passed = self.chain.take(message)
+                    if passed is None:
+                        self._refuse(message)
+                        continue
+                    message = passed
                 # Decided before the reader can see the message: when it comes back, the turn is
                 # free or about to be.
                 self._leaving = self.wanted
@@ -225,6 +234,12 @@ class Inbound:
                     return None
                 message = self.advance(deadline)
                 if message.key == DATA or message.key == CALL:
+                    if self.chain is not None:
+                        passed = self.chain.take(message)
+                        if passed is None:
+                            self._refuse(message)
+                            continue
+                        message = passed
                     self.accept(message)
                     return message
                 self._obey(message)
@@ -273,6 +288,12 @@ class Inbound:
         else:
             self.owner.receive(self, message)
             self._acknowledge(message)
+
+    def _refuse(self, message: Message) -> None:
+        """A monitor dropped it: its sender is told that it came, and no more."""
+        self.counter.drops += 1
+        self.accept(message)
+        self.settle(message)
 
     def settle(self, message: Message) -> None:
         """The port is done with `message`: if nobody answered a question, an empty answer goes."""

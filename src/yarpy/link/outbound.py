@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
     from yarpy.contact import Route
     from yarpy.link.driver import Driver
+    from yarpy.monitors.chain import Chain
     from yarpy.wire.effects import Steps
 
 # How far a sender may be ahead of acknowledgements: so many messages, bytes, seconds. A slow reader
@@ -60,6 +61,7 @@ class Outbound:
         self.broken = False
         self.sched = Sched()  # what somebody asked for; -1: nothing
         self.tos = 0
+        self.chain: Chain | None = None  # the monitors that ride on it
         self.active = True  # of the multicast links of a port only one sends
         self.thread: threading.Thread | None = None
         self.lock = threading.Lock()  # one message at a time on the wire
@@ -86,6 +88,12 @@ class Outbound:
             if self.broken:
                 raise LinkClosed(f'the connection to "{self.route.target}" is gone')
             return self.offer(packet)
+        if self.chain is not None:
+            passed = self.chain.send(packet)
+            if passed is None:
+                self.counter.drops += 1
+                return False
+            packet = passed
         if self._queue is not None:
             packet.own(self.carrier.spelling)  # what cannot be sent is the writer's error
             self._queue.wait_put(packet)
@@ -107,6 +115,12 @@ class Outbound:
         if carrier.lossy and not (queue.has_room(carrier.backlog) and self._timely()):
             self.counter.drops += 1  # before anything is made of a message that does not go
             return False
+        if self.chain is not None:
+            passed = self.chain.send(packet)
+            if passed is None:
+                self.counter.drops += 1
+                return False
+            packet = passed
         if not carrier.prepare(packet):
             self.counter.drops += 1
             return False
@@ -246,6 +260,13 @@ class Outbound:
                 f'"{self.route.target}" with tcp'
             )
         assert packet.key == CALL or packet.key == "a"
+        chain = self.chain if packet.key == CALL else None
+        if chain is not None:
+            passed = chain.send(packet)
+            if passed is None:
+                self.counter.drops += 1
+                return None
+            packet = passed
         deadline = None if timeout is None else time.monotonic() + timeout
         self._take_turn(timeout)
         try:
@@ -270,9 +291,10 @@ class Outbound:
             self.counter.count(now)
             self.counter.bytes = driver.bytes_out
             self.counter.measure(now - started)
-            if reply is not None:
-                reply.source = self.route.target
-            return reply
+            if reply is None:
+                return None
+            reply.source = self.route.target
+            return reply if chain is None else chain.reply(reply)
         finally:
             self.lock.release()
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import random
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
@@ -155,25 +155,37 @@ def _inquire(hub: Hub, request: Bottle) -> Bottle:
 
 
 def _parameters(hub: Hub, request: Bottle, setting: bool) -> Bottle:
-    """[set] and [get]: parameters of a connection's carrier; ours have none of their own."""
-    direction, name = word(request[1]) if len(request) > 1 else "", _text(request, 2)
-    if direction not in ("in", "out") or not name:
+    """[set] and [get]: parameters of what rides on a connection, or on the port itself."""
+    side, name = _side(request), _text(request, 2)
+    if side is None or not name:
         return Bottle([-1, "target port is not specified.\r\n"])
-    incoming = direction == "in"
+    chain = hub.monitoring.chain(side, name)
     if name == hub.name:
-        side = "input" if incoming else "output"
-        return failure(f"No port modifier is attached to the {side}")
+        if chain is None:
+            return failure(f"No port modifier is attached to the {side}put")
+        if not setting:
+            return Bottle([chain.parameters()])
+        chain.configure(Property.from_bottle(request[3:]))
+        return Bottle([_OK])
     peers = (
         [link.route.source for link in hub.inputs]
-        if incoming
+        if side == "in"
         else [link.route.target for link in hub.outputs]
     )
-    preposition = "from" if incoming else "to"
+    preposition = "from" if side == "in" else "to"
     if name not in peers:
         return Bottle([-1, f"Could not find an incoming connection {preposition} {name}\r\n"])
-    if setting:
-        return Bottle([0, f"Configured connection {preposition} {name}\r\n"])
-    return Bottle([Property()])
+    if not setting:
+        return Bottle([Property() if chain is None else chain.parameters()])
+    if chain is not None:
+        chain.configure(Property.from_bottle(request[3:]))
+    return Bottle([0, f"Configured connection {preposition} {name}\r\n"])
+
+
+def _side(request: Bottle) -> Literal["in", "out"] | None:
+    """The side of a port that a request is about."""
+    side = word(request[1]) if len(request) > 1 else ""
+    return "in" if side == "in" else "out" if side == "out" else None
 
 
 def _prop(hub: Hub, request: Bottle) -> Bottle:
@@ -206,14 +218,24 @@ def _sorted(hub: Hub) -> list[tuple[str, Any]]:
 
 
 def _attach(hub: Hub, request: Bottle) -> Bottle:
-    if len(request) < 2 or word(request[1]) not in ("in", "out"):
+    side = _side(request)
+    if side is None:
         return failure("attach command must be followed by [out] or [in]")
-    return failure("Portmonitor carrier modifier cannot be find or it is not enabled in YARP!")
+    given = request[2:]
+    told = len(given) == 1 and isinstance(given[0], str)  # C++ has the lists in one string
+    parameters = Property.from_text(plain_text(given[0])) if told else Property.from_bottle(given)
+    try:
+        hub.monitoring.attach(side, parameters)
+    except YarpError as error:
+        return failure(f"Failed to configure the portmonitor plug-in: {error}")
+    return Bottle([_OK])
 
 
 def _detach(hub: Hub, request: Bottle) -> Bottle:
-    if len(request) < 2 or word(request[1]) not in ("in", "out"):
+    side = _side(request)
+    if side is None:
         return failure("detach command must be followed by [out] or [in]")
+    hub.monitoring.detach(side)
     return Bottle([_OK])
 
 

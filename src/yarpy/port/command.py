@@ -26,6 +26,7 @@ from yarpy.errors import (
 from yarpy.link.handshake import find_carrier, greet
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
+from yarpy.monitors.chain import named
 from yarpy.names.address import is_loopback
 from yarpy.port import probe, repair
 from yarpy.wire.message import Message
@@ -147,7 +148,9 @@ def _asks(link: Outbound) -> bool:
 def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str = "") -> None:
     """Dial `contact` and take the connection in. Raises Refused."""
     route = Route(hub.name, target, carrier, contact.port)
+    chain = None
     try:
+        chain = hub.monitoring.outgoing(route)
         try:
             driver, speaker = greet(contact, route, key=hub.key, group=hub.group, limit=hub.limit)
         except (LinkClosed, Timeout):
@@ -157,14 +160,29 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
             driver, speaker = greet(other, route, key=hub.key, group=hub.group, limit=hub.limit)
             contact = other
     except (YarpError, OSError) as error:
+        if chain is not None:
+            chain.close()
         _complain(hub, target, error)
         raise Refused(f"Cannot connect to {text or target}") from error
     if speaker.push:
         if speaker.broadcast:
             _wait_for_member(hub, contact, speaker.name)
+        link = Outbound(driver, speaker)
+        link.chain = chain
+        if "+recv." in carrier:
+            _wait_for_member(hub, contact, speaker.name)
+            if link.ended():
+                if chain is not None:
+                    chain.close()
+                raise Refused(f"Cannot connect to {text or target}") from LinkClosed(
+                    f'"{target}" hung up: its log tells what is wrong with its monitor '
+                    f"({', '.join(name for name, _ in named(carrier, 'recv'))})"
+                )
         try:
-            hub.add_output_link(Outbound(driver, speaker))
+            hub.add_output_link(link)
         except PortClosed as error:
+            if chain is not None:
+                chain.close()
             raise Refused(f"Cannot connect to {text or target}") from error
     else:
         # Who dials a pull carrier is the one that receives.
@@ -173,8 +191,11 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
 
 
 def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:
-    """Wait until the receiver is in our group, lest the first messages miss it: it does not say so
-    by itself, the greeting of a multicast connection has no answer."""
+    """Wait until the receiver says that it has our connection.
+
+    It does not say so by itself: a multicast greeting has no answer, and the first messages would
+    miss it; and what rides on its end is looked at after the greeting was answered.
+    """
     deadline = time.monotonic() + JOINING
     question = [Vocab("list"), Vocab("in"), hub.name]
     try:

@@ -34,6 +34,7 @@ from yarpy.names.default import DEFAULT, secret
 from yarpy.port import admin, command, repair
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Mailbox
+from yarpy.port.monitoring import Monitoring
 from yarpy.port.probe import is_alive
 from yarpy.registry import carriers
 from yarpy.transports.tcp import TcpTransport
@@ -84,6 +85,7 @@ class Hub:
         self.on_inputs: Callable[[], None] = lambda: None  # the reader looks at them again
         self._greeting: set[threading.Thread] = set()  # connections that are being welcomed
         self.lock = threading.Lock()  # replaces the tuples of links
+        self.monitoring = Monitoring(self)
         self.group_name = ""  # the temporary name of our multicast group
         self.key = secret()
         self.registered = register and bool(name)
@@ -205,6 +207,12 @@ class Hub:
         carrier.pages = self.page
         link.thread = threading.current_thread()
         link.thread.name = f"yarpy {link.route}"
+        try:
+            self.monitoring.incoming(link)
+        except YarpError as error:
+            log.warning("%s: connection %s refused: %s", self.name, link.route, error)
+            driver.transport.close()
+            return
         if link.route.source.startswith("/"):
             self._displace(link.route.source)
         with self.lock:
@@ -214,10 +222,12 @@ class Hub:
         if late:
             self._ask_to_leave(link.route.source)
             driver.transport.close()
-            return
-        self.on_inputs()
-        self.report(link, created=True)
-        link.serve()
+        else:
+            self.on_inputs()
+            self.report(link, created=True)
+            link.serve()
+        if link.own_chain is not None:
+            link.own_chain.close()
 
     def _displace(self, source: str) -> None:
         """A new connection of the same sender replaces the old one."""
@@ -270,6 +280,12 @@ class Hub:
         route = carrier.route
         route.source, route.target = self.name, route.source
         output = Outbound(driver, carrier, dialled=False)
+        try:
+            output.chain = self.monitoring.outgoing(route)
+        except YarpError as error:
+            log.warning("%s: connection %s refused: %s", self.name, route, error)
+            driver.transport.close()
+            return
         with self.lock:
             if self.closing:
                 driver.transport.close()
@@ -310,6 +326,8 @@ class Hub:
             self.outputs = tuple(item for item in self.outputs if item is not link)
             self._elect()
         if known:
+            if link.chain is not None:
+                link.chain.close()
             self.report(link, created=False, reason=reason)
             if lost and link.dialled and not self.closing:
                 repair.output_lost(self, link.route)
@@ -386,6 +404,7 @@ class Hub:
             if link.thread is not None and link.thread is not threading.current_thread():
                 link.thread.join(max(0.0, deadline - time.monotonic()))
         self._acceptor.close()
+        self.monitoring.close()
         if self.registered and self.names is not None:
             try:
                 if self.group_name:

@@ -18,6 +18,7 @@ from yarpy.data.property import Property
 from yarpy.errors import LocalProtocolError
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
+from yarpy.monitors.chain import Chain
 from yarpy.qos import Sched, policy_of, schedule, scheduled, tos_of
 
 if TYPE_CHECKING:
@@ -64,12 +65,15 @@ def get_peer(hub: Hub, name: str) -> Bottle | None:
     """Scheduling and packet priority of each connection with `name`; None if there is none."""
     reply = Bottle()
     for link in _links(hub, name):
+        chain = _chain(link)
         thread = thread_of(link)
         sched = scheduled(thread) if thread >= 0 else link.sched
         reply += [
             Bottle(["sched", _dict(policy=sched.policy, priority=sched.priority, tid=thread)]),
             Bottle(["qos", _dict(tos=link.tos)]),
         ]
+        if chain is not None:
+            reply.append(Bottle(["monitor", chain.parameters()]))
     return reply or None
 
 
@@ -86,7 +90,8 @@ def set_self(hub: Hub, request: Bottle) -> bool:
 
 
 def set_peer(hub: Hub, name: str, request: Bottle) -> bool:
-    """`(sched ((priority N) (policy P))) (qos ((priority HIGH)))` on the first connection."""
+    """`(sched ((priority N) (policy P))) (qos ((priority HIGH))) (monitor ((KEY VALUE)))` on the
+    first connection."""
     links = _links(hub, name)
     if not links:
         return False
@@ -109,7 +114,17 @@ def set_peer(hub: Hub, name: str, request: Bottle) -> bool:
         link.tos = _tos(group)
         link.driver.transport.set_dscp(link.tos)
         done = True
+    if request.group("monitor") is not None:
+        group, chain = _group(request, "monitor"), _chain(link)
+        if group is None or chain is None or not chain.configure(Property.from_bottle(group)):
+            return False
+        done = True
     return done
+
+
+def _chain(link: Inbound | Outbound) -> Chain | None:
+    """The monitors that ride on our end of a connection."""
+    return link.own_chain if isinstance(link, Inbound) else link.chain
 
 
 def thread_of(link: Inbound | Outbound) -> int:

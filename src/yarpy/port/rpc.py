@@ -153,8 +153,16 @@ class RpcClient(BasePort):
         """As `call` with one argument, but returns the whole Message; None if there is no reply."""
         self._check_open()
         link = self._link()
+        packet = Packet(question, key=CALL)
+        output = self._hub.monitoring.output
+        if output is not None:
+            passed = output.send(packet)
+            if passed is None:
+                link.counter.drops += 1
+                return None
+            packet = passed
         try:
-            return link.call(Packet(question, key=CALL), timeout)
+            return link.call(packet, timeout)
         except LinkClosed as error:
             self._hub.drop_output(link, str(error))
             # Not asked again: the server may have done what it was told before it went away.

@@ -30,6 +30,13 @@ class Writer(BasePort):
         if not outputs:
             return 0
         packet = Packet(value, envelope_of(stamp) if stamp is not None else b"")
+        if hub.monitoring.output is not None:
+            passed = hub.monitoring.output.send(packet)
+            if passed is None:
+                for link in outputs:
+                    link.counter.drops += 1
+                return 0
+            packet = passed
         return self._send_all(packet, outputs, wait)
 
     def _send_all(self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool) -> int:

@@ -48,6 +48,21 @@ class Lines(tuple[str, ...]):
         return text.encode("utf-8", "surrogateescape")
 
 
+class Encoded:
+    """A value in its binary spelling already; as text it is what these bytes say."""
+
+    __slots__ = ("data",)
+
+    def __init__(self, data: Buffer) -> None:
+        self.data = data
+
+    def to_wire(self) -> tuple[Buffer, ...]:
+        return (self.data,)
+
+    def to_text(self) -> bytes:
+        return codec.encode_text(codec.decode(self.data))
+
+
 class Packet:
     """What to send: an object, its envelope, and whether a reply is wanted.
 
@@ -95,6 +110,16 @@ class Packet:
         framed = self.framed
         return framed is not None and len(framed) == 1 and len(framed[0]) < SMALL
 
+    @classmethod
+    def of(cls, message: Message, before: Packet) -> Packet:
+        """What a monitor made of the packet `before`."""
+        value = Encoded(message.payload) if message.spelling == "binary" else message.payload
+        if value is before.value and message.envelope.encode() == before.envelope:
+            return before
+        if message.spelling == "text":
+            value = message.value
+        return cls(value, message.envelope.encode(), before.key)
+
     @property
     def line(self) -> bytes:
         """The text spelling, without a line end."""
@@ -128,6 +153,27 @@ class Message:
         self.source = ""
         self.answer: Callable[[object], None] | None = None  # set by the link while a reply can go
         self._value: object = _UNSET
+
+    @classmethod
+    def of(cls, packet: Packet) -> Message:
+        """What is about to be sent, as a monitor looks at it."""
+        return cls(packet.key, packet.value, packet.envelope.decode(), "object")
+
+    def replaced(self, value: object, binary: bool = False) -> Message:
+        """A message like this one, to the same receiver, with another value.
+
+        With `binary`, `value` is a bytes-like object: the new value's binary spelling.
+        """
+        fresh = Message(self.key, value, self.envelope, "binary" if binary else "object", self.text)
+        fresh.source, fresh.answer = self.source, self.answer
+        return fresh
+
+    def to_bytes(self) -> Buffer:
+        """The payload's binary spelling."""
+        if self.spelling == "binary":
+            payload: Buffer = self.payload
+            return payload
+        return b"".join(codec.encode(self.value))
 
     @property
     def value(self) -> Any:

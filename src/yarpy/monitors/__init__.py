@@ -1,0 +1,5 @@
+"""Monitors: what looks at, changes, delays or refuses the messages of a connection or port."""
+
+from yarpy.monitors.base import DROP, Group, Place
+
+__all__ = ["DROP", "Group", "Place"]

@@ -1,0 +1,169 @@
+"""What a monitor is: something that rides on a connection, or a port, and sees every message.
+
+A monitor is any object with some of these methods; those it lacks cost nothing:
+
+    accept(message) -> bool            False: the message is dropped, and counted
+    update(message) -> object          what goes on instead: a value, a Message, or DROP;
+                                       None: the message as it is
+    update_reply(message) -> object    the same for the reply to a call, at the caller's side
+    trigger()                          another monitor at the same port has let a message pass
+    configure(parameters)              new parameters (a Property) while the connection runs
+    parameters() -> dict               what they are now
+    close()                            the connection ends
+
+The class, or any function that returns such an object, is called with the `Place` where it is to
+sit and is found by name (entry point group `yarpy.monitors`). It raises an error of yarpy's tree if
+its parameters are wrong: the connection is then refused with that text.
+
+Rules: at the sender's end the messages of several writers come one after the other, at the
+receiver's end those of one connection. `trigger`, `configure` and `parameters` come from any thread
+at any time. A method that raises costs the message, which is counted as dropped, and a log line.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from yarpy.data.bottle import Bottle
+from yarpy.errors import LocalProtocolError
+
+
+class _Drop:
+    """The one object that says: this message goes no further."""
+
+    def __repr__(self) -> str:
+        return "DROP"
+
+
+DROP: Final = _Drop()
+
+
+class Group:
+    """The monitors at the receiving ends of one port's connections, who decide together.
+
+    `lock` is for what they share; hold it briefly, and never while a monitor's `trigger` runs.
+    """
+
+    def __init__(self) -> None:
+        self.members: tuple[Any, ...] = ()
+        self.lock = threading.RLock()
+        self._triggered: tuple[Any, ...] = ()
+
+    def add(self, monitor: object) -> None:
+        """A connection came."""
+        with self.lock:
+            self._set((*self.members, monitor))
+
+    def remove(self, monitor: object) -> None:
+        """A connection went."""
+        with self.lock:
+            self._set(tuple(one for one in self.members if one is not monitor))
+
+    def _set(self, members: tuple[Any, ...]) -> None:
+        self.members = members
+        self._triggered = tuple(one for one in members if hasattr(one, "trigger"))
+
+    def trigger(self, by: object) -> None:
+        """Tell the others that `by` has let a message pass."""
+        for monitor in self._triggered:
+            if monitor is not by:
+                monitor.trigger()
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a monitor sits: on messages from `source` to `target`, at one end of the connection.
+
+    `carrier` is the whole carrier string. A monitor of a port rather than of a connection has the
+    port's name in both places and no carrier. `tokens` are the monitor's own parameters, `shared`
+    all of the connection's.
+    """
+
+    source: str
+    target: str
+    carrier: str = ""
+    sending: bool = False
+    tokens: tuple[str, ...] = ()
+    shared: tuple[str, ...] = ()
+    group: Group = field(default_factory=Group)
+
+    def __str__(self) -> str:
+        if self.source == self.target:
+            return f"{'output' if self.sending else 'input'} of {self.source}"
+        return f"{self.source} -> {self.target}"
+
+    def find(self, key: str) -> str | Bottle | None:
+        """The parameter `key`: text, a Bottle for `+(key ...)`, "" for a bare word, or None.
+
+        The monitor's own parameters come before the connection's others, as C++ mixes them; of
+        several with one name the last counts.
+        """
+        for tokens in (self.tokens, self.shared):
+            for token in reversed(tokens):
+                name, value = read_token(token)
+                if name == key:
+                    return value
+        return None
+
+    def text(self, key: str, default: str = "") -> str:
+        """A parameter as text."""
+        value = self.find(key)
+        return default if value is None else value.to_text() if isinstance(value, Bottle) else value
+
+    def flag(self, key: str) -> bool:
+        """Whether a word is there and not switched off (`+key`, `+key.1`; not `+key.0`)."""
+        value = self.find(key)
+        return value is not None and value not in ("0", "off", "false")
+
+    def number(
+        self, key: str, default: float, least: float = float("-inf"), most: float = float("inf")
+    ) -> float:
+        """A parameter as a number. Raises LocalProtocolError when it is none, or out of range."""
+        value = self.find(key)
+        if value is None:
+            return default
+        try:
+            number = float(value)  # type: ignore[arg-type]
+        except (TypeError, ValueError):
+            number = float("nan")
+        if not least <= number <= most:
+            limits = f" from {least:g} to {most:g}" if (least, most) != (-_INF, _INF) else ""
+            raise LocalProtocolError(f'"{key}" takes a number{limits}, not "{self.text(key)}"')
+        return number
+
+
+_INF = float("inf")
+
+
+def read_token(token: str) -> tuple[str, str | Bottle]:
+    """A parameter of a carrier string as key and value.
+
+    >>> read_token("file.my.lua"), read_token("virtual")
+    (('file', 'my.lua'), ('virtual', ''))
+    >>> read_token("(ex (/a -10))")[0]
+    'ex'
+    """
+    if token.startswith("("):
+        inner = Bottle.from_text(token)
+        while len(inner) == 1 and isinstance(inner[0], Bottle):
+            inner = inner[0]  # the parentheses are doubled on their way through C++
+        return (str(inner[0]) if inner else ""), Bottle(inner[1:])
+    name, _, value = token.partition(".")
+    return name, value
+
+
+def split_tokens(carrier: str) -> Iterator[str]:
+    """The parameters of a carrier string: what stands between `+` outside parentheses."""
+    depth, start = 0, carrier.find("+") + 1
+    if not start:
+        return
+    for index in range(start, len(carrier)):
+        c = carrier[index]
+        if c == "+" and depth == 0:
+            yield carrier[start:index]
+            start = index + 1
+        depth += (c == "(") - (c == ")")
+    yield carrier[start:]

@@ -1,0 +1,166 @@
+"""Chain: the monitors at one end of a connection, one after the other.
+
+Rules: a chain is made before the connection is, so that a wrong name or parameter refuses it. Only
+the methods that its monitors have are called. A monitor that fails costs the message and one log
+line; the connection lives.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Sequence
+from typing import Any, Final, Literal
+
+from yarpy import registry
+from yarpy.data.property import Property
+from yarpy.errors import LocalProtocolError, YarpError
+from yarpy.monitors.base import DROP, Group, Place, split_tokens
+from yarpy.wire.message import Message, Packet
+
+log = logging.getLogger("yarpy.monitors")
+
+_MOST_TOLD: Final = 16  # different complaints of one chain that are logged
+
+
+def named(carrier: str, side: Literal["send", "recv"]) -> list[tuple[str, tuple[str, ...]]]:
+    """The monitors of one side in a carrier string, each with the parameters that follow it.
+
+    >>> named("tcp+send.throttle+period_ms.10+recv.portmonitor+file.x", "send")
+    [('throttle', ('period_ms.10',))]
+    """
+    found: list[tuple[str, list[str]]] = []
+    own: list[str] | None = None
+    for token in split_tokens(carrier):
+        way, dot, name = token.partition(".")
+        if dot and way in ("send", "recv"):
+            own = []
+            if way == side:
+                found.append((name, own))
+        elif own is not None:
+            own.append(token)
+    return [(name, tuple(tokens)) for name, tokens in found]
+
+
+def make(name: str, place: Place) -> object:
+    """The monitor called `name`, at its place. Raises UnknownPlugin, LocalProtocolError."""
+    kind = registry.monitors.load(name)
+    try:
+        return kind(place)
+    except YarpError:
+        raise
+    except Exception as error:
+        raise LocalProtocolError(
+            f'monitor "{name}" cannot start at {place}: {type(error).__name__}: {error}'
+        ) from error
+
+
+def from_carrier(
+    carrier: str, side: Literal["send", "recv"], source: str, target: str, group: Group
+) -> list[object]:
+    """The monitors that a carrier string asks for at one end. Raises as `make`."""
+    found = named(carrier, side)
+    shared = tuple(split_tokens(carrier)) if found else ()
+    made: list[object] = []
+    try:
+        for name, tokens in found:
+            place = Place(source, target, carrier, side == "send", tokens, shared, group)
+            made.append(make(name, place))
+    except YarpError:
+        Chain(made, "").close()
+        raise
+    return made
+
+
+class Chain:
+    """Monitors in their order, for one connection or one port."""
+
+    def __init__(self, monitors: Sequence[object], where: str, group: Group | None = None) -> None:
+        self.monitors = tuple(monitors)
+        self._where = where
+        self._group = group
+        self._steps = tuple(
+            (one, getattr(one, "accept", None), getattr(one, "update", None)) for one in monitors
+        )
+        self._replies = tuple(one.update_reply for one in monitors if hasattr(one, "update_reply"))
+        self._lock = threading.Lock()  # several writers may use one connection
+        self._told: set[str] = set()
+
+    # -- messages ---------------------------------------------------------------------------------
+
+    def take(self, message: Message) -> Message | None:
+        """What becomes of a message; None: it is dropped."""
+        group = self._group
+        try:
+            for monitor, accept, update in self._steps:
+                if accept is not None and not accept(message):
+                    return None
+                if group is not None:
+                    group.trigger(monitor)
+                if update is not None:
+                    made = update(message)
+                    if made is DROP:
+                        return None
+                    if made is not None and made is not message:
+                        message = made if isinstance(made, Message) else message.replaced(made)
+        except Exception as error:
+            self._complain(error)
+            return None
+        return message
+
+    def send(self, packet: Packet) -> Packet | None:
+        """What becomes of a packet; None: it is dropped."""
+        message = Message.of(packet)
+        with self._lock:
+            made = self.take(message)
+        if made is None:
+            return None
+        return packet if made is message else Packet.of(made, packet)
+
+    def reply(self, message: Message) -> Message:
+        """What becomes of the reply to a call; a reply is never dropped."""
+        try:
+            for update in self._replies:
+                made = update(message)
+                if made is not None and made is not DROP and made is not message:
+                    message = made if isinstance(made, Message) else message.replaced(made)
+        except Exception as error:
+            self._complain(error)
+        return message
+
+    def _complain(self, error: Exception) -> None:
+        text = f"{error}" if isinstance(error, YarpError) else f"{type(error).__name__}: {error}"
+        if text not in self._told and len(self._told) < _MOST_TOLD:
+            self._told.add(text)
+            log.warning("%s: a monitor dropped a message: %s", self._where, text)
+
+    def followed_by(self, other: Chain) -> Chain:
+        """A chain of both; closing it is left to who made the two."""
+        return Chain((*self.monitors, *other.monitors), self._where, self._group)
+
+    # -- parameters -------------------------------------------------------------------------------
+
+    def configure(self, parameters: Property) -> bool:
+        """Give every monitor that takes any new parameters; whether there is one."""
+        able = [one for one in self.monitors if hasattr(one, "configure")]
+        for monitor in able:
+            monitor.configure(parameters)
+        return bool(able)
+
+    def parameters(self) -> Property:
+        """The parameters of all monitors that tell theirs."""
+        found = Property()
+        for monitor in self.monitors:
+            told: Any = getattr(monitor, "parameters", dict)
+            found.update(told())
+        return found
+
+    def close(self) -> None:
+        """The connection, or its port, ends."""
+        for monitor in self.monitors:
+            if self._group is not None:
+                self._group.remove(monitor)
+            try:
+                getattr(monitor, "close", lambda: None)()
+            except Exception as error:
+                log.warning("%s: a monitor did not close: %s", self._where, error)

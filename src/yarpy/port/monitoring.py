@@ -1,0 +1,109 @@
+"""Monitoring: the monitors of a port and of its connections - who sits where, and their parameters.
+
+Rules: what rides on a connection is named by its carrier string (`+send.NAME`, `+recv.NAME`); what
+rides on the port itself is attached by an administrative message, in front of every output or
+behind every input. A port without monitors has no chain, and pays nothing.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from yarpy.contact import Route
+from yarpy.data.property import Property
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
+from yarpy.monitors.base import Group, Place
+from yarpy.monitors.chain import Chain, from_carrier, make, named
+
+if TYPE_CHECKING:
+    from yarpy.port.hub import Hub
+
+DEFAULT = "portmonitor"  # the monitor that is attached when none is named
+
+
+class Monitoring:
+    """The monitors of one port."""
+
+    def __init__(self, hub: Hub) -> None:
+        self._hub = hub
+        self.group = Group()
+        self.input: Chain | None = None  # the port's own, behind the chain of each input
+        self.output: Chain | None = None  # the port's own, in front of the chain of each output
+
+    # -- connections ------------------------------------------------------------------------------
+
+    def outgoing(self, route: Route) -> Chain | None:
+        """The sender's chain of a connection that is about to be made. Raises as `make`."""
+        if "+send." not in route.carrier:
+            return None
+        monitors = from_carrier(route.carrier, "send", route.source, route.target, Group())
+        return Chain(monitors, str(route))
+
+    def incoming(self, link: Inbound) -> None:
+        """Give a new input its chain. Raises as `make`."""
+        route = link.route
+        if "+recv." not in route.carrier:
+            link.chain = self.input
+            return
+        monitors = from_carrier(route.carrier, "recv", route.source, route.target, self.group)
+        for monitor in monitors:
+            self.group.add(monitor)
+        link.own_chain = Chain(monitors, str(route), self.group)
+        link.chain = self._joined(link.own_chain)
+
+    def _joined(self, own: Chain | None) -> Chain | None:
+        if own is None or self.input is None:
+            return own or self.input
+        return own.followed_by(self.input)
+
+    # -- the port itself --------------------------------------------------------------------------
+
+    def attach(self, side: Literal["in", "out"], parameters: Property) -> None:
+        """Let a monitor ride on the port; it replaces the one that did. Raises as `make`.
+
+        `(monitor NAME)` among the parameters says which, else it is a portmonitor; the others are
+        its own.
+        """
+        name = self._hub.name
+        tokens = tuple(f"{key}.{value}" for key, value in parameters.items() if key != "monitor")
+        place = Place(name, name, sending=side == "out", tokens=tokens, shared=tokens)
+        fresh = Chain([make(str(parameters.get("monitor", DEFAULT)), place)], str(place))
+        self.detach(side)
+        self._set(side, fresh)
+
+    def detach(self, side: Literal["in", "out"]) -> None:
+        """Let nothing ride on the port any more."""
+        old = self.input if side == "in" else self.output
+        self._set(side, None)
+        if old is not None:
+            old.close()
+
+    def _set(self, side: Literal["in", "out"], chain: Chain | None) -> None:
+        if side == "out":
+            self.output = chain
+            return
+        self.input = chain
+        for link in self._hub.inputs:
+            link.chain = self._joined(link.own_chain)
+
+    # -- parameters -------------------------------------------------------------------------------
+
+    def chain(self, side: Literal["in", "out"], name: str) -> Chain | None:
+        """The chain of the connection from or to `name`, or the port's own if that is its name."""
+        if name == self._hub.name:
+            return self.input if side == "in" else self.output
+        if side == "in":
+            return next((x.own_chain for x in self._hub.inputs if x.route.source == name), None)
+        return next((x.chain for x in self._hub.outputs if x.route.target == name), None)
+
+    def close(self) -> None:
+        """The port closes."""
+        self.detach("in")
+        self.detach("out")
+
+
+def monitored(link: Inbound | Outbound) -> list[str]:
+    """The names of the monitors that ride on our end of a connection."""
+    side: Literal["send", "recv"] = "recv" if isinstance(link, Inbound) else "send"
+    return [name for name, _ in named(link.route.carrier, side)]
