@@ -329,6 +329,27 @@ def test_page_that_a_program_made() -> None:
     assert "evil" not in get("/a/page", answer=evil)[1]
 
 
+@pytest.mark.parametrize("piece", [0, 1])
+def test_reply_that_begins_a_stream(piece: int) -> None:
+    """core-4 7.5: the connection is turned round, each later message of the port is a chunk."""
+    answer = [["stream", 1], ["web", "<p>one</p>"]]
+    request = b"GET /my/stream HTTP/1.1\r\nHost: x\r\n\r\n"
+    owner, said = serve(*chop(request, piece), answer=answer)
+    (link,) = owner.reversed
+    head, _, body = said.partition(b"\r\n\r\n")
+    assert b"transfer-encoding: chunked" in head.lower()
+    assert b"content-type: text/html" in head.lower()
+    assert b"sandbox" in head
+    size, _, rest = body.partition(b"\r\n")
+    assert rest[: int(size, 16)] == b" " * 2048 + b"<p>one</p>"
+    assert streamed(link.carrier, [["web", b"<p>two</p>"]]) == b"a\r\n<p>two</p>\r\n"
+    assert streamed(link.carrier, ["hi", 3]) == b"6\r\nhi 3\r\n\r\n"
+    # For JSON it is a reply like any other.
+    owner, said = serve(request.replace(b"/my/stream", b"/?req=stream"), answer=answer)
+    assert not owner.reversed
+    assert json.loads(responses(said, "GET")[0][2]) == {"stream": 1, "web": "<p>one</p>"}
+
+
 def test_nothing_of_a_message_is_markup() -> None:
     script = "<script>alert(1)</script>"
     _, said = serve(

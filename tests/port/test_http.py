@@ -134,6 +134,24 @@ def test_reading_a_port(names: LocalNames) -> None:
         assert events.read() == b""
 
 
+def test_program_that_streams(names: LocalNames) -> None:
+    """A reply with `stream`, then what the port writes, on the same connection."""
+
+    def answer(message: yarpy.Message) -> None:
+        message.reply([["web", "zero\n"], ["mime", "text/plain"], ["stream", 1]])
+
+    with yarpy.Port("/out", names=names, callback=answer) as port:
+        response = opened(port, "/my/stream")
+        assert response.getheader("Content-Type") == "text/plain"
+        assert response.readline() == b" " * 2048 + b"zero\n"
+        port.write([["web", "one\n"]])
+        assert response.readline() == b"one\n"
+        port.write(["two", 2])
+        assert response.readline() == b"two 2\r\n"
+        port.close()
+        assert response.read() == b""
+
+
 def test_reader_that_goes_is_dropped(names: LocalNames) -> None:
     with yarpy.Port("/out", names=names) as port:
         response = opened(port, "/r")

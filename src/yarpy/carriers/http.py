@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 MAX_HEAD: Final = 1 << 14  # bytes of a request line with all headers
 MAX_BODY: Final = 1 << 24
 DRAIN: Final = 1 << 20  # bytes of a refused body that are read, so that the refusal arrives
+_PRELUDE: Final = 2048  # blanks with which an endless page begins, so that browsers show it
 PATIENCE: Final = 60.0  # seconds a connection may be idle
 ENVELOPE: Final = "yarp-envelope"
 
@@ -119,6 +120,9 @@ class Http(Carrier):
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         while not self.finished:
+            if self._streaming:  # the reply to the last message has begun something endless
+                self.holding = False
+                return Message("r")
             if self._wish is not None:
                 self._answer_nothing(stream)  # the next request waits already
                 continue
@@ -129,7 +133,7 @@ class Http(Carrier):
                 continue
             self._taken += 1
             if wish.key == "r":
-                self._begin_stream(stream, wish.form)
+                self._begin_reading(stream, wish.form)
                 return Message("r")
             self._wish = wish
             self.structured = wish.form == "json"
@@ -328,8 +332,14 @@ class Http(Carrier):
         mime = str(kind[1]) if kind is not None and len(kind) > 1 else _HTML
         if not (mime.isascii() and mime.isprintable()):
             return False
-        body = guest[1] if isinstance(guest[1], bytes) else _encoded(str(guest[1]))
-        self._respond(stream, 200, mime, body, [_GUEST_POLICY])
+        body = _web_body(guest)
+        if Bottle(value).group("stream") is None:
+            self._respond(stream, 200, mime, body, [_GUEST_POLICY])
+            return True
+        self._wish = None
+        self._begin_stream(stream, "guest", [_GUEST_POLICY, ("Content-Type", mime)])
+        self._write_part(stream, b" " * _PRELUDE + body)  # as C++; some browsers need it
+        self.holding = True
         return True
 
     def _preflight(self, stream: ByteStream) -> None:
@@ -376,25 +386,28 @@ class Http(Carrier):
 
     # -- a reader ---------------------------------------------------------------------------------
 
-    def _begin_stream(self, stream: ByteStream, form: Form) -> None:
+    def _begin_reading(self, stream: ByteStream, form: Form) -> None:
+        """Answer `/r`: everything that the port writes, from now on."""
+        from yarpy.carriers.http_page import stream_head
+
+        policy = [self._policy()] if form == "page" else []
+        self._begin_stream(stream, form, [*policy, ("Content-Type", _STREAMS.get(form, _TEXT))])
+        if form == "page":
+            self._write_part(stream, stream_head(self.route.target))
+        elif form == "events":
+            self._write_part(stream, b": reading\n\n")
+
+    def _begin_stream(self, stream: ByteStream, form: Form, headers: list[tuple[str, str]]) -> None:
         """The head of a response that does not end; the connection becomes an output."""
         import h11
-
-        from yarpy.carriers.http_page import stream_head
 
         talk = self._h11
         assert talk is not None
         self._streaming, self._form = True, form
         self.acks, self.lossy, self.backlog = False, True, 16
-        policy = [self._policy()] if form == "page" else []
-        kind = ("Content-Type", _STREAMS.get(form, _TEXT))
-        headers = [*_COMMON, *policy, kind, ("Access-Control-Allow-Origin", "*")]
+        headers = [*_COMMON, *headers, ("Access-Control-Allow-Origin", "*")]
         head = h11.Response(status_code=200, headers=headers, reason=_REASONS[200])
         stream.write(talk.send(head) or b"")
-        if form == "page":
-            self._write_part(stream, stream_head(self.route.target))
-        elif form == "events":
-            self._write_part(stream, b": reading\n\n")
 
     def prepare(self, packet: Packet) -> bool:
         if not self._streaming:
@@ -601,7 +614,17 @@ def _streamed(packet: Packet, form: Form) -> bytes:
         from yarpy.carriers.http_page import stream_line
 
         return stream_line(packet.line.decode("utf-8", "surrogateescape"))
+    if form == "guest":
+        value = packet.value
+        guest = Bottle(value).group("web") if isinstance(value, (list, tuple)) else None
+        if guest is not None and len(guest) > 1:
+            return _web_body(guest)
     return packet.line + b"\r\n"
+
+
+def _web_body(guest: Bottle) -> bytes:
+    """What a program put under the key `web`."""
+    return guest[1] if isinstance(guest[1], bytes) else _encoded(str(guest[1]))
 
 
 def _encoded(text: str) -> bytes:

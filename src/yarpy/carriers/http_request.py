@@ -25,7 +25,7 @@ from yarpy.errors import DecodeError
 from yarpy.wire import framing
 from yarpy.wire.message import ADMIN, CALL, DATA, Message, Spelling
 
-Form: TypeAlias = Literal["page", "json", "text", "none", "events"]
+Form: TypeAlias = Literal["page", "json", "text", "none", "events", "guest"]
 
 MAX_FIELDS: Final = 1000
 FORM: Final = "application/x-www-form-urlencoded"
