@@ -17,7 +17,7 @@ from support.steps import chop, finish, is_waiting, measured, output
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import LinkClosed, RemoteProtocolError, YarpError
+from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError, YarpError
 from yarpy.wire import framing
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.stream import FIRST_GRANT, LARGE, ByteStream, run
@@ -485,13 +485,23 @@ def test_mutated_messages_end_in_our_errors_however_they_are_cut(data: bytes) ->
     assert isinstance(whole, list)
     assert isinstance(whole[-1], type)
     assert issubclass(whole[-1], YarpError)
-    assert outcome(data, 1) == whole
-    assert outcome(data, 7) == whole
+    for size in (1, 7):
+        assert_alike(outcome(data, size), whole)
+
+
+def assert_alike(cut: object, whole: object) -> None:
+    """The same, but for one thing: who waits for what a list announced may meet the end of the
+    stream before looking at elements that cannot be."""
+    if cut != whole:
+        assert isinstance(cut, list)
+        assert isinstance(whole, list)
+        assert cut[:-1] == whole[:-1]
+        assert (cut[-1], whole[-1]) == (LinkClosed, DecodeError)
 
 
 @given(st.binary(max_size=200))
 def test_noise_ends_in_our_errors(data: bytes) -> None:
-    assert outcome(data, 0) == outcome(data, 1)
+    assert_alike(outcome(data, 1), outcome(data, 0))
 
 
 @settings(max_examples=50)
