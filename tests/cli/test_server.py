@@ -5,6 +5,7 @@ import signal
 import socket
 import threading
 import time
+import urllib.request
 from pathlib import Path
 
 import pytest
@@ -110,6 +111,19 @@ def test_silent(lone, port):
         process.signal(signal.SIGTERM)
         assert process.wait() == 0
     assert (process.stdout, process.stderr) == ("", "")
+
+
+def test_files_for_browsers(lone, port, tmp_path):
+    (tmp_path / "index.html").write_text("<h1>robots</h1>")
+    options = ("--ip", "127.0.0.1", "--socket", str(port), "--web", str(tmp_path))
+    with lone.start("server", *options) as process:
+        process.wait_line(f"^Files of {tmp_path} are shown at http://127.0.0.1:{port}/web/$")
+        process.wait_line(r"^Ok\. Ready!$")
+        with urllib.request.urlopen(f"http://127.0.0.1:{port}/web/", timeout=10) as page:
+            assert page.read() == b"<h1>robots</h1>"
+    done = lone.run("server", "--web", str(tmp_path / "none"))
+    assert done.returncode != 0
+    assert "does not exist" in done.stderr
 
 
 def test_databases_survive_it(lone, port, tmp_path):

@@ -4,6 +4,7 @@
     --portdb F --subdb F     files (SQLite) that remember registrations, and persistent connections
     --write                  replace the address that is stored in the address file
     --read                   use the stored address even if it is not one of this computer
+    --web DIR                show the files of a directory to browsers, at /web/
 
 Where it listens: what the options say; else the address that is stored for the namespace (or that
 YARPY_SERVER says), because that is where programs look; else an address of this computer and port
@@ -164,6 +165,12 @@ class Scribe:
 @click.option("--cautious", is_flag=True, help="Have every change wait for the disk.")
 @click.option("--write", is_flag=True, help="Replace the stored address.")
 @click.option("--read", is_flag=True, help="Use the stored address as it is.")
+@click.option(
+    "--web",
+    type=click.Path(exists=True, file_okay=False),
+    metavar="DIR",
+    help="Show the files of a directory at /web/.",
+)
 @click.option("--silent", is_flag=True, help="Print warnings and errors only.")
 @click.option("--verbose", is_flag=True, help="Print all that is logged.")
 def command(
@@ -174,6 +181,7 @@ def command(
     cautious: bool,
     write: bool,
     read: bool,
+    web: str | None,
     silent: bool,
     verbose: bool,
 ) -> int:
@@ -190,14 +198,20 @@ def command(
         warn(place.note)
     say = _nothing if silent else print_line
     try:
-        _serve(found, place, portdb, subdb, cautious, say)
+        _serve(found, place, portdb, subdb, cautious, web, say)
     except Interrupted:
         say("Name server ends.")
     return 0
 
 
 def _serve(
-    found: Configuration, place: Place, portdb: str, subdb: str, cautious: bool, say: object
+    found: Configuration,
+    place: Place,
+    portdb: str,
+    subdb: str,
+    cautious: bool,
+    web: str | None,
+    say: object,
 ) -> None:
     """Serve until a signal comes."""
     from yarpy.names.configuration import write_server
@@ -218,6 +232,7 @@ def _serve(
             subdb=None if subdb == MEMORY else Path(subdb),
             cautious=cautious,
             discoverable=True,
+            web=web,
         )
     except AddressError as error:
         raise _explained(server, error) from error
@@ -234,6 +249,8 @@ def _serve(
             scribe = Scribe()
             service.on_command = scribe.command
         say(f"Name server can be browsed at http://{server.host}:{server.port}/")
+        if web is not None:
+            say(f"Files of {web} are shown at http://{server.host}:{server.port}/web/")
         say("Ok. Ready!")
         while not threading.Event().wait(HAPPY):
             say("Name server running happily")

@@ -33,6 +33,7 @@ from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
 from yarpy.services.collector import Collector
+from yarpy.services.folder import Folder
 from yarpy.transports.tcp import is_taken
 from yarpy.wire.message import Lines, Message, Packet
 
@@ -78,7 +79,8 @@ class NameServer:
 
     host: the address to tell others; the server listens on all. portdb, subdb: SQLite files for
     registrations and for subscriptions; without, nothing survives the server. discoverable: answer
-    multicast searches (`yarpy detect`). Raises AddressError if the port number is taken.
+    multicast searches (`yarpy detect`). web: a directory whose files browsers see at `/web/`.
+    Raises AddressError if the port number is taken, or there is no such directory.
     """
 
     def __init__(
@@ -91,7 +93,9 @@ class NameServer:
         subdb: str | Path | None = None,
         cautious: bool = False,
         discoverable: bool = False,
+        web: str | Path | None = None,
     ) -> None:
+        pages = Folder(web) if web is not None else None
         desk = _Desk()
         self._hub = Hub(name, desk, None, port=port, host=host, register=False)
         self.host = host
@@ -121,6 +125,7 @@ class NameServer:
             self.close()
             raise
         self._hub.lines_for_people = self._page
+        self._hub.on_page = pages
         desk.open(self._answer)
 
     @property
