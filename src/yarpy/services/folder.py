@@ -52,7 +52,9 @@ class Folder:
 
     def _find(self, parts: list[str]) -> Path | None:
         """The file at that place; a directory where its name came without the last slash."""
-        *folders, name = parts or [""]
+        if not parts:
+            return self._root
+        *folders, name = parts
         if any(part.startswith(".") or "\\" in part for part in parts) or "" in folders:
             return None
         found = self._root.joinpath(*folders, name or "index.html").resolve(strict=True)
@@ -60,7 +62,7 @@ class Folder:
             return None
         mode = found.stat().st_mode
         if stat.S_ISDIR(mode):
-            return found if parts and (found / "index.html").is_file() else None
+            return found if (found / "index.html").is_file() else None
         return found if stat.S_ISREG(mode) else None
 
 
