@@ -9,6 +9,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 _WHERE = {
+    "ControlBoard": "control_board_client",
+    "ControlBoardServer": "control_board_server",
     "ControlMode": "control_board",
     "FEATURES": "frame_grabber",
     "Gains": "control_board",
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
     from yarpy.devices.control_board import Gains as Gains
     from yarpy.devices.control_board import InteractionMode as InteractionMode
     from yarpy.devices.control_board import MotorTorqueParameters as MotorTorqueParameters
+    from yarpy.devices.control_board_client import ControlBoard as ControlBoard
+    from yarpy.devices.control_board_server import ControlBoardServer as ControlBoardServer
     from yarpy.devices.frame_grabber import FEATURES as FEATURES
 
 

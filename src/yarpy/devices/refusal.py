@@ -1,0 +1,40 @@
+"""Refused: a request that is not carried out. Its reason is for the log; the answer is `[fail]`."""
+
+from __future__ import annotations
+
+import logging
+import time
+from typing import Final
+
+from yarpy.errors import YarpError
+
+log = logging.getLogger("yarpy.devices")
+
+#: The same complaint is logged again after this many seconds.
+QUIET: Final = 5.0
+
+
+class Refused(Exception):
+    """Asked for what the device does not have, or in a wrong way."""
+
+
+class Complaints:
+    """Log lines about a user's device: one for each thing that goes wrong, not one for each time.
+
+    A sensor that fails fifty times a second would otherwise bury every other line.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self._said: dict[str, tuple[str, float]] = {}
+
+    def __call__(self, about: str, error: Exception) -> None:
+        """Log that `about` (a method of the device) failed, unless that was said just now."""
+        text = str(error)
+        if not isinstance(error, (Refused, YarpError)):
+            text = f"{type(error).__name__}: {error}"
+        now = time.monotonic()
+        before, at = self._said.get(about, ("", 0.0))
+        if before != text or now - at > QUIET:
+            self._said[about] = (text, now)
+            log.warning("%s: %s: %s", self.name, about, text)

@@ -1,0 +1,108 @@
+"""The message of stateExt:o: eleven measurements of all joints, each with a flag.
+
+    (positions) [ok] (speeds) [ok] ... (control modes) [ok] (interaction modes) [fail]
+
+Rules: always 22 elements and always as many values as joints: C++ clients copy them blindly, and
+drop a message with an empty list in it. What is not measured is zeros and `[fail]`. Numbers are
+float64, modes int32 (the number of the word).
+
+Source: the struct that controlBoard_nws_yarp sends, YARP 2.3.70 to 3.12.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.value import Vocab
+from yarpy.devices.kind import FLOAT, WORD, Kind
+from yarpy.devices.refusal import Refused
+from yarpy.errors import DecodeError
+
+#: What the message holds, in order.
+FIELDS: Final[tuple[tuple[str, Kind], ...]] = (
+    ("encoders", FLOAT),
+    ("encoder_speeds", FLOAT),
+    ("encoder_accelerations", FLOAT),
+    ("motor_encoders", FLOAT),
+    ("motor_speeds", FLOAT),
+    ("motor_accelerations", FLOAT),
+    ("torques", FLOAT),
+    ("duty_cycles", FLOAT),
+    ("currents", FLOAT),
+    ("control_modes", WORD),
+    ("interaction_modes", WORD),
+)
+
+_VALID: Final = Vocab("ok")
+_INVALID: Final = Vocab("fail")
+# What stands in for a mode that is not known, so that the list has its length.
+_BLANK_MODE: Final = Vocab("unkw").code
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Measurements by name; what is not there was not valid."""
+
+    count: int
+    values: dict[str, list[Any]]
+
+    @classmethod
+    def of(cls, count: int, ask: Callable[[str, Kind], list[Any]]) -> State:
+        """Ask for each field; what is refused is missing."""
+        values: dict[str, list[Any]] = {}
+        for name, kind in FIELDS:
+            try:
+                values[name] = ask(name, kind)
+            except Refused:
+                continue
+        return cls(count, values)
+
+    def to_bottle(self) -> Bottle:
+        """The 22 elements."""
+        message = Bottle()
+        for name, kind in FIELDS:
+            values = self.values.get(name)
+            if kind is WORD:
+                codes = [_BLANK_MODE] * self.count
+                if values is not None:
+                    codes = [Vocab(value).code for value in values]
+                message.append(Bottle(codes))
+            else:
+                message.append(Bottle([0.0] * self.count if values is None else values))
+            message.append(_INVALID if values is None else _VALID)
+        return message
+
+    @classmethod
+    def from_bottle(cls, message: Sequence[Any]) -> State:
+        """Read the 22 elements; DecodeError if they are something else."""
+        if len(message) != 2 * len(FIELDS):
+            raise DecodeError(f"a state has {2 * len(FIELDS)} elements, this one {len(message)}")
+        values: dict[str, list[Any]] = {}
+        count = len(message[0]) if isinstance(message[0], (list, tuple)) else 0
+        for index, (name, kind) in enumerate(FIELDS):
+            found, flag = message[2 * index], message[2 * index + 1]
+            if not isinstance(found, (list, tuple)) or len(found) != count or not count:
+                raise DecodeError(f"a state of {count} joints has as many {name}")
+            if flag in (0, "fail", False):
+                continue
+            read = _mode if kind is WORD else _number
+            values[name] = [read(element) for element in found]
+        return cls(count, values)
+
+
+def _number(element: object) -> float:
+    if isinstance(element, (int, float)) and not isinstance(element, bool):
+        return float(element)
+    raise DecodeError(f"a state with {element!r} where a number belongs")
+
+
+def _mode(element: object) -> str:
+    """A mode: the number of its word, or the word itself, as senders of plain Bottles may write."""
+    if isinstance(element, Vocab):
+        return str.__str__(element)
+    if type(element) is int and -0x80000000 <= element <= 0x7FFFFFFF:
+        return str.__str__(Vocab.from_code(element))
+    raise DecodeError(f"a state with {element!r} where a mode belongs")

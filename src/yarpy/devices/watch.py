@@ -1,0 +1,101 @@
+"""The measurements of a remote control board, as they come in over its stateExt:o.
+
+Rules: only the newest counts, and only while it is fresh. Who asks too early waits a moment; who
+asks in vain learns why. A board that was away is asked to send again.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from types import TracebackType
+from typing import Any, Self
+
+from yarpy.data.bottle import Bottle
+from yarpy.devices.state import State
+from yarpy.errors import LocalProtocolError, Timeout, YarpError
+from yarpy.names.base import NameClient
+from yarpy.port.buffered import BufferedPort
+from yarpy.wire.message import Message
+
+
+class Watch:
+    """Listens to `source`. `timeout`: seconds after which a message no longer counts."""
+
+    def __init__(
+        self, source: str, local: str, carrier: str, timeout: float, names: NameClient | None
+    ) -> None:
+        self._source = source
+        self._carrier = carrier
+        self._timeout = timeout
+        self._changed = threading.Condition()  # around the two below
+        self._message: Message | None = None
+        self._arrival = 0.0
+        self._known: tuple[Message, State] | None = None
+        self._port = BufferedPort(local, callback=self._take, names=names)
+        try:
+            self._port.listen_to(source, carrier)
+        except YarpError:
+            self._port.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._port.close()
+
+    def values(self, field: str) -> list[Any]:
+        """The newest values of a field. Raises Timeout (nothing fresh came), LocalProtocolError
+        (the board does not measure it), DecodeError."""
+        message = self._fresh()
+        known = self._known
+        if known is None or known[0] is not message:
+            known = self._known = message, State.from_bottle(message.as_(Bottle))
+        found = known[1].values.get(field)
+        if found is None:
+            raise LocalProtocolError(f'"{self._source}" does not measure {field.replace("_", " ")}')
+        return [*found]
+
+    def time(self) -> float:
+        """When that was measured: the sender's time, or without one the time of arrival."""
+        message = self._fresh()
+        stamp = message.stamp
+        if stamp is not None:
+            return stamp.time
+        return time.time() - (time.monotonic() - self._arrival)
+
+    def _take(self, message: Message) -> None:
+        with self._changed:
+            self._message, self._arrival = message, time.monotonic()
+            self._changed.notify_all()
+
+    def _fresh(self) -> Message:
+        if not self._is_fresh():
+            self._listen_again()
+            with self._changed:
+                self._changed.wait_for(self._is_fresh, self._timeout)
+        message = self._message
+        if message is None or not self._is_fresh():
+            raise Timeout(
+                f'nothing came from "{self._source}" for {self._timeout} s: the robot stands still '
+                "or publishes more slowly (then a larger timeout helps)"
+            )
+        return message
+
+    def _is_fresh(self) -> bool:
+        return self._message is not None and time.monotonic() - self._arrival <= self._timeout
+
+    def _listen_again(self) -> None:
+        """Ask the board once more, if its connection has gone: it was restarted perhaps."""
+        if self._port.inputs:
+            return
+        try:
+            self._port.listen_to(self._source, self._carrier)
+        except YarpError as error:
+            raise Timeout(f'nothing comes from "{self._source}": {error}') from error

@@ -1,0 +1,13 @@
+"""What the tests of devices share: names of their own."""
+
+from __future__ import annotations
+
+import pytest
+
+from yarpy.names.local import LocalNames
+
+
+@pytest.fixture
+def names() -> LocalNames:
+    """Names of this test alone, without a server."""
+    return LocalNames()
