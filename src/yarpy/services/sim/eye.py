@@ -1,0 +1,80 @@
+"""Eye: a camera of a head, for `yarpy.devices.FrameGrabberServer`."""
+
+from __future__ import annotations
+
+from math import atan, degrees
+from typing import TYPE_CHECKING, Any, Final
+
+from yarpy.services.sim.body import Body
+from yarpy.services.sim.head import Side, eye_pose
+from yarpy.services.sim.renderer import Renderer
+from yarpy.services.sim.scene import Scene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+LARGEST: Final = 2048  # pixels, either way
+
+
+class Eye:
+    """One eye of the head `body`, looking at `scene`; `width` times `height` pixels."""
+
+    def __init__(
+        self, body: Body, scene: Scene, side: Side, width: int = 320, height: int = 240
+    ) -> None:
+        self._body = body
+        self._scene = scene
+        self._side: Side = side
+        self._renderer = Renderer(scene, width, height)
+        self._time = body.time
+
+    def image(self) -> NDArray[Any]:
+        """What the eye sees now: (height, width, 3) uint8, a new array."""
+        with self._body.present() as joints:
+            angles = [joint.position for joint in joints]
+            self._time = self._body.time
+        return self._renderer.render(eye_pose(angles, self._side), self._time)
+
+    def timestamp(self) -> float:
+        """The moment that the last image shows."""
+        return self._time
+
+    @property
+    def resolution(self) -> tuple[int, int]:
+        """Width and height in pixels; the field of view stays."""
+        lens = self._renderer.lens
+        return lens.width, lens.height
+
+    @resolution.setter
+    def resolution(self, size: tuple[int, int]) -> None:
+        width, height = size
+        if not (16 <= width <= LARGEST and 16 <= height <= LARGEST):
+            raise ValueError(f"{width} x {height} pixels: from 16 to {LARGEST}, either way")
+        self._renderer = Renderer(self._scene, width, height)
+
+    @property
+    def field_of_view(self) -> tuple[float, float]:
+        """Horizontal and vertical, degrees."""
+        lens = self._renderer.lens
+        return (
+            degrees(2 * atan(lens.width / 2 / lens.focal)),
+            degrees(2 * atan(lens.height / 2 / lens.focal)),
+        )
+
+    @property
+    def intrinsics(self) -> dict[str, Any]:
+        """Of a pinhole camera, in pixels."""
+        lens = self._renderer.lens
+        return {
+            "physFocalLength": 0.0,
+            "focalLengthX": lens.focal,
+            "focalLengthY": lens.focal,
+            "principalPointX": lens.centre[0],
+            "principalPointY": lens.centre[1],
+            "distortionModel": "plumb_bob",
+            "k1": 0.0,
+            "k2": 0.0,
+            "t1": 0.0,
+            "t2": 0.0,
+            "k3": 0.0,
+        }

@@ -1,0 +1,58 @@
+"""An eye as a device."""
+
+import numpy as np
+import pytest
+
+from yarpy.services.sim.axis import ICUB_HEAD
+from yarpy.services.sim.body import Body
+from yarpy.services.sim.eye import Eye
+from yarpy.services.sim.scene import room
+
+SCENE = room()
+
+
+class Clock:
+    now = 5.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def body(clock: Clock) -> Body:
+    return Body(ICUB_HEAD, clock)
+
+
+def test_it_sees_where_the_head_looks(body: Body, clock: Clock):
+    eye = Eye(body, SCENE, "left", 80, 60)
+    before = eye.image()
+    assert before.shape == (60, 80, 3) and before.dtype == np.uint8
+    assert eye.timestamp() == 5.0
+    with body.present() as joints:
+        joints[2].reference.move_to(40.0)
+    clock.now = 8.0
+    after = eye.image()
+    assert eye.timestamp() == 8.0
+    assert (before != after).any(-1).mean() > 0.5
+
+
+def test_both_eyes(body: Body):
+    left, right = (Eye(body, SCENE, side, 80, 60).image() for side in ("left", "right"))
+    assert (left != right).any()
+
+
+def test_facts(body: Body):
+    eye = Eye(body, SCENE, "right")
+    assert eye.resolution == (320, 240)
+    assert eye.field_of_view == pytest.approx((64.0, 50.2), abs=0.1)
+    eye.resolution = (64, 48)
+    assert eye.image().shape == (48, 64, 3)
+    assert eye.field_of_view == pytest.approx((64.0, 50.2), abs=0.1)
+    assert eye.intrinsics["focalLengthX"] == pytest.approx(51.2)
+    with pytest.raises(ValueError, match="from 16 to 2048"):
+        eye.resolution = (5000, 10)
