@@ -24,6 +24,7 @@ _WHERE = {
     "Message": "yarpy.wire.message",
     "Page": "yarpy.carriers.guest",
     "Contact": "yarpy.contact",
+    "Qos": "yarpy.qos",
     "NameServer": "yarpy.services.name_server",
     "LocalNames": "yarpy.names.local",
     "YarpNameClient": "yarpy.names.client",
@@ -110,6 +111,7 @@ if TYPE_CHECKING:
     from yarpy.port.port import Port as Port
     from yarpy.port.rpc import RpcClient as RpcClient
     from yarpy.port.rpc import RpcServer as RpcServer
+    from yarpy.qos import Qos as Qos
     from yarpy.realtime import realtime as realtime
     from yarpy.services.name_server import NameServer as NameServer
     from yarpy.wire.message import Message as Message

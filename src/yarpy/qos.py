@@ -33,6 +33,73 @@ class Sched:
     priority: int = -1
 
 
+@dataclass(frozen=True, slots=True)
+class Qos:
+    """What a connection is given, or has: its thread's scheduling and its packets' priority.
+
+    `policy` is SCHED_OTHER, SCHED_FIFO or SCHED_RR, `priority` 1..99 for the last two, `packets` a
+    level (LOW, NORM, HIGH, CRIT), a DSCP class (AF42) or a DSCP number. What is None is left as it
+    is. Raises ValueError.
+
+        >>> Qos("fifo", 30, "HIGH")
+        Qos(policy='SCHED_FIFO', priority=30, packets='AF42')
+    """
+
+    policy: str | None = None
+    priority: int | None = None
+    packets: str | int | None = None
+
+    def __post_init__(self) -> None:
+        if self.policy is not None:
+            number = policy_of(self.policy)
+            object.__setattr__(self, "policy", policy_name(number))
+            check(Sched(number, -1 if self.priority is None else self.priority))
+        if self.packets is not None:
+            object.__setattr__(self, "packets", packets_name(tos_of(self.packets)))
+
+    @classmethod
+    def of(cls, sched: Sched, tos: int) -> Qos:
+        """The same from numbers; -1 is None."""
+        return cls(
+            None if sched.policy < 0 else policy_name(sched.policy),
+            None if sched.priority < 0 else sched.priority,
+            None if tos < 0 else packets_name(tos),
+        )
+
+    @property
+    def sched(self) -> Sched:
+        """The scheduling as numbers."""
+        return Sched(
+            -1 if self.policy is None else policy_of(self.policy),
+            -1 if self.priority is None else self.priority,
+        )
+
+    @property
+    def tos(self) -> int:
+        """The TOS byte, -1 for none."""
+        return -1 if self.packets is None else tos_of(self.packets)
+
+
+def policy_name(policy: int) -> str:
+    """SCHED_FIFO and the like for the number of a policy."""
+    return next((name for name, one in POLICIES.items() if one == policy), str(policy))
+
+
+def packets_name(tos: int) -> str | int:
+    """The DSCP class of a TOS byte, or its DSCP number if that has no name."""
+    return next((name for name, dscp in DSCP.items() if dscp == tos >> 2), tos >> 2)
+
+
+def check(sched: Sched) -> None:
+    """Raises ValueError if no kernel takes this."""
+    if sched.policy not in (-1, *POLICIES.values()):
+        raise ValueError(f"{sched.policy} is no scheduling policy: use {', '.join(POLICIES)}")
+    if sched.policy > 0 and sched.priority != -1 and not 1 <= sched.priority <= 99:
+        raise ValueError(f"{policy_name(sched.policy)} takes a priority of 1 to 99")
+    if sched.policy == 0 and sched.priority > 0:
+        raise ValueError("SCHED_OTHER takes no priority but 0; use SCHED_FIFO or SCHED_RR")
+
+
 def tos_of(value: str | int) -> int:
     """The TOS byte of a level, a DSCP class name or a DSCP number. Raises ValueError."""
     if isinstance(value, int):

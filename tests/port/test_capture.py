@@ -8,10 +8,8 @@ At the end the client closes its side: nothing more may come.
 from __future__ import annotations
 
 import contextlib
-import os
 import re
 import socket
-import threading
 import time
 from collections.abc import Iterator
 
@@ -156,7 +154,10 @@ def hear(sock: socket.socket, count: int) -> bytes:
     """Exactly so many bytes, or fewer if the connection ends."""
     data = b""
     while len(data) < count:
-        part = sock.recv(count - len(data))
+        try:
+            part = sock.recv(count - len(data))
+        except ConnectionResetError:  # it hung up before it had read what we said
+            part = b""
         if not part:
             break
         data += part
@@ -227,27 +228,8 @@ def test_dialogue(name: str, piece: int) -> None:
     with World() as world:
         prepare(world, name)
         with world.dial(asked(capture)) as sock:
-            if name == "api_qos_2_in" and not may_schedule():
-                pytest.skip("this process may not ask for real-time scheduling")
             replay(sock, capture, piece)
             nothing_more(sock)
-
-
-def may_schedule() -> bool:
-    """Whether the system lets us have SCHED_FIFO at all."""
-    allowed: list[bool] = []
-
-    def attempt() -> None:
-        try:
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(30))
-            allowed.append(True)
-        except (OSError, AttributeError):
-            allowed.append(False)
-
-    thread = threading.Thread(target=attempt)
-    thread.start()
-    thread.join()
-    return allowed[0]
 
 
 # ---------------------------------------------------------------------------------- special ones

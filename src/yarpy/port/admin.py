@@ -7,6 +7,7 @@ alike.
 
 from __future__ import annotations
 
+import logging
 import os
 import random
 from collections.abc import Sequence
@@ -16,13 +17,15 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import LocalProtocolError, YarpError
+from yarpy.errors import YarpError
 from yarpy.port import command
 from yarpy.port.prop import get_peer, get_self, set_peer, set_self
 from yarpy.wire.message import Message
 
 if TYPE_CHECKING:
     from yarpy.port.hub import Hub
+
+log = logging.getLogger("yarpy.port")
 
 _OK = Vocab("ok")
 _FAIL = Vocab("fail")
@@ -208,8 +211,11 @@ def _prop(hub: Hub, request: Bottle) -> Bottle:
         return Bottle([_OK])
     try:
         done = set_self(hub, request) if key == hub.name else set_peer(hub, key, request)
-    except (LocalProtocolError, ValueError, YarpError):
+    except ValueError as error:
+        log.warning("%s: %s: %s", hub.name, request, error)  # the reply of C++ gives no reason
         done = False
+    except YarpError as error:
+        return failure(str(error))
     return Bottle([_OK]) if done else failure()
 
 

@@ -7,6 +7,9 @@ from typing import Any
 
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
+from yarpy.port.monitoring import monitored
+from yarpy.port.quality import effective, grant
+from yarpy.qos import Qos
 
 
 class Connection:
@@ -36,6 +39,25 @@ class Connection:
         For every mode: messages sent = messages delivered + drops, counted where they happen.
         """
         return self._link.snapshot()
+
+    @property
+    def qos(self) -> Qos:
+        """What the system really does for this connection: its thread's scheduling, and the
+        priority of the packets that leave on our side. Assign a Qos to ask for something.
+
+        Raises LocalProtocolError when the system refuses, telling what it wants; nothing is changed
+        then. An output that is given a scheduling policy sends from a thread of its own.
+        """
+        return effective(self._link)
+
+    @qos.setter
+    def qos(self, wanted: Qos) -> None:
+        grant(self._link, wanted)
+
+    @property
+    def monitors(self) -> list[str]:
+        """The names of the monitors that ride on our end."""
+        return monitored(self._link)
 
     def close(self) -> None:
         """End this connection."""

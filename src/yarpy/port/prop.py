@@ -1,8 +1,7 @@
 """`prop get` and `prop set` of a port: its process, its threads, the priority of its connections.
 
 Rules: the shapes are those of C++ YARP (core-3 sections 5.3, 8). Settings apply to the first
-connection with that peer. An output without a thread of its own keeps its scheduling until it gets
-one.
+connection with that peer.
 """
 
 from __future__ import annotations
@@ -15,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
-from yarpy.errors import LocalProtocolError
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.monitors.chain import Chain
+from yarpy.port.quality import grant_sched, grant_tos, thread_of
 from yarpy.qos import Sched, policy_of, schedule, scheduled, tos_of
 
 if TYPE_CHECKING:
@@ -102,17 +101,13 @@ def set_peer(hub: Hub, name: str, request: Bottle) -> bool:
         group = _group(request, "sched")
         if group is None:
             return False
-        link.sched = _sched(group, link.sched)
-        thread = thread_of(link)
-        if thread >= 0:
-            schedule(thread, link.sched)
+        grant_sched(link, _sched(group, Sched()))
         done = True
     if request.group("qos") is not None:
         group = _group(request, "qos")
         if group is None:
             return False
-        link.tos = _tos(group)
-        link.driver.transport.set_dscp(link.tos)
+        grant_tos(link, _tos(group))
         done = True
     if request.group("monitor") is not None:
         group, chain = _group(request, "monitor"), _chain(link)
@@ -125,12 +120,6 @@ def set_peer(hub: Hub, name: str, request: Bottle) -> bool:
 def _chain(link: Inbound | Outbound) -> Chain | None:
     """The monitors that ride on our end of a connection."""
     return link.own_chain if isinstance(link, Inbound) else link.chain
-
-
-def thread_of(link: Inbound | Outbound) -> int:
-    """The kernel's id of a link's thread, -1 if it has none of its own."""
-    thread = link.thread
-    return thread.native_id if thread is not None and thread.native_id is not None else -1
 
 
 def _links(hub: Hub, name: str) -> list[Inbound | Outbound]:
@@ -160,7 +149,7 @@ def _tos(group: Bottle) -> int:
         return tos_of(dscp)
     if isinstance(tos, int) and 0 <= tos < 256:
         return tos
-    raise LocalProtocolError("a packet priority is a level, a DSCP class or a TOS byte")
+    raise ValueError("a packet priority is a level, a DSCP class or a TOS byte")
 
 
 def _dict(**values: Any) -> Property:

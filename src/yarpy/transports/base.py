@@ -52,6 +52,9 @@ class Transport(Protocol):
     def set_dscp(self, tos: int) -> None:
         """Set the IP type-of-service byte (DSCP << 2) of what is sent."""
 
+    def tos(self) -> int:
+        """That byte, as the system has it."""
+
     def ended(self) -> bool:
         """Whether the peer has closed its side, without reading anything."""
 
@@ -117,6 +120,16 @@ class SocketTransport:
             self.sock.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_TCLASS, tos)
         else:
             self.sock.setsockopt(socket.IPPROTO_IP, socket.IP_TOS, tos)
+
+    def tos(self) -> int:
+        try:
+            if self.sock.family == socket.AF_INET6:
+                return self.sock.getsockopt(socket.IPPROTO_IPV6, socket.IPV6_TCLASS)
+            if self.sock.family == socket.AF_INET:
+                return self.sock.getsockopt(socket.IPPROTO_IP, socket.IP_TOS)
+        except OSError:
+            pass  # closed meanwhile
+        return 0
 
     def _readable(self) -> bool:
         """For systems where a single call cannot be told not to wait (Windows)."""

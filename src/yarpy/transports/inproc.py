@@ -93,6 +93,9 @@ class InprocTransport:
     def set_dscp(self, tos: int) -> None:
         """No packets, no priority."""
 
+    def tos(self) -> int:
+        return 0
+
     def ended(self) -> bool:
         return self._peer is not None and self._peer._ended
 
