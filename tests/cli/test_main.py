@@ -21,6 +21,8 @@ FRAME = {
     "prompt",
     "relay",
     "service",
+    "showing",
+    "source",
     "spelling",
 }
 

@@ -50,19 +50,22 @@ def command(
     if mode is not None:
         return _persist(source, target, carrier or "", "" if mode == "always" else mode)
 
-    existing = _existing(source, target)
+    existing = _existing(source, target, carrier)
     if existing:
         print_line(f"Connection found between {source} and {target} using carrier {existing}")
     print_line(f"Success: {yarpy.connect(source, target, carrier)}")
     return 0
 
 
-def _existing(source: str, target: str) -> str:
-    """The carrier of the connection that is there already, "" if none is."""
+def _existing(source: str, target: str, carrier: str | None) -> str:
+    """The carrier of the connection that is there already, "" if none is.
+
+    The new one says who is asked: a camera that takes a single connection is not to waste it on us.
+    """
     from yarpy.network import Route
 
     try:
-        route = Route(source, target, None, None)
+        route = Route(source, target, carrier, None)
         return "" if route.topical else route.existing()
     except yarpy.YarpError:
         return ""  # connecting will say it

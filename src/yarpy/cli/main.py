@@ -51,6 +51,7 @@ VERBS: Final = {
     "topic": "make, list or remove topics",
     "trafficgen": "send messages of a given size at a given rate",
     "version": "print the version",
+    "view": "look at images in a browser",
     "wait": "wait for a port or a connection",
     "where": "tell where the name server is",
     "write": "send lines from a port",

@@ -1,0 +1,82 @@
+"""A port that a command wants to hear from: connected as soon as it is there, also when it returns.
+
+Rules: what is wrong in itself (a name that cannot be one, an unknown carrier) is an error at once;
+what is not there yet is waited for. Somebody who disconnects the two means it: only a source that
+was gone meanwhile is connected again. Cameras, which have an address and no name, are dialled again
+by the port itself.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
+
+import yarpy
+from yarpy.cli.opening import hear_from
+
+if TYPE_CHECKING:
+    from yarpy.port.base import BasePort
+
+PAUSE: Final = 0.5  # seconds between looks
+
+
+class Source:
+    """`port` is to hear `name` (`/cam`, `udp://cam`, `mjpeg+path.video://10.0.0.5:8080/`).
+
+    tell: called with a line for people while it waits, and with "" when it is connected.
+    Raises AddressError, UnknownPlugin, NoNameServer.
+    """
+
+    def __init__(
+        self,
+        port: BasePort,
+        name: str,
+        carrier: str | None = None,
+        tell: Callable[[str], object] = lambda line: None,
+    ) -> None:
+        from yarpy.contact import parse_contact
+
+        self._port = port
+        self._name = name
+        self._carrier = carrier
+        self._tell = tell
+        self._contact = parse_contact(name)
+        self._wanted = True
+        self._look()
+        threading.Thread(target=self._follow, name=f"yarpy source {name}", daemon=True).start()
+
+    @property
+    def connected(self) -> bool:
+        """Whether it sends to the port now."""
+        contact = self._contact
+        name = contact.name or f"/{contact.address}"
+        return any(link.source.rstrip("/") == name for link in self._port.inputs)
+
+    def _follow(self) -> None:
+        while not self._port.closed:
+            threading.Event().wait(PAUSE)
+            try:
+                self._look()
+            except yarpy.YarpError as error:
+                self._tell(str(error))
+
+    def _look(self) -> None:
+        """Connect it if it is wanted and there."""
+        if self.connected:
+            self._wanted = False
+        elif self._wanted:
+            self._connect()
+        elif not self._contact.reachable and self._contact.carrier != "topic":
+            self._wanted = not yarpy.exists(self._contact.name)
+
+    def _connect(self) -> None:
+        try:
+            hear_from(self._port, self._name, self._carrier)
+        except (yarpy.UnknownPlugin, yarpy.AddressError, yarpy.NoNameServer):
+            raise
+        except yarpy.YarpError as error:
+            self._tell(f"Waiting for {self._name}: {error}")
+        else:
+            self._wanted = False
+            self._tell("")
