@@ -25,12 +25,14 @@ from operator import index
 from types import TracebackType
 from typing import Any, Final, Self, TypeAlias
 
+from yarpy.data.bottle import Bottle
 from yarpy.devices import command, grammar
 from yarpy.devices.adjustable import Adjustable
 from yarpy.devices.control_board import MotorTorqueParameters
+from yarpy.devices.newest import Newest
 from yarpy.devices.question import Questions, RemotePids, RemoteVariables
-from yarpy.devices.watch import Watch
-from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout
+from yarpy.devices.state import State
+from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.names.base import NameClient
 from yarpy.port.port import Port
 
@@ -72,8 +74,15 @@ class ControlBoard:
                 Port(f"{local}/command:o", names=names, callback=lambda message: None)
             )
             self._command.connect(f"{remote}/command:i", carrier)
-            self._watch = opened.enter_context(
-                Watch(f"{remote}/stateExt:o", f"{local}/stateExt:i", carrier, timeout, names)
+            self._newest = opened.enter_context(
+                Newest(
+                    f"{remote}/stateExt:o",
+                    f"{local}/stateExt:i",
+                    carrier,
+                    timeout,
+                    names,
+                    lambda message: State.from_bottle(message.as_(Bottle)),
+                )
             )
             self._check_version()
             self.axes = self._ask.count_axes()
@@ -112,51 +121,51 @@ class ControlBoard:
 
     def encoders(self) -> list[float]:
         """Where the joints are, degrees."""
-        return self._watch.values("encoders")
+        return self._measured("encoders")
 
     def timestamps(self) -> list[float]:
         """When the encoders were read, seconds (of the board's clock)."""
-        return [self._watch.time()] * self.axes
+        return [self._newest.time()] * self.axes
 
     def encoder_speeds(self) -> list[float]:
         """How fast the joints move, deg/s."""
-        return self._watch.values("encoder_speeds")
+        return self._measured("encoder_speeds")
 
     def encoder_accelerations(self) -> list[float]:
         """How fast the speeds change, deg/s^2."""
-        return self._watch.values("encoder_accelerations")
+        return self._measured("encoder_accelerations")
 
     def motor_encoders(self) -> list[float]:
         """Where the motors are, degrees."""
-        return self._watch.values("motor_encoders")
+        return self._measured("motor_encoders")
 
     def motor_speeds(self) -> list[float]:
         """How fast the motors turn, deg/s."""
-        return self._watch.values("motor_speeds")
+        return self._measured("motor_speeds")
 
     def motor_accelerations(self) -> list[float]:
         """How fast the motors' speeds change, deg/s^2."""
-        return self._watch.values("motor_accelerations")
+        return self._measured("motor_accelerations")
 
     def torques(self) -> list[float]:
         """Torque of each joint, Nm."""
-        return self._watch.values("torques")
+        return self._measured("torques")
 
     def currents(self) -> list[float]:
         """Current of each motor, A."""
-        return self._watch.values("currents")
+        return self._measured("currents")
 
     def duty_cycles(self) -> list[float]:
         """PWM of each motor, percent."""
-        return self._watch.values("duty_cycles")
+        return self._measured("duty_cycles")
 
     def control_modes(self) -> list[str]:
         """The mode of each joint (`ControlMode`)."""
-        return self._watch.values("control_modes")
+        return self._measured("control_modes")
 
     def interaction_modes(self) -> list[str]:
         """Stiff or compliant (`InteractionMode`)."""
-        return self._watch.values("interaction_modes")
+        return self._measured("interaction_modes")
 
     def supply_voltages(self) -> list[float]:
         """Volts at each amplifier."""
@@ -343,6 +352,12 @@ class ControlBoard:
         return RemoteVariables(self._ask)
 
     # -- within -------------------------------------------------------------------------------
+
+    def _measured(self, field: str) -> list[Any]:
+        found = self._newest.value().values.get(field)
+        if found is None:
+            raise LocalProtocolError(f'"{self.remote}" does not measure {field.replace("_", " ")}')
+        return [*found]
 
     def _joints(self, which: Which | None) -> list[int]:
         if which is None:

@@ -1,37 +1,45 @@
-"""The measurements of a remote control board, as they come in over its stateExt:o.
+"""The newest message of an output elsewhere, as long as it is fresh.
 
-Rules: only the newest counts, and only while it is fresh. Who asks too early waits a moment; who
-asks in vain learns why. A board that was away is asked to send again.
+Rules: only the newest counts, and it is decoded when somebody asks, once. Who asks too early waits
+a moment; who asks in vain learns why. A sender that was away is asked to send again.
 """
 
 from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 from types import TracebackType
-from typing import Any, Self
+from typing import Generic, Self, TypeVar
 
-from yarpy.data.bottle import Bottle
-from yarpy.devices.state import State
-from yarpy.errors import LocalProtocolError, Timeout, YarpError
+from yarpy.errors import Timeout, YarpError
 from yarpy.names.base import NameClient
 from yarpy.port.buffered import BufferedPort
 from yarpy.wire.message import Message
 
+T = TypeVar("T")
 
-class Watch:
-    """Listens to `source`. `timeout`: seconds after which a message no longer counts."""
+
+class Newest(Generic[T]):
+    """Listens to the port `source`. `timeout`: seconds after which a message no longer counts."""
 
     def __init__(
-        self, source: str, local: str, carrier: str, timeout: float, names: NameClient | None
+        self,
+        source: str,
+        local: str,
+        carrier: str,
+        timeout: float,
+        names: NameClient | None,
+        decode: Callable[[Message], T],
     ) -> None:
-        self._source = source
+        self.source = source
         self._carrier = carrier
         self._timeout = timeout
+        self._decode = decode
         self._changed = threading.Condition()  # around the two below
         self._message: Message | None = None
         self._arrival = 0.0
-        self._known: tuple[Message, State] | None = None
+        self._known: tuple[Message, T] | None = None
         self._port = BufferedPort(local, callback=self._take, names=names)
         try:
             self._port.listen_to(source, carrier)
@@ -50,20 +58,16 @@ class Watch:
     ) -> None:
         self._port.close()
 
-    def values(self, field: str) -> list[Any]:
-        """The newest values of a field. Raises Timeout (nothing fresh came), LocalProtocolError
-        (the board does not measure it), DecodeError."""
+    def value(self) -> T:
+        """What came last. Raises Timeout (nothing fresh), DecodeError."""
         message = self._fresh()
         known = self._known
         if known is None or known[0] is not message:
-            known = self._known = message, State.from_bottle(message.as_(Bottle))
-        found = known[1].values.get(field)
-        if found is None:
-            raise LocalProtocolError(f'"{self._source}" does not measure {field.replace("_", " ")}')
-        return [*found]
+            known = self._known = message, self._decode(message)
+        return known[1]
 
     def time(self) -> float:
-        """When that was measured: the sender's time, or without one the time of arrival."""
+        """When that was: the sender's time, or without one the time of arrival. Raises Timeout."""
         message = self._fresh()
         stamp = message.stamp
         if stamp is not None:
@@ -83,7 +87,7 @@ class Watch:
         message = self._message
         if message is None or not self._is_fresh():
             raise Timeout(
-                f'nothing came from "{self._source}" for {self._timeout} s: the robot stands still '
+                f'nothing came from "{self.source}" for {self._timeout} s: the robot stands still '
                 "or publishes more slowly (then a larger timeout helps)"
             )
         return message
@@ -92,10 +96,10 @@ class Watch:
         return self._message is not None and time.monotonic() - self._arrival <= self._timeout
 
     def _listen_again(self) -> None:
-        """Ask the board once more, if its connection has gone: it was restarted perhaps."""
+        """Ask the sender once more, if its connection has gone: it was restarted perhaps."""
         if self._port.inputs:
             return
         try:
-            self._port.listen_to(self._source, self._carrier)
+            self._port.listen_to(self.source, self._carrier)
         except YarpError as error:
-            raise Timeout(f'nothing comes from "{self._source}": {error}') from error
+            raise Timeout(f'nothing comes from "{self.source}": {error}') from error
