@@ -7,7 +7,7 @@ from yarpy.services.sim.head import Pose
 from yarpy.services.sim.lens import NOWHERE, Box, Lens, around
 
 # A camera at the origin of the world that looks along x; its own x is to the right.
-AHEAD = Pose(np.array([[0, 0, 1.0], [-1, 0, 0], [0, -1, 0]]), np.zeros(3))
+AHEAD = Pose(((0, 0, 1), (-1, 0, 0), (0, -1, 0)), (0, 0, 0))
 LENS = Lens(64, 48, 50.0)
 
 

@@ -29,17 +29,18 @@ def cast(scene: Scene, pose: Pose, width: int, height: int) -> np.ndarray:
     focal = 0.8 * width
     y, x = np.indices((height, width), dtype=float)
     rays = np.stack([x - (width - 1) / 2, y - (height - 1) / 2, np.full_like(x, focal)], -1)
-    rays = rays @ pose.rotation.T
+    rays = rays @ np.array(pose.rotation).T
+    eye = np.array(pose.position)
     nearest = np.full((height, width), np.inf)
     seen = np.zeros((height, width), "u4")
     for surface in [*scene.background, *(face for solid in scene.solids for face in solid)]:
         u, v, corner = (np.array(part, float) for part in (surface.u, surface.v, surface.corner))
         normal = np.cross(u, v)
         with np.errstate(all="ignore"):
-            distance = (corner - pose.position) @ normal / (rays @ normal)
-            place = pose.position + rays * distance[..., None] - corner
+            distance = (corner - eye) @ normal / (rays @ normal)
+            place = eye + rays * distance[..., None] - corner
         a, b = place @ u / (u @ u), place @ v / (v @ v)
-        facing = (pose.position - corner) @ normal > 0
+        facing = (eye - corner) @ normal > 0
         hit = facing & (distance > 0) & (distance < nearest)
         hit &= (a >= 0) & (a < 1) & (b >= 0) & (b < 1)
         rows, columns = surface.texels.shape

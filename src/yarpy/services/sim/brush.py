@@ -1,8 +1,8 @@
 """Brush: puts the textures of flat surfaces into a frame, the fast way for numpy.
 
 Rules: what to paint is given as rows from `left` to `right` for each surface (`lens.Spans`) and as
-matrices from pixels to texels. Large surfaces are painted one by one in bands, all arithmetic for
-a rectangle of pixels at once; small ones all together, as one list of pixels, because for them the
+matrices from pixels to texels. Large surfaces are painted one by one, all arithmetic for a
+rectangle of pixels at once; small ones all together, as one list of pixels, because for them the
 number of calls is what costs. Work arrays are made once: to allocate them for each picture would
 cost more than the arithmetic.
 """
@@ -10,7 +10,7 @@ cost more than the arithmetic.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from yarpy.services.sim.lens import Box
 
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array: TypeAlias = NDArray[Any]
-
-BAND: Final = 25_600  # pixels that are worked on at once: they stay in the processor's cache
 
 
 class Brush:
@@ -35,34 +33,29 @@ class Brush:
         self._atlas = np.concatenate([texture.ravel() for texture in textures])
         self._flat = np.split(self._atlas, self._begin[1:])
         self._width = width
-        self._rows = max(8, BAND // width)  # of a band
         self._x = np.arange(width, dtype="f4")
-        self._y = np.arange(height, dtype="f4")
+        self._lines = np.ones((height, 2), "f4")  # y and 1
+        self._lines[:, 0] = np.arange(height)
+        self._columns = np.empty((3, 2, width), "f4")
         self._column = np.arange(width, dtype="i2")
-        size = min(self._rows, height) * width
-        self._sides = np.ones((3, height, 2), "f4"), np.ones((3, 2, width), "f4")
+        size = height * width
         self._places = np.empty(3 * size, "f4")
         self._whole = np.empty(2 * size, "i4")
         self._masks = np.empty(2 * size, bool)
-        self._index = np.empty(size, np.intp)
         self._texels = np.empty(size, "u4")
 
     def places(self, matrix: Array, box: Box) -> Array:
-        """Where on a surface the pixels of a box are: u, v, and one over the depth.
-
-        The box has at most the rows of a band, unless it is small.
-        """
+        """Where on a surface the pixels of a box are: u, v, and one over the depth."""
         import numpy as np
 
         high, wide = box.bottom - box.top, box.right - box.left
-        size = 3 * high * wide
-        out = self._places[:size] if size <= len(self._places) else np.empty(size, "f4")
-        out = out.reshape(3, high, wide)
+        out = self._places[: 3 * high * wide].reshape(3, high, wide)
         # A sum over rows and columns, as a product of matrices: that is the fastest way.
-        rows, columns = self._sides[0][:, :high], self._sides[1][:, :, :wide]
-        rows[:, :, 0] = matrix[:, 1, None] * self._y[box.top : box.bottom] + matrix[:, 2, None]
-        columns[:, 1] = matrix[:, 0, None] * self._x[box.left : box.right]
-        np.matmul(rows, columns, out=out)
+        columns = self._columns[:, :, :wide]
+        columns[:, 0] = matrix[:, 1, None]
+        np.multiply(matrix[:, 0, None], self._x[box.left : box.right], out=columns[:, 1])
+        columns[:, 1] += matrix[:, 2, None]
+        np.matmul(self._lines[box.top : box.bottom], columns, out=out)
         np.divide(out[:2], out[2], out=out[:2])
         return out
 
@@ -70,16 +63,6 @@ class Brush:
         self, frame: Array, number: int, matrix: Array, left: Array, right: Array, box: Box
     ) -> None:
         """Paint surface `number` from `left` to `right` (height,), all of which is in `box`."""
-        for top in range(box.top, box.bottom, self._rows):
-            rows = slice(top, min(top + self._rows, box.bottom))
-            first, last = left[rows], right[rows]
-            begin, end = int(first.min()), int(last.max())
-            if begin < end:
-                self._fill(frame, number, matrix, first, last, Box(begin, top, end, rows.stop))
-
-    def _fill(
-        self, frame: Array, number: int, matrix: Array, left: Array, right: Array, box: Box
-    ) -> None:
         import numpy as np
 
         high, wide = box.bottom - box.top, box.right - box.left
@@ -89,10 +72,10 @@ class Brush:
         np.copyto(whole, places[:2], casting="unsafe")
         column, row = whole
         row *= self._across[number]
-        index = self._index[:size].reshape(high, wide)
+        row += column
         texels = self._texels[:size].reshape(high, wide)
-        np.add(row, column, out=index)
-        np.take(self._flat[number], index, out=texels, mode="clip")
+        np.take(self._flat[number], row, out=texels, mode="clip")
+        left, right = left[box.top : box.bottom], right[box.top : box.bottom]
         # A side of a convex surface bends outwards: what holds at both ends holds between them.
         if max(left[0], left[-1]) <= box.left and min(right[0], right[-1]) >= box.right:
             box.of(frame)[...] = texels

@@ -6,10 +6,9 @@ from typing import Final
 
 from yarpy.services.sim.body import Body
 from yarpy.services.sim.head import Inertia, inertia
+from yarpy.services.sim.rotation import Vector
 
 NAME: Final = "head_imu"
-
-Triple = tuple[float, float, float]
 
 
 class Inertial:
@@ -27,13 +26,13 @@ class Inertial:
         """When something was measured last."""
         return {NAME: self._time}
 
-    def gyroscopes(self) -> dict[str, Triple]:
+    def gyroscopes(self) -> dict[str, Vector]:
         return {NAME: self._feel().gyroscope}
 
-    def accelerometers(self) -> dict[str, Triple]:
+    def accelerometers(self) -> dict[str, Vector]:
         return {NAME: self._feel().accelerometer}
 
-    def orientations(self) -> dict[str, Triple]:
+    def orientations(self) -> dict[str, Vector]:
         return {NAME: self._feel().orientation}
 
     def _feel(self) -> Inertia:

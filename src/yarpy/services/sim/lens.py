@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from yarpy.services.sim.head import Pose
+from yarpy.services.sim.rotation import Vector, seen_from
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     Array: TypeAlias = NDArray[Any]
 
 NEAR: Final = 0.02  # metres; a ball that comes closer is not seen
+
+_ENDS: Final = ((0.0, 1.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0), (1.0, 1.0, 1.0, 1.0))  # of a surface
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +53,6 @@ class Box:
         return part
 
 
-_ENDS: Final = ((0.0, 1.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0), (1.0, 1.0, 1.0, 1.0))  # of a surface
 NOWHERE: Final = Box(0, 0, 0, 0)
 
 
@@ -107,7 +109,9 @@ class Lens:
         in the world: (n, 3, 3)."""
         import numpy as np
 
-        found: Array = (self._pixels @ pose.rotation.T) @ np.stack([u, v, away], axis=2)
+        basis = np.empty((len(u), 3, 3))
+        basis[:, :, 0], basis[:, :, 1], basis[:, :, 2] = u, v, away
+        found: Array = (self._pixels @ np.array(pose.rotation).T) @ basis
         return found
 
     def candidates(self, matrices: Array) -> Array:
@@ -116,7 +120,7 @@ class Lens:
 
         x, y, z = (matrices @ _ENDS).transpose(1, 0, 2)
         sides = np.stack((z, x, y, z * (self.width - 1) - x, z * (self.height - 1) - y))
-        found: Array = np.flatnonzero((sides > 0).any(2).all(0))
+        found: Array = np.flatnonzero((sides.max(2) > 0).all(0))
         return found
 
     def spans(self, inverses: Array) -> Spans:
@@ -127,17 +131,20 @@ class Lens:
         """
         import numpy as np
 
-        ab, depth = inverses[:, :2], inverses[:, 2:]
-        edges = np.concatenate([ab, depth - ab], 1).transpose(1, 0, 2)  # (4, n, 3)
+        edges = np.empty((4, len(inverses), 3))
+        edges[0], edges[1], depth = inverses.transpose(1, 0, 2)
+        np.subtract(depth, edges[:2], out=edges[2:])
         slope = edges[:, :, 0]
         # An edge along the rows: next to no slope, so that it ends far outside, on either side.
-        slope = np.where(abs(slope) < 1e-12, 1e-12, slope)
-        of_y, rest = (edges[:, :, k] / -slope for k in (1, 2))
-        ends = (of_y.astype("f4")[:, :, None] * self._rows) + rest.astype("f4")[:, :, None]
-        rising = (slope > 0)[:, :, None]
-        left = np.where(rising, ends, 0).max(0)
-        right = np.where(rising, self.width, ends + 1).min(0)
-        left = np.ceil(np.minimum(left, self.width)).astype("i2")
+        slope[abs(slope) < 1e-12] = 1e-12
+        edges[:, :, 1:] /= -slope[:, :, None]
+        of_y, rest = edges[:, :, 1:].astype("f4").transpose(2, 0, 1)
+        ends = of_y[:, :, None] * self._rows
+        # Those on the left bound spans from below and those on the right from above.
+        rising = slope > 0
+        left = (ends + np.where(rising, rest, -np.inf)[:, :, None]).max(0)
+        right = (ends + np.where(rising, np.inf, rest + 1)[:, :, None]).min(0)
+        left = np.ceil(np.clip(left, 0, self.width)).astype("i2")
         right = np.clip(right, 0, self.width).astype("i2")
         return Spans(left, right, self._boxes(left, right))
 
@@ -145,34 +152,36 @@ class Lens:
         import numpy as np
 
         shown = left < right
-        first = shown.argmax(1)
-        last = self.height - shown[:, ::-1].argmax(1)
-        low = np.where(shown, left, self.width).min(1)
-        high = np.where(shown, right, 0).max(1)
-        found = np.stack([low, first, high, last], 1).tolist()
+        found = zip(
+            np.where(shown, left, self.width).min(1).tolist(),
+            shown.argmax(1).tolist(),
+            (right * shown).max(1).tolist(),
+            (self.height - shown[:, ::-1].argmax(1)).tolist(),
+            strict=True,
+        )
         return [Box(*each) if each[0] < each[2] else NOWHERE for each in found]
 
     def bounds(self, matrix: Array) -> Box:
         """A box around one surface, given its matrix; empty if a part of it is behind us."""
-        corners = matrix @ _ENDS
-        if corners[2].min() < NEAR:
+        x, y, z = (matrix @ _ENDS).tolist()
+        if min(z) < NEAR:
             return NOWHERE
-        x, y = corners[:2] / corners[2]
-        radius = max(x.max() - x.min(), y.max() - y.min()) / 2
-        return self.box((x.max() + x.min()) / 2, (y.max() + y.min()) / 2, radius)
+        x, y = ([value / z for value, z in zip(part, z, strict=True)] for part in (x, y))
+        return self.box(min(x), min(y), max(x), max(y))
 
-    def box(self, x: float, y: float, radius: float) -> Box:
-        """The pixels around a place, as far as they are in the picture."""
+    def box(self, left: float, top: float, right: float, bottom: float) -> Box:
+        """The pixels between these places, as far as they are in the picture."""
         width, height = self.width, self.height
         return Box(
-            int(min(max(x - radius, 0), width)),
-            int(min(max(y - radius, 0), height)),
-            int(min(max(x + radius + 1, 0), width)),
-            int(min(max(y + radius + 1, 0), height)),
+            int(min(max(left, 0), width)),
+            int(min(max(top, 0), height)),
+            int(min(max(right + 1, 0), width)),
+            int(min(max(bottom + 1, 0), height)),
         )
 
-    def point(self, pose: Pose, place: Sequence[float]) -> tuple[float, float, float]:
+    def point(self, pose: Pose, place: Vector) -> Vector:
         """Pixel x, y and the depth in metres of a place in the world."""
-        x, y, depth = (pose.rotation.T @ (place - pose.position)).tolist()
+        p, q, r = pose.position
+        x, y, depth = seen_from(pose.rotation, (place[0] - p, place[1] - q, place[2] - r))
         scale = self.focal / max(depth, 1e-9)
         return x * scale + self.centre[0], y * scale + self.centre[1], depth

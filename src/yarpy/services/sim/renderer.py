@@ -18,7 +18,8 @@ from yarpy.services.sim.brush import Brush
 from yarpy.services.sim.head import Pose
 from yarpy.services.sim.lens import NEAR, NOWHERE, Box, Lens, Spans, around
 from yarpy.services.sim.picture import Colour
-from yarpy.services.sim.scene import Ball, Point, Scene
+from yarpy.services.sim.rotation import Vector, seen_from
+from yarpy.services.sim.scene import Ball, Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -59,7 +60,7 @@ class Renderer:
         self._x = np.arange(width, dtype="f4")
         self._y = np.arange(height, dtype="f4")[:, None]
         self._still, self._frame = np.zeros((2, height, width), "u4")
-        self._seen = b""  # the pose for which `_still` was painted
+        self._seen: Pose | None = None  # for which `_still` was painted
         # The faces of solids that are seen from there, the farthest first, and how far they are.
         self._faces: tuple[Array, Array, Spans, Array] | None = None
 
@@ -68,10 +69,9 @@ class Renderer:
         import numpy as np
 
         with np.errstate(all="ignore"):  # of pixels that look along a surface
-            seen = pose.rotation.tobytes() + pose.position.tobytes()
-            if seen != self._seen:
+            if pose != self._seen:
                 self._paint_still(pose)
-                self._seen = seen
+                self._seen = pose
             self._frame[...] = self._still
             for ball in self.scene.balls:
                 self._paint_ball(pose, ball, time)
@@ -138,7 +138,7 @@ class Renderer:
                 self._frame, numbers[in_front], inverses[in_front], *part.within(painted)
             )
 
-    def _paint_shadow(self, pose: Pose, ball: Ball, place: Point) -> Box:
+    def _paint_shadow(self, pose: Pose, ball: Ball, place: Vector) -> Box:
         """Darken what is below a ball; the higher it is, the larger is its shadow."""
         import numpy as np
 
@@ -162,7 +162,7 @@ class Renderer:
             np.copyto(frame, frame - ((frame >> 2) & _QUARTER), where=u < size)
         return box
 
-    def _paint_sphere(self, pose: Pose, ball: Ball, place: Point, time: float) -> Box:
+    def _paint_sphere(self, pose: Pose, ball: Ball, place: Vector, time: float) -> Box:
         """Paint a ball, lit from `LIGHT`."""
         import numpy as np
 
@@ -170,17 +170,17 @@ class Renderer:
         if depth < NEAR + ball.radius:
             return NOWHERE
         radius = self.lens.focal * ball.radius / depth
-        box = self.lens.box(x, y, radius)
+        box = self.lens.box(x - radius, y - radius, x + radius, y + radius)
         if box.empty:
             return box
         across = (self._x[box.left : box.right] - x) / radius
         along = (self._y[box.top : box.bottom] - y) / radius
         flat = across * across + along * along
         towards = -np.sqrt(np.maximum(1 - flat, 0))
-        a, b, c = pose.rotation.T @ LIGHT
+        a, b, c = seen_from(pose.rotation, LIGHT)
         light = np.clip(across * a + along * b + towards * c, 0, 1)
         shade = (light * (SHADES - 1)).astype(np.intp)
-        a, b, c = pose.rotation.T @ ball.axis(time)
+        a, b, c = seen_from(pose.rotation, ball.axis(time))
         shade[across * a + along * b + towards * c > 0] += SHADES
         np.copyto(box.of(self._frame), self._shades[ball][shade], where=flat < 1)
         return box

@@ -8,14 +8,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.services.sim.picture import Colour, Picture
+from yarpy.services.sim.rotation import Vector
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-Point: TypeAlias = tuple[float, float, float]
 
 TABLE: Final = 0.72  # height of its top
 NEAR, FAR, SIDE = 0.62, 1.62, 0.75  # where it begins and ends, and half its width
@@ -32,9 +31,9 @@ class Surface:
     It is seen from the side to which u x v points.
     """
 
-    corner: Point
-    u: Point
-    v: Point
+    corner: Vector
+    u: Vector
+    v: Vector
     texels: NDArray[Any]
 
 
@@ -50,7 +49,7 @@ class Ball:
     lap: float = 8.0  # seconds for a round
     bounce: float = 0.5  # seconds from the ground to the ground
 
-    def place(self, time: float) -> Point:
+    def place(self, time: float) -> Vector:
         """Where its centre is."""
         turn, fall = 2 * pi * (time / self.lap % 1), time / self.bounce % 1
         height = 9.81 / 2 * self.bounce**2 * fall * (1 - fall)
@@ -58,7 +57,7 @@ class Ball:
         y = self.centre[1] + self.reach[1] * sin(turn)
         return x, y, self.ground + self.radius + height
 
-    def axis(self, time: float) -> Point:
+    def axis(self, time: float) -> Vector:
         """Where the middle of the first colour points."""
         turn = 2 * pi * (time / 1.7 % 1)
         return cos(turn), 0.4 * sin(turn), 0.9 * sin(turn)
@@ -91,7 +90,7 @@ def room() -> Scene:
 
 
 def block(
-    low: Point, high: Point, colour: Colour, top: NDArray[Any] | None = None
+    low: Vector, high: Vector, colour: Colour, top: NDArray[Any] | None = None
 ) -> list[Surface]:
     """A box with its sides along the axes: all faces but the lowest, as lit from above."""
     (x, y, z), (a, b, c) = low, high

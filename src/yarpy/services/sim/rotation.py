@@ -1,0 +1,80 @@
+"""Rotations and vectors of three numbers, as tuples: for so few numbers numpy takes longer.
+
+A rotation is three rows; it turns vectors of a frame into those of the frame around it.
+"""
+
+from __future__ import annotations
+
+from math import asin, atan2, cos, degrees, radians, sin
+from typing import TypeAlias
+
+Vector: TypeAlias = tuple[float, float, float]
+Rotation: TypeAlias = tuple[Vector, Vector, Vector]
+
+
+def about_x(angle: float) -> Rotation:
+    """Around x by degrees: y towards z."""
+    c, s = cos(radians(angle)), sin(radians(angle))
+    return ((1.0, 0.0, 0.0), (0.0, c, -s), (0.0, s, c))
+
+
+def about_y(angle: float) -> Rotation:
+    """Around y by degrees: z towards x."""
+    c, s = cos(radians(angle)), sin(radians(angle))
+    return ((c, 0.0, s), (0.0, 1.0, 0.0), (-s, 0.0, c))
+
+
+def about_z(angle: float) -> Rotation:
+    """Around z by degrees: x towards y."""
+    c, s = cos(radians(angle)), sin(radians(angle))
+    return ((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))
+
+
+def after(one: Rotation, other: Rotation) -> Rotation:
+    """The rotation `other`, in a frame that `one` has turned: the product of the matrices."""
+    (a, b, c), (d, e, f), (g, h, i) = one
+    (j, k, m), (n, o, p), (q, r, s) = other
+    return (
+        (a * j + b * n + c * q, a * k + b * o + c * r, a * m + b * p + c * s),
+        (d * j + e * n + f * q, d * k + e * o + f * r, d * m + e * p + f * s),
+        (g * j + h * n + i * q, g * k + h * o + i * r, g * m + h * p + i * s),
+    )
+
+
+def turned(rotation: Rotation, vector: Vector) -> Vector:
+    """A vector of the frame, seen from the frame around it."""
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    x, y, z = vector
+    return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
+
+
+def seen_from(rotation: Rotation, vector: Vector) -> Vector:
+    """A vector of the frame around it, seen from the frame: the reverse of `turned`."""
+    (a, b, c), (d, e, f), (g, h, i) = rotation
+    x, y, z = vector
+    return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
+
+
+def plus(one: Vector, other: Vector) -> Vector:
+    """The sum."""
+    return (one[0] + other[0], one[1] + other[1], one[2] + other[2])
+
+
+def times(vector: Vector, factor: float) -> Vector:
+    """Longer by a factor."""
+    return (vector[0] * factor, vector[1] * factor, vector[2] * factor)
+
+
+def cross(one: Vector, other: Vector) -> Vector:
+    """The vector product."""
+    (x, y, z), (u, v, w) = one, other
+    return (y * w - z * v, z * u - x * w, x * v - y * u)
+
+
+def roll_pitch_yaw(rotation: Rotation) -> Vector:
+    """The angles in degrees: first around x, then y, then z of the frame around it."""
+    return (
+        degrees(atan2(rotation[2][1], rotation[2][2])),
+        degrees(asin(max(-1.0, min(1.0, -rotation[2][0])))),
+        degrees(atan2(rotation[1][0], rotation[0][0])),
+    )
