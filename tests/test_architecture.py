@@ -27,7 +27,7 @@ LAYERS: list[set[str]] = [
     {"link", "monitors", "qos"},
     {"names"},
     {"port", "ros", "devices", "record"},
-    {"network", "module", "resource", "aio", "wrap", "realtime"},
+    {"network", "traffic", "priority", "module", "resource", "aio", "wrap", "realtime"},
     {"services"},
     {"cli", "testing"},
     {"__main__"},
@@ -42,6 +42,8 @@ BESIDE = {
     ("record", "port"),
     ("wrap", "network"),
     ("aio", "network"),
+    ("priority", "network"),
+    ("traffic", "priority"),
     ("module", "network"),
     ("module", "resource"),
 }

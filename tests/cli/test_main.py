@@ -18,12 +18,14 @@ FRAME = {
     "ending",
     "journal",
     "opening",
+    "overview",
     "prompt",
     "relay",
     "service",
     "showing",
     "source",
     "spelling",
+    "wiring",
 }
 
 

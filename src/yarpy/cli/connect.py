@@ -5,6 +5,7 @@
                                                  `yarpy disconnect --persist`
     connect --persist-from | --persist-to ...    the same, until SOURCE | TARGET is unregistered
     connect [--persist] [PORT]                   list persistent connections (of PORT)
+    connect --file FILE                          the connections of a file, with their priorities
     connect --list-carriers                      the protocols there are
 
 A carrier may have modifiers (`fast_tcp+recv.priority`); `topic://t` stands for a topic.
@@ -30,15 +31,20 @@ from yarpy.cli.spelling import print_line
 @click.option("--persist", "mode", flag_value="always", help="Connect whenever both are there.")
 @click.option("--persist-from", "mode", flag_value="from", help="... until SOURCE goes away.")
 @click.option("--persist-to", "mode", flag_value="to", help="... until TARGET goes away.")
+@click.option("--file", "path", type=click.Path(exists=True, dir_okay=False), metavar="FILE",
+              help="Make the connections of FILE (see `yarpy help connect`).")  # fmt: skip
 @click.option("--list-carriers", is_flag=True, help="List the carriers that are installed.")
 def command(
     source: str | None,
     target: str | None,
     carrier: str | None,
     mode: str | None,
+    path: str | None,
     list_carriers: bool,
 ) -> int:
     """Have the port SOURCE send to the port TARGET over CARRIER (tcp)."""
+    if path is not None:
+        return _wire(path)
     if list_carriers:
         from yarpy.registry import carriers
 
@@ -55,6 +61,24 @@ def command(
         print_line(f"Connection found between {source} and {target} using carrier {existing}")
     print_line(f"Success: {yarpy.connect(source, target, carrier)}")
     return 0
+
+
+def _wire(path: str) -> int:
+    """Make the connections of a file: one that fails does not keep the others from being made."""
+    from pathlib import Path
+
+    from yarpy.cli.complaint import complain
+    from yarpy.cli.wiring import read
+
+    failed = 0
+    for wire in read(Path(path)):
+        try:
+            wire.make()
+            print_line(f"Connected {wire.source} to {wire.target} using {wire.carrier}")
+        except yarpy.YarpError as error:
+            complain(str(error))
+            failed = 1
+    return failed
 
 
 def _existing(source: str, target: str, carrier: str | None) -> str:

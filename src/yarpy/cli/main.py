@@ -36,6 +36,7 @@ VERBS: Final = {
     "namespace": "show or set the namespaces in use",
     "ping": "ask a port about itself and its connections",
     "plugin": "list carriers, types, monitors and commands that are installed",
+    "qos": "show or set the priority of a connection's packets",
     "read": "print what arrives at a port",
     "readwrite": "print what arrives at one port, send lines from another",
     "repeat": "send on what a port receives",
@@ -43,9 +44,11 @@ VERBS: Final = {
     "rpc": "send lines to a port and print its replies",
     "rpcserver": "print questions and answer them by hand",
     "sample": "send on what a port receives, at a constant rate",
+    "sched": "show or set the scheduling of a connection's thread",
+    "scope": "look at numbers as curves in a browser",
     "server": "run a name server",
     "split": "send each element of a message to a port of its own",
-    "stats": "measure what a port sends",
+    "stats": "show how every connection is doing, or measure what a port sends",
     "terminate": "ask a program to end, by the name of its port",
     "time": "print the time, again and again",
     "topic": "make, list or remove topics",
@@ -57,6 +60,7 @@ VERBS: Final = {
     "write": "send lines from a port",
 }
 
+ALIASES: Final = {"priority-qos": "qos", "priority-sched": "sched"}  # the spellings of C++
 NO_SUCH_VERB: Final = 255
 
 
@@ -97,6 +101,7 @@ def find_verb(name: str) -> click.Command | None:
     """The command called `name`, or None. Raises UnknownPlugin for one that does not load."""
     from importlib import import_module
 
+    name = ALIASES.get(name, name)
     if name in VERBS:
         command: Any = import_module(f"yarpy.cli.{name}").command
     else:

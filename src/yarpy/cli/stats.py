@@ -1,7 +1,11 @@
-"""`yarpy stats PORT`: measure what a port sends, by reading from it.
+"""`yarpy stats [PORT]`: how every connection of the network is doing, or what one port sends.
 
-Prints a line each second, and the totals at the end: after `--duration` seconds, or when
-interrupted. Sizes are those of the payloads as they travel.
+    stats [--watch] [--json]         all connections, as their ports count them: carrier, messages,
+                                     rates, drops, jitter, latency, what priority the system grants
+    stats PORT [--duration S] ...    measure PORT by reading from it: a line each second, and the
+                                     totals at the end, or when interrupted
+
+Sizes are those of the payloads as they travel. C++ ports do not count; their columns are empty.
 Exit codes: 0; 255 PORT cannot be connected.
 """
 
@@ -70,7 +74,8 @@ def size_of(message: yarpy.Message) -> int:
 
 
 @click.command()
-@click.argument("port")
+@click.argument("port", required=False)
+@click.option("--watch", is_flag=True, help="Without PORT: show it anew each second.")
 @click.option(
     "--port_type", type=click.Choice(["BufferedPort", "Port"]), default="BufferedPort",
     help="Read all that comes (BufferedPort), or one by one while PORT waits (Port).",
@@ -78,9 +83,19 @@ def size_of(message: yarpy.Message) -> int:
 @click.option("--duration", type=float, metavar="S", help="Seconds to measure.")
 @click.option("--protocol", default="tcp", help="The carrier to read over (tcp).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON objects.")
-def command(port: str, port_type: str, duration: float | None, protocol: str, as_json: bool) -> int:
-    """Measure what PORT sends."""
+def command(
+    port: str | None,
+    watch: bool,
+    port_type: str,
+    duration: float | None,
+    protocol: str,
+    as_json: bool,
+) -> int:
+    """Show how every connection is doing, or measure what PORT sends."""
+    if port is None:
+        from yarpy.cli.overview import show
 
+        return show(watch, as_json)
     kind: Any = yarpy.Port if port_type == "Port" else yarpy.BufferedPort
     options = {} if port_type == "Port" else {"strict": True}
     with open_port(kind, ANY, **options) as reader:

@@ -20,6 +20,7 @@ from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
 from yarpy.port import command
 from yarpy.port.prop import get_peer, get_self, set_peer, set_self
+from yarpy.port.report import report
 from yarpy.wire.message import Message
 
 if TYPE_CHECKING:
@@ -269,6 +270,7 @@ _HANDLERS = {
     "set": _configure,
     "get": _inquire,
     "prop": _prop,
+    "stat": lambda hub, request: report(hub),  # ours; not in the help, which is that of C++
     "atch": _attach,
     "dtch": _detach,
     "pray": _pray,

@@ -148,9 +148,11 @@ def _asks(link: Outbound) -> bool:
 def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str = "") -> None:
     """Dial `contact` and take the connection in. Raises Refused."""
     route = Route(hub.name, target, carrier, contact.port)
-    chain = None
     try:
         chain = hub.monitoring.outgoing(route)
+    except YarpError as error:
+        raise Refused(f"Cannot connect to {text or target}: {error}") from error
+    try:
         try:
             driver, speaker = greet(contact, route, key=hub.key, group=hub.group, limit=hub.limit)
         except (LinkClosed, Timeout):
@@ -174,9 +176,10 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
             if link.ended():
                 if chain is not None:
                     chain.close()
-                raise Refused(f"Cannot connect to {text or target}") from LinkClosed(
-                    f'"{target}" hung up: its log tells what is wrong with its monitor '
-                    f"({', '.join(name for name, _ in named(carrier, 'recv'))})"
+                monitors = ", ".join(name for name, _ in named(carrier, "recv"))
+                reason = f'"{target}" hung up: its log tells what is wrong with {monitors} there'
+                raise Refused(f"Cannot connect to {text or target}: {reason}") from LinkClosed(
+                    reason
                 )
         try:
             hub.add_output_link(link)

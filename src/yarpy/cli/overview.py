@@ -1,0 +1,186 @@
+"""The table behind `yarpy stats`: every connection of the network, once or again and again.
+
+Rules: rates between two looks are counted, not smoothed, so the first look takes them from the
+ports. On a terminal it is a table; into a pipe go lines of text, with `--json` of JSON.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, Final
+
+from yarpy.cli.ending import Interrupted
+from yarpy.cli.spelling import print_json, print_line
+from yarpy.contact import base_carrier
+from yarpy.traffic import End, Flow, flows
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+PERIOD: Final = 1.0  # seconds between looks
+COLUMNS: Final = (
+    *("from", "to", "carrier", "messages", "msg/s", "MB/s", "drops"),
+    *("jitter ms", "latency ms", "thread", "packets", "monitors"),
+)
+
+
+class Overview:
+    """The connections at the last look, and the one before."""
+
+    def __init__(self) -> None:
+        self.flows: list[Flow] = []
+        self._before: dict[tuple[str, str], tuple[float, int, int]] = {}
+        self.rates: dict[tuple[str, str], tuple[float | None, float | None]] = {}
+
+    def look(self) -> None:
+        """Ask all ports."""
+        self.flows = flows()
+        now = time.monotonic()
+        seen: dict[tuple[str, str], tuple[float, int, int]] = {}
+        self.rates = {}
+        for flow in self.flows:
+            key = (flow.source, flow.target)
+            messages, size = flow.measured("messages"), flow.measured("bytes")
+            self.rates[key] = (flow.measured("rate"), None)
+            if messages is None or size is None:
+                continue
+            before = self._before.get(key)
+            if before is not None and now > before[0]:
+                passed = now - before[0]
+                self.rates[key] = ((messages - before[1]) / passed, (size - before[2]) / passed)
+            elif flow.measured("rate"):
+                self.rates[key] = (
+                    flow.measured("rate"),
+                    size / max(messages, 1) * self.rates[key][0],
+                )
+            seen[key] = (now, messages, size)
+        self._before = seen
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """What the table shows."""
+        return [self._row(flow) for flow in self.flows]
+
+    def _row(self, flow: Flow) -> tuple[str, ...]:
+        rate, speed = self.rates[(flow.source, flow.target)]
+        monitors = [
+            f"{one}{_state(end)}"
+            for end in (flow.sender, flow.receiver)
+            if end
+            for one in end.monitors
+        ]
+        return (
+            flow.source,
+            flow.target,
+            base_carrier(flow.carrier),
+            _number(flow.measured("messages"), 0),
+            _number(rate, 1),
+            _number(None if speed is None else speed / 1e6, 2),
+            _number(flow.drops, 0),
+            _number(flow.measured("jitter"), 2, 1e3),
+            _number(flow.measured("latency"), 2, 1e3),
+            _pair(flow, _thread),
+            _pair(flow, _packets),
+            ", ".join(monitors),
+        )
+
+    def as_json(self) -> list[dict[str, Any]]:
+        """All that is known, for programs."""
+        found = []
+        for flow in self.flows:
+            rate, speed = self.rates[(flow.source, flow.target)]
+            found.append(
+                {
+                    "source": flow.source,
+                    "target": flow.target,
+                    "carrier": flow.carrier,
+                    "messages_per_second": rate,
+                    "bytes_per_second": speed,
+                    "drops": flow.drops,
+                    "sender": flow.sender and asdict(flow.sender),
+                    "receiver": flow.receiver and asdict(flow.receiver),
+                }
+            )
+        return found
+
+
+def show(watch: bool, as_json: bool) -> int:
+    """The command without PORT."""
+    overview = Overview()
+    overview.look()
+    if as_json:
+        return _repeat(overview, watch, lambda: print_json(overview.as_json()))
+    if not sys.stdout.isatty():
+        return _repeat(overview, watch, lambda: _print_lines(overview))
+    from rich.console import Console
+    from rich.live import Live
+
+    if not watch:
+        Console().print(_table(overview))
+        return 0
+    with Live(_table(overview), auto_refresh=False, screen=True) as live:
+        return _repeat(overview, True, lambda: live.update(_table(overview), refresh=True))
+
+
+def _repeat(overview: Overview, watch: bool, tell: Any) -> int:
+    tell()
+    try:
+        while watch:
+            time.sleep(PERIOD)
+            overview.look()
+            tell()
+    except Interrupted:
+        pass  # how watching ends
+    return 0
+
+
+def _print_lines(overview: Overview) -> None:
+    rows = [COLUMNS, *overview.rows()]
+    widths = [max(len(row[n]) for row in rows) for n in range(len(COLUMNS))]
+    for row in rows:
+        print_line("  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip())
+
+
+def _table(overview: Overview) -> Table:
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=f"{len(overview.flows)} connections", expand=False)
+    for name in COLUMNS:
+        numeric = name in COLUMNS[3:9]
+        table.add_column(name, justify="right" if numeric else "left", overflow="fold")
+    for row in overview.rows():
+        cells = [Text(cell) for cell in row]  # names are text, not markup
+        if row[6] not in ("", "0"):
+            cells[6].stylize("bold red")
+        table.add_row(*cells)
+    return table
+
+
+def _number(value: float | None, digits: int, scale: float = 1.0) -> str:
+    return "" if value is None else f"{value * scale:.{digits}f}"
+
+
+def _pair(flow: Flow, spell: Any) -> str:
+    """What both ends have, once if they have the same."""
+    ends = [spell(end) if end is not None else "" for end in (flow.sender, flow.receiver)]
+    return ends[0] if ends[0] == ends[1] else " / ".join(one or "-" for one in ends)
+
+
+def _thread(end: End) -> str:
+    policy = end.qos.policy
+    if policy is None:
+        return ""
+    short = policy.removeprefix("SCHED_")
+    return f"{short} {end.qos.priority}" if short != "OTHER" else short
+
+
+def _packets(end: End) -> str:
+    return "" if end.qos.packets is None else str(end.qos.packets)
+
+
+def _state(end: End) -> str:
+    """The parameters of an end's monitors, in short."""
+    told = " ".join(f"{key}={value}" for key, value in end.parameters.items() if value != "")
+    return f" ({told})" if told else ""

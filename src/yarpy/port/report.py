@@ -1,0 +1,52 @@
+"""Report: how every connection of a port is doing - the answer to the administrative word [stat].
+
+Rules: our own word; C++ ports do not know it. One list per connection, of `(key value)` pairs, so
+that a person at a text prompt can read it too. Times in seconds, rates per second; a number that
+nobody measured is missing.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.property import Property
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
+from yarpy.port.monitoring import monitored
+from yarpy.port.quality import effective
+
+if TYPE_CHECKING:
+    from yarpy.port.hub import Hub
+
+COUNTED = ("messages", "bytes", "drops")
+MEASURED = ("rate", "jitter", "latency")  # of these a zero says: not known
+
+
+def report(hub: Hub) -> Bottle:
+    """Every connection of `hub` with another port; passing visitors have no rooted name."""
+    found = Bottle(connection(link) for link in hub.outputs)
+    found += [connection(link) for link in hub.inputs if link.route.source.startswith("/")]
+    return found
+
+
+def connection(link: Inbound | Outbound) -> Property:
+    """One connection."""
+    stats, qos, route = link.snapshot(), effective(link), link.route
+    found = Property(
+        side="in" if isinstance(link, Inbound) else "out",
+        source=route.source,
+        target=route.target,
+        carrier=route.carrier,
+        packets=str(qos.packets),
+        **{key: stats[key] for key in COUNTED},
+        **{key: float(stats[key]) for key in MEASURED if stats[key]},
+    )
+    if qos.policy is not None:
+        found["policy"], found["priority"] = qos.policy, qos.priority
+    monitors = monitored(link)
+    if monitors:
+        chain = link.own_chain if isinstance(link, Inbound) else link.chain
+        found["monitors"] = Bottle(monitors)
+        found["parameters"] = Property() if chain is None else chain.parameters()
+    return found

@@ -1,0 +1,72 @@
+"""`yarpy stats` without a port: every connection of the network."""
+
+import json
+import re
+import signal
+
+import pytest
+from support.wait import wait_until
+
+import yarpy
+
+
+@pytest.fixture(scope="module")
+def ports(names):
+    with (
+        yarpy.Port("/over/in", names=names) as in_,
+        yarpy.BufferedPort("/over/[bold]out", names=names) as out,
+    ):
+        out.connect("/over/in")
+        out.outputs[0].qos = yarpy.Qos(packets="HIGH")
+        for number in range(5):
+            wait_until(lambda number=number: out.write([number]))
+            in_.read(timeout=5)
+        yield out, in_
+
+
+def test_lines(here, ports):
+    lines = here("stats").out.splitlines()
+    assert lines[0].split()[:4] == ["from", "to", "carrier", "messages"]
+    [line] = [line for line in lines if "/over/in" in line]
+    assert re.match(r"/over/\[bold\]out +/over/in +tcp +5 ", line)
+    assert "AF42 / CS0" in line
+
+
+def test_json(here, ports):
+    [flow] = [one for one in json.loads(here("stats", "--json").out) if one["target"] == "/over/in"]
+    assert (flow["source"], flow["carrier"]) == ("/over/[bold]out", "tcp")
+    assert flow["sender"]["messages"] == flow["receiver"]["messages"] == 5
+    assert flow["sender"]["qos"]["packets"] == "AF42"
+
+
+def test_watching_ends_with_a_signal(cli, ports):
+    with cli.start("stats", "--watch", "--json") as process:
+        for _ in range(2):
+            process.wait_line(r"^\[", stream="out")
+        process.signal(signal.SIGINT)
+        assert process.wait() == 0
+
+
+def test_table_on_a_terminal(ports, monkeypatch):
+    """Names are shown as they are, brackets included; drops stand out."""
+    import io
+
+    from rich.console import Console
+
+    from yarpy.cli.overview import Overview, _table
+
+    monkeypatch.setattr("yarpy.cli.overview.flows", lambda: found)
+    from yarpy.traffic import End, Flow
+
+    found = [Flow("/[bold]a", "/b", End("tcp", 5, 100, 2, 10.0), End("tcp", 5, 100, 1, 10.0))]
+    overview = Overview()
+    overview.look()
+    out = io.StringIO()
+    Console(file=out, width=200, force_terminal=True, color_system="standard").print(
+        _table(overview)
+    )
+    assert "/[bold]a" in out.getvalue()
+    assert "\x1b[1;31m3\x1b[0m" in out.getvalue()
+    found[0].sender.messages = 25
+    overview.look()
+    assert overview.rates["/[bold]a", "/b"][0] > 20

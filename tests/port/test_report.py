@@ -1,0 +1,51 @@
+"""The answer to [stat]."""
+
+from __future__ import annotations
+
+from support.wait import wait_until
+
+import yarpy
+from yarpy import registry
+from yarpy.data.property import Property
+from yarpy.port import probe
+from yarpy.port.report import report
+from yarpy.traffic import read
+
+
+class Level:
+    def __init__(self, place: object) -> None:
+        pass
+
+    def parameters(self) -> dict[str, object]:
+        return {"level": 3}
+
+
+def test_every_connection_with_a_port_and_no_visitor() -> None:
+    registry.monitors.add("level", Level)
+    names = yarpy.LocalNames()
+    try:
+        with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
+            out.connect("/in", "tcp+recv.level")
+            for number in range(3):
+                out.write([number])
+                in_.read(timeout=5)
+            out.outputs[0].qos = yarpy.Qos(packets="HIGH")
+            wait_until(lambda: in_.inputs[0].stats["messages"] == 3)
+            [sent] = map(Property.from_bottle, probe.ask(out._hub.contact, ["stat"]))
+            [came] = map(Property.from_bottle, probe.ask(in_._hub.contact, ["stat"]))
+            assert (sent["side"], came["side"]) == ("out", "in")
+            assert read(sent)[:2] == read(came)[:2] == ("/out", "/in")
+            end = read(sent)[2]
+            assert (end.carrier, end.messages, end.drops) == ("tcp+recv.level", 3, 0)
+            assert end.qos == yarpy.Qos(packets="HIGH")
+            assert end.latency is None
+            end = read(came)[2]
+            assert (end.monitors, end.parameters) == (["level"], {"level": 3})
+            assert end.qos.policy == "SCHED_OTHER"
+    finally:
+        registry.monitors.remove("level")
+
+
+def test_a_port_alone() -> None:
+    with yarpy.Port("/it", names=yarpy.LocalNames()) as port:
+        assert report(port._hub) == []
