@@ -13,9 +13,13 @@ _WHERE = {
     "ControlBoardServer": "control_board_server",
     "ControlMode": "control_board",
     "FEATURES": "frame_grabber",
+    "FrameGrabber": "frame_grabber_client",
+    "FrameGrabberServer": "frame_grabber_server",
     "Gains": "control_board",
     "InteractionMode": "control_board",
     "MotorTorqueParameters": "control_board",
+    "MultiSensor": "multi_sensor_client",
+    "MultiSensorServer": "multi_sensor_server",
 }
 
 __all__ = [*_WHERE]
@@ -28,6 +32,10 @@ if TYPE_CHECKING:
     from yarpy.devices.control_board_client import ControlBoard as ControlBoard
     from yarpy.devices.control_board_server import ControlBoardServer as ControlBoardServer
     from yarpy.devices.frame_grabber import FEATURES as FEATURES
+    from yarpy.devices.frame_grabber_client import FrameGrabber as FrameGrabber
+    from yarpy.devices.frame_grabber_server import FrameGrabberServer as FrameGrabberServer
+    from yarpy.devices.multi_sensor_client import MultiSensor as MultiSensor
+    from yarpy.devices.multi_sensor_server import MultiSensorServer as MultiSensorServer
 
 
 def __getattr__(name: str) -> Any:

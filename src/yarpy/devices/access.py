@@ -104,6 +104,10 @@ class Part:
 
         self.use(member, act)
 
+    def store(self, member: str, value: object) -> None:
+        """Assign to an attribute that the device has. Raises Refused."""
+        self.use(member, lambda found: setattr(self.target, member, value))
+
     def _check(self, joints: Sequence[int]) -> None:
         if not joints:
             raise Refused("no joints are named")

@@ -7,8 +7,9 @@
     FrameGrabberServer("/robot/eye", Eye())
 
 Rules: as for control boards (`yarpy.devices.control_board`): your class inherits nothing and has
-what it can do. `image` is only called while somebody looks. What is adjusted is an attribute, to
-which the server assigns. Whatever you raise is logged, and the next image is tried.
+what it can do. `image` is only called while somebody looks; it may wait for the camera, and may
+give the same array again and again. What is adjusted is an attribute, to which the server assigns.
+Whatever you raise is logged, and the next image is tried.
 
 Source: interfaces of YARP 3.x behind frameGrabber_nws_yarp.
 """
@@ -61,4 +62,4 @@ class FrameGrabberLike(Camera, Protocol):
     def one_push(self, feature: str) -> object:
         """Adjust a feature by itself, once."""
 
-    bus: str  # how the camera is connected, and which it is
+    description: tuple[str, str]  # "usb", "firewire" or "unknown", and which camera it is
