@@ -192,15 +192,19 @@ def test_made_from_a_carrier_string() -> None:
         places.append(place)
         return object()
 
+    def there(carrier: str) -> Place:
+        return Place("/out", "/in", carrier, sending=True, limit=1000)
+
     registry.monitors.add("made", make)
     try:
-        from_carrier("tcp+send.made+a.1+recv.made+b.2", "send", "/out", "/in", Group())
+        from_carrier(there("tcp+send.made+a.1+recv.made+b.2"))
         [place] = places
         assert (place.source, place.target, place.sending) == ("/out", "/in", True)
+        assert place.limit == 1000
         assert (place.text("a"), place.text("b")) == ("1", "2")
         with pytest.raises(LocalProtocolError, match=r'"made" cannot start at /out -> /in.*odd'):
-            from_carrier("tcp+send.made+send.made+bad", "send", "/out", "/in", Group())
+            from_carrier(there("tcp+send.made+send.made+bad"))
         with pytest.raises(UnknownPlugin, match='did you mean "made"'):
-            from_carrier("tcp+send.mdae", "send", "/out", "/in", Group())
+            from_carrier(there("tcp+send.mdae"))
     finally:
         registry.monitors.remove("made")

@@ -169,3 +169,27 @@ def test_attaching_what_does_not_start_says_why(names) -> None:
             assert reply[0] == Vocab("fail")
             assert reply[1].startswith("Failed to configure the portmonitor plug-in")
             assert text in reply[1]
+
+
+def test_monitors_are_told_the_limit_of_their_port_and_who_finds_others(
+    names: yarpy.LocalNames,
+) -> None:
+    places: list[Place] = []
+
+    def make(place: Place) -> object:
+        places.append(place)
+        return object()
+
+    registry.monitors.add("told", make)
+    try:
+        with (
+            yarpy.Port("/out", names=names) as out,
+            yarpy.Port("/in", names=names, limit=5000),
+        ):
+            out.connect("/in", "tcp+send.told+recv.told")
+            wait_until(lambda: len(places) == 2, what="both monitors are there")
+    finally:
+        registry.monitors.remove("told")
+    places.sort(key=lambda place: place.sending)
+    assert [place.limit for place in places] == [5000, 1 << 30]
+    assert all(place.names is names for place in places)

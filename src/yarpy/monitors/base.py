@@ -29,6 +29,7 @@ from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.errors import LocalProtocolError
+from yarpy.wire.stream import DEFAULT_LIMIT
 
 
 class _Drop:
@@ -79,7 +80,8 @@ class Place:
 
     `carrier` is the whole carrier string. A monitor of a port rather than of a connection has the
     port's name in both places and no carrier. `tokens` are the monitor's own parameters, `shared`
-    all of the connection's.
+    all of the connection's. `limit` is the largest message in bytes that the port takes: nothing
+    may grow beyond it in here either. `names` finds other ports: the name client of this one.
     """
 
     source: str
@@ -89,6 +91,8 @@ class Place:
     tokens: tuple[str, ...] = ()
     shared: tuple[str, ...] = ()
     group: Group = field(default_factory=Group)
+    limit: int = DEFAULT_LIMIT
+    names: Any = None
 
     def __str__(self) -> str:
         if self.source == self.target:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, Final, Literal
 
 from yarpy import registry
@@ -55,17 +56,17 @@ def make(name: str, place: Place) -> object:
         ) from error
 
 
-def from_carrier(
-    carrier: str, side: Literal["send", "recv"], source: str, target: str, group: Group
-) -> list[object]:
-    """The monitors that a carrier string asks for at one end. Raises as `make`."""
-    found = named(carrier, side)
-    shared = tuple(split_tokens(carrier)) if found else ()
+def from_carrier(place: Place) -> list[object]:
+    """The monitors that a carrier string asks for at its sender's or receiver's end.
+
+    They sit at `place`, each with its own parameters. Raises as `make`.
+    """
+    found = named(place.carrier, "send" if place.sending else "recv")
+    shared = tuple(split_tokens(place.carrier)) if found else ()
     made: list[object] = []
     try:
         for name, tokens in found:
-            place = Place(source, target, carrier, side == "send", tokens, shared, group)
-            made.append(make(name, place))
+            made.append(make(name, replace(place, tokens=tokens, shared=shared)))
     except YarpError:
         Chain(made, "").close()
         raise

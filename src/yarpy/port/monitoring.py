@@ -7,6 +7,7 @@ behind every input. A port without monitors has no chain, and pays nothing.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 from yarpy.contact import Route
@@ -37,7 +38,7 @@ class Monitoring:
         """The sender's chain of a connection that is about to be made. Raises as `make`."""
         if "+send." not in route.carrier:
             return None
-        monitors = from_carrier(route.carrier, "send", route.source, route.target, Group())
+        monitors = from_carrier(self._place(route, sending=True))
         return Chain(monitors, str(route))
 
     def incoming(self, link: Inbound) -> None:
@@ -46,11 +47,16 @@ class Monitoring:
         if "+recv." not in route.carrier:
             link.chain = self.input
             return
-        monitors = from_carrier(route.carrier, "recv", route.source, route.target, self.group)
+        monitors = from_carrier(self._place(route, sending=False))
         for monitor in monitors:
             self.group.add(monitor)
         link.own_chain = Chain(monitors, str(route), self.group)
         link.chain = self._joined(link.own_chain)
+
+    def _place(self, route: Route, sending: bool) -> Place:
+        group = Group() if sending else self.group
+        end = route.source, route.target, route.carrier, sending
+        return Place(*end, group=group, limit=self._hub.limit, names=self._hub.service())
 
     def _joined(self, own: Chain | None) -> Chain | None:
         if own is None or self.input is None:
@@ -67,7 +73,12 @@ class Monitoring:
         """
         name = self._hub.name
         tokens = tuple(f"{key}.{value}" for key, value in parameters.items() if key != "monitor")
-        place = Place(name, name, sending=side == "out", tokens=tokens, shared=tokens)
+        place = replace(
+            self._place(Route(name, name, ""), sending=side == "out"),
+            tokens=tokens,
+            shared=tokens,
+            group=Group(),
+        )
         fresh = Chain([make(str(parameters.get("monitor", DEFAULT)), place)], str(place))
         self.detach(side)
         self._set(side, fresh)
