@@ -205,3 +205,13 @@ def test_every_message_gives_valid_json_that_reads_again(value: object) -> None:
 @given(st.dictionaries(st.text(min_size=1, max_size=5), st.integers(-9, 9), min_size=2))
 def test_objects_come_back(value: dict[str, int]) -> None:
     assert json.loads(to_json(from_json(json.dumps(value)))) == value
+
+
+def test_pixels_may_stay_at_home() -> None:
+    """The facts are the same for an image, an array, and what arrived as one."""
+    array = numpy.zeros((48, 64, 3), numpy.uint8)
+    message = codec.decode(b"".join(codec.encode(yarpy.Image(array))))
+    for value in (yarpy.Image(array), array, message):
+        facts = json.loads(to_json(value, pixels=False))
+        assert facts == {"type": "image", "width": 64, "height": 48, "pixel": "rgb"}
+        assert json.loads(to_json(value)).keys() == {*facts, "base64"}

@@ -46,6 +46,28 @@ def test_what_was_written_leaves_before_waiting() -> None:
     assert seen == [b"question"]
 
 
+@pytest.mark.parametrize("listens", [True, False])
+def test_last_words_to_a_peer_that_is_too_slow(listens: bool) -> None:
+    driver, transport = scripted(BlockingIOError(11, "again"))
+
+    def steps() -> Steps[None]:
+        try:
+            yield None
+        except Timeout:
+            driver.stream.write(b"too late")
+            raise
+
+    if not listens:
+
+        def deaf(output: object) -> None:
+            raise BrokenPipeError(32, "pipe")
+
+        transport.send = deaf  # type: ignore[method-assign]
+    with pytest.raises(Timeout):
+        driver.run(steps(), time.monotonic() + 1)
+    assert transport.said == (b"too late" if listens else b"")
+
+
 def test_end_of_the_peer() -> None:
     driver, _ = scripted(b"123")
     with pytest.raises(LinkClosed, match="middle"):

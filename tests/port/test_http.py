@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import shutil
 import socket
@@ -17,6 +18,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.carriers.http import Http
+from yarpy.carriers.xmlrpc import XmlRpc
 from yarpy.link import handshake
 from yarpy.names.local import LocalNames
 
@@ -214,6 +216,66 @@ def test_greeting_that_never_ends_is_given_up(
                 sock.sendall(b"GET /xx " if not _ else b"x")
                 time.sleep(0.01)
         assert not echo.inputs
+
+
+BEGINNINGS = [
+    b"POST /form HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\n",
+    b"GET /?req=x HTTP/1.1\r\nHost: x\r\n\r\nGET /?req=y HTTP/1.1\r\nX: ",
+    b"POST /RPC2 HTTP/1.1\r\nHost: x\r\nContent-Length: 100\r\n\r\n",
+]
+
+
+@pytest.mark.parametrize("beginning", BEGINNINGS, ids=["body", "head", "xmlrpc"])
+def test_ten_who_send_too_slowly_block_nobody(
+    echo: yarpy.RpcServer, monkeypatch: pytest.MonkeyPatch, beginning: bytes
+) -> None:
+    for carrier in (Http, XmlRpc):
+        monkeypatch.setattr(carrier, "hurry", 0.5)
+    slow = []
+    for _ in range(10):
+        sock = socket.create_connection(("127.0.0.1", echo.contact.port), FAST)
+        sock.sendall(beginning)
+        slow.append(sock)
+    connection = client(echo)
+    for sock in slow * 3:
+        with contextlib.suppress(OSError):
+            sock.sendall(b"x")
+        assert get(connection, "/?req=x")[0] == 200
+    for sock in slow:
+        assert b"HTTP/1.1 408 Request Timeout\r\n" in said_to(sock)
+        sock.close()
+    assert get(connection, "/?req=x")[0] == 200
+    connection.close()
+    wait_until(lambda: not echo.inputs)
+
+
+def said_to(sock: socket.socket) -> bytes:
+    """Everything up to the end."""
+    data = b""
+    while part := sock.recv(1000):
+        data += part
+    return data
+
+
+def test_time_for_a_request_begins_with_it(
+    echo: yarpy.RpcServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not when the last one was answered, with or without the port."""
+    monkeypatch.setattr(Http, "hurry", 0.5)
+    connection = client(echo)
+    for target in ("/?req=x", "/favicon.ico", "/?req=x"):
+        assert get(connection, target)[0] in (200, 204)
+        time.sleep(0.6)
+    connection.putrequest("POST", "/form")
+    connection.putheader("Content-Length", "5")
+    connection.endheaders()
+    connection.send(b"req")
+    time.sleep(0.1)
+    connection.send(b"=x")
+    assert connection.getresponse().read() == b'["ok", "echo", ["x"]]\n'
+    time.sleep(0.6)
+    assert get(connection, "/?req=x")[0] == 200
+    connection.close()
 
 
 def test_connection_that_says_nothing_more_ends(

@@ -53,12 +53,14 @@ class Carrier:
     connectionless: ClassVar[bool] = False  # closing must be told to the peer some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
     patience: ClassVar[float | None] = None  # seconds an accepted peer may be silent
+    hurry: ClassVar[float | None] = None  # seconds for a message from its first byte to its last
     lossy: bool = False  # who reads too slowly misses messages; its writer never waits
     backlog: int = 0  # messages that may wait for such a reader
     interval: float = 0.0  # seconds between the messages of a lossy connection, at least
     instead: type[Carrier] | None = None  # set by `welcome`: who is to welcome this peer
     listens: bool = False  # `listen` is to be run while the link sends
     holding: bool = False  # bytes of the next message were already taken from the stream
+    midway: bool = False  # a message has begun to come and must hurry
     structured: bool = False  # the peer wants values, not lines for a person to read
     finished: bool = False  # everything was said: the link ends without waiting for the peer
 

@@ -58,7 +58,8 @@ class Request:
 class Wish:
     """A message or port command (`key`, as in Message), and how to answer it.
 
-    shown: what the page's form shows again. acts: it may change something.
+    shown: what the page's form shows again. pixels: who reads wants pictures whole. acts: it may
+    change something.
     """
 
     key: str
@@ -68,6 +69,7 @@ class Wish:
     text: str = ""
     outer: Outer = "auto"
     shown: str = ""
+    pixels: bool = False
 
     @property
     def acts(self) -> bool:
@@ -109,7 +111,8 @@ def read_wish(request: Request) -> Wish | Refusal:
     if path.startswith(_HABITS):
         return Refusal(404, "a port has no such thing")
     if path == "r":
-        return Wish("r", _reading_form(request, fields, query))
+        asked = query.split("&")
+        return Wish("r", _reading_form(request, fields, asked), pixels="pixels" in asked)
     if not fields.keys() & {"cmd", "req", "data"}:
         if path in ("", "form", "data"):
             key = "?" if mark and path == "" else "*"
@@ -259,7 +262,7 @@ def _command(request: Request, fields: Mapping[str, str]) -> Wish | Refusal:
         payload = rest.encode("utf-8", "surrogateescape")
         return Wish(command.key, form, payload, outer=_outer(fields), shown=rest)
     if command.key == "r":
-        return Wish("r", _reading_form(request, fields, ""))
+        return Wish("r", _reading_form(request, fields, []))
     if command.key == "q":
         return _one()
     text = PAGE if command.key == "*" else command.text
@@ -295,9 +298,9 @@ def _form(request: Request, fields: Mapping[str, str], default: Form) -> Form:
     return default
 
 
-def _reading_form(request: Request, fields: Mapping[str, str], query: str) -> Form:
+def _reading_form(request: Request, fields: Mapping[str, str], asked: list[str]) -> Form:
     named = fields.get("format")
-    if "sse" in query.split("&") or named in ("sse", "events"):
+    if "sse" in asked or named in ("sse", "events"):
         return "events"
     if named == "html":
         return "page"

@@ -7,9 +7,9 @@
 Rules: binary, the payloads of all frames are one stream of bytes, as on a unix_stream connection;
 what goes out has a frame for each block. In JSON a frame is a message, a reply is a frame;
 `&admin` sends them to the administration, `&envelope` shows what is read as
-`{"envelope": "7 1.5", "data": [...]}`. Pings are answered, a close is answered and ends the
-connection. A page that reads too slowly misses messages. Which pages may write is said by
-`YARPY_WEB_ORIGINS`, as for http. Frames are wsproto's.
+`{"envelope": "7 1.5", "data": [...]}`; of a picture only its size and kind are told, with `&pixels`
+all of it. Pings are answered, a close is answered and ends the connection. A page that reads too
+slowly misses messages. Which pages may write is said by `origin`. Frames are wsproto's.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.header import MAX_LINE, read_headers
+from yarpy.carriers.origin import origins_of
 from yarpy.contact import Route
 from yarpy.data import codec
 from yarpy.data.json import from_json, to_json
@@ -66,6 +67,7 @@ class WebSocket(Carrier):
         super().__init__(route)
         self.json = False
         self.enveloped = False
+        self.pixels = False
         self._masks = False  # who dials masks what it sends
         self._key = CALL
         self._frames: FrameDecoder | None = None
@@ -109,12 +111,13 @@ class WebSocket(Carrier):
         self.push = "read" not in wishes
         self._key = ADMIN if "admin" in wishes else CALL
         self.enveloped = "envelope" in wishes
+        self.pixels = "pixels" in wishes
         key = headers.get("sec-websocket-key", "")
         if not key or "websocket" not in headers.get("upgrade", "").lower():
             more = "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
             text = "This address is for WebSockets.\n"
             yield from _refuse(stream, "426 Upgrade Required", text, more)
-        if self.push and not self._admits(headers):
+        if self.push and not origins_of().admits(headers):
             text = "Pages of this origin may only read (&read), see YARPY_WEB_ORIGINS.\n"
             yield from _refuse(stream, "403 Forbidden", text)
         offered = headers.get("sec-websocket-protocol", "").replace(",", " ").split()
@@ -128,11 +131,6 @@ class WebSocket(Carrier):
         stream.write(answer.encode("latin-1") + b"\r\n")
         self.lossy = self.listens = True
         self._begin(stream)
-
-    def _admits(self, headers: dict[str, str]) -> bool:
-        from yarpy.carriers.http import origins_of
-
-        return origins_of(os.environ.get("YARPY_WEB_ORIGINS", "*")).admits(headers)
 
     def _begin(self, stream: ByteStream) -> None:
         from wsproto.frame_protocol import FrameDecoder
@@ -158,9 +156,9 @@ class WebSocket(Carrier):
         return True
 
     def _as_json(self, packet: Packet) -> bytes:
-        key = (JSON, self.enveloped)
+        key = (JSON, self.enveloped, self.pixels)
         if key not in packet.forms:
-            text = to_json(packet.value)
+            text = to_json(packet.value, pixels=self.pixels)
             if self.enveloped:
                 envelope = to_json(packet.envelope.decode("utf-8", "replace"))
                 text = f'{{"envelope": {envelope}, "data": {text}}}'

@@ -5,7 +5,8 @@
 Rules: each message is a POST, its reply the response; also a port that says nothing responds, with
 an empty string. The questions of ROS nodes (`getPid`, `requestTopic`, `getBusInfo`,
 `publisherUpdate`) go to the administration, and the connection ends after them. What is not
-XML-RPC is answered with a fault. A POST to `/` belongs here if it brings XML, else to http.
+XML-RPC is answered with a fault, what comes too slowly with a status. A POST to `/` belongs here if
+it brings XML, else to http.
 How values are spelled: `yarpy.data.xmlrpc`.
 """
 
@@ -18,7 +19,7 @@ from yarpy.carriers.header import MAX_LINE, read_headers
 from yarpy.contact import Route, modifier
 from yarpy.data import codec, xmlrpc
 from yarpy.data.bottle import Bottle
-from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
+from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import ADMIN, CALL, Message, Packet
 from yarpy.wire.stream import ByteStream
@@ -42,6 +43,7 @@ class XmlRpc(Carrier):
     magic = b"POST /RP"
     acks = True
     gathers = False
+    hurry = 60.0
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
@@ -73,10 +75,19 @@ class XmlRpc(Carrier):
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         while True:
-            line = yield from stream.read_line(MAX_LINE)
-            if not line:
-                continue  # between two calls
-            body = yield from self._read_body(stream, line)
+            yield from stream.more(1)
+            self.midway = True
+            try:
+                line = yield from stream.read_line(MAX_LINE)
+                if not line:
+                    continue  # between two calls
+                body = yield from self._read_body(stream, line)
+            except Timeout:
+                stream.write(_RESPONSE.format(status="408 Request Timeout", size=0).encode())
+                self.finished = True
+                raise
+            finally:
+                self.midway = False
             try:
                 call = xmlrpc.decode_call(body)
             except DecodeError as error:

@@ -29,14 +29,15 @@ _TYPE: Final = "type"
 _INT64: Final = range(-(1 << 63), 1 << 63)
 
 
-def to_json(value: object, outer: Outer = "auto") -> str:
+def to_json(value: object, outer: Outer = "auto", *, pixels: bool = True) -> str:
     """The JSON text of a message or of anything that can be sent as one; TypeError for the rest.
 
     outer: whether the outermost list becomes an array or an object; `auto`: what it looks like.
+    pixels: whether an image comes with its pixels, or only with its size and kind.
     """
     import json
 
-    plain = _plain_top(value, outer)
+    plain = _plain_top(value, outer, pixels)
     text = json.dumps(plain, ensure_ascii=False, allow_nan=False)
     return text if text.isascii() or _encodable(text) else _mended(text)
 
@@ -63,7 +64,7 @@ def from_json(text: str | bytes | bytearray | memoryview) -> Any:
 # ---------------------------------------------------------------------------------- to JSON
 
 
-def _plain_top(value: object, outer: Outer) -> Any:
+def _plain_top(value: object, outer: Outer, pixels: bool) -> Any:
     if isinstance(value, (list, tuple)):
         return _list(value, outer, 0)
     if isinstance(value, Mapping) or _is_scalar(value):
@@ -71,18 +72,18 @@ def _plain_top(value: object, outer: Outer) -> Any:
     # Vector, Image, Stamp, arrays ...: what a reader of the message would find in it.
     from yarpy.data import codec
 
-    described = _described(value) if outer == "auto" else None
+    described = _described(value, pixels) if outer == "auto" else None
     if described is not None:
         return described
     message = b"".join(codec.encode(value))
     try:
-        described = _described(codec.decode(message)) if outer == "auto" else None
+        described = _described(codec.decode(message), pixels) if outer == "auto" else None
         return _list(Bottle.from_bytes(message), outer, 0) if described is None else described
     except DecodeError:
         return _plain(message, 0)  # a format of somebody's own
 
 
-def _described(value: object) -> Any:
+def _described(value: object, pixels: bool = True) -> Any:
     """Images, matrices and sounds by their parts; None for other kinds."""
     from yarpy.data.image import Image
     from yarpy.data.matrix import Matrix
@@ -90,14 +91,13 @@ def _described(value: object) -> Any:
     from yarpy.data.vector import Vector
 
     if isinstance(value, Image):
-        pixels = value.array.tobytes()
-        return {
+        facts = {
             _TYPE: "image",
             "width": value.width,
             "height": value.height,
             "pixel": str(value.code),
-            "base64": _base64(pixels),
         }
+        return {**facts, "base64": _base64(value.array.tobytes())} if pixels else facts
     if isinstance(value, Matrix):
         return [[_number(item) for item in row] for row in value.array.tolist()]
     if isinstance(value, Vector):

@@ -62,7 +62,11 @@ class Driver:
                 effect = steps.send(answer)
                 if effect is None:
                     self.flush()
-                    self.fill(deadline)
+                    try:
+                        self.fill(deadline)
+                    except Timeout as error:
+                        self.tell_late(steps, error)
+                        raise
                     answer = None
                 else:
                     answer = self._perform(effect)
@@ -73,6 +77,17 @@ class Driver:
         finally:
             if deadline is not None:
                 self.transport.limit_waiting(None)
+
+    def tell_late(self, steps: Steps[Any], error: Timeout) -> None:
+        """Let a protocol that waits say goodbye to a peer that was too slow."""
+        try:
+            steps.throw(error)
+        except (StopIteration, YarpError):
+            pass  # the timeout itself, nearly always
+        try:
+            self.flush()
+        except YarpError:
+            pass  # nobody listens
 
     def flush(self) -> None:
         """Send what the protocol wrote."""

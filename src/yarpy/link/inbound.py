@@ -16,7 +16,7 @@ import time
 from typing import TYPE_CHECKING, Any, Protocol
 
 from yarpy.data.bottle import Bottle
-from yarpy.errors import LinkClosed, Timeout, YarpError
+from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.counter import Counter
 from yarpy.link.driver import Driver
 from yarpy.qos import Sched
@@ -76,6 +76,7 @@ class Inbound:
         self._turn = threading.Lock()  # who may read: the thread, or a reader that borrowed it
         self._steps: Steps[Message] | None = None
         self._leaving = False  # the thread leaves the turn to a reader
+        self._begun = 0.0  # when a message that must hurry began to come; 0: none has
         self._unsent_acks = 0
         self._answering: Message | None = None
         self._closing = False
@@ -194,14 +195,48 @@ class Inbound:
             if carrier.finished:
                 message = Message(QUIT)
                 break
-            driver.fill(deadline)
+            if carrier.hurry is None:
+                driver.fill(deadline)
+            else:
+                self._fill_in_time(carrier.hurry, deadline)
             if self._steps is None and not driver.stream.waiting:
                 self._steps = carrier.decode(driver.stream)  # meets the end, and says how
+        if self._begun:
+            self._forget_hurry()
         message.source = self.route.source
         counter = self.counter
         counter.count(time.perf_counter())
         counter.bytes = driver.bytes_in
         return message
+
+    def _fill_in_time(self, hurry: float, deadline: float | None) -> None:
+        """Wait for more bytes, but for a message that has begun no longer than it may take."""
+        if not self.carrier.midway:
+            self._forget_hurry()
+            self.driver.fill(deadline)
+            return
+        now = time.monotonic()
+        self._begun = self._begun or now
+        left = self._begun + hurry - now
+        try:
+            if left <= 0:
+                raise Timeout("the peer is too slow")
+            if not self._leaving:  # a reader with the turn looks around often enough
+                self.driver.transport.limit_waiting(left)
+            self.driver.fill(deadline)
+        except Timeout as error:
+            steps = self._steps
+            if steps is not None and time.monotonic() > self._begun + hurry - 0.01:
+                self._steps = None
+                self.driver.tell_late(steps, error)
+                raise RemoteProtocolError("the peer sends a message too slowly") from error
+            raise
+
+    def _forget_hurry(self) -> None:
+        """Nothing has begun to come: wait as long as usual."""
+        if self._begun:
+            self._begun = 0.0
+            self._limit(PATIENCE if self._leaving else None)
 
     def borrow(self) -> bool:
         """Take the turn for a reader, if the link's thread is not reading itself."""

@@ -1,0 +1,82 @@
+"""One message of HTTP/1.1: read by h11, written here.
+
+Rules: what others send is h11's to judge, byte by byte. What we send is either a head with the
+length of its body or a head with chunks behind it, so that writing it is joining bytes; header
+values are checked for what would end a line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+from yarpy.errors import LocalProtocolError
+from yarpy.wire.effects import Steps
+from yarpy.wire.stream import ByteStream
+
+if TYPE_CHECKING:
+    import h11
+
+Headers: TypeAlias = Iterable[tuple[str, str]]
+
+MAX_HEAD: Final = 1 << 14  # bytes of a request line with all headers
+MAX_BODY: Final = 1 << 24
+CONTINUE: Final = b"HTTP/1.1 100 Continue\r\n\r\n"
+LAST_CHUNK: Final = b"0\r\n\r\n"
+HTML: Final = "text/html; charset=utf-8"
+TEXT: Final = "text/plain; charset=utf-8"
+JSON: Final = "application/json"
+
+_REASONS: Final = {
+    200: "OK",
+    204: "No Content",
+    400: "Bad Request",
+    403: "Forbidden",
+    404: "Not Found",
+    405: "Method Not Allowed",
+    408: "Request Timeout",
+    413: "Content Too Large",
+    415: "Unsupported Media Type",
+    431: "Request Header Fields Too Large",
+    500: "Internal Server Error",
+    501: "Not Implemented",
+    505: "HTTP Version Not Supported",
+}
+
+
+def response_head(status: int, headers: Headers) -> bytes:
+    """The head of a response. LocalProtocolError for a header value that cannot be sent."""
+    return _head(f"HTTP/1.1 {status} {_REASONS.get(status, '')}", headers)
+
+
+def request_head(method: str, target: str, headers: Headers) -> bytes:
+    """The head of a request. LocalProtocolError for what cannot be sent in one."""
+    if not (target.isascii() and target.isprintable()) or " " in target:
+        raise LocalProtocolError(f"a path without blanks, please, not {target!r}")
+    return _head(f"{method} {target} HTTP/1.1", headers)
+
+
+def chunk(data: bytes) -> bytes:
+    """A piece of a body of unknown length; nothing for no data, which would end it."""
+    return b"%x\r\n%b\r\n" % (len(data), data) if data else b""
+
+
+def _head(first: str, headers: Headers) -> bytes:
+    lines = [first]
+    for name, value in headers:
+        line = f"{name}: {value}"
+        if not line.isprintable():
+            raise LocalProtocolError(f"the header {name} cannot be {value!r}")
+        lines.append(line)
+    return ("\r\n".join(lines) + "\r\n\r\n").encode("latin-1", "replace")
+
+
+def next_event(stream: ByteStream, talk: h11.Connection) -> Steps[Any]:
+    """What h11 finds next in what the peer says."""
+    import h11
+
+    while (event := talk.next_event()) is h11.NEED_DATA:
+        yield from stream.more(1)
+        talk.receive_data(bytes(stream.buffer[stream.head : stream.tail]))
+        stream.head = stream.tail
+    return event
