@@ -6,6 +6,7 @@ from yarpy.devices.control_board import ControlMode
 from yarpy.services.sim.axis import ICUB_HEAD
 from yarpy.services.sim.board import Board
 from yarpy.services.sim.body import Body
+from yarpy.services.sim.joint import Joint
 
 
 class Clock:
@@ -22,7 +23,7 @@ def clock() -> Clock:
 
 @pytest.fixture
 def board(clock: Clock) -> Board:
-    return Board(Body(ICUB_HEAD, clock))
+    return Board(Body([Joint(axis) for axis in ICUB_HEAD], clock))
 
 
 def test_moving_to_positions(board: Board, clock: Clock):

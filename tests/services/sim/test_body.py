@@ -6,6 +6,7 @@ import pytest
 
 from yarpy.services.sim.axis import ICUB_HEAD, Axis
 from yarpy.services.sim.body import MEMORY, STEP, Body
+from yarpy.services.sim.joint import Joint
 
 
 class Clock:
@@ -16,14 +17,14 @@ class Clock:
         return self.now
 
 
-def positions(body: Body) -> list[float]:
+def positions(body: Body[Joint]) -> list[float]:
     with body.present() as joints:
         return [joint.position for joint in joints]
 
 
 def test_time_passes_when_somebody_looks():
     clock = Clock()
-    body = Body(ICUB_HEAD, clock)
+    body = Body([Joint(axis) for axis in ICUB_HEAD], clock)
     with body.present() as joints:
         joints[1].reference.move_to(45.0)
     assert positions(body) == [0.0] * 6
@@ -38,7 +39,7 @@ def test_how_often_one_looks_makes_no_difference():
     found = []
     for count in (10, 1000):
         clock = Clock()
-        body = Body(ICUB_HEAD, clock)
+        body = Body([Joint(axis) for axis in ICUB_HEAD], clock)
         with body.present() as joints:
             joints[2].reference.move_to(-50.0)
         for _ in range(count):
@@ -48,25 +49,35 @@ def test_how_often_one_looks_makes_no_difference():
     assert found[0] == pytest.approx(found[1])
 
 
-def test_steps_are_small(monkeypatch: pytest.MonkeyPatch):
+class Counting(Joint):
+    """A joint that remembers how time passed."""
+
+    def __init__(self, axis: Axis) -> None:
+        super().__init__(axis)
+        self.steps: list[float] = []
+
+    def step(self, dt: float) -> None:
+        self.steps.append(dt)
+
+
+def test_steps_are_small():
     clock = Clock()
-    body = Body(ICUB_HEAD, clock)
-    steps = []
-    monkeypatch.setattr(body, "step", steps.append)
+    joint = Counting(Axis("x", -10, 10))
+    body = Body([joint], clock)
     clock.now += 0.0123
     positions(body)
-    assert len(steps) == 3
-    assert sum(steps) == pytest.approx(0.0123)
-    steps.clear()
+    assert len(joint.steps) == 3
+    assert sum(joint.steps) == pytest.approx(0.0123)
+    joint.steps.clear()
     clock.now += 3600.0
     positions(body)
-    assert sum(steps) == pytest.approx(MEMORY)
-    assert max(steps) <= STEP
+    assert sum(joint.steps) == pytest.approx(MEMORY)
+    assert max(joint.steps) <= STEP
 
 
 def test_clock_that_is_set_back():
     clock = Clock()
-    body = Body([Axis("x", -10, 10)], clock)
+    body = Body([Joint(Axis("x", -10, 10))], clock)
     with body.present() as joints:
         joints[0].reference.move_to(5.0)
     clock.now -= 100.0
@@ -75,14 +86,8 @@ def test_clock_that_is_set_back():
     assert positions(body) == [5.0]
 
 
-def test_starting_positions():
-    assert positions(Body([Axis("x", -10, 10), Axis("y", 3, 4)], positions=[5.0, 0.0])) == [5, 3]
-    with pytest.raises(ValueError, match="shorter"):
-        Body([Axis("x", -10, 10)] * 2, positions=[5.0])
-
-
 def test_one_thread_at_a_time():
-    body = Body([Axis("x", -10, 10)])
+    body = Body([Joint(Axis("x", -10, 10))])
     inside, found = threading.Event(), []
 
     def look() -> None:

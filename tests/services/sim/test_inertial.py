@@ -6,6 +6,7 @@ from yarpy.services.sim.axis import ICUB_HEAD
 from yarpy.services.sim.body import Body
 from yarpy.services.sim.head import GRAVITY
 from yarpy.services.sim.inertial import NAME, Inertial
+from yarpy.services.sim.joint import Joint
 
 
 class Clock:
@@ -17,7 +18,7 @@ class Clock:
 
 def test_it_feels_what_the_neck_does():
     clock = Clock()
-    body = Body(ICUB_HEAD, clock)
+    body = Body([Joint(axis) for axis in ICUB_HEAD], clock)
     imu = Inertial(body)
     assert imu.gyroscopes() == {NAME: (0, 0, 0)}
     assert imu.accelerometers()[NAME] == pytest.approx((0, 0, GRAVITY))
@@ -37,7 +38,7 @@ def test_it_feels_what_the_neck_does():
 
 def test_at_rest_nothing_is_worked_out_anew(monkeypatch: pytest.MonkeyPatch):
     clock = Clock()
-    imu = Inertial(Body(ICUB_HEAD, clock))
+    imu = Inertial(Body([Joint(axis) for axis in ICUB_HEAD], clock))
     before = imu.accelerometers()
     monkeypatch.setattr("yarpy.services.sim.inertial.inertia", None)
     clock.now += 0.5

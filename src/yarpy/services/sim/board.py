@@ -3,46 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import AbstractContextManager
-from typing import Protocol, TypeVar
+from typing import Generic, TypeVar
 
 from yarpy.devices.control_board import ControlMode, InteractionMode
-from yarpy.services.sim.axis import Axis
+from yarpy.services.sim.body import Body, J
+from yarpy.services.sim.joint import Joint
 from yarpy.services.sim.reference import Reference
 
 T = TypeVar("T")
 
 
-class Moving(Protocol):
-    """A joint as it is now: `yarpy.services.sim.joint.Joint`, or one of another simulator."""
-
-    @property
-    def axis(self) -> Axis: ...
-    @property
-    def reference(self) -> Reference: ...
-    @property
-    def position(self) -> float: ...
-    @property
-    def speed(self) -> float: ...
-    @property
-    def acceleration(self) -> float: ...
-    @property
-    def done(self) -> bool: ...
-
-
-class Joints(Protocol):
-    """What has joints: `present()` holds them at the present moment, `time` is that moment."""
-
-    @property
-    def time(self) -> float: ...
-
-    def present(self) -> AbstractContextManager[Sequence[Moving]]: ...
-
-
-class Board:
+class Board(Generic[J]):
     """A control board with position, position-direct, velocity, mixed and idle mode."""
 
-    def __init__(self, body: Joints) -> None:
+    def __init__(self, body: Body[J]) -> None:
         self._body = body
         with body.present() as joints:
             axes = [joint.axis for joint in joints]
@@ -171,7 +145,7 @@ class Board:
 
     # -- inside -------------------------------------------------------------------------------
 
-    def _each(self, read: Callable[[Moving], T]) -> list[T]:
+    def _each(self, read: Callable[[Joint], T]) -> list[T]:
         with self._body.present() as joints:
             return [read(joint) for joint in joints]
 

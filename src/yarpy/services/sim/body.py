@@ -14,10 +14,11 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Final
+from typing import Final, Generic, TypeVar
 
-from yarpy.services.sim.axis import Axis
 from yarpy.services.sim.joint import Joint
+
+J = TypeVar("J", bound=Joint)
 
 STEP: Final = 0.005  # seconds that pass at once, at most
 MEMORY: Final = 5.0  # what happened in a longer time that nobody looked is not worked out
@@ -25,37 +26,30 @@ MEMORY: Final = 5.0  # what happened in a longer time that nobody looked is not 
 Clock = Callable[[], float]
 
 
-class Body:
-    """Joints with these axes, each at `positions[i]` or as near to 0 as it can be."""
+class Body(Generic[J]):
+    """These joints, in the time that `clock` tells in seconds."""
 
-    def __init__(
-        self, axes: Sequence[Axis], clock: Clock = time.time, positions: Sequence[float] = ()
-    ) -> None:
-        starts = [*positions] or [0.0] * len(axes)
-        self.joints = tuple(Joint(axis, start) for axis, start in zip(axes, starts, strict=True))
+    def __init__(self, joints: Sequence[J], clock: Clock = time.time) -> None:
+        self.joints = tuple(joints)
         self._clock = clock
         self.time = clock()  # until which the joints have come
         self._lock = threading.RLock()  # board, cameras and sensors look from threads of their own
 
     @contextmanager
-    def present(self) -> Iterator[tuple[Joint, ...]]:
+    def present(self) -> Iterator[tuple[J, ...]]:
         """Hold the body at the present moment."""
         with self._lock:
-            self._catch_up()
+            now = self._clock()
+            ahead = now - self.time
+            if ahead >= 1e-4:
+                self.elapse(min(ahead, MEMORY))
+            if ahead >= 1e-4 or ahead < 0:  # the clock may be set back
+                self.time = now
             yield self.joints
 
-    def _catch_up(self) -> None:
-        now = self._clock()
-        ahead = min(now - self.time, MEMORY)
-        if ahead >= 1e-4:
-            count = -int(-ahead // STEP)
-            for _ in range(count):
-                self.step(ahead / count)
-            self.time = now
-        elif ahead < 0:
-            self.time = now  # the clock was set back
-
-    def step(self, dt: float) -> None:
-        """Let `dt` seconds pass. Inside `present` only."""
-        for joint in self.joints:
-            joint.step(dt)
+    def elapse(self, seconds: float) -> None:
+        """Let time pass. Inside `present` only."""
+        count = -int(-seconds // STEP)
+        for _ in range(count):
+            for joint in self.joints:
+                joint.step(seconds / count)

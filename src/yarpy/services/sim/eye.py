@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from math import atan, degrees
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
+from yarpy.data.image import Image
 from yarpy.services.sim.body import Body
 from yarpy.services.sim.head import Side, eye_pose
+from yarpy.services.sim.joint import Joint
 from yarpy.services.sim.renderer import Renderer
 from yarpy.services.sim.scene import Scene
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 LARGEST: Final = 2048  # pixels, either way
 
@@ -20,7 +19,7 @@ class Eye:
     """One eye of the head `body`, looking at `scene`; `width` times `height` pixels."""
 
     def __init__(
-        self, body: Body, scene: Scene, side: Side, width: int = 320, height: int = 240
+        self, body: Body[Joint], scene: Scene, side: Side, width: int = 320, height: int = 240
     ) -> None:
         self._body = body
         self._scene = scene
@@ -28,12 +27,12 @@ class Eye:
         self._renderer = Renderer(scene, width, height)
         self._time = body.time
 
-    def image(self) -> NDArray[Any]:
-        """What the eye sees now: (height, width, 3) uint8, a new array."""
+    def image(self) -> Image:
+        """What the eye sees now, as rgb in memory of its own."""
         with self._body.present() as joints:
             angles = [joint.position for joint in joints]
             self._time = self._body.time
-        return self._renderer.render(eye_pose(angles, self._side), self._time)
+        return Image(self._renderer.render(eye_pose(angles, self._side), self._time))
 
     def timestamp(self) -> float:
         """The moment that the last image shows."""

@@ -6,6 +6,7 @@ from typing import Final
 
 from yarpy.services.sim.body import Body
 from yarpy.services.sim.head import Inertia, inertia
+from yarpy.services.sim.joint import Joint
 from yarpy.services.sim.rotation import Vector
 
 NAME: Final = "head_imu"
@@ -16,7 +17,7 @@ class Inertial:
 
     frames = {NAME: "head"}
 
-    def __init__(self, body: Body) -> None:
+    def __init__(self, body: Body[Joint]) -> None:
         self._body = body
         self._felt: Inertia | None = None
         self._state: tuple[tuple[float, ...], ...] = ()  # of the joints when it was felt

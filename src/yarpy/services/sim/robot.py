@@ -1,0 +1,102 @@
+"""Robot: devices under their names, served on YARP ports.
+
+    with Robot("/icubSim", icub_head()):             # /icubSim/head/rpc:i, /icubSim/cam/left ...
+        ...
+
+Rules: a robot is what it is made of: control boards, cameras, sensors. How their ports speak to
+browsers, C++ programs or people is the business of ports.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import TYPE_CHECKING, Final, Self
+
+from yarpy.devices.control_board import Joints
+from yarpy.devices.frame_grabber import Camera
+from yarpy.services.sim.axis import ICUB_HEAD
+from yarpy.services.sim.board import Board
+from yarpy.services.sim.body import Body, Clock
+from yarpy.services.sim.joint import Joint
+
+if TYPE_CHECKING:
+    from yarpy.names.base import NameClient
+
+NAME: Final = "/icubSim"
+FPS: Final = 30.0
+SIZE: Final = (320, 240)
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The devices of a robot, by the names of their ports without the robot's."""
+
+    boards: Mapping[str, Joints] = field(default_factory=dict)
+    cameras: Mapping[str, Camera] = field(default_factory=dict)
+    sensors: Mapping[str, object] = field(default_factory=dict)
+
+
+def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
+    """A head like an iCub's in a room: six joints, two eyes, an inertial unit.
+
+    size: width and height of the pictures. clock: what time it is, in seconds.
+    """
+    from yarpy.services.sim.eye import Eye
+    from yarpy.services.sim.inertial import Inertial
+    from yarpy.services.sim.scene import room
+
+    body, scene = Body([Joint(axis) for axis in ICUB_HEAD], clock), room()
+    return Parts(
+        {"head": Board(body)},
+        {
+            "cam/left": Eye(body, scene, "left", *size),
+            "cam/right": Eye(body, scene, "right", *size),
+        },
+        {"inertial": Inertial(body)},
+    )
+
+
+class Robot:
+    """Serves `parts` while it is open; a context manager.
+
+    name: prefix of all ports. fps: pictures per second. names: a name client, None for the default.
+    Raises AddressError (a name is in use), NoNameServer.
+    """
+
+    def __init__(
+        self, name: str, parts: Parts, fps: float = FPS, *, names: NameClient | None = None
+    ) -> None:
+        from yarpy.devices import ControlBoardServer, FrameGrabberServer, MultiSensorServer
+
+        self.name = name = "/" + name.strip("/")
+        self.ports: list[str] = []  # prefixes
+        with ExitStack() as opened:
+            for part, board in parts.boards.items():
+                server = ControlBoardServer(f"{name}/{part}", board, names=names)
+                self.ports.append(opened.enter_context(server).name)
+            for part, camera in parts.cameras.items():
+                grabber = FrameGrabberServer(f"{name}/{part}", camera, 1 / fps, names=names)
+                self.ports.append(opened.enter_context(grabber).name)
+            for part, sensors in parts.sensors.items():
+                measures = MultiSensorServer(f"{name}/{part}", sensors, names=names)
+                self.ports.append(opened.enter_context(measures).name)
+            self._opened = opened.pop_all()
+
+    def close(self) -> None:
+        """Close the ports. Idempotent."""
+        self._opened.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
