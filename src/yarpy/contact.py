@@ -25,11 +25,12 @@ sender's name followed by ` (key value)` groups, where every dot has become a sp
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from yarpy.errors import AddressError
 
 _HOST_PORT = re.compile(r"^[^:/]+:\d+$")
+_PASSWORD = re.compile(r"\+password\.[^+\s]*?(?=\+|:/|\s|$)")
 _IPV6_PORT = re.compile(r"^\[[0-9A-Fa-f:.%]+\]:\d+$")
 
 
@@ -63,13 +64,15 @@ class Contact:
 @dataclass(slots=True)
 class Route:
     """Who talks to whom over what: one connection. `port` is the accepting side's TCP port,
-    `host` its address, where we dialled it."""
+    `host` its address, where we dialled it. `secret` is the carrier string with its password,
+    where `carrier`, which everybody may see, has none."""
 
     source: str
     target: str
     carrier: str = "tcp"
     port: int = 0
     host: str = ""
+    secret: str = field(default="", repr=False)
 
     def __str__(self) -> str:
         return f"{self.source} -> {self.target} ({self.carrier})"
@@ -155,6 +158,15 @@ def modifier(carrier: str, key: str) -> str | None:
         if dot and name == key:
             return value
     return None
+
+
+def masked(text: str) -> str:
+    """A carrier string, or a text with one in it, without the password.
+
+    >>> masked("mjpeg+path.video+user.me+password.a.b://cam")
+    'mjpeg+path.video+user.me+password.***://cam'
+    """
+    return _PASSWORD.sub("+password.***", text)
 
 
 def specifier(name: str, carrier: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from typing import Any
 
 import numpy as np
@@ -90,6 +91,38 @@ def test_frames_of_cpp_are_understood(piece: int) -> None:
     ]
     assert np.abs(found[2].value.array.astype(int) - [[0, 10, 20, 30], [1, 11, 21, 31]]).max() < 3
     assert carrier.lost == 0
+
+
+def dialled(carrier: str, answer: bytes) -> tuple[Mjpeg, bytes, str]:
+    """A camera's answer to a request: the carrier, what it asked, why it gives up."""
+    end, watcher = End(), Mjpeg(Route("", "", carrier, 80, "cam"))
+    end.begin(watcher.greet(end.stream))
+    asked = end.take()
+    with pytest.raises(RemoteProtocolError) as caught:
+        end.feed(answer)
+    return watcher, asked, str(caught.value)
+
+
+WANTS = b'HTTP/1.1 401 Unauthorized\r\nWWW-Authenticate: %s realm="cam"\r\n\r\n'
+
+
+def test_name_and_password() -> None:
+    secret = "mjpeg+path.video+user.me%2Byou+password.p.a%3As"
+    watcher, asked, why = dialled(secret, WANTS % b"Basic")
+    assert b"\r\nAuthorization: Basic %s\r\n" % b64encode(b"me+you:p.a:s") in asked
+    assert asked.startswith(b"GET /video HTTP/1.0\r\n")
+    assert "does not accept" in why
+    assert watcher.route.carrier == "mjpeg+path.video+user.me%2Byou+password.***"
+    assert watcher.route.secret == secret
+    assert "p.a" not in repr(watcher.route) + str(watcher.route) + why
+
+
+def test_password_that_is_wanted() -> None:
+    for kind, words in ((b"Basic", "user.<name>+password.<word>"), (b"Digest", "Digest")):
+        watcher, asked, why = dialled("mjpeg+path.video", WANTS % kind)
+        assert words in why
+        assert b"Authorization" not in asked
+        assert watcher.route.carrier == "mjpeg+path.video"
 
 
 # ------------------------------------------------------------------------------------ the sender

@@ -7,9 +7,11 @@ import socket
 import subprocess
 import threading
 import time
+from base64 import b64encode
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,6 +23,7 @@ from support.wait import wait_until
 import yarpy
 from yarpy import network
 from yarpy.data import jpeg
+from yarpy.names.default import secret
 from yarpy.port.repair import pending
 
 Y, X = np.mgrid[:48, :64]
@@ -37,6 +40,7 @@ class Camera(ThreadingHTTPServer):
     def __init__(self, port: int = 0) -> None:
         super().__init__(("127.0.0.1", port), Show)
         self.asked: list[str] = []
+        self.login = ""  # name:password, if it wants one
         self.shown: list[socket.socket] = []
         threading.Thread(target=self.serve_forever, args=(0.02,), daemon=True).start()
 
@@ -59,6 +63,12 @@ class Show(BaseHTTPRequestHandler):
         self.server.asked.append(self.path)
         if self.path != "/mjpg/video.mjpg?camera=1":
             self.send_error(404)
+            return
+        login = f"Basic {b64encode(self.server.login.encode()).decode()}"
+        if self.server.login and self.headers["Authorization"] != login:
+            self.send_response(401)
+            self.send_header("WWW-Authenticate", 'Basic realm="lab"')
+            self.end_headers()
             return
         assert self.headers["Host"] == f"127.0.0.1:{self.server.server_port}"
         self.server.shown.append(self.connection)
@@ -115,6 +125,31 @@ def test_camera_is_seen_comes_back_and_is_let_go() -> None:
         time.sleep(1.0)
         assert len(camera.asked) == count, "a connection that somebody ended comes back"
         camera.leave()
+
+
+def test_camera_with_a_password(caplog: pytest.LogCaptureFixture) -> None:
+    carrier = f"{CARRIER}+user.me+password.se%2Bcret"
+    with viewer() as (names, view):
+        camera = Camera()
+        camera.login = "me:se+cret"
+        with pytest.raises(yarpy.LinkClosed, match="Cannot connect"):
+            network.connect(camera.name, "/view", f"{CARRIER}+user.me+password.no", names=names)
+        assert "does not accept this name and password" in caplog.text
+        network.connect(camera.name, "/view", carrier, names=names)
+        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert view.inputs[0].carrier == f"{CARRIER}+user.me+password.***"
+        for question in (["list", "in", f"{camera.name}/"], ["list", "in"]):
+            assert "se%2B" not in str(network.admin("/view", *question, names=names))
+        port = camera.server_port
+        camera.leave()
+        wait_until(lambda: not view.inputs, PATIENCE)
+        camera = Camera(port)
+        camera.login = "me:se+cret"
+        wait_until(lambda: view.inputs, PATIENCE)
+        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        camera.leave()
+    assert "password.no" not in caplog.text
+    assert "se%2Bcret" not in caplog.text
 
 
 def test_camera_that_went_away_can_be_let_go() -> None:
@@ -303,6 +338,23 @@ def test_pictures_between_two_ports_with_their_stamps() -> None:
 
 
 # -------------------------------------------------------------------------------------- programs
+
+
+def test_camera_knows_nothing_of_our_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With an auth.conf ports prove to each other that they know it; a camera need not."""
+    (tmp_path / "auth.conf").write_text('[AUTH]\nkey "our secret"\n')
+    monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))
+    assert secret()
+    with viewer() as (names, view), yarpy.Port("/cam", names=names) as cam:
+        camera = Camera()
+        network.connect(camera.name, "/view", CARRIER, names=names)
+        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert network.disconnect(camera.name, "/view", names=names)
+        camera.leave()
+        network.connect("/cam", "/view", "mjpeg", names=names)  # which has the key
+        assert cam.wait_for_outputs(timeout=PATIENCE)
+        cam.write(PICTURE)
+        assert is_the_picture(view.read(timeout=PATIENCE).value)
 
 
 def test_curl_watches() -> None:

@@ -78,6 +78,7 @@ class Http(Carrier):
     magic = b"GET /"
     spelling = "text"
     acks = True
+    foreign = True
     gathers = False
     patience = PATIENCE
     hurry = PATIENCE

@@ -12,7 +12,8 @@ compressed once for all watchers that want the same quality (`/?action=stream&qu
 or `mjpeg+quality.50+rate.10` between ports; pictures per second). What is no picture is not sent,
 and counted. The envelope is the comment in the JPEG file. Cameras are understood that order, spell
 or leave out headers in their own way, or send in chunks; a damaged picture is dropped, and counted
-in `lost`.
+in `lost`. A camera that wants a password gets it as `mjpeg+path.video+user.NAME+password.WORD`, %2B
+for a plus; it is sent as it is (HTTP's basic authentication) and never shown.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from typing import Final
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.chunk import Chunks
 from yarpy.carriers.header import MAX_LINE, read_headers
-from yarpy.contact import Route, modifier
+from yarpy.contact import Route, masked, modifier
 from yarpy.data import jpeg
 from yarpy.data.image import Image, is_image
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
@@ -52,6 +53,7 @@ class Mjpeg(Carrier):
     push = False
     replies = False
     escapes = False
+    foreign = True
     gathers = False
     lossy = True
     backlog = 1
@@ -113,8 +115,11 @@ class Mjpeg(Carrier):
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         stream.write(self._request())
+        self._hide_password()
         line = yield from stream.read_line(MAX_LINE)
         words = line.split(None, 2)
+        if words[1:2] == [b"401"]:
+            raise RemoteProtocolError(self._login_wanted((yield from read_headers(stream))))
         if len(words) < 2 or not words[0].startswith(b"HTTP/") or words[1] != b"200":
             text = line[:80].decode("utf-8", "replace")
             raise RemoteProtocolError(
@@ -146,9 +151,41 @@ class Mjpeg(Carrier):
             f"Host: {host}:{route.port}",
             "User-Agent: yarpy",
             "Accept: multipart/x-mixed-replace, image/jpeg",
+            *self._login(),
             "\r\n",
         ]
         return "\r\n".join(lines).encode()
+
+    def _login(self) -> list[str]:
+        """The header that names us to a camera, if somebody said how."""
+        from base64 import b64encode
+        from urllib.parse import unquote
+
+        carrier = self.route.carrier
+        user, password = (modifier(carrier, key) for key in ("user", "password"))
+        if user is None and password is None:
+            return []
+        login = f"{unquote(user or '')}:{unquote(password or '')}"
+        return [f"Authorization: Basic {b64encode(login.encode()).decode()}"]
+
+    def _hide_password(self) -> None:
+        """Let nobody see it who asks for the connections of this port."""
+        route = self.route
+        shown = masked(route.carrier)
+        if shown != route.carrier:
+            route.carrier, route.secret = shown, route.carrier
+
+    def _login_wanted(self, headers: dict[str, str]) -> str:
+        """What to do about a camera that does not let us in."""
+        wanted = headers.get("www-authenticate", "")
+        if wanted and "basic" not in wanted.lower():
+            return (
+                f"the camera wants {wanted.split()[0]} authentication, which yarpy does not speak; "
+                "let the camera allow basic authentication, or watching without a password"
+            )
+        if modifier(self.route.carrier, "user") is None:
+            return "the camera wants a password: mjpeg+path.<path>+user.<name>+password.<word>"
+        return "the camera does not accept this name and password"
 
     def _path(self) -> str:
         carrier = self.route.carrier

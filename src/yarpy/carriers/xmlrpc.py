@@ -42,6 +42,7 @@ class XmlRpc(Carrier):
     name = "xmlrpc"
     magic = b"POST /RP"
     acks = True
+    foreign = True
     gathers = False
     hurry = 60.0
 

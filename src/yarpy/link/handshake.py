@@ -2,7 +2,8 @@
 
 Rules: a greeting has `PATIENCE` seconds. Which protocol an incoming connection speaks is decided
 by its first eight bytes: the longest magic wins. Bytes that nobody knows get a text that a person
-can use. With a key (auth.conf) both sides prove that they know it before anything else.
+can use. With a key (auth.conf) both sides prove that they know it before anything else; but a
+camera, or another server that is no port, has no key and is silent at first.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ from yarpy.wire.stream import DEFAULT_LIMIT
 
 PATIENCE: Final = 10.0  # seconds for a whole greeting
 PROVING: Final = 2.0  # seconds for the key exchange, as C++
+
+LISTENING: Final = 1.0  # seconds in which a port that has a key begins to prove it
 
 UNKNOWN_PROTOCOL: Final = (
     b"* Error. Protocol not found.\r\n"
@@ -90,7 +93,7 @@ def greet(
         ) from error
     driver = Driver(transport, limit, group)
     try:
-        if key:
+        if key and (not carrier.foreign or _speaks_first(driver)):
             driver.run(prove_initiator(driver.stream, key), time.monotonic() + PROVING)
         driver.run(carrier.greet(driver.stream), deadline)
     except OSError as error:
@@ -102,6 +105,15 @@ def greet(
         driver.transport.close()
         raise
     return driver, carrier
+
+
+def _speaks_first(driver: Driver) -> bool:
+    """Whether the peer begins, as only ports with a key do."""
+    try:
+        driver.run(driver.stream.more(1), time.monotonic() + LISTENING)
+    except Timeout:
+        return False
+    return True
 
 
 def welcome(

@@ -13,6 +13,7 @@ import random
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
+from yarpy.contact import masked
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.data.text import plain_text
@@ -115,6 +116,8 @@ def _add(hub: Hub, request: Bottle) -> Bottle:
     try:
         return Bottle([0, command.connect(hub, dest) + "\r\n"])
     except command.Refused as error:
+        if error.__cause__ is not None:
+            log.warning("%s: %s: %s", hub.name, masked(str(error)), error.__cause__)
         return Bottle([-1, f"{error}\r\n"])
 
 

@@ -209,7 +209,7 @@ class Repairer:
         contact = command.locate(hub, parse_contact(route.target))
         if contact is None:
             return False
-        command.open_output(hub, contact, route.target, route.carrier)
+        command.open_output(hub, contact, route.target, route.secret or route.carrier)
         log.info("%s: the connection to %s is back", hub.name, route.target)
         return True
 
@@ -240,7 +240,7 @@ class Repairer:
         contact = command.locate(hub, parse_contact(route.source))
         if contact is None:
             return False
-        command.open_output(hub, contact, route.source, route.carrier)
+        command.open_output(hub, contact, route.source, route.secret or route.carrier)
         log.info("%s: the connection from %s is back", hub.name, route.source)
         return True
 
