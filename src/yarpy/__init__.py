@@ -120,10 +120,10 @@ if TYPE_CHECKING:
 def __getattr__(name: str) -> Any:
     module = _WHERE.get(name)
     if module is None:
-        if name == "aio":
+        if name in ("aio", "devices"):
             from importlib import import_module
 
-            return import_module("yarpy.aio")
+            return import_module(f"yarpy.{name}")
         raise AttributeError(f"module 'yarpy' has no attribute {name!r}")
     from importlib import import_module
 

@@ -57,7 +57,7 @@ def test_five_lines(device, head):
     head.switch_control_modes(head.axis_names, "pos")
     head.position_move("joint1", 10.0)
     head.wait_motion_done(timeout=PATIENCE)
-    wait_until(lambda: head.encoders() == [0.0, 10.0, 0.0], PATIENCE)
+    assert head.encoders() == [0.0, 10.0, 0.0]
 
 
 def test_it_is_a_whole_board():

@@ -1,3 +1,5 @@
+import threading
+
 import pytest
 from support.board import Bare, FakeBoard
 
@@ -32,6 +34,27 @@ def test_the_newest_counts(names):
             yarpy.wait_for("/nobody", timeout=0.01, names=names)
         assert watch.value()["encoders"] == [1.0, 2.0, 3.0]
         assert watch.value()["encoders"] == [1.0, 2.0, 3.0]
+
+
+def test_renewing(names):
+    with (
+        yarpy.Port("/head/stateExt:o", names=names) as port,
+        watch_of(PATIENCE, names) as watch,
+    ):
+        renewed = threading.Event()
+        thread = threading.Thread(target=lambda: (watch.renew(), renewed.set()), daemon=True)
+        thread.start()
+        assert not renewed.wait(0.05)
+        port.write(FakeState(), wait=True)
+        assert not renewed.wait(0.05)
+        while not renewed.wait(0.01):
+            port.write(FakeState(), wait=True)
+        assert watch.value() == {"encoders": [1.0]}
+    with (
+        yarpy.Port("/head/stateExt:o", names=names),
+        watch_of(0.01, names) as watch,
+    ):
+        watch.renew()  # not for ever
 
 
 def test_silence(names):

@@ -29,6 +29,11 @@ ALONE = {
     ],
     "no_server.py": [r"by a name that only", r"to .*, without any name", r"<ping>", r"^2 4 6$"],
     "realtime.py": [r"^alone +mean", r"busy thread +mean", r"realtime\(\) +mean", r"SCHED_FIFO"],
+    "robot_head.py": [
+        r"^<ControlBoard /robot/head, 3 joints> \['pitch', 'roll', 'yaw'\]$",
+        r"^it went to \[0.0, 0.0, 20.0\]$",
+        r"^and then to \[30.0, -5.0, 20.0\] - its limits are \(-30.0, 30.0\)$",
+    ],
     "several_carriers.py": [
         r"^tcp +Bottle\(\['hello', 1, 2.5, Bottle\(\['nested', b'.*'\]\)\]\) over tcp$",
         r"^fast_tcp +Bottle.* over fast_tcp$",

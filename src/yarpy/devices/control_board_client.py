@@ -188,7 +188,8 @@ class ControlBoard:
         return self._ask.read("motion_done")
 
     def wait_motion_done(self, timeout: float | None = None) -> None:
-        """Wait until all joints have arrived; Timeout after so many seconds."""
+        """Wait until all joints have arrived, and `encoders` shows it. Timeout after so many
+        seconds."""
         deadline = None if timeout is None else time.monotonic() + timeout
         while not self._ask.all_done():
             if deadline is not None and time.monotonic() >= deadline:
@@ -196,6 +197,7 @@ class ControlBoard:
                 late = [n for n, there in zip(self.axis_names, done, strict=True) if not there]
                 raise Timeout(f'"{self.remote}" still moves after {timeout} s: {", ".join(late)}')
             time.sleep(_POLL)
+        self._newest.renew()
 
     # -- what acts ----------------------------------------------------------------------------
 

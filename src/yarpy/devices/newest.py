@@ -36,9 +36,10 @@ class Newest(Generic[T]):
         self._carrier = carrier
         self._timeout = timeout
         self._decode = decode
-        self._changed = threading.Condition()  # around the two below
+        self._changed = threading.Condition()  # around the three below
         self._message: Message | None = None
         self._arrival = 0.0
+        self._count = 0
         self._known: tuple[Message, T] | None = None
         self._port = BufferedPort(local, callback=self._take, names=names)
         try:
@@ -74,9 +75,17 @@ class Newest(Generic[T]):
             return stamp.time
         return time.time() - (time.monotonic() - self._arrival)
 
+    def renew(self) -> None:
+        """Wait until `value` is of a later time than this call; at most the timeout."""
+        with self._changed:
+            # The next message may have been measured already, the one after that not.
+            enough = self._count + 2
+            self._changed.wait_for(lambda: self._count >= enough, self._timeout)
+
     def _take(self, message: Message) -> None:
         with self._changed:
             self._message, self._arrival = message, time.monotonic()
+            self._count += 1
             self._changed.notify_all()
 
     def _fresh(self) -> Message:
