@@ -37,6 +37,7 @@ def test_topics(server):
         send_to(d, "topic://opening/t")
         hear_from(e, "topic://opening/t")
         assert e.wait_for_inputs(timeout=5)
+        assert d.wait_for_outputs(timeout=5)
         assert [link.name for link in d.outputs] == ["/opening/e"]
 
 
