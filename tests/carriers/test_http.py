@@ -501,6 +501,7 @@ BAD = [
     (b"POST /form HTTP/1.1\r\nHost: x\r\nContent-Length: %d\r\n\r\n" % (MAX_BODY + 1), 413),
     (b"POST /form HTTP/1.1\r\nHost: x\r\nContent-Length: %s\r\n\r\n" % (b"9" * 15), 413),
     (b"GET / HTTP/1.1\r\nHost: x\r\nX: " + b"y" * MAX_HEAD, 431),
+    (b"GET / HTTP/1.1\r\nHost: x\r\nX: " + b"y" * MAX_HEAD + b"\r\n\r\n", 431),
     (b"GET /" + b"y" * 2 * MAX_HEAD, 431),
 ]
 

@@ -92,9 +92,9 @@ CARRIER = "mjpeg+path.mjpg/video.mjpg?camera=1"
 
 
 @contextmanager
-def viewer(name: str = "/view") -> Iterator[tuple[yarpy.LocalNames, yarpy.BufferedPort]]:
+def viewer(strict: bool = False) -> Iterator[tuple[yarpy.LocalNames, yarpy.BufferedPort]]:
     names = yarpy.LocalNames()
-    with yarpy.BufferedPort(name, names=names) as view:
+    with yarpy.BufferedPort("/view", strict=strict, names=names) as view:
         yield names, view
 
 
@@ -150,6 +150,97 @@ def test_camera_with_a_password(caplog: pytest.LogCaptureFixture) -> None:
         camera.leave()
     assert "password.no" not in caplog.text
     assert "se%2Bcret" not in caplog.text
+
+
+@contextmanager
+def raw_camera(*answers: bytes) -> Iterator[tuple[str, list[bytes]]]:
+    """What sends these bytes, whatever it is asked, to one watcher after the other; its name, and
+    what it was asked."""
+    asked: list[bytes] = []
+    listener = socket.create_server(("127.0.0.1", 0))
+
+    def serve() -> None:
+        with suppress(OSError):
+            for answer in answers:
+                sock, _ = listener.accept()
+                asked.append(sock.recv(1000))
+                sock.sendall(answer)
+                sock.settimeout(PATIENCE)
+                sock.recv(1)  # until the watcher goes
+                sock.close()
+
+    thread = threading.Thread(target=serve, daemon=True)
+    thread.start()
+    yield f"/127.0.0.1:{listener.getsockname()[1]}", asked
+    listener.close()
+
+
+MULTIPART = b"HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=b\r\n\r\n"
+
+
+def frame(data: bytes, length: int | None = None, kind: bytes = b"image/jpeg") -> bytes:
+    size = b"" if length == -1 else b"Content-Length: %d\r\n" % (length or len(data))
+    return b"--b\r\nContent-Type: %s\r\n%s\r\n%s\r\n" % (kind, size, data)
+
+
+def test_damaged_pictures_are_dropped_and_counted() -> None:
+    good = jpeg.encode(PICTURE)
+    answer = MULTIPART + b"".join(
+        [
+            frame(good),
+            frame(good[: len(good) // 2]),  # cut off
+            frame(b"\0" * 500),  # no picture at all
+            frame(b"<html>no signal</html>", kind=b"text/html"),
+            frame(good),
+            frame(good, length=len(good) - 50),  # longer than it says: broken
+            frame(good, length=-1),  # as long as it is
+            b"rubbish between\r\n\r\n",
+            frame(good),
+        ]
+    )
+    with raw_camera(answer) as (name, asked), viewer(strict=True) as (names, view):
+        network.connect(name, "/view", "mjpeg+path.x", names=names)
+        for _ in range(4):
+            assert is_the_picture(view.read(timeout=PATIENCE).value)
+        wait_until(lambda: view.inputs[0].stats["drops"] == 4)
+        assert view.inputs[0].stats["messages"] == 4
+        assert asked[0].startswith(b"GET /x HTTP/1.0\r\n")
+        network.disconnect(name, "/view", names=names)
+
+
+RUDE = [
+    (b"HTTP/1.1 200 OK\r\nContent-Type: text/html\r\n\r\n<html>", "no stream of pictures"),
+    (b"HTTP/1.1 404 Not Found\r\n\r\n", "404 Not Found"),
+    (b"what?\r\n\r\n", "what?"),
+    (b"HTTP/1.1 200 OK\r\nX: " + b"x" * 100_000, "a line of more than"),
+]
+
+
+@pytest.mark.parametrize(("answer", "reason"), RUDE, ids=["html", "404", "no_http", "large_head"])
+def test_what_is_no_camera_is_told(
+    answer: bytes, reason: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    with raw_camera(answer) as (name, _), viewer() as (names, view):
+        with pytest.raises(yarpy.LinkClosed, match="Cannot connect"):
+            network.connect(name, "/view", "mjpeg", names=names)
+        assert reason in caplog.text
+        assert not view.inputs
+
+
+@pytest.mark.parametrize(
+    "rest",
+    [frame(b"x", length=10**8), b"--b\r\n" + b"X: y\r\n" * 1000, frame(b"x") + b"--b--\r\n"],
+    ids=["huge", "headers", "end"],
+)
+def test_watching_goes_on_after_a_broken_stream(rest: bytes) -> None:
+    """The connection ends, the port dials again."""
+    good = MULTIPART + frame(jpeg.encode(PICTURE))
+    with raw_camera(good + rest, good) as (name, asked), viewer() as (names, view):
+        network.connect(name, "/view", "mjpeg", names=names)
+        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        wait_until(lambda: len(asked) == 2, PATIENCE)
+        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        network.disconnect(name, "/view", names=names)
 
 
 def test_camera_that_went_away_can_be_let_go() -> None:

@@ -450,6 +450,14 @@ def test_curl(echo: yarpy.RpcServer) -> None:
     assert head.startswith("HTTP/1.1 200 OK\n")
     assert curl("-o", "-", "-w", "%{http_code}", "-X", "DELETE", url) == "405"
     assert curl("--http1.0", f"{url}/?req=x") == '["ok", "echo", ["x"]]\n'
+    options = curl("-i", "-X", "OPTIONS", "-H", "Origin: http://x", f"{url}/form")
+    assert options.startswith("HTTP/1.1 204 No Content\n")
+    assert "Access-Control-Allow-Methods: GET, HEAD, POST\n" in options
+    many = curl("-w", "new connections: %{num_connects}\n", *[f"{url}/?req=x"] * 4)
+    assert [line[-1] for line in many.splitlines() if "new" in line] == ["1", "0", "0", "0"]
+    large = f"X-Large: {'x' * 20_000}"
+    assert curl("-o", "/dev/null", "-w", "%{http_code}", "-H", large, url) == "431"
+    assert curl("-F", "file=@/etc/hostname", f"{url}/form").startswith("send application/x-www")
 
 
 @needs_curl

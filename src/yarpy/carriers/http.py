@@ -163,7 +163,9 @@ class Http(Carrier):
                 raise LinkClosed("the peer closed the connection")
             self._take_head(head)
             event = None
-            if int(self._headers.get("content-length", "0")) <= MAX_BODY:
+            if sum(map(len, (head.target, *self._headers, *self._headers.values()))) > MAX_HEAD:
+                refusal = 431, f"the head of a request has at most {MAX_HEAD} bytes"
+            elif int(self._headers.get("content-length", "0")) <= MAX_BODY:
                 if talk.they_are_waiting_for_100_continue:
                     stream.write(CONTINUE)
                 event = yield from next_event(stream, talk)

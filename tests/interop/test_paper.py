@@ -1,0 +1,169 @@
+"""What the paper on YARP promises to web pages and to people, said with curl and netcat.
+
+Sections 7 and 8 of "A middle way for robotics middleware" (Fitzpatrick et al., 2014), line by line:
+a name server, the simulated head of an iCub, its camera.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from support.process import Process
+
+import yarpy
+from yarpy.data import jpeg
+
+HEAD = "/icubSim/head/rpc:i"
+PATIENCE = 30.0
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[yarpy.NameServer]:
+    with yarpy.NameServer() as server:
+        yield server
+
+
+@pytest.fixture
+def head(server: yarpy.NameServer) -> Iterator[yarpy.RpcServer]:
+    """A controller of six joints."""
+    angles = [-0.000031, 0.0, -0.0, 0.0, 0.0, -0.0]
+
+    def answer(message: yarpy.Message) -> object:
+        match message.value:
+            case ["set", "pos", int(axis), angle]:
+                angles[axis] = float(angle)
+                return [yarpy.Vocab("ok")]
+            case ["get", "encs"]:
+                return [yarpy.Vocab("is"), yarpy.Vocab("encs"), angles, yarpy.Vocab("ok")]
+        return [yarpy.Vocab("fail")]
+
+    with yarpy.RpcServer(HEAD, answer) as port:
+        yield port
+
+
+def run(program: str, *args: str, said: str = "") -> str:
+    found = shutil.which(program)
+    if found is None:
+        package = {"nc": "netcat-openbsd"}.get(program, program)
+        pytest.skip(f"no {program}: install it (apt-get install {package})")
+    done = subprocess.run(
+        [found, *args], input=said.encode(), capture_output=True, timeout=PATIENCE, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.decode()
+
+
+def curl(*args: str) -> str:
+    return run("curl", "-sS", "--noproxy", "*", "-m", "20", *args)
+
+
+# ------------------------------------------------------------------------------ 7: web applications
+
+
+def test_web_page_looks_a_port_up_moves_it_and_asks_it(
+    server: yarpy.NameServer, head: yarpy.RpcServer
+) -> None:
+    found = json.loads(curl(f"http://{server.address}/?req=query+$port&port={HEAD}"))
+    assert found == {
+        "type": "port",
+        "name": HEAD,
+        "ip": "127.0.0.1",
+        "port_number": head.contact.port,
+        "carrier": "tcp",
+    }
+    url = f"http://{found['ip']}:{found['port_number']}"
+    curl(f"{url}/?req=set+pos+$axis+$angle&axis=1&angle=45")
+    said = json.loads(curl(f"{url}/?req=get+encs"))
+    assert said == ["is", "encs", [-0.000031, 45.0, 0.0, 0.0, 0.0, 0.0], "ok"]
+
+
+def test_browser_sees_what_a_camera_sees(server: yarpy.NameServer) -> None:
+    picture = yarpy.Image(np.full((48, 64, 3), (200, 100, 50), "u1"))
+    with yarpy.Port("/icubSim/cam") as port:
+        found = json.loads(curl(f"http://{server.address}/?req=query+/icubSim/cam"))
+        url = f"http://{found['ip']}:{found['port_number']}/?action=stream"
+        args = [shutil.which("curl") or "curl", "-sN", "-m", "20", url]
+        with subprocess.Popen(args, stdout=subprocess.PIPE) as process:
+            assert port.wait_for_outputs(timeout=PATIENCE)
+            port.write(picture)
+            assert process.stdout is not None
+            data = jpeg.encode(picture)
+            assert data in process.stdout.read(len(data) + 90)
+            process.kill()
+
+
+# ---------------------------------------------------------------------------------------- 8: people
+
+
+def test_garbage_gets_a_friendly_explanation(head: yarpy.RpcServer) -> None:
+    said = run("nc", "127.0.0.1", str(head.contact.port), said="wepfokwoefp\n")
+    lines = said.splitlines()
+    assert lines[0] == "* Error. Protocol not found."
+    assert lines[-1] == "* Goodbye."
+    text = " ".join(line.removeprefix("*").strip() for line in lines)
+    for words in (
+        "Hello. You appear to be trying to communicate with a YARP Port.",
+        "The first 8 bytes sent to a YARP Port are critical for identifying the protocol you wish "
+        "to speak.",
+        "The first 8 bytes you sent were not associated with any particular protocol.",
+        'If you are a human, try typing "CONNECT foo" followed by a <RETURN>.',
+        'The 8 bytes "CONNECT " correspond to a simple text-mode protocol.',
+    ):
+        assert words in text
+
+
+def test_help_says_what_one_may_type(head: yarpy.RpcServer) -> None:
+    for word in ("help", "?", "h"):
+        said = run("nc", "127.0.0.1", str(head.contact.port), said=f"CONNECT foo\n{word}\nq\n")
+        assert said.startswith("Welcome foo\r\nThis is a YARP port.")
+        for command in ("*", "d", "do", "q", "r", "/port", "!/port", "~/port", "a", "?"):
+            assert f"\r\n{command} " in said
+    said = run("nc", "127.0.0.1", str(head.contact.port), said="CONNECT foo\nxyz\nq\n")
+    assert "Type ? for help." in said
+
+
+def test_head_is_moved_and_asked_with_netcat(head: yarpy.RpcServer) -> None:
+    netcat = shutil.which("nc")
+    if netcat is None:
+        pytest.skip("no nc: install it (apt-get install netcat-openbsd)")
+    script = f"""{{
+      # ask for a text-mode connection
+      echo CONNECT test
+      # send a request to move axis 1 to 45 degrees
+      echo d
+      echo set pos 1 45
+      # wait for robot to move
+      sleep 0.2
+      # ask for encoder readings
+      echo d
+      echo get encs
+      # pause to see results
+      sleep 0.5
+    }} | {netcat} -q 0 127.0.0.1 {head.contact.port}"""
+    done = subprocess.run(["sh", "-c", script], capture_output=True, timeout=PATIENCE, check=True)
+    assert done.stdout.decode().splitlines() == [
+        "Welcome test",
+        "[ok]",
+        "[is] [encs] (-3.100000000000000135e-05 45.0 -0.0 0.0 0.0 -0.0) [ok]",
+    ]
+
+
+def test_direction_of_data_is_not_that_of_the_call(server: yarpy.NameServer) -> None:
+    """Who opened the socket may read: no server is needed on its side, and no name."""
+    netcat = shutil.which("nc")
+    if netcat is None:
+        pytest.skip("no nc: install it (apt-get install netcat-openbsd)")
+    with yarpy.Port("/out") as port:
+        script = (
+            f"{{ echo CONNECT me; echo r; sleep 10; }} | {netcat} 127.0.0.1 {port.contact.port}"
+        )
+        with Process(["sh", "-c", script]) as process:
+            assert port.wait_for_outputs(timeout=PATIENCE)
+            port.write(["hi", 3])
+            process.wait_line("^hi 3$", timeout=PATIENCE)
+            assert process.stdout.splitlines() == ["Welcome me", "D", "hi 3"]
