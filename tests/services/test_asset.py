@@ -12,7 +12,7 @@ import yarpy
 from yarpy.services.asset import asset, jsonpage, page_of
 
 
-@pytest.mark.parametrize("program", ["view"])
+@pytest.mark.parametrize("program", ["view", "scope"])
 def test_a_program_has_its_page_and_what_the_page_loads(program: str) -> None:
     page = page_of(program, "/")
     assert page is not None
@@ -33,7 +33,7 @@ def test_a_program_has_its_page_and_what_the_page_loads(program: str) -> None:
 
 
 def test_what_is_no_file_of_the_page() -> None:
-    for path in ("/x", "/view.html", "/asset.py", "/../asset.py", "/assets/view.js", "/scope.js"):
+    for path in ("/x", "/view.html", "/asset.py", "/../asset.py", "/assets/view.js", "/scope.html"):
         assert page_of("view", path) is None
     assert asset("view.html") is asset("view.html")
 
