@@ -45,3 +45,17 @@ def test_a_step_may_end_it():
 def test_periods_are_positive(period):
     with pytest.raises(ValueError, match="period"):
         Publisher("/head", period, lambda: None)
+
+
+def test_a_step_that_does_not_end_is_left_behind(monkeypatch):
+    monkeypatch.setattr("yarpy.devices.publisher.PATIENCE", 0.05)
+    stuck, leave = threading.Event(), threading.Event()
+
+    def step():
+        stuck.set()
+        leave.wait(20)
+
+    publisher = Publisher("/head", 0.001, step)
+    assert stuck.wait(20)
+    publisher.close()
+    leave.set()

@@ -19,3 +19,10 @@ def test_the_same_complaint_is_logged_once_in_a_while(caplog, monkeypatch):
         "/head: encoders: something else",
         "/head: encoders: something else",
     ]
+
+
+def test_not_everything_is_remembered():
+    complain = Complaints("/head")
+    for number in range(1000):
+        complain(f"command from /p{number}", Refused("bad"))
+    assert len(complain._said) <= 200

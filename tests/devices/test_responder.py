@@ -139,6 +139,7 @@ SPEC = [
     ("set ivar mvar gain 1 (2 x)", "[ok]"),
     ("get ivar mvar gain", "[is] ivar (1 (2 x)) [ok]"),
     ("get ivar mvar nothing", "[fail]"),
+    ("set ivar mvar nothing 1", "[fail]"),
     ("get ivar mvar", "[fail]"),
     ("get reca isca", "[is] reca 1 [ok]"),
     ("set reca cal 1", "[ok]"),

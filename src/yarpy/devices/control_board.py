@@ -294,4 +294,5 @@ class ControlBoardLike(Joints, Protocol):
     """Controllers by kind: `pos`, `vel`, `trq`, `cur`."""
 
     variables: MutableMapping[str, Any]
-    """Whatever else the robot wants to show and have changed, by name; a dict does."""
+    """Whatever else the robot wants to show and have changed, by name; a dict does. Clients change
+    what is there and add nothing. What they set is a list of what they sent."""

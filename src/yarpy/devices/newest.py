@@ -43,7 +43,7 @@ class Newest(Generic[T]):
         self._known: tuple[Message, T] | None = None
         self._port = BufferedPort(local, callback=self._take, names=names)
         try:
-            self._port.listen_to(source, carrier)
+            self._listen()
         except YarpError:
             self._port.close()
             raise
@@ -89,8 +89,9 @@ class Newest(Generic[T]):
             self._changed.notify_all()
 
     def _fresh(self) -> Message:
-        if not self._is_fresh():
+        if not self._port.inputs:
             self._listen_again()
+        if not self._is_fresh():
             with self._changed:
                 self._changed.wait_for(self._is_fresh, self._timeout)
         message = self._message
@@ -105,10 +106,13 @@ class Newest(Generic[T]):
         return self._message is not None and time.monotonic() - self._arrival <= self._timeout
 
     def _listen_again(self) -> None:
-        """Ask the sender once more, if its connection has gone: it was restarted perhaps."""
-        if self._port.inputs:
-            return
+        """The connection has gone: the sender was restarted perhaps."""
         try:
-            self._port.listen_to(self.source, self._carrier)
+            self._listen()
         except YarpError as error:
-            raise Timeout(f'nothing comes from "{self.source}": {error}') from error
+            if not self._is_fresh():
+                raise Timeout(f'nothing comes from "{self.source}": {error}') from error
+
+    def _listen(self) -> None:
+        self._port.listen_to(self.source, self._carrier)
+        self._port.wait_for_inputs(1, self._timeout)  # it dials us

@@ -10,8 +10,12 @@ import threading
 import time
 from collections.abc import Callable
 from math import isfinite
+from typing import Final
 
 from yarpy.devices.refusal import Complaints
+
+#: Seconds that a step may still take when its server is closed.
+PATIENCE: Final = 5.0
 
 
 class Publisher:
@@ -39,7 +43,7 @@ class Publisher:
             due = max(due + self.period, time.monotonic())
 
     def close(self) -> None:
-        """End the thread and wait until it has ended."""
+        """End the thread and wait until it has ended; not for ever, if it is stuck in a device."""
         self._ended.set()
         if self._thread is not threading.current_thread():
-            self._thread.join()
+            self._thread.join(PATIENCE)

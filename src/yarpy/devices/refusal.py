@@ -12,6 +12,7 @@ log = logging.getLogger("yarpy.devices")
 
 #: The same complaint is logged again after this many seconds.
 QUIET: Final = 5.0
+_MOST: Final = 200  # complaints that are remembered: anybody can cause them, under any name
 
 
 class Refused(Exception):
@@ -36,5 +37,7 @@ class Complaints:
         now = time.monotonic()
         before, at = self._said.get(about, ("", 0.0))
         if before != text or now - at > QUIET:
+            if len(self._said) >= _MOST:
+                self._said.clear()
             self._said[about] = (text, now)
             log.warning("%s: %s: %s", self.name, about, text)

@@ -235,16 +235,20 @@ class Responder:
         if what != "mvar" or verb not in ("get", "set") or not isinstance(key, str):
             raise Refused("variables are listed by [get] [ivar] [lvar], others need [mvar] name")
         name = str.__str__(key)
-        if verb == "set":
-            board.use("variables", lambda found: found.__setitem__(name, [*request[4:]]))
-            return []
+
+        def known(found: Any) -> Any:
+            if name not in found:
+                raise Refused(f"no variable is called {shown(name)}")
+            return found
 
         def fetch(found: Any) -> Bottle:
-            if name not in found:
-                raise Refused(f"no variable is called {name!r}")
-            value = found[name]
+            value = known(found)[name]
             return Bottle(value if isinstance(value, (list, tuple)) else [value])
 
+        if verb == "set":
+            values = [*request[4:]]
+            board.use("variables", lambda found: known(found).__setitem__(name, values))
+            return []
         return [IS, request[1], board.use("variables", fetch)]
 
     def _calibrator(self, verb: str, request: Request) -> list[Any]:
