@@ -1,19 +1,23 @@
-"""What the paper on YARP promises to web pages and to people, said with curl and netcat.
+"""What the paper on YARP promises to cameras, web pages and people: with ffmpeg, curl and netcat.
 
-Sections 7 and 8 of "A middle way for robotics middleware" (Fitzpatrick et al., 2014), line by line:
-a name server, the simulated head of an iCub, its camera.
+Sections 5, 7 and 8 of "A middle way for robotics middleware" (2014), line by line: a webcam, the
+head of an iCub, its camera, and somebody who types.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from support.port import free_port
 from support.process import Process
+from support.wait import wait_until
 
 import yarpy
 from yarpy.data import jpeg
@@ -60,6 +64,33 @@ def run(program: str, *args: str, said: str = "") -> str:
 
 def curl(*args: str) -> str:
     return run("curl", "-sS", "--noproxy", "*", "-m", "20", *args)
+
+
+# ------------------------------------------------------------------------------------ 5: a camera
+
+
+def test_camera_of_the_network_goes_straight_into_a_port(server: yarpy.NameServer) -> None:
+    """`yarp connect /67.52.88.202:5159 /view mjpeg+path.mjpg/video.mjpg?camera=1`"""
+    ffmpeg = shutil.which("ffmpeg")
+    if ffmpeg is None:
+        pytest.skip("no ffmpeg: install it (apt-get install ffmpeg)")
+    number, path = free_port(), "mjpg/video.mjpg?camera=1"
+    source = ["-f", "lavfi", "-re", "-i", "testsrc=size=64x48:rate=20", "-f", "mpjpeg"]
+    camera = [ffmpeg, "-loglevel", "error", *source, "-listen", "1"]
+    connect = [sys.executable, "-m", "yarpy", "connect", f"/127.0.0.1:{number}", "/view"]
+    with (
+        yarpy.BufferedPort("/view") as view,
+        Process([*camera, f"http://127.0.0.1:{number}/{path}"]),
+    ):
+        environment = {**os.environ, **server.environment}
+
+        def connected() -> bool:  # once ffmpeg listens
+            with Process([*connect, f"mjpeg+path.{path}"], env=environment) as process:
+                return process.wait(PATIENCE) == 0
+
+        wait_until(connected, PATIENCE)
+        image = view.read(timeout=PATIENCE).value
+        assert (image.width, image.height, image.code) == (64, 48, "rgb")
 
 
 # ------------------------------------------------------------------------------ 7: web applications
