@@ -113,3 +113,13 @@ def test_numbers_that_somebody_has() -> None:
     listener.close()
     listener.release()
     assert not is_taken(number)
+
+
+def test_peer_that_vanishes_is_noticed() -> None:
+    """By the kernel, which asks after ten seconds of silence (a cut cable cannot be had here)."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        transport = dial("127.0.0.1", listener.getsockname()[1])
+        assert transport.sock.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE)
+        if hasattr(socket, "TCP_KEEPIDLE"):
+            assert transport.sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_KEEPIDLE) == 10
+        transport.close()
