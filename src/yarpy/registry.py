@@ -32,6 +32,9 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "websocket": "yarpy.carriers.websocket:WebSocket",
         "xmlrpc": "yarpy.carriers.xmlrpc:XmlRpc",
     },
+    "monitors": {
+        "priority": "yarpy.monitors.priority:Priority",
+    },
 }
 
 

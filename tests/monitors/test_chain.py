@@ -151,6 +151,32 @@ def test_others_at_the_port_are_triggered_by_what_was_accepted() -> None:
     assert (first.rung, second.rung) == (0, 1)
 
 
+def test_monitor_of_the_whole_port_triggers_nobody() -> None:
+    class Bell(Word):
+        rung = 0
+
+        def trigger(self) -> None:
+            self.rung += 1
+
+    group, own, other, port_wide = Group(), Bell("a"), Bell("b"), Bell("c")
+    group.add(own)
+    group.add(other)
+    both = Chain([own], "here", group).followed_by(Chain([port_wide], "there"))
+    made = both.take(message("hi"))
+    assert made is not None
+    assert made.value == ["hi", "a", "c"]
+    assert [bell.rung for bell in (own, other, port_wide)] == [0, 1, 0]
+
+
+def test_state_of_all_that_tell() -> None:
+    class Counts:
+        def state(self) -> dict[str, object]:
+            return {"seen": 3}
+
+    assert Chain([Word("a"), Counts()], "here").state() == {"seen": 3}
+    assert Chain([Word("a")], "here").state() == {}
+
+
 def test_parameters_of_all_that_have_some() -> None:
     class Level:
         level = 1

@@ -9,6 +9,7 @@ A monitor is any object with some of these methods; those it lacks cost nothing:
     trigger()                          another monitor at the same port has let a message pass
     configure(parameters)              new parameters (a Property) while the connection runs
     parameters() -> dict               what they are now
+    state() -> dict                    how it is doing, for people: numbers and words
     close()                            the connection ends
 
 The class, or any function that returns such an object, is called with the `Place` where it is to
@@ -16,8 +17,9 @@ sit and is found by name (entry point group `yarpy.monitors`). It raises an erro
 its parameters are wrong: the connection is then refused with that text.
 
 Rules: at the sender's end the messages of several writers come one after the other, at the
-receiver's end those of one connection. `trigger`, `configure` and `parameters` come from any thread
-at any time. A method that raises costs the message, which is counted as dropped, and a log line.
+receiver's end those of one connection. `trigger`, `configure`, `parameters` and `state` come from
+any thread at any time. A method that raises costs the message, which is counted as dropped, and a
+log line.
 """
 
 from __future__ import annotations
@@ -45,11 +47,14 @@ DROP: Final = _Drop()
 class Group:
     """The monitors at the receiving ends of one port's connections, who decide together.
 
-    `lock` is for what they share; hold it briefly, and never while a monitor's `trigger` runs.
+    `members` is replaced, never changed. `shared` is for what those of one kind have in common,
+    under their class, and `lock` for whoever uses it; hold it briefly, and never while a monitor's
+    `trigger` runs.
     """
 
     def __init__(self) -> None:
         self.members: tuple[Any, ...] = ()
+        self.shared: dict[type, Any] = {}
         self.lock = threading.RLock()
         self._triggered: tuple[Any, ...] = ()
 

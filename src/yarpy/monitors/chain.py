@@ -80,8 +80,14 @@ class Chain:
         self.monitors = tuple(monitors)
         self._where = where
         self._group = group
+        # Only those of a group let others know.
         self._steps = tuple(
-            (one, getattr(one, "accept", None), getattr(one, "update", None)) for one in monitors
+            (
+                one if group is not None else None,
+                getattr(one, "accept", None),
+                getattr(one, "update", None),
+            )
+            for one in monitors
         )
         self._replies = tuple(one.update_reply for one in monitors if hasattr(one, "update_reply"))
         self._lock = threading.Lock()  # several writers may use one connection
@@ -93,11 +99,11 @@ class Chain:
         """What becomes of a message; None: it is dropped."""
         group = self._group
         try:
-            for monitor, accept, update in self._steps:
+            for peer, accept, update in self._steps:
                 if accept is not None and not accept(message):
                     return None
-                if group is not None:
-                    group.trigger(monitor)
+                if peer is not None and group is not None:
+                    group.trigger(peer)
                 if update is not None:
                     made = update(message)
                     if made is DROP:
@@ -137,7 +143,9 @@ class Chain:
 
     def followed_by(self, other: Chain) -> Chain:
         """A chain of both; closing it is left to who made the two."""
-        return Chain((*self.monitors, *other.monitors), self._where, self._group)
+        both = Chain((*self.monitors, *other.monitors), self._where, self._group)
+        both._steps = self._steps + other._steps
+        return both
 
     # -- parameters -------------------------------------------------------------------------------
 
@@ -150,9 +158,16 @@ class Chain:
 
     def parameters(self) -> Property:
         """The parameters of all monitors that tell theirs."""
+        return self._told_by("parameters")
+
+    def state(self) -> Property:
+        """How the monitors that tell are doing."""
+        return self._told_by("state")
+
+    def _told_by(self, method: str) -> Property:
         found = Property()
         for monitor in self.monitors:
-            told: Any = getattr(monitor, "parameters", dict)
+            told: Any = getattr(monitor, method, dict)
             found.update(told())
         return found
 

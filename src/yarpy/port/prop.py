@@ -73,6 +73,9 @@ def get_peer(hub: Hub, name: str) -> Bottle | None:
         ]
         if chain is not None:
             reply.append(Bottle(["monitor", chain.parameters()]))
+            state = chain.state()
+            if state:
+                reply.append(Bottle(["state", state]))
     return reply or None
 
 
