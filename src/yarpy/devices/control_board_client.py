@@ -16,20 +16,18 @@ Source: remote_controlboard of YARP 3.x, protocol 1.9.0.
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
-from itertools import count
 from operator import index
-from types import TracebackType
-from typing import Any, Final, Self, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from yarpy.data.bottle import Bottle
 from yarpy.devices import command, grammar
 from yarpy.devices.adjustable import Adjustable
 from yarpy.devices.control_board import MotorTorqueParameters
 from yarpy.devices.newest import Newest
+from yarpy.devices.opened import Opened, local_prefix, prefix
 from yarpy.devices.question import Questions, RemotePids, RemoteVariables
 from yarpy.devices.state import State
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
@@ -41,11 +39,10 @@ Which: TypeAlias = int | str | Sequence[int | str]
 Values: TypeAlias = float | Sequence[float]
 Words: TypeAlias = str | Sequence[str]
 
-_clients = count(1)
 _POLL: Final = 0.02
 
 
-class ControlBoard:
+class ControlBoard(Opened):
     """The control board whose ports begin with `remote`.
 
     local: prefix of the own ports; one is made up without it.
@@ -65,8 +62,8 @@ class ControlBoard:
         timeout: float = 0.5,
         names: NameClient | None = None,
     ) -> None:
-        self.remote = remote = "/" + remote.strip("/")
-        local = "/" + (local.strip("/") or f"yarpy/{os.getpid()}-{next(_clients)}{remote}")
+        self.remote = remote = prefix(remote)
+        local = local_prefix(local, remote)
         self._carrier = carrier
         with ExitStack() as opened:
             self._ask = opened.enter_context(Questions(remote, f"{local}/rpc:o", names))
@@ -98,21 +95,6 @@ class ControlBoard:
                 f'"{self.remote}" speaks version {spoken} of the control board protocol, not '
                 f"{wanted}: it takes a YARP from 2.3.70 to 3.12 at the other end"
             )
-
-    def close(self) -> None:
-        """Close the connections. The board goes on with what it does. Idempotent."""
-        self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def __repr__(self) -> str:
         return f"<ControlBoard {self.remote}, {self.axes} joints>"

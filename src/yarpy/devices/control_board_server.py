@@ -14,14 +14,14 @@ from __future__ import annotations
 
 import logging
 from contextlib import ExitStack
-from types import TracebackType
-from typing import Any, Final, Self
+from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.devices import command
 from yarpy.devices.access import Board
 from yarpy.devices.control_board import Joints
+from yarpy.devices.opened import Opened, prefix
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.devices.responder import FAIL, Responder
@@ -39,7 +39,7 @@ log = logging.getLogger("yarpy.devices")
 APART: Final = 1.0
 
 
-class ControlBoardServer:
+class ControlBoardServer(Opened):
     """Serves `device` (see `yarpy.devices.control_board`) to C++ and Python clients.
 
     name: prefix of the ports, for example `/icub/head`.
@@ -56,7 +56,7 @@ class ControlBoardServer:
         *,
         names: NameClient | None = None,
     ) -> None:
-        self.name = name = "/" + name.strip("/")
+        self.name = name = prefix(name)
         self.device = device
         self._board = Board(device, name)
         self._responder = Responder(self._board)
@@ -77,21 +77,6 @@ class ControlBoardServer:
     def axes(self) -> int:
         """The number of joints."""
         return self._board.count
-
-    def close(self) -> None:
-        """Stop publishing and close the ports. Idempotent."""
-        self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def __repr__(self) -> str:
         return f"<ControlBoardServer {self.name}, {self.axes} joints>"

@@ -12,13 +12,10 @@ Source: frameGrabber_nwc_yarp of YARP 3.x.
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Iterator, MutableMapping, Sequence
 from contextlib import ExitStack
-from itertools import count
-from types import TracebackType
-from typing import Any, Final, Self
+from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.image import Image
@@ -27,6 +24,7 @@ from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.devices.frame_grabber import FEATURES
 from yarpy.devices.frame_grabber_responder import BUSES, MODES
+from yarpy.devices.opened import Opened, local_prefix, prefix
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.names.base import NameClient
 from yarpy.port.buffered import BufferedPort
@@ -35,10 +33,8 @@ from yarpy.port.rpc import RpcClient
 #: Seconds that an answer or an image may take.
 PATIENCE: Final = 10.0
 
-_clients = count(1)
 
-
-class FrameGrabber:
+class FrameGrabber(Opened):
     """The camera whose images come from the port `remote`.
 
     local: name of the own port; one is made up without it.
@@ -55,10 +51,9 @@ class FrameGrabber:
         carrier: str = "tcp",
         names: NameClient | None = None,
     ) -> None:
-        self.remote = remote = "/" + remote.strip("/")
-        self._local = "/" + (local.strip("/") or f"yarpy/{os.getpid()}-{next(_clients)}{remote}")
+        self.remote = remote = prefix(remote)
+        self._local = local_prefix(local, remote)
         self._carrier = carrier
-        self._names = names
         self.stamp = Stamp()
         with ExitStack() as opened:
             self._rpc = opened.enter_context(
@@ -66,21 +61,6 @@ class FrameGrabber:
             )
             self._images = opened.enter_context(BufferedPort(self._local, names=names))
             self._opened = opened.pop_all()
-
-    def close(self) -> None:
-        """Close the connections. Idempotent."""
-        self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def __repr__(self) -> str:
         return f"<FrameGrabber {self.remote}>"

@@ -13,8 +13,7 @@ from __future__ import annotations
 import threading
 import time
 from contextlib import ExitStack
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.image import Image
@@ -23,6 +22,7 @@ from yarpy.data.value import Vocab
 from yarpy.devices.access import Part
 from yarpy.devices.frame_grabber import Camera
 from yarpy.devices.frame_grabber_responder import FrameGrabberResponder
+from yarpy.devices.opened import Opened, prefix
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError
@@ -32,7 +32,7 @@ from yarpy.port.rpc import RpcServer
 from yarpy.wire.message import Message
 
 
-class FrameGrabberServer:
+class FrameGrabberServer(Opened):
     """Serves `device` (see `yarpy.devices.frame_grabber`) to viewers and other programs.
 
     name: the port of the images, for example `/robot/cam/left`.
@@ -49,7 +49,7 @@ class FrameGrabberServer:
         *,
         names: NameClient | None = None,
     ) -> None:
-        self.name = name = "/" + name.strip("/")
+        self.name = name = prefix(name)
         self.device = device
         self._camera = Part(device, 0, Complaints(name), threading.Lock())
         if not self._camera.has("image"):
@@ -64,21 +64,6 @@ class FrameGrabberServer:
             self._publisher = Publisher(name, period, self._publish)
             opened.callback(self._publisher.close)
             self._opened = opened.pop_all()
-
-    def close(self) -> None:
-        """Stop grabbing and close the ports. Idempotent."""
-        self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def __repr__(self) -> str:
         return f"<FrameGrabberServer {self.name}>"

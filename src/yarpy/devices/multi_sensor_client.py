@@ -10,15 +10,13 @@ Source: multipleanalogsensorsclient of YARP 3.x.
 
 from __future__ import annotations
 
-import os
 from contextlib import ExitStack
-from itertools import count
-from types import TracebackType
-from typing import Final, Self
+from typing import Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.devices.multi_sensor import KINDS
 from yarpy.devices.newest import Newest
+from yarpy.devices.opened import Opened, local_prefix, prefix
 from yarpy.errors import DecodeError, RemoteProtocolError
 from yarpy.names.base import NameClient
 from yarpy.port.rpc import RpcClient
@@ -27,13 +25,12 @@ from yarpy.wire.message import Message
 #: Seconds that an answer may take.
 PATIENCE: Final = 10.0
 
-_clients = count(1)
 
 #: For each kind, the values and the time of each sensor.
 _Measures = list[list[tuple[tuple[float, ...], float]]]
 
 
-class MultiSensor:
+class MultiSensor(Opened):
     """The sensors whose ports begin with `remote`.
 
     local: prefix of the own ports; one is made up without it.
@@ -52,8 +49,8 @@ class MultiSensor:
         timeout: float = 0.5,
         names: NameClient | None = None,
     ) -> None:
-        self.remote = remote = "/" + remote.strip("/")
-        local = "/" + (local.strip("/") or f"yarpy/{os.getpid()}-{next(_clients)}{remote}")
+        self.remote = remote = prefix(remote)
+        local = local_prefix(local, remote)
         self.frames: dict[str, str] = {}
         self._sensors: list[list[str]] = []
         with ExitStack() as opened:
@@ -72,21 +69,6 @@ class MultiSensor:
                 )
             )
             self._opened = opened.pop_all()
-
-    def close(self) -> None:
-        """Close the connections. Idempotent."""
-        self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def __repr__(self) -> str:
         pairs = zip(KINDS, self._sensors, strict=True)

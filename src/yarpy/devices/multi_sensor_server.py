@@ -17,14 +17,14 @@ import threading
 import time
 from collections.abc import Mapping
 from contextlib import ExitStack
-from types import TracebackType
-from typing import Any, Final, Self
+from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.devices.access import Part
 from yarpy.devices.multi_sensor import KINDS
+from yarpy.devices.opened import Opened, prefix
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError
@@ -39,7 +39,7 @@ _FRAMELESS: Final = frozenset(("contact_loads", "encoder_arrays", "skin_patches"
 _Measurement = tuple[list[float], float]
 
 
-class MultiSensorServer:
+class MultiSensorServer(Opened):
     """Serves `device` (see `yarpy.devices.multi_sensor`) to C++ and Python clients.
 
     name: prefix of the ports, for example `/robot/imu`.
@@ -56,7 +56,7 @@ class MultiSensorServer:
         *,
         names: NameClient | None = None,
     ) -> None:
-        self.name = name = "/" + name.strip("/")
+        self.name = name = prefix(name)
         self.device = device
         self._sensors = Part(device, 0, Complaints(name), threading.Lock())
         self._last: dict[str, dict[str, _Measurement]] = {}
@@ -69,21 +69,6 @@ class MultiSensorServer:
             self._publisher = Publisher(name, period, self._publish)
             opened.callback(self._publisher.close)
             self._opened = opened.pop_all()
-
-    def close(self) -> None:
-        """Stop publishing and close the ports. Idempotent."""
-        self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def __repr__(self) -> str:
         listed = ", ".join(f"{len(names)} {kind}" for kind, names in self._last.items())

@@ -9,9 +9,10 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from types import TracebackType
-from typing import Generic, Self, TypeVar
+from contextlib import ExitStack
+from typing import Generic, TypeVar
 
+from yarpy.devices.opened import Opened
 from yarpy.errors import Timeout, YarpError
 from yarpy.names.base import NameClient
 from yarpy.port.buffered import BufferedPort
@@ -20,7 +21,7 @@ from yarpy.wire.message import Message
 T = TypeVar("T")
 
 
-class Newest(Generic[T]):
+class Newest(Opened, Generic[T]):
     """Listens to the port `source`. `timeout`: seconds after which a message no longer counts."""
 
     def __init__(
@@ -41,23 +42,10 @@ class Newest(Generic[T]):
         self._arrival = 0.0
         self._count = 0
         self._known: tuple[Message, T] | None = None
-        self._port = BufferedPort(local, callback=self._take, names=names)
-        try:
+        with ExitStack() as opened:
+            self._port = opened.enter_context(BufferedPort(local, callback=self._take, names=names))
             self._listen()
-        except YarpError:
-            self._port.close()
-            raise
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._port.close()
+            self._opened = opened.pop_all()
 
     def value(self) -> T:
         """What came last. Raises Timeout (nothing fresh), DecodeError."""

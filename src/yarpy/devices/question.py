@@ -8,8 +8,8 @@ shows what was asked.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, MutableMapping, Sequence
-from types import TracebackType
-from typing import Any, Final, Self
+from contextlib import ExitStack
+from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
@@ -18,6 +18,7 @@ from yarpy.devices.adjustable import Adjustable
 from yarpy.devices.control_board import Gains
 from yarpy.devices.grammar import INTERFACES, PID, Form, Interface, Row
 from yarpy.devices.kind import FLAG, NOTHING, PAIR, Fixed
+from yarpy.devices.opened import Opened
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.names.base import NameClient
 from yarpy.port.rpc import RpcClient
@@ -43,24 +44,16 @@ _PID_READ: Final = _by_member([PID], lambda interface: interface.get)
 _PID_WRITE: Final = _by_member([PID], lambda interface: interface.set)
 
 
-class Questions:
+class Questions(Opened):
     """Asks the board at `remote`."""
 
     def __init__(self, remote: str, local: str, names: NameClient | None) -> None:
         self.remote = remote
         self.axes = 0
-        self._client = RpcClient(f"{remote}/rpc:i", name=local, names=names)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._client.close()
+        self._opened = ExitStack()
+        self._client = self._opened.enter_context(
+            RpcClient(f"{remote}/rpc:i", name=local, names=names)
+        )
 
     # -- members of the interface -------------------------------------------------------------
 
