@@ -64,14 +64,14 @@ class Priority:
 
     def _contest(self) -> Contest:
         """Ours with the others at the port; call it with the group's lock held."""
-        members, contest = self._group.shared.get(Priority, (None, None))
-        if contest is None or members is not self._group.members:
-            members = self._group.members
+        members = self._group.members
+        known: tuple[object, Contest] | None = self._group.shared.get(Priority)
+        if known is None or known[0] is not members:
             ours = [one.competitor for one in members if isinstance(one, Priority)]
             # A port's own monitor is in no group.
             contest = Contest(ours if self.competitor in ours else [self.competitor])
-            self._group.shared[Priority] = members, contest
-        return contest
+            self._group.shared[Priority] = known = members, contest
+        return known[1]
 
     def accept(self, message: Message) -> bool:
         """Whether this connection is the one that may speak now."""

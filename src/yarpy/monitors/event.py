@@ -1,0 +1,87 @@
+"""Events: names that monitors set, for a while or for good, and that constraints ask for.
+
+Rules: one container for the whole process, as in C++, so monitors at different ports know of each
+other's. An event belongs to who set it: only its owner takes it away, and it goes with its owner.
+It is there as long as any owner's is. (In C++ a forgotten event outlives its monitor, and one that
+has expired hides that of another.)
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from math import inf
+from typing import Final
+
+from yarpy.errors import LocalProtocolError
+from yarpy.monitors.constraint import RESERVED
+
+MOST: Final = 1000  # events of one owner
+
+
+class Events:
+    """Who has set what, and until when."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._lock = threading.Lock()  # monitors of all connections come here
+        self._ends: dict[str, dict[object, float]] = {}
+        self._names: dict[object, set[str]] = {}
+
+    def set(self, owner: object, name: str, lifetime: float | None = None) -> None:
+        """Set or renew an event for `lifetime` seconds; None or below 0: until it is taken away.
+
+        Raises LocalProtocolError for a name that no constraint could ask for, and beyond MOST.
+        """
+        if name in RESERVED or not name or any(c.isspace() or c in "()" for c in name):
+            words = ", ".join(sorted(RESERVED))
+            raise LocalProtocolError(f'"{name}" cannot name an event: take a word, and not {words}')
+        forever = lifetime is None or lifetime < 0
+        with self._lock:
+            now = self._clock()
+            mine = self._names.setdefault(owner, set())
+            if name not in mine and len(mine) >= MOST:
+                for other in [n for n in mine if self._ends[n][owner] <= now]:
+                    self._drop(owner, other)
+                if len(mine) >= MOST:
+                    raise LocalProtocolError(f"a monitor can have {MOST} events, and has them all")
+            mine.add(name)
+            self._ends.setdefault(name, {})[owner] = inf if forever else now + (lifetime or 0)
+
+    def unset(self, owner: object, name: str) -> None:
+        """Take an event away, if `owner` has set it."""
+        with self._lock:
+            if name in self._names.get(owner, ()):
+                self._drop(owner, name)
+
+    def clear(self, owner: object) -> None:
+        """Take all events of `owner` away."""
+        with self._lock:
+            for name in [*self._names.get(owner, ())]:
+                self._drop(owner, name)
+            self._names.pop(owner, None)
+
+    def has(self, name: str) -> bool:
+        """Whether there is such an event now."""
+        with self._lock:
+            ends = self._ends.get(name)
+            if not ends:
+                return False
+            now = self._clock()
+            if max(ends.values()) > now:
+                return True
+            for owner in [*ends]:
+                self._drop(owner, name)
+            return False
+
+    def _drop(self, owner: object, name: str) -> None:
+        self._names[owner].discard(name)
+        ends = self._ends[name]
+        del ends[owner]
+        if not ends:
+            del self._ends[name]
+
+
+EVENTS: Final = Events()
+"""Those of this process."""
