@@ -33,7 +33,26 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "xmlrpc": "yarpy.carriers.xmlrpc:XmlRpc",
     },
     "monitors": {
+        "bayer": "yarpy.monitors.bayer:Bayer",
+        "bottle_compression_zlib": "yarpy.monitors.bottle_compression_zlib:BottleCompressionZlib",
+        "depthimage_compression_zlib": "yarpy.monitors.depthimage_compression_zlib:DepthZlib",
+        "depthimage_to_mono": "yarpy.monitors.depthimage_to_mono:DepthImageToMono",
+        "depthimage_to_rgb": "yarpy.monitors.depthimage_to_rgb:DepthImageToRgb",
+        "depthimage_to_vector": "yarpy.monitors.depthimage_to_vector:DepthImageToVector",
+        "image_compression_jpeg": "yarpy.monitors.image_compression_jpeg:ImageCompressionJpeg",
+        "image_compression_png": "yarpy.monitors.image_compression_png:ImageCompressionPng",
+        "image_rotation": "yarpy.monitors.image_rotation:ImageRotation",
+        "image_to_mono": "yarpy.monitors.image_to_mono:ImageToMono",
         "priority": "yarpy.monitors.priority:Priority",
+        "segmentationimage_to_rgb": "yarpy.monitors.segmentationimage_to_rgb:LabelColours",
+        "sensorMeasurements_to_vector": "yarpy.monitors.sensor_measurements_to_vector:SensorPose",
+        "simulated_network_delay": "yarpy.monitors.simulated_network_delay:SimulatedNetworkDelay",
+        "soundfilter_resample": "yarpy.monitors.soundfilter_resample:SoundFilterResample",
+        "sound_marker": "yarpy.monitors.sound_marker:SoundMarker",
+        "throttleDown": "yarpy.monitors.throttle_down:ThrottleDown",
+        # These two have ports of their own, and so live above them.
+        "rpc_monitor": "yarpy.services.rpc_monitor:RpcMonitor",
+        "stats_monitor": "yarpy.services.stats_monitor:StatsMonitor",
     },
 }
 

@@ -1,0 +1,21 @@
+"""Libraries that some monitors need and that yarpy does not install by itself.
+
+Rules: a monitor asks when it is made, so that a connection that cannot work is refused.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from yarpy.errors import LocalProtocolError
+
+
+def needed(module: str, extra: str, by: str) -> Any:
+    """The module. LocalProtocolError, which says what to install, if it is not there."""
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise LocalProtocolError(
+            f'{by} cannot work without "{module}" ({error}): pip install "yarpy[{extra}]"'
+        ) from error

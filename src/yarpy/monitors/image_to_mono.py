@@ -1,0 +1,25 @@
+"""image_to_mono: images of any colours, or any grey, as pixels `mono`. Of yarpy, not of C++.
+
+Grey is (r + g + b) / 3, as C++ YARP converts images; see `Image.converted`.
+"""
+
+from __future__ import annotations
+
+from yarpy.data.image import Image
+from yarpy.errors import DecodeError
+from yarpy.monitors.base import Place
+from yarpy.wire.message import Message
+
+
+class ImageToMono:
+    """Takes the colours out, at either end."""
+
+    def __init__(self, place: Place) -> None:
+        pass
+
+    def update(self, message: Message) -> Image:
+        image = message.as_(Image)
+        try:
+            return image.converted("mono")
+        except ValueError as error:
+            raise DecodeError(str(error)) from error

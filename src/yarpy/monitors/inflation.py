@@ -1,0 +1,29 @@
+"""zlib data back to what they were, with a size that was announced and a limit.
+
+Rules: memory is taken for what comes out, not for what somebody announced, and never for more than
+the limit. Whatever is wrong is a DecodeError.
+"""
+
+from __future__ import annotations
+
+import zlib
+
+from yarpy.errors import DecodeError
+
+
+def inflate(data: object, size: object, limit: int) -> bytes:
+    """The `size` bytes that `data` were compressed from. Raises DecodeError."""
+    if not isinstance(data, bytes) or not isinstance(size, int):
+        raise DecodeError(
+            "these are no compressed data: does the same monitor ride on the sender's end?"
+        )
+    if not 0 <= size <= limit:
+        raise DecodeError(f"compressed data announce {size} bytes, the limit is {limit}")
+    stream = zlib.decompressobj()
+    try:
+        made = stream.decompress(data, size + 1)  # one more: 0 would mean without end
+    except zlib.error as error:
+        raise DecodeError(f"compressed data are damaged: {error}") from error
+    if len(made) != size or not stream.eof:
+        raise DecodeError(f"compressed data do not make the {size} bytes that they announce")
+    return made

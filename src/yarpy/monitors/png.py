@@ -1,0 +1,69 @@
+"""PNG: an Image squeezed into a file without loss, and back.
+
+Rules: the work is OpenCV's, which the caller hands in. What comes in is measured before memory is
+taken for its pixels, and its checksums are compared, since libpng makes a picture of half a file
+too. Whatever is wrong with it is a DecodeError.
+"""
+
+from __future__ import annotations
+
+import zlib
+from typing import Any, Final
+
+from yarpy.data.image import Image
+from yarpy.errors import DecodeError
+
+#: pixel codes that go into a PNG; Bayer patterns as the grey they are
+CODES: Final = (
+    *("mono", "rgb", "rgba", "bgr", "bgra", "grbg", "gbrg", "rggb", "bggr"),
+    *("mo16", "gr16", "gb16", "rg16", "bg16"),
+)
+_ORDERED: Final = {"rgb": "bgr", "rgba": "bgra"}  # as OpenCV wants colours
+_START: Final = b"\x89PNG\r\n\x1a\n"
+
+
+def encode(cv2: Any, image: Image) -> bytes:
+    """The picture as a PNG file; ValueError for one without pixels."""
+    import numpy as np
+
+    if not image.width or not image.height:
+        raise ValueError("a PNG has at least one pixel, this image has none")
+    code = str(image.code)
+    array = image.converted(_ORDERED.get(code, code)).array
+    _, data = cv2.imencode(".png", np.ascontiguousarray(array))
+    return bytes(data)
+
+
+def decode(cv2: Any, data: bytes, code: str, limit: int) -> Image:
+    """The picture of a PNG file as an image of pixels `code`.
+
+    DecodeError if it is no PNG of such pixels, is damaged, or may have more than `limit` bytes.
+    """
+    import numpy as np
+
+    _check(data, limit)
+    try:
+        array = cv2.imdecode(np.frombuffer(data, "u1"), cv2.IMREAD_UNCHANGED)
+        if array is None:
+            raise DecodeError("no PNG that can be shown")
+        return Image(array, _ORDERED.get(code, code)).converted(code)
+    except (ValueError, cv2.error) as error:
+        raise DecodeError(f"no PNG of pixels {code}: {error}") from error
+
+
+def _check(data: bytes, limit: int) -> None:
+    """See to it that the file is whole and not too large."""
+    width, height = (int.from_bytes(data[at : at + 4], "big") for at in (16, 20))
+    if not data.startswith(_START + b"\0\0\0\rIHDR"):
+        raise DecodeError("no PNG: it begins otherwise")
+    if width * height * 8 > limit:  # four channels of 16 bits
+        raise DecodeError(f"a PNG of {width} times {height} pixels; the limit is {limit} bytes")
+    at = len(_START)
+    while at + 12 <= len(data):
+        end = at + 12 + int.from_bytes(data[at : at + 4], "big")
+        if zlib.crc32(data[at + 4 : end - 4]) != int.from_bytes(data[end - 4 : end], "big"):
+            raise DecodeError("a PNG whose checksums do not agree: it is damaged")
+        if data[at + 4 : at + 8] == b"IEND":
+            return
+        at = end
+    raise DecodeError("a PNG that ends too early")

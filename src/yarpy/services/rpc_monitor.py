@@ -1,0 +1,94 @@
+"""rpc_monitor: copies of what an RPC client asks, and of the answers, for a port that looks on.
+
+Rides at the caller's end (`tcp+send.rpc_monitor`); parameter `monitor`, the port to write to
+(`/monitor` without). It gets Bottles as from C++ YARP, over a connection from `CLIENT/monitor`:
+
+    time CLIENT SERVER command client       RpcMonitor (word) (whole question) ()
+    time CLIENT SERVER reply   "rpc client" RpcMonitor ()     ()               (reply)
+
+Rules: a monitor, but one with a port, hence it lives up here. The copies leave from a thread of
+their own; when whoever looks on is 1000 behind, further ones are dropped and counted, and the
+client never waits. `get` tells how many.
+"""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.errors import DecodeError, LocalProtocolError, YarpError
+from yarpy.monitors.base import Place
+from yarpy.port.hub import Hub
+from yarpy.port.mailbox import Latest
+from yarpy.port.writer import Writer
+from yarpy.wire.message import Message
+
+_BEHIND = 1000  # copies
+
+
+class RpcMonitor:
+    """Tells somebody else what is said."""
+
+    def __init__(self, place: Place) -> None:
+        if not place.sending:
+            raise LocalProtocolError('"rpc_monitor" rides at the caller\'s end: +send.rpc_monitor')
+        self._place = place
+        self._sent = self._drops = 0
+        self._copies: queue.Queue[Bottle | None] = queue.Queue(_BEHIND)
+        hub = Hub(f"{place.source}/monitor", Latest(), place.names, register=False)
+        self._port = Writer(hub)
+        try:
+            self._port.connect(place.text("monitor", "/monitor"))
+        except YarpError:
+            self._port.close()
+            raise
+        self._thread = threading.Thread(target=self._run, name=f"yarpy {hub.name}", daemon=True)
+        self._thread.start()
+
+    def update(self, message: Message) -> None:
+        question = _bottle(message)
+        word = plain_text(question[0]) if question else ""
+        self._tell("command", "client", [word], question, [])
+
+    def update_reply(self, message: Message) -> None:
+        self._tell("reply", "rpc client", [], [], _bottle(message))
+
+    def _tell(self, *said: object) -> None:
+        kind, side, *lists = said
+        ends = self._place.source, self._place.target
+        try:
+            self._copies.put_nowait(Bottle([time.time(), *ends, kind, side, "RpcMonitor", *lists]))
+        except queue.Full:
+            self._drops += 1
+
+    def _run(self) -> None:
+        while (copy := self._copies.get()) is not None:
+            try:
+                if self._port.write(copy):
+                    self._sent += 1
+                    continue
+            except YarpError:
+                pass  # closed meanwhile
+            self._drops += 1
+
+    def parameters(self) -> dict[str, object]:
+        return {"sent": self._sent, "drops": self._drops}
+
+    def close(self) -> None:
+        try:
+            self._copies.put_nowait(None)  # after what was said
+        except queue.Full:
+            pass
+        self._thread.join(1.0)
+        self._port.close()
+
+
+def _bottle(message: Message) -> Bottle:
+    """What was said; what is no Bottle goes its way without a copy."""
+    try:
+        return message.as_(Bottle)
+    except DecodeError:
+        return Bottle(["[unknown]"])

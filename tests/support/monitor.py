@@ -1,0 +1,42 @@
+"""Monitors without a connection: what they make of a value, and of bytes that come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from yarpy.monitors.base import Place, split_tokens
+from yarpy.wire.message import DATA, Message, Packet
+from yarpy.wire.stream import DEFAULT_LIMIT
+
+Kind = Callable[[Place], Any]
+
+
+def place(tokens: str = "", sending: bool = False, limit: int = DEFAULT_LIMIT) -> Place:
+    """A place with the parameters `tokens`, such as "size.half+order.rggb"."""
+    own = tuple(split_tokens(f"x+{tokens}")) if tokens else ()
+    return Place("/out", "/in", f"tcp+{tokens}", sending, own, own, limit=limit)
+
+
+def updated(monitor: Any, message: Message) -> Message:
+    """What goes on instead of a message."""
+    made = monitor.update(message)
+    return made if isinstance(made, Message) else message.replaced(made)
+
+
+def sent(kind: Kind, value: object, tokens: str = "") -> bytes:
+    """The bytes that travel when a monitor rides at the sender's end."""
+    packet = Packet(value, b"7 0.5")
+    return bytes(updated(kind(place(tokens, sending=True)), Message.of(packet)).to_bytes())
+
+
+def received(kind: Kind, data: bytes, tokens: str = "", limit: int = DEFAULT_LIMIT) -> Message:
+    """The message that the reader gets when a monitor rides at the receiver's end."""
+    message = Message(DATA, data, "7 0.5")
+    message.source = "/out"
+    return updated(kind(place(tokens, limit=limit)), message)
+
+
+def through(kind: Kind, value: object, tokens: str = "") -> Message:
+    """The message that the reader gets when a monitor rides at both ends."""
+    return received(kind, sent(kind, value, tokens), tokens)
