@@ -198,7 +198,7 @@ class Outbound:
         self._gathered = 0
 
     def _flush_at_once(self, now: float) -> None:
-        """Send, and learn what that takes. Often it seems more: the reader runs first, or we wait."""
+        """Send, and learn what that takes; often it seems more, when the reader runs first."""
         self._flush()
         self._cost = min(self._cost, time.perf_counter() - now)
 
