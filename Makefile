@@ -12,7 +12,7 @@ $(VENV)/.ready: pyproject.toml
 	touch $@
 
 demo: $(VENV)/.ready
-	$(BIN)/python examples/demo.py
+	$(BIN)/yarpy demo
 
 test: $(VENV)/.ready
 	$(BIN)/python -m pytest

@@ -49,7 +49,6 @@ ALONE = {
     "stamps_and_drops.py": [r"were skipped", r"^written +1000$", r"dropped by the reader \d+"],
 }
 TOGETHER = {
-    "demo.py",
     "listener.py",
     "netcat.sh",
     "rpc_client.py",
@@ -73,11 +72,6 @@ def environment(variables: Mapping[str, str]) -> dict[str, str]:
     return {**clean, "YARP_CONFIG_HOME": str(ROOT / "no such directory"), **variables}
 
 
-def shell(command: str) -> Process:
-    """A line as a person would paste it into a terminal, in the checkout."""
-    return Process(["sh", "-c", command], env=environment({}), cwd=ROOT)
-
-
 def interrupt(process: Process) -> None:
     """Ctrl-C: the program ends in good order, and says nothing about it."""
     process.signal(signal.SIGINT)
@@ -98,11 +92,10 @@ def test_every_example_is_run_here():
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_it_is_short_and_says_how_to_run_it(path: Path):
     text = path.read_text()
-    if path.name != "demo.py":
-        assert len(text.splitlines()) <= LONGEST
+    assert len(text.splitlines()) <= LONGEST
     words = ast.get_docstring(ast.parse(text)) if path.suffix == ".py" else text
     assert words
-    assert f"examples/{path.name}" in words or "make demo" in words
+    assert f"examples/{path.name}" in words
 
 
 @pytest.mark.parametrize("name", ALONE)
@@ -174,34 +167,6 @@ def test_netcat(server: yarpy.NameServer):
         assert "[ver] 1 2 3" in said
         assert re.fullmatch(r"D \d+ \d+\.\d+", said[-2])
         assert re.fullmatch(r"\d+ hello", said[-1])
-
-
-def test_demo_ends_by_itself():
-    with start("demo.py", "--seconds", "0.7") as demo:
-        assert demo.wait(10) == 0, demo.stderr
-        assert re.search(r"\d+ /machine/load: .*load \d", demo.stdout)
-        assert not demo.stderr
-
-
-@needs_netcat
-def test_demo_and_every_line_it_tells_to_try():
-    with start("demo.py") as demo:
-        demo.wait_line(r"/machine/load: ", timeout=15)
-        lines = re.findall(r"^  (\S.*)$", demo.stdout, re.MULTILINE)
-        assert len(lines) == 6
-        expected = {
-            " name list": r"registration name /machine/rpc ip 127\.0\.0\.1 port \d+ type tcp",
-            " read /demo/view": r"\(load \d.*\)",
-            "echo cpu": r"Response: \d+",
-            "; echo r;": r"^D \d+ \d+\.\d+",
-            "nhelp": r"^\[many\] .*load",
-            "echo hello": r"Protocol not found",
-        }
-        for line in lines:
-            [pattern] = [pattern for words, pattern in expected.items() if words in line]
-            with shell(line) as process:
-                process.wait_line(pattern, timeout=15)
-        interrupt(demo)
 
 
 def test_page_is_quoted_as_it_is():

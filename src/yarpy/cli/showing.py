@@ -17,7 +17,13 @@ def show_page(port: BasePort, browser: bool = True) -> None:
     """Print where the page of `port` is, and open it unless `browser` is False."""
     url = f"http://{port.address}/"
     print_line(f"{port.name} is shown at {url}")
-    if browser and has_display(sys.platform, os.environ):
+    if browser:
+        open_page(url)
+
+
+def open_page(url: str) -> None:
+    """Show a page in a browser, if there is a display."""
+    if has_display(sys.platform, os.environ):
         import webbrowser
 
         webbrowser.open(url)

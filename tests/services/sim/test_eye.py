@@ -4,7 +4,7 @@ import pytest
 
 from yarpy.services.sim.axis import ICUB_HEAD
 from yarpy.services.sim.body import Body
-from yarpy.services.sim.eye import Eye
+from yarpy.services.sim.eye import PAIR, Eye, Shutter
 from yarpy.services.sim.joint import Joint
 from yarpy.services.sim.scene import room
 
@@ -29,7 +29,7 @@ def body(clock: Clock) -> Body:
 
 
 def test_it_sees_where_the_head_looks(body: Body, clock: Clock):
-    eye = Eye(body, SCENE, "left", 80, 60)
+    eye = Eye(Shutter(body), SCENE, "left", 80, 60)
     before = eye.image()
     assert (before.width, before.height, before.code) == (80, 60, "rgb")
     assert eye.timestamp() == 5.0
@@ -41,13 +41,32 @@ def test_it_sees_where_the_head_looks(body: Body, clock: Clock):
     assert (before.array != after.array).any(-1).mean() > 0.5
 
 
-def test_both_eyes(body: Body):
-    left, right = (Eye(body, SCENE, side, 80, 60).image() for side in ("left", "right"))
-    assert left != right
+def test_both_eyes_see_the_same_moment(body: Body, clock: Clock):
+    shutter = Shutter(body)
+    left, right = (Eye(shutter, SCENE, side, 80, 60) for side in ("left", "right"))
+    with body.present() as joints:
+        joints[2].reference.move_to(40.0)
+    for number in range(1, 10):
+        clock.now = 5.0 + number / 30
+        one = left.image()
+        clock.now += 0.8 * PAIR
+        assert one != right.image()
+        assert left.timestamp() == right.timestamp() == 5.0 + number / 30
+    clock.now += 0.1
+    right.image()
+    assert right.timestamp() == clock.now
+
+
+def test_each_eye_sees_a_moment_once(body: Body, clock: Clock):
+    left = Eye(Shutter(body), SCENE, "left", 80, 60)
+    for _ in range(3):
+        clock.now += 0.001
+        left.image()
+        assert left.timestamp() == clock.now
 
 
 def test_facts(body: Body):
-    eye = Eye(body, SCENE, "right")
+    eye = Eye(Shutter(body), SCENE, "right")
     assert eye.resolution == (320, 240)
     assert eye.field_of_view == pytest.approx((64.0, 50.2), abs=0.1)
     eye.resolution = (64, 48)

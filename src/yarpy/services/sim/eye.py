@@ -1,7 +1,12 @@
-"""Eye: a camera of a head, for `yarpy.devices.FrameGrabberServer`."""
+"""Eye: a camera of a head, for `yarpy.devices.FrameGrabberServer`.
+
+The eyes of a head share a shutter: pictures that are taken at about the same time show the same
+moment, and say so, as those of a pair of cameras with one trigger.
+"""
 
 from __future__ import annotations
 
+import threading
 from math import atan, degrees
 from typing import Any, Final
 
@@ -13,25 +18,46 @@ from yarpy.services.sim.renderer import Renderer
 from yarpy.services.sim.scene import Scene
 
 LARGEST: Final = 2048  # pixels, either way
+PAIR: Final = 0.015  # seconds between two pictures that are one pair
+
+
+class Shutter:
+    """Lets each eye see a moment once, and the other one the same, if it looks soon."""
+
+    def __init__(self, body: Body[Joint]) -> None:
+        self._body = body
+        self._lock = threading.Lock()  # each eye looks from a thread of its own
+        self._angles: list[float] = []
+        self._seen: set[Side] = set()
+        self.time = body.time
+
+    def open(self, side: Side) -> tuple[list[float], float]:
+        """The angles of the joints in degrees, and when they were that."""
+        with self._lock, self._body.present() as joints:
+            now = self._body.time
+            if side in self._seen or not 0 <= now - self.time <= PAIR or not self._angles:
+                self._angles = [joint.position for joint in joints]
+                self.time = now
+                self._seen.clear()
+            self._seen.add(side)
+            return self._angles, self.time
 
 
 class Eye:
-    """One eye of the head `body`, looking at `scene`; `width` times `height` pixels."""
+    """One eye of a head, looking at `scene`; `width` times `height` pixels."""
 
     def __init__(
-        self, body: Body[Joint], scene: Scene, side: Side, width: int = 320, height: int = 240
+        self, shutter: Shutter, scene: Scene, side: Side, width: int = 320, height: int = 240
     ) -> None:
-        self._body = body
+        self._shutter = shutter
         self._scene = scene
         self._side: Side = side
         self._renderer = Renderer(scene, width, height)
-        self._time = body.time
+        self._time = shutter.time
 
     def image(self) -> Image:
         """What the eye sees now, as rgb in memory of its own."""
-        with self._body.present() as joints:
-            angles = [joint.position for joint in joints]
-            self._time = self._body.time
+        angles, self._time = self._shutter.open(self._side)
         return Image(self._renderer.render(eye_pose(angles, self._side), self._time))
 
     def timestamp(self) -> float:

@@ -20,6 +20,8 @@ from yarpy.services.sim.rotation import Rotation, Vector
 
 Side = Literal["left", "right"]
 
+SIDES: Final[tuple[Side, Side]] = ("left", "right")
+
 NECK: Final = (0.0, 0.0, 0.92)  # where the axis of neck_pitch is
 ROLL: Final = (0.0, 0.0, 0.03)  # from there to neck_roll, and on to neck_yaw
 YAW: Final = (0.0, 0.0, 0.02)

@@ -21,6 +21,7 @@ from yarpy.devices.frame_grabber import Camera
 from yarpy.services.sim.axis import ICUB_HEAD
 from yarpy.services.sim.board import Board
 from yarpy.services.sim.body import Body, Clock
+from yarpy.services.sim.head import SIDES
 from yarpy.services.sim.joint import Joint
 
 if TYPE_CHECKING:
@@ -45,18 +46,15 @@ def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
 
     size: width and height of the pictures. clock: what time it is, in seconds.
     """
-    from yarpy.services.sim.eye import Eye
+    from yarpy.services.sim.eye import Eye, Shutter
     from yarpy.services.sim.inertial import Inertial
     from yarpy.services.sim.scene import room
 
-    body, scene = Body([Joint(axis) for axis in ICUB_HEAD], clock), room()
+    body = Body([Joint(axis) for axis in ICUB_HEAD], clock)
+    shutter, scene = Shutter(body), room()
+    left, right = (Eye(shutter, scene, side, *size) for side in SIDES)
     return Parts(
-        {"head": Board(body)},
-        {
-            "cam/left": Eye(body, scene, "left", *size),
-            "cam/right": Eye(body, scene, "right", *size),
-        },
-        {"inertial": Inertial(body)},
+        {"head": Board(body)}, {"cam/left": left, "cam/right": right}, {"inertial": Inertial(body)}
     )
 
 
