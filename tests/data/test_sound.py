@@ -68,6 +68,40 @@ def test_old_form_with_a_wrong_word(at, word):
         Sound.from_wire(message)
 
 
+# 2 samples of 3 channels, as YARP 3.10 and 4.0 write them; 4.0 adds markers, here one.
+NEW = bytes.fromhex(
+    "00010000050000000100000002000000010000000300000001000000020000000100000080bb0000"
+    "40010000060000000100ffff0200feff0300fdff"
+)
+NEWEST = NEW.replace(b"\5", b"\6", 1) + bytes.fromhex(
+    "00010000010000000001000004000000020000006100020000006200010000000700000000000000"
+)
+
+
+def test_forms_of_new_peers():
+    sound = Sound([[1, -1], [2, -2], [3, -3]], 48000)
+    assert Sound.from_wire(NEW) == Sound.from_wire(NEWEST) == sound
+    assert sound.to_bottle("3.10").to_bytes() == NEW
+    assert sound.to_bottle("4.0").to_bytes() == NEWEST[: len(NEW)] + bytes.fromhex(
+        "0001000000000000"
+    )
+    for size in range(40, len(NEW)):
+        with pytest.raises(Truncated) as caught:
+            Sound.from_wire(NEW[:size])
+        assert size < caught.value.need <= len(NEW)
+    with pytest.raises(ValueError, match=r"not '3\.9'"):
+        sound.to_bottle("3.9")
+
+
+@pytest.mark.parametrize("at", [0, 4, 8, 12, 16, 20, 24, 32, 40, 44])
+@pytest.mark.parametrize("word", [-1, 77, 0x7FFFFFFF])
+def test_new_form_with_a_wrong_word(at, word):
+    message = bytearray(NEW)
+    struct.pack_into("<i", message, at, word)
+    with pytest.raises(DecodeError):
+        Sound.from_wire(message)
+
+
 def test_takes_integers_of_any_width():
     assert Sound(np.array([1, 2], "u1")).array.tolist() == [[1, 2]]
     assert Sound([[1], [2]]).channels == 2

@@ -1,11 +1,13 @@
-"""Sound: samples of several channels, as yarp::sig::Sound of YARP 3.x sends them.
+"""Sound: samples of several channels, as yarp::sig::Sound of YARP 3.9 sends them.
 
     256, 4, 0, samples, 1, channels, 1, bytes per sample, 1, frequency     (ten int32)
     samples of the first channel, of the second ...                        (int16)
 
-YARP up to 3.5 sends a list of two instead, which is read too, and `to_bottle` makes:
+Others send Bottles instead, which are read too, and `to_bottle` makes them:
 
-    256, 2, an image [mo16] with a row of samples for each channel, 257, 1, frequency
+    up to 3.8   256, 2, an image [mo16] with a row of samples for each channel, 257, 1, frequency
+    3.10-3.12   256, 5, 1, samples, 1, channels, 1, bytes, 1, frequency, 320, count, the samples
+    4.0         256, 6, the same, and a list of markers, which are not kept
 
 Rules: the 0 is no tag of a Bottle, so a Sound is not one and has no text form. Samples are always
 two bytes: what C++ calls 8-bit sound is sent like that too. A received Sound is a view.
@@ -28,6 +30,8 @@ _OLD = Struct("<17i")
 _OLD_END = Struct("<3i")
 _MAT = 0x0074616D
 _MO16 = 0x36316F6D
+_NEW = Struct("<12i")
+_INT16_LIST = 256 + 64
 _OLD_START = Struct("<4i").pack(256, 2, 256, 4)
 
 
@@ -71,6 +75,8 @@ class Sound:
         if len(view) < _HEAD.size:
             raise Truncated(f"a Sound has a header of {_HEAD.size} bytes", _HEAD.size)
         code, length, zero, samples, *rest = _HEAD.unpack_from(view)
+        if (code, zero) == (256, 1) and length in (5, 6):
+            return cls._from_new_wire(view)
         one, channels, two, _, three, frequency = rest
         if (code, length, zero, one, two, three) != (256, 4, 0, 1, 1, 1):
             raise DecodeError("no Sound: the header is another one")
@@ -94,6 +100,16 @@ class Sound:
         return cls._over(view, _OLD.size, channels, samples, frequency)
 
     @classmethod
+    def _from_new_wire(cls, view: bytes | bytearray | memoryview) -> Self:
+        if len(view) < _NEW.size:
+            raise Truncated(f"a Sound of YARP 3.10 has a header of {_NEW.size} bytes", _NEW.size)
+        _, _, _, samples, *rest = _NEW.unpack_from(view)
+        one, channels, two, _, three, frequency, tag, count = rest
+        if (one, two, three, tag) != (1, 1, 1, _INT16_LIST) or count != samples * channels:
+            raise DecodeError("no Sound: a list, but not of samples with their header")
+        return cls._over(view, _NEW.size, channels, samples, frequency)
+
+    @classmethod
     def _over(
         cls,
         view: bytes | bytearray | memoryview,
@@ -114,8 +130,17 @@ class Sound:
         self._data = memoryview(view)[start:end]
         return self
 
-    def to_bottle(self) -> Bottle:
-        """The form for peers of YARP up to 3.5: `port.write(sound.to_bottle())`."""
+    def to_bottle(self, version: str = "3.5") -> Bottle:
+        """The form for peers of YARP "3.5" (or older), "3.10" or "4.0", to be written as it is:
+        `port.write(sound.to_bottle())`."""
+        if version not in ("3.5", "3.10", "4.0"):
+            raise ValueError(f'a Sound as a Bottle is for "3.5", "3.10" or "4.0", not {version!r}')
+        if version != "3.5":
+            from yarpy.data.vector import Vector
+
+            samples = Vector(self.array.ravel(), dtype="int16")
+            head = [self.length, self.channels, 2, self.frequency, samples]
+            return Bottle(head if version == "3.10" else [*head, []])
         size = len(self._data)
         image = [Vocab("mat"), Vocab("mo16"), [2, size, 2, self.length, self.channels]]
         return Bottle([[*image, bytes(self._data)], [self.frequency]])
