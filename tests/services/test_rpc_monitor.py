@@ -129,6 +129,20 @@ def test_who_looks_on_may_go_away(
             assert client.call("hi", timeout=5)
 
 
+def test_who_looks_on_without_reading_holds_nobody_up(
+    names: yarpy.LocalNames, server: yarpy.RpcServer
+) -> None:
+    with yarpy.Port("/monitor", names=names), yarpy.RpcClient(names=names) as client:
+        client.connect("/srv", "tcp+send.rpc_monitor")
+        [monitor] = client._hub.outputs[0].chain.monitors  # type: ignore[union-attr]
+        asked = 0
+        while not monitor.parameters()["drops"]:
+            assert client.call("hi", timeout=10)
+            asked += 1
+            assert asked < 5000
+        assert 2 * asked > 1000
+
+
 def test_only_at_the_callers_end() -> None:
     with pytest.raises(yarpy.LocalProtocolError, match="caller's end"):
         RpcMonitor(place())
