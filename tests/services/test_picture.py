@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import http.client
+import socket
+import threading
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -88,6 +91,36 @@ def test_who_comes_late_sees_the_last_picture(picture: Picture, camera: yarpy.Po
         image = yarpy.Image.from_wire(jpeg.decode(data))
         assert np.abs(image.array.astype(int) - RED.array).max() < 10
         connection.close()
+
+
+def test_damaged_pictures_of_a_camera_are_counted(picture: Picture, names: Any) -> None:
+    whole = jpeg.encode(RED)
+    damaged = whole.replace(b"\xff\xda", b"zz")
+    part = b"--x\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n%s\r\n"
+    body = b"".join(part % (len(data), data) for data in (whole, damaged, whole[:-40], whole))
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+
+        def film() -> None:
+            sock, _ = listening.accept()
+            with sock:
+                sock.recv(1000)
+                head = (
+                    b"HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace;boundary=x\r\n\r\n"
+                )
+                sock.sendall(head + body)
+                done.wait(PATIENCE)
+
+        done = threading.Event()
+        thread = threading.Thread(target=film)
+        thread.start()
+        picture.port.listen_to(f"/127.0.0.1:{listening.getsockname()[1]}", "mjpeg")
+        wait_until(lambda: picture.status()["frames"] + picture.status()["dropped"] >= 4, PATIENCE)
+        told = picture.status()
+        assert told["dropped"] >= 2  # and one more if the first was not looked at in time
+        assert told["frames"] + told["dropped"] == 4
+        assert (told["others"], told["complaint"]) == (0, "")
+        done.set()
+        thread.join(PATIENCE)
 
 
 def test_drops_of_connections_that_have_gone() -> None:

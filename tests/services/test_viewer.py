@@ -157,6 +157,22 @@ def test_pause_costs_nothing_and_goes_on(browser: Browser) -> None:
         assert page.locator(".badge").is_visible()
 
 
+def test_a_page_that_nobody_sees_costs_nothing(browser: Browser) -> None:
+    hide = """hidden => {
+        Object.defineProperty(document, "hidden", {configurable: true, get: () => hidden});
+        document.dispatchEvent(new Event("visibilitychange"));
+    }"""
+    with room(browser, "/view") as here:
+        page = browser.open(here.url)
+        here.cameras[0].write(plain(RED))
+        shows(page, RED)
+        page.evaluate(hide, True)
+        wait_until(lambda: not here.ports[0].outputs, PATIENCE, "nobody is watching")
+        here.cameras[0].write(plain(BLUE))
+        page.evaluate(hide, False)
+        shows(page, BLUE)
+
+
 def test_snapshots(browser: Browser) -> None:
     with room(browser, "/view/left") as here:
         page = browser.open(here.url)
