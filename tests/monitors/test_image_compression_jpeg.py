@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support.monitor import place, received, sent, through
+from support.monitor import damaged, place, received, sent, through
 
 from yarpy import Bottle, Image, LocalProtocolError
 from yarpy.errors import DecodeError
@@ -59,11 +59,9 @@ def test_pixels_that_are_no_colours_are_refused_by_the_sender(value: Any) -> Non
 
 @given(st.data())
 def test_damage_is_a_decode_error(data: st.DataObject) -> None:
-    wire = bytearray(sent(Jpeg, soft(8, 8, 3)))
-    for _ in range(data.draw(st.integers(1, 4))):
-        wire[data.draw(st.integers(0, len(wire) - 1))] = data.draw(st.integers(0, 255))
+    wire = damaged(data, sent(Jpeg, soft(8, 8, 3)))
     try:
-        received(Jpeg, bytes(wire), limit=1 << 20)
+        received(Jpeg, wire, limit=1 << 20)
     except DecodeError:
         pass
 

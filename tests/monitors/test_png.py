@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.monitor import damaged
 
 from yarpy.data.image import Image
 from yarpy.data.pixel import pixel_of
@@ -47,12 +48,10 @@ def test_no_pixels() -> None:
 
 @given(st.data())
 def test_damage_is_a_decode_error(data: st.DataObject) -> None:
-    file = bytearray(png.encode(cv2, sample("rgb")))
-    for _ in range(data.draw(st.integers(1, 3))):
-        file[data.draw(st.integers(0, len(file) - 1))] = data.draw(st.integers(0, 255))
+    file = damaged(data, png.encode(cv2, sample("rgb")))
     whole = sample("rgb")
     try:
-        assert png.decode(cv2, bytes(file), "rgb", LIMIT) == whole
+        assert png.decode(cv2, file, "rgb", LIMIT) == whole
     except DecodeError:
         pass
 

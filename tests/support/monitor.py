@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from hypothesis import strategies as st
+
 from yarpy.monitors.base import Place, split_tokens
 from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
@@ -40,3 +42,11 @@ def received(kind: Kind, data: bytes, tokens: str = "", limit: int = DEFAULT_LIM
 def through(kind: Kind, value: object, tokens: str = "") -> Message:
     """The message that the reader gets when a monitor rides at both ends."""
     return received(kind, sent(kind, value, tokens), tokens)
+
+
+def damaged(data: st.DataObject, wire: bytes) -> bytes:
+    """The bytes with some of them replaced."""
+    made = bytearray(wire)
+    for _ in range(data.draw(st.integers(1, 3))):
+        made[data.draw(st.integers(0, len(made) - 1))] = data.draw(st.integers(0, 255))
+    return bytes(made)
