@@ -1,10 +1,11 @@
-"""`yarpy sim`: a simulated robot on YARP ports, the head of an iCub in a room.
+"""`yarpy sim`: a simulated robot on YARP ports, the head of an iCub or a MuJoCo model.
 
-    --robot NAME    the beginning of its ports' names (icubSim)
-    --fps HZ        pictures per second of its cameras (30)
-    --size WxH      of its pictures, in pixels (320x240)
+    --robot NAME      the beginning of its ports' names (icubSim, or what the model is called)
+    --fps HZ          pictures per second of its cameras (30)
+    --size WxH        of its pictures, in pixels (320x240)
+    --mujoco FILE     this model instead of the head: joints, cameras, inertial sensors
 
-Exit codes: 0 ended by a signal; 1 the names are in use.
+Exit codes: 0 ended by a signal; 1 the names are in use, the file is no model, MuJoCo is missing.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import threading
 import click
 
 from yarpy.cli import ending, journal
+from yarpy.cli.complaint import warn
 from yarpy.cli.spelling import print_line
 
 
@@ -46,13 +48,29 @@ class Size(click.ParamType[tuple[int, int]]):
 @click.option(
     "--size", type=Size(), default="320x240", metavar="WxH", help="Of the pictures, in pixels."
 )
-def command(robot: str | None, fps: float, size: tuple[int, int]) -> int:
+@click.option(
+    "--mujoco",
+    "model",
+    type=click.Path(exists=True, dir_okay=False),
+    metavar="FILE",
+    help="Simulate this MuJoCo model (XML) instead.",
+)
+def command(robot: str | None, fps: float, size: tuple[int, int], model: str | None) -> int:
     """Simulate a robot: joints, cameras and sensors on YARP ports."""
     from yarpy.services.sim.robot import NAME, Robot, icub_head
 
     journal.show()
+    if model is None:
+        name, parts = NAME, icub_head(size)
+    else:
+        from yarpy.services.sim.mujoco_robot import mujoco_robot
+
+        try:
+            name, parts = mujoco_robot(model, size, warn=warn)
+        except ValueError as error:
+            raise click.ClickException(str(error)) from error
     with ending.held():
-        opened = Robot(robot or NAME, icub_head(size), fps)
+        opened = Robot(robot or name, parts, fps)
         click.get_current_context().call_on_close(opened.close)
     print_line(f"{opened.name} is ready: {' '.join(opened.ports)}")
     try:
