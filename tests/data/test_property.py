@@ -89,6 +89,14 @@ def test_empty_list_is_an_empty_key():
     assert Property.from_text("()") == {"": None}
 
 
+def test_update_takes_whole_groups():
+    values = Property.from_text("(a 1) (colour 1 2)")
+    values.update(Property.from_text("(colour 3 4 5) (b 2)"), c=7)
+    assert values.to_text() == "(a 1) (b 2) (c 7) (colour 3 4 5)"
+    values.update({"colour": 6})
+    assert values.to_text() == "(a 1) (b 2) (c 7) (colour 6)"
+
+
 def test_dict_elements_are_not_groups():
     assert Property.from_bottle([{"a": 1}, ("b", 2)]) == {"b": 2}
 

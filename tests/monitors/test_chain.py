@@ -193,6 +193,14 @@ def test_parameters_of_all_that_have_some() -> None:
     assert not Chain([Word("a")], "here").configure(Property(level=5))
 
 
+def test_parameters_may_be_whole_lists() -> None:
+    class Colour:
+        def parameters(self) -> Property:
+            return Property.from_text("(colour 1 2 3)")
+
+    assert Chain([Colour()], "here").parameters().to_text() == "(colour 1 2 3)"
+
+
 def test_close_leaves_the_group_and_goes_on_after_a_failure() -> None:
     closed = []
 

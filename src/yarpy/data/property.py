@@ -77,6 +77,12 @@ class Property(dict[str, Any]):
         """Is there such a key, with or without a value?"""
         return key in self
 
+    def update(self, *args: Any, **values: Any) -> None:
+        """As of any dict; of another Property the whole lists are taken."""
+        super().update(*args, **values)
+        if args and isinstance(args[0], Property):
+            self._groups.update(args[0]._groups)
+
     def copy(self) -> Self:
         return type(self)(self)
 
