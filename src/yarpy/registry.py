@@ -43,6 +43,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "image_compression_png": "yarpy.monitors.image_compression_png:ImageCompressionPng",
         "image_rotation": "yarpy.monitors.image_rotation:ImageRotation",
         "image_to_mono": "yarpy.monitors.image_to_mono:ImageToMono",
+        "portmonitor": "yarpy.monitors.portmonitor:portmonitor",
         "priority": "yarpy.monitors.priority:Priority",
         "segmentationimage_to_rgb": "yarpy.monitors.segmentationimage_to_rgb:LabelColours",
         "sensorMeasurements_to_vector": "yarpy.monitors.sensor_measurements_to_vector:SensorPose",

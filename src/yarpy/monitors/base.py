@@ -25,8 +25,9 @@ log line.
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
@@ -79,6 +80,10 @@ class Group:
                 monitor.trigger()
 
 
+def _here(name: str, contexts: Sequence[str]) -> Iterable[Path]:
+    return [Path(name)]
+
+
 @dataclass(frozen=True, slots=True)
 class Place:
     """Where a monitor sits: on messages from `source` to `target`, at one end of the connection.
@@ -87,6 +92,7 @@ class Place:
     port's name in both places and no carrier. `tokens` are the monitor's own parameters, `shared`
     all of the connection's. `limit` is the largest message in bytes that the port takes: nothing
     may grow beyond it in here either. `names` finds other ports: the name client of this one.
+    `look` tells where a file may be, by its name and the contexts of robot and program that count.
     """
 
     source: str
@@ -98,6 +104,7 @@ class Place:
     group: Group = field(default_factory=Group)
     limit: int = DEFAULT_LIMIT
     names: Any = None
+    look: Callable[[str, Sequence[str]], Iterable[Path]] = _here
 
     def __str__(self) -> str:
         if self.source == self.target:

@@ -7,15 +7,20 @@ behind every input. A port without monitors has no chain, and pays nothing.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from yarpy.contact import Route
+from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
+from yarpy.data.text import plain_text
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.monitors.base import Group, Place
 from yarpy.monitors.chain import Chain, from_carrier, make, named
+from yarpy.names.resource import Search
 
 if TYPE_CHECKING:
     from yarpy.port.hub import Hub
@@ -56,7 +61,8 @@ class Monitoring:
     def _place(self, route: Route, sending: bool) -> Place:
         group = Group() if sending else self.group
         end = route.source, route.target, route.carrier, sending
-        return Place(*end, group=group, limit=self._hub.limit, names=self._hub.service())
+        names = self._hub.service()
+        return Place(*end, group=group, limit=self._hub.limit, names=names, look=_look)
 
     def _joined(self, own: Chain | None) -> Chain | None:
         if own is None or self.input is None:
@@ -72,7 +78,7 @@ class Monitoring:
         its own.
         """
         name = self._hub.name
-        tokens = tuple(f"{key}.{value}" for key, value in parameters.items() if key != "monitor")
+        tokens = tuple(_token(parameters, key) for key in parameters if key != "monitor")
         place = replace(
             self._place(Route(name, name, ""), sending=side == "out"),
             tokens=tokens,
@@ -112,6 +118,21 @@ class Monitoring:
         """The port closes."""
         self.detach("in")
         self.detach("out")
+
+
+def _look(name: str, contexts: Sequence[str]) -> Iterator[Path]:
+    """Where a monitor's file may be: where configuration files are looked for."""
+    return Search(contexts=contexts).candidates(name)
+
+
+def _token(parameters: Property, key: str) -> str:
+    """A parameter as it stands in a carrier string."""
+    group = parameters.group(key) or Bottle([key])
+    if len(group) == 1:
+        return key
+    if len(group) > 2 or isinstance(group[1], list):
+        return f"({group.to_text()})"
+    return f"{key}.{plain_text(group[1])}"
 
 
 def monitored(link: Inbound | Outbound) -> list[str]:
