@@ -42,16 +42,23 @@ CASES: list[tuple[str, str, Any, Any]] = [
 
 
 def spellings() -> list[Any]:
-    """Every case as a carrier string."""
+    """Every case as a carrier string: by the monitor's own name, and as C++ YARP says it."""
     found = []
     for monitor, ends, value, expected in CASES:
-        send, recv = f"tcp+send.{monitor}", f"tcp+recv.{monitor}"
-        both = f"tcp+send.{monitor}+recv.{monitor}"
-        for carrier in {"both": [both], "either": [send, recv], "send": [send], "recv": [recv]}[
-            ends
-        ]:
-            found.append(pytest.param(carrier, value, expected, id=carrier))
-    return found
+        name, _, parameters = monitor.partition("+")
+        cpp = "+".join(filter(None, ["portmonitor", f"file.{name}", "type.dll", parameters]))
+        for spelling in (monitor,) if name == "bayer" else (monitor, cpp):
+            send, recv = f"tcp+send.{spelling}", f"tcp+recv.{spelling}"
+            carriers = {
+                "both": [f"tcp+send.{spelling}+recv.{spelling}"],
+                "either": [send, recv],
+                "send": [send],
+                "recv": [recv],
+            }
+            found += [pytest.param(c, value, expected, id=c) for c in carriers[ends]]
+    one = "portmonitor+file.bottle_compression_zlib"  # the type once for both ends
+    carrier = f"tcp+send.{one}+recv.{one}+type.dll"
+    return [*found, pytest.param(carrier, ["hi"], ["hi"], id=carrier)]
 
 
 @pytest.mark.parametrize(("carrier", "value", "expected"), spellings())
