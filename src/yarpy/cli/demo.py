@@ -138,4 +138,7 @@ def _own_name() -> str:
     found = shutil.which("yarpy")
     if found is not None and os.path.realpath(found) == os.path.realpath(beside):
         return "yarpy"
-    return os.path.relpath(beside) if os.path.exists(beside) else "python -m yarpy"
+    if not os.path.exists(beside):
+        return "python -m yarpy"
+    near = os.path.relpath(beside)
+    return beside if near.startswith(os.pardir) else near

@@ -117,7 +117,8 @@ def _add(hub: Hub, request: Bottle) -> Bottle:
         return Bottle([0, command.connect(hub, dest) + "\r\n"])
     except command.Refused as error:
         if error.__cause__ is not None:
-            log.warning("%s: %s: %s", hub.name, masked(str(error)), error.__cause__)
+            line, cause = str(error), str(error.__cause__)
+            log.warning("%s: %s", hub.name, masked(line if cause in line else f"{line}: {cause}"))
         return Bottle([-1, f"{error}\r\n"])
 
 
