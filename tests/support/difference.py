@@ -102,6 +102,14 @@ ROS_WORDS = (
     "is the http connection of a ROS node that ends after one request"
 )
 MONITORS = "we say why a monitor does not start"
+AT_ONCE = (
+    "C++ connects, and hangs up with the first message if the monitor does not start; we refuse at "
+    "once and say why"
+)
+REFUSED = r'-1 "Cannot connect to tcp\+.*://cap/in: .*\\r\\n"\r\n<ACK>\r\n'
+NOT_CONNECTED = "there is no connection, since its monitor was refused"
+NOWHERE = r'-1 "Could not find an incoming connection to /cap/in\\r\\n"\r\n<ACK>\r\n'
+REACHED = "in C++ `get out` and `set out` never reach the monitor at the sender's end"
 OWN_TEXT = "the prayers are our own; the first two lines are fixed"
 MAY_BE_REFUSED = "the process may lack the right to real-time scheduling; we say what is missing"
 OWN_THREAD = "C++ remembers the policy for later; we give the output its thread at once"
@@ -168,6 +176,13 @@ LIVE_DIFFERENT: dict[str, dict[int, Difference]] = {
         ),
         4: Difference(b"<ACK>\r\n", ROS_WORDS),
     },
+    "portmonitor_lua_admin_1": {2: Difference(matching(REFUSED), AT_ONCE)},
+    "portmonitor_recv_dll_admin_1": {2: Difference(matching(REFUSED), AT_ONCE)},
+    "portmonitor_send_admin_3": {2: Difference(b"((level 1))\r\n<ACK>\r\n", REACHED)},
+    "portmonitor_send_admin_5": {2: Difference(b"((level 5) (mode fast))\r\n<ACK>\r\n", REACHED)},
+    "portmonitor_send_dll_admin_1": {2: Difference(matching(REFUSED), AT_ONCE)},
+    "portmonitor_send_dll_admin_2": {2: Difference(matching(NOWHERE), NOT_CONNECTED)},
+    "portmonitor_send_dll_admin_4": {2: Difference(b"\r\n<ACK>\r\n", NOT_CONNECTED)},
     "telnet_drop_self_after": {
         0: Difference(
             matching(
@@ -181,5 +196,6 @@ LIVE_DIFFERENT: dict[str, dict[int, Difference]] = {
 }
 
 NOT_REPLAYED: dict[str, str] = {
+    "portmonitor_send_dll": "its monitor is refused as long as there is no port /monitor",
     "api_style_http_1": "in test_http.py: our answer is HTTP, that of C++ a bare line",
 }
