@@ -114,6 +114,15 @@ def test_installed_monitors_are_those_of_type_dll() -> None:
         registry.monitors.remove("stock")
 
 
+def test_several_at_once_as_cpp_4_asks_for_them(folder: Path) -> None:
+    python(folder, "def update(m): return [*m.value, 'a']", "a.py")
+    python(folder, "def update(m): return [*m.value, 'b']\ndef destroy(): print('b ends')", "b.py")
+    both = make("type.python+file.a+type1.python+file1.b")
+    assert both.update(message("hi")).value == ["hi", "a", "b"]
+    with pytest.raises(LocalProtocolError, match='no script "c"'):
+        make("type.python+file.a+type1.python+file1.b+type2.python+file2.c")
+
+
 @pytest.mark.parametrize(
     ("text", "what"),
     [

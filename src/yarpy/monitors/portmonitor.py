@@ -23,11 +23,12 @@ from typing import Any, Final
 
 from yarpy.data.property import Property
 from yarpy.data.text import parse_text
-from yarpy.errors import LocalProtocolError
+from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.monitors import chain
 from yarpy.monitors.base import DROP, Place, read_token
 from yarpy.monitors.control import Control
 from yarpy.monitors.script import Load, Script, ScriptError, Watch, find_script, read_script
+from yarpy.monitors.series import Series, places
 from yarpy.wire.message import Message
 
 log = logging.getLogger("yarpy.monitors")
@@ -39,6 +40,19 @@ _OWN: Final = ("type", "script", "file", "context", "constraint")
 
 def portmonitor(place: Place) -> object:
     """The monitor that a connection asks for. Raises UnknownPlugin, LocalProtocolError."""
+    where = places(place)
+    if len(where) == 1:
+        return _one(place)
+    made: list[object] = []
+    try:
+        made += map(_one, where)
+    except YarpError:
+        Series(made, place).close()
+        raise
+    return Series(made, place)
+
+
+def _one(place: Place) -> object:
     # The oldest C++ says `script` for `type`.
     kind = place.text("type") or place.text("script") or "lua"
     file = place.text("file") or "modifier"
