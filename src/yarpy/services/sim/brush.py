@@ -60,9 +60,19 @@ class Brush:
         return out
 
     def fill(
-        self, frame: Array, number: int, matrix: Array, left: Array, right: Array, box: Box
+        self,
+        frame: Array,
+        number: int,
+        matrix: Array,
+        left: Array,
+        right: Array,
+        box: Box,
+        first: bool = False,
     ) -> None:
-        """Paint surface `number` from `left` to `right` (height,), all of which is in `box`."""
+        """Paint surface `number` from `left` to `right` (height,), all of which is in `box`.
+
+        first: something will be painted over the rest of the box, so that it may get anything.
+        """
         import numpy as np
 
         high, wide = box.bottom - box.top, box.right - box.left
@@ -74,10 +84,11 @@ class Brush:
         row *= self._across[number]
         row += column
         texels = self._texels[:size].reshape(high, wide)
-        np.take(self._flat[number], row, out=texels, mode="clip")
+        self._flat[number].take(row, out=texels, mode="clip")
         left, right = left[box.top : box.bottom], right[box.top : box.bottom]
         # A side of a convex surface bends outwards: what holds at both ends holds between them.
-        if max(left[0], left[-1]) <= box.left and min(right[0], right[-1]) >= box.right:
+        full = max(left[0], left[-1]) <= box.left and min(right[0], right[-1]) >= box.right
+        if full or first:
             box.of(frame)[...] = texels
             return
         x = self._column[box.left : box.right]

@@ -60,7 +60,9 @@ class Renderer:
         self._x = np.arange(width, dtype="f4")
         self._y = np.arange(height, dtype="f4")[:, None]
         self._still, self._frame = np.zeros((2, height, width), "u4")
-        self._seen: Pose | None = None  # for which `_still` was painted
+        self._background = np.zeros((height, width, 3), "u1")  # `_still` as bytes
+        self._seen: Pose | None = None  # for which it was painted
+        self._changed: list[Box] = []  # where `_frame` is not `_still`
         # The faces of solids that are seen from there, the farthest first, and how far they are.
         self._faces: tuple[Array, Array, Spans, Array] | None = None
 
@@ -71,15 +73,22 @@ class Renderer:
         with np.errstate(all="ignore"):  # of pixels that look along a surface
             if pose != self._seen:
                 self._paint_still(pose)
+                self._frame[...] = self._still
+                self._unpack(self._frame, self._background)
                 self._seen = pose
-            self._frame[...] = self._still
-            for ball in self.scene.balls:
-                self._paint_ball(pose, ball, time)
-        pixels = np.empty((self.lens.height, self.lens.width, 3), "u1")
-        bytes_ = self._frame.view("u1").reshape(self.lens.height, self.lens.width, 4)
+            for box in self._changed:
+                box.of(self._frame)[...] = box.of(self._still)
+            self._changed = [self._paint_ball(pose, ball, time) for ball in self.scene.balls]
+        pixels = self._background.copy()
+        for box in self._changed:
+            self._unpack(box.of(self._frame), box.of(pixels))
+        return pixels
+
+    def _unpack(self, texels: Array, pixels: Array) -> None:
+        """Write texels (h, w) as bytes (h, w, 3)."""
+        bytes_ = texels.view("u1").reshape(*texels.shape, 4)
         for channel in range(3):
             pixels[..., channel] = bytes_[..., channel]
-        return pixels
 
     # -- what stands still --------------------------------------------------------------------
 
@@ -101,11 +110,13 @@ class Renderer:
         inverses[:, :2] *= self._brush.sizes[numbers][:, :, None]
         inverses = inverses.astype("f4")
         count = int((self._solid[numbers] == 0).sum())
+        first = next((k for k in range(count) if not spans.boxes[k].empty), 0)
         for k in range(count):
             if not spans.boxes[k].empty:
                 number = int(numbers[k])
+                left, right = spans.left[k], spans.right[k]
                 self._brush.fill(
-                    self._still, number, inverses[k], spans.left[k], spans.right[k], spans.boxes[k]
+                    self._still, number, inverses[k], left, right, spans.boxes[k], first=k == first
                 )
         of_solids = Spans(spans.left[count:], spans.right[count:], spans.boxes[count:])
         self._faces = (
@@ -117,14 +128,14 @@ class Renderer:
 
     # -- what moves ---------------------------------------------------------------------------
 
-    def _paint_ball(self, pose: Pose, ball: Ball, time: float) -> None:
-        """Paint a ball and its shadow, and again the solids that are in front of them."""
+    def _paint_ball(self, pose: Pose, ball: Ball, time: float) -> Box:
+        """Paint a ball and its shadow, and again the solids that are in front of them; where."""
         place = ball.place(time)
         painted = around(
             self._paint_shadow(pose, ball, place), self._paint_sphere(pose, ball, place, time)
         )
         if painted.empty or self._faces is None:
-            return
+            return painted
         numbers, inverses, spans, distances = self._faces
         distance = math.dist(place, pose.position)
         in_front = [
@@ -137,6 +148,7 @@ class Renderer:
             self._brush.sprinkle(
                 self._frame, numbers[in_front], inverses[in_front], *part.within(painted)
             )
+        return painted
 
     def _paint_shadow(self, pose: Pose, ball: Ball, place: Vector) -> Box:
         """Darken what is below a ball; the higher it is, the larger is its shadow."""

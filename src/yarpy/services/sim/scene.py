@@ -67,8 +67,8 @@ class Ball:
 class Scene:
     """What there is to see.
 
-    background: seen from inside, each in front of those before it. solids: the faces of convex
-    things that stand in front of it and do not touch each other.
+    background: closed around the camera, each in front of those before it. solids: the faces of
+    convex things that stand in front of it and do not touch each other.
     """
 
     background: Sequence[Surface]
