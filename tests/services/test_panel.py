@@ -129,7 +129,7 @@ def test_what_the_page_loads(url: str) -> None:
         page = answer.read().decode()
     files = re.findall(r'(?:src|href)="/([\w.]+)"', page)
     assert {"panel.js", "panel.css", "style.css"} <= {*files}
-    for name in [*files, "plot.js", "common.js"]:
+    for name in [*files, "plot.js", "common.js", "horizon.js"]:
         with urllib.request.urlopen(url + name, timeout=PATIENCE) as answer:
             assert answer.status == 200
     policy = re.search(r'Content-Security-Policy" content="([^"]+)"', page)

@@ -36,6 +36,7 @@ VERBS: Final = {
     "merge": "concatenate what several ports send",
     "name": "send a command to the name server",
     "namespace": "show or set the namespaces in use",
+    "panel": "see and move a robot in a browser",
     "ping": "ask a port about itself and its connections",
     "plugin": "list carriers, types, monitors and commands that are installed",
     "qos": "show or set the priority of a connection's packets",

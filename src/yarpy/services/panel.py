@@ -4,8 +4,8 @@ GET /         the page
 GET /robot    which ports of control boards, cameras and sensors there are, as JSON
 
 Rules: the page talks to the ports of the robot itself, as any page could: questions and commands
-to `rpc:i`, events from `state:o` and `measures:o`, MJPEG from cameras. The robot need not know of
-it, and may be a C++ one; only curves and pictures come from yarpy ports alone.
+to `rpc:i`, events from `state:o` and `measures:o`, MJPEG from cameras. The robot knows nothing of
+it and may be a C++ one, of which it shows joints and, if it has that carrier, pictures.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from yarpy.names.base import NameClient
     from yarpy.port.base import BasePort
 
-_FILES = ("panel.js", "panel.css", "style.css", "common.js", "plot.js")
+_FILES = ("panel.js", "panel.css", "style.css", "common.js", "plot.js", "horizon.js")
 
 
 class Panel:

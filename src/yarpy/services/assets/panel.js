@@ -2,10 +2,12 @@
 // The page talks to the ports of the robot, in HTTP.
 
 import {ask, copyOf, part, pause, press, say} from "./common.js";
+import {Horizon} from "./horizon.js";
 import {Plot, colour} from "./plot.js";
 
 const WINDOW = 10; // seconds of a curve
 const SEND = 60; // ms between two targets while a slider is dragged
+const ASK = 100; // ms between two questions to a port that sends no events
 
 // The URL of a port; one of this computer is where the page came from, whoever looks at it.
 const url = ([host, port]) => `http://${host || location.hostname}:${port}`;
@@ -20,8 +22,9 @@ async function call(address, words, values = {}) {
   return answer.json();
 }
 
-// Every message that a port writes while somebody sees the page: told(time, values).
-function listen(address, told) {
+// Every message that a port writes while somebody sees the page: told(time, values). Ports of C++
+// send no events; `otherwise` is what to do then.
+function listen(address, told, otherwise) {
   let events = null;
   const look = () => {
     events?.close();
@@ -30,6 +33,11 @@ function listen(address, told) {
     events.onmessage = (event) => {
       const time = Number(event.lastEventId.split(" ")[1]);
       told(time || Date.now() / 1000, JSON.parse(event.data));
+    };
+    events.onerror = () => {
+      if (events.readyState !== EventSource.CLOSED || !otherwise) return;
+      document.removeEventListener("visibilitychange", look);
+      otherwise();
     };
   };
   document.addEventListener("visibilitychange", look);
@@ -175,13 +183,25 @@ class Board {
     const names = this.joints.map((joint) => joint.name);
     this.curves = new Curves(this.info.name, "°, position", names);
     this.curves.element.classList.add("joints");
-    listen(this.info.state, (time, angles) => {
-      heard = performance.now();
-      this.curves.add(time, angles);
-      angles.forEach((angle, number) => this.joints[number]?.show(angle));
-    });
+    listen(this.info.state, (time, angles) => this.show(time, angles), () => this.ask());
     this.followOthers();
     this.offerGaze();
+  }
+
+  show(time, angles) {
+    heard = performance.now();
+    this.curves.add(time, angles);
+    angles.forEach((angle, number) => this.joints[number]?.show(angle));
+  }
+
+  // Where the joints are, from a port that does not tell by itself.
+  async ask() {
+    for (;;) {
+      await pause(ASK);
+      if (document.hidden) continue;
+      const reply = await call(this.info.rpc, "get encs").catch(() => null);
+      if (reply?.[1] === "encs") this.show(reply[5], reply[2]);
+    }
   }
 
   // What the page said last, for who wants to say it as well.
@@ -267,75 +287,6 @@ class Curves {
   }
 }
 
-// An artificial horizon: roll and pitch as a pilot sees them.
-class Horizon {
-  constructor(name) {
-    this.element = copyOf("attitude");
-    this.canvas = part(this.element, "horizon");
-    this.canvas.role = "img";
-    this.canvas.ariaLabel = `${name}, artificial horizon`;
-    say(part(this.element, "name"), short(name));
-    this.angles = null;
-    document.getElementById("boards").append(this.element);
-    drawn.push(this);
-  }
-
-  paint() {}
-
-  draw() {
-    if (this.angles === null) return;
-    const [roll, pitch, yaw] = this.angles;
-    const {canvas} = this;
-    const scale = devicePixelRatio || 1;
-    const size = canvas.clientWidth;
-    if (canvas.width !== Math.round(size * scale)) {
-      canvas.width = canvas.height = Math.round(size * scale);
-    }
-    const context = canvas.getContext("2d");
-    const radius = size / 2 - 2;
-    const degree = radius / 45;
-    context.setTransform(scale, 0, 0, scale, (size / 2) * scale, (size / 2) * scale);
-    context.clearRect(-size, -size, 2 * size, 2 * size);
-    context.save();
-    context.beginPath();
-    context.arc(0, 0, radius, 0, 2 * Math.PI);
-    context.clip();
-    context.rotate((-roll * Math.PI) / 180);
-    context.translate(0, -pitch * degree);
-    context.fillStyle = "#4d9de0";
-    context.fillRect(-2 * size, -4 * size, 4 * size, 4 * size);
-    context.fillStyle = "#9c6b3f";
-    context.fillRect(-2 * size, 0, 4 * size, 4 * size);
-    context.strokeStyle = context.fillStyle = "#fff";
-    context.lineWidth = 1.5;
-    context.font = "11px system-ui, sans-serif";
-    context.textBaseline = "middle";
-    for (let angle = -60; angle <= 60; angle += 10) {
-      const half = angle === 0 ? 2 * size : angle % 20 ? radius * 0.14 : radius * 0.28;
-      context.beginPath();
-      context.moveTo(-half, -angle * degree);
-      context.lineTo(half, -angle * degree);
-      context.stroke();
-      if (angle && angle % 20 === 0) context.fillText(Math.abs(angle), half + 4, -angle * degree);
-    }
-    context.restore();
-    context.strokeStyle = "#ffcc33";
-    context.lineWidth = 3;
-    context.beginPath();
-    for (const side of [-1, 1]) {
-      context.moveTo(side * radius * 0.62, 0);
-      context.lineTo(side * radius * 0.22, 0);
-      context.lineTo(side * radius * 0.22, radius * 0.08);
-    }
-    context.moveTo(-1.5, 0);
-    context.lineTo(1.5, 0);
-    context.stroke();
-    const texts = [["roll", roll], ["pitch", -pitch], ["yaw", yaw]];
-    const line = texts.map(([name, angle]) => `${name} ${angle.toFixed(1)}°`).join(" · ");
-    say(part(this.element, "facts"), line);
-  }
-}
-
 // The kinds of sensors in a message, and how they are drawn.
 const KINDS = [
   [0, "°/s, gyroscope", ["x", "y", "z"]],
@@ -343,14 +294,23 @@ const KINDS = [
 ];
 const ORIENTATION = 3;
 
+function openHorizon(name) {
+  const element = copyOf("attitude");
+  say(part(element, "name"), short(name));
+  document.getElementById("boards").append(element);
+  const horizon = new Horizon(part(element, "horizon"), part(element, "facts"));
+  drawn.push(horizon);
+  return horizon;
+}
+
 function openSensors(info) {
   const curves = new Map();
   let horizon = null;
   listen(info.measures, (time, kinds) => {
     heard = performance.now();
     if (kinds[ORIENTATION]?.length) {
-      horizon ??= new Horizon(info.name);
-      horizon.angles = kinds[ORIENTATION][0][0];
+      horizon ??= openHorizon(info.name);
+      [horizon.angles] = kinds[ORIENTATION][0];
     }
     for (const [kind, unit, names] of KINDS) {
       if (!kinds[kind]?.length) continue;

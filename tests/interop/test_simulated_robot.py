@@ -1,0 +1,117 @@
+"""The simulated robot and the panel with C++ in between: its client drives our head, its server is
+driven by our page.
+
+    page -> HTTP -> controlBoard_nws_yarp -> remote_controlboard -> simulated head
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from support.cpp import CppYarp
+from support.cpp_device import cpp_device, device_host
+from support.cpp_venv import MissingPeer
+from support.wait import wait_until
+
+import yarpy
+from yarpy.cli.service import server
+from yarpy.devices import ControlBoard, FrameGrabber, MultiSensor
+from yarpy.services.panel import Panel
+from yarpy.services.sim.robot import Robot, icub_head
+
+if TYPE_CHECKING:
+    from support.browser import Browser
+
+PATIENCE = 40.0
+
+
+@pytest.fixture(autouse=True)
+def devices(our_names: CppYarp) -> None:
+    try:
+        device_host(our_names)
+    except MissingPeer as missing:
+        pytest.skip(str(missing))
+
+
+@pytest.fixture
+def head():
+    """The device itself, which is at rest, and its ports."""
+    parts = icub_head((160, 120))
+    with Robot("/icubSim", parts):
+        yield parts.boards["head"]
+
+
+def chain(programs: CppYarp):
+    return cpp_device(
+        programs,
+        "controlBoard_nws_yarp",
+        subdevice="remote_controlboard",
+        remote="/icubSim/head",
+        local="/between",
+        name="/cpp/head",
+        period=0.01,
+    )
+
+
+def test_client_of_cpp_drives_the_head(our_names: CppYarp, head) -> None:
+    with chain(our_names), ControlBoard("/cpp/head", "/mine", timeout=PATIENCE) as board:
+        assert list(board.axis_names) == head.axis_names
+        assert board.position_limits[1] == (-70.0, 60.0)
+        board.position_move([1, 2], [45.0, -20.0])
+        wait_until(lambda: abs(head.encoders()[1] - 45) < 0.01, PATIENCE)
+        wait_until(lambda: abs(board.encoders()[2] + 20) < 0.01, PATIENCE)
+        wait_until(lambda: all(board.motion_done()), PATIENCE)
+        board.switch_control_modes([2], ["vel"])
+        wait_until(lambda: board.control_modes()[2] == "vel", PATIENCE)
+        board.velocity_move([2], [10.0])
+        wait_until(lambda: head.encoder_speeds()[2] > 5, PATIENCE)
+        board.stop([2])
+        board.switch_control_modes(range(6), ["posd"] * 6)
+        wait_until(lambda: set(head.control_modes()) == {"posd"}, PATIENCE)
+        board.position_direct(range(6), [0.0] * 5 + [5.0])
+        wait_until(lambda: abs(head.encoders()[5] - 5) < 0.01, PATIENCE)
+
+
+def test_clients_of_cpp_see_and_feel(our_names: CppYarp, head) -> None:
+    with (
+        cpp_device(
+            our_names,
+            "frameGrabber_nws_yarp",
+            subdevice="frameGrabber_nwc_yarp",
+            remote="/icubSim/cam/left",
+            local="/between/eye",
+            name="/cpp/eye",
+            period=0.03,
+        ),
+        cpp_device(
+            our_names,
+            "multipleanalogsensorsserver",
+            subdevice="multipleanalogsensorsclient",
+            remote="/icubSim/inertial",
+            local="/between/imu",
+            name="/cpp/imu",
+            period=10,
+        ),
+        FrameGrabber("/cpp/eye") as eye,
+        MultiSensor("/cpp/imu") as imu,
+    ):
+        wait_until(lambda: eye.image(PATIENCE).array.std() > 20, PATIENCE)
+        assert eye.resolution == (160, 120)
+        wait_until(lambda: imu.accelerometers()["head_imu"][2] > 9, PATIENCE)
+
+
+def test_page_drives_a_robot_of_cpp(our_names: CppYarp, head, browser: Browser) -> None:
+    """The ports of the C++ board answer the page in their own HTTP."""
+    # It sends no events, which the page has to try first, and hangs up after each answer.
+    browser.excuse(r"/r\?sse|net::ERR_")
+    with chain(our_names), yarpy.Port("/panel", callback=lambda message: None) as port:
+        Panel(port, "/cpp", server())
+        page = browser.open()
+        page.goto(f"http://{port.address}/", wait_until="commit")
+        page.get_by_label("neck_roll").fill("30")
+        wait_until(lambda: abs(head.encoders()[1] - 30) < 0.01, PATIENCE)
+        page.locator(".joint .value", has_text="30.0°").wait_for()
+        head.position_move([2], [-15.0])
+        page.locator(".joint .value", has_text="-15.0°").wait_for()
+        browser.picture(page, "panel-cpp")
