@@ -81,6 +81,36 @@ def test_update_may_drop() -> None:
     assert Chain([Drops()], "here").send(Packet(["hi"])) is None
 
 
+@pytest.mark.parametrize(
+    ("plain", "natural"),
+    [(["a", ["b"]], Bottle(["a", Bottle(["b"])])), (("a", 1), Bottle(["a", 1]))],
+)
+def test_plain_lists_come_as_bottles(plain: object, natural: Bottle) -> None:
+    class Plain:
+        def update(self, message: Message) -> object:
+            return plain
+
+    made = Chain([Plain()], "here").take(message("hi"))
+    assert made is not None
+    assert made.value == natural
+    assert type(made.value) is Bottle
+    assert made.value.to_text() == natural.to_text()
+    assert (made.source, made.envelope) == ("/out", "3 0.5")
+    packet = Chain([Plain()], "here").send(Packet(["hi"]))
+    assert packet is not None
+    assert packet.value is plain  # encoded once, when it is sent
+
+
+def test_what_no_message_can_hold_is_dropped(caplog: pytest.LogCaptureFixture) -> None:
+    class Odd:
+        def update(self, message: Message) -> object:
+            return [object()]
+
+    with caplog.at_level(logging.WARNING):
+        assert Chain([Odd()], "here").take(message("hi")) is None
+    assert "a monitor dropped a message" in caplog.text
+
+
 def test_sent_value_is_what_the_writer_wrote() -> None:
     made = Chain([Word("a")], "here").send(Packet(("hi",), b"7", "d"))
     assert made is not None

@@ -14,6 +14,7 @@ from dataclasses import replace
 from typing import Any, Final, Literal
 
 from yarpy import registry
+from yarpy.data import codec
 from yarpy.data.property import Property
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.monitors.base import DROP, Group, Place, split_tokens
@@ -22,6 +23,7 @@ from yarpy.wire.message import Message, Packet
 log = logging.getLogger("yarpy.monitors")
 
 _MOST_TOLD: Final = 16  # different complaints of one chain that are logged
+_PLAIN: Final = frozenset((list, tuple, dict))  # what Python has for Bottles and Properties
 
 
 def named(carrier: str, side: Literal["send", "recv"]) -> list[tuple[str, tuple[str, ...]]]:
@@ -96,7 +98,21 @@ class Chain:
     # -- messages ---------------------------------------------------------------------------------
 
     def take(self, message: Message) -> Message | None:
-        """What becomes of a message; None: it is dropped."""
+        """What becomes of a message that came; None: it is dropped.
+
+        Its reader cannot tell it from one that came as it is: a list is a Bottle again.
+        """
+        made = self._through(message)
+        if made is None or made is message or type(made.payload) not in _PLAIN:
+            return made
+        try:
+            return made.replaced(b"".join(codec.encode(made.payload)), binary=True)
+        except Exception as error:  # what no message can hold
+            self._complain(error)
+            return None
+
+    def _through(self, message: Message) -> Message | None:
+        """What the monitors make of a message; None: one has dropped it."""
         group = self._group
         try:
             for peer, accept, update in self._steps:
@@ -119,7 +135,7 @@ class Chain:
         """What becomes of a packet; None: it is dropped."""
         message = Message.of(packet)
         with self._lock:
-            made = self.take(message)
+            made = self._through(message)
         if made is None:
             return None
         return packet if made is message else Packet.of(made, packet)
