@@ -38,3 +38,12 @@ def test_the_page_is_told_and_opened(monkeypatch, capsys, display, browser):
         url = f"http://{port.address}/"
     assert capsys.readouterr().out == f"/view is shown at {url}\n"
     assert opened == ([url] if display and browser else [])
+
+
+def test_browser_that_does_not_open(monkeypatch):
+    def fail(url):
+        raise webbrowser.Error("no runnable browser")
+
+    monkeypatch.setattr(webbrowser, "open", fail)
+    monkeypatch.setenv("DISPLAY", ":9")
+    showing.open_page("http://127.0.0.1:1/")

@@ -14,7 +14,11 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.services.panel import Panel
-from yarpy.services.sim.robot import Robot, icub_head
+from yarpy.services.sim.axis import Axis
+from yarpy.services.sim.board import Board
+from yarpy.services.sim.body import Body
+from yarpy.services.sim.joint import Joint
+from yarpy.services.sim.robot import Parts, Robot, icub_head
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -160,7 +164,7 @@ def test_curves(browser: Browser, head: yarpy.RpcClient, url: str) -> None:
     page = opened(browser, url)
     page.locator("#curves article").nth(2).wait_for()
     assert page.locator("#curves h2").all_inner_texts() == [
-        *("head °, position", "inertial °/s, gyroscope", "inertial m/s², accelerometer")
+        *("head position", "inertial °/s, gyroscope", "inertial m/s², accelerometer")
     ]
     assert page.locator("#curves .joints .legend li").all_inner_texts() == JOINTS
     script = """canvas => {
@@ -215,6 +219,23 @@ def test_dark_and_on_a_phone(
     assert wide <= 0, "nothing sticks out to the right"
     name = "panel" + ("-dark" if dark else "") + ("-phone" if phone else "")
     browser.picture(page, name, whole=phone)
+
+
+def test_joints_that_slide_or_have_no_limits(browser: Browser, names: yarpy.YarpNameClient) -> None:
+    axes = [Axis("rail", -400.0, 400.0, kind="prismatic"), Axis("wheel", -1e6, 1e6)]
+    parts = Parts({"base": Board(Body([Joint(axis) for axis in axes]))})
+    with (
+        Robot("/cart", parts, names=names),
+        yarpy.Port("/panel/of/cart", names=names) as port,
+    ):
+        Panel(port, "/cart", names)
+        page = opened(browser, f"http://{port.address}/")
+        page.get_by_label("wheel").fill("30")
+        page.locator(".joint .value", has_text="30.0°").wait_for()
+        assert page.locator(".joint .value").first.inner_text() == "0.0"
+        assert page.get_by_label("rail").get_attribute("max") == "400"
+        assert page.get_by_label("wheel").get_attribute("max") == "360"
+        assert page.locator("#cameras figure").count() == 0
 
 
 def test_robot_that_falls_silent(browser: Browser, names: yarpy.YarpNameClient) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from yarpy.cli.spelling import print_line
@@ -26,7 +27,8 @@ def open_page(url: str) -> None:
     if has_display(sys.platform, os.environ):
         import webbrowser
 
-        webbrowser.open(url)
+        with suppress(webbrowser.Error, OSError):  # the address was printed
+            webbrowser.open(url)
 
 
 def has_display(platform: str, environment: Mapping[str, str]) -> bool:

@@ -7,6 +7,7 @@ import {Plot, colour} from "./plot.js";
 
 const WINDOW = 10; // seconds of a curve
 const SEND = 60; // ms between two targets while a slider is dragged
+const PRISMATIC = 1919972449; // the type of a joint that slides
 const ASK = 100; // ms between two questions to a port that sends no events
 
 // The URL of a port; one of this computer is where the page came from, whoever looks at it.
@@ -96,10 +97,12 @@ let gaze = null; // turns the head so many degrees to the right and up
 // -- joints --
 
 class Joint {
-  constructor(board, number, name, lowest, highest) {
+  constructor(board, number, name, slides, limits) {
+    const [lowest, highest] = slides ? limits : limits.map((angle) => Math.min(Math.max(angle, -360), 360));
     this.board = board;
     this.number = number;
     this.name = name;
+    this.unit = slides ? "" : "°"; // of length robots have any
     this.range = [lowest, highest];
     this.element = copyOf("joint");
     this.slider = this.element.querySelector("input");
@@ -107,7 +110,8 @@ class Joint {
     this.now = null;
     this.sent = 0;
     const id = `${board.info.name}-${number}`;
-    Object.assign(this.slider, {id, min: lowest, max: highest});
+    const step = highest - lowest > 20 ? 0.5 : (highest - lowest) / 200;
+    Object.assign(this.slider, {id, min: lowest, max: highest, step});
     this.element.querySelector("label").htmlFor = id;
     say(part(this.element, "name"), name);
     this.slider.oninput = () => {
@@ -152,7 +156,7 @@ class Joint {
     const [from, to] = [place(Math.min(0, angle)), place(Math.max(0, angle))];
     this.element.style.setProperty("--from", `${from.toFixed(2)}%`);
     this.element.style.setProperty("--to", `${to.toFixed(2)}%`);
-    say(this.value, `${(Math.abs(angle) < 0.05 ? 0 : angle).toFixed(1)}°`);
+    say(this.value, `${(Math.abs(angle) < 0.05 ? 0 : angle).toFixed(1)}${this.unit}`);
   }
 
   follow(target) {
@@ -173,15 +177,16 @@ class Board {
     const targets = (await call(this.info.rpc, "get poss"))[2];
     for (let number = 0; number < axes; number++) {
       const name = (await call(this.info.rpc, "get name $axis", {axis: number}))[2];
-      const limits = await call(this.info.rpc, "get llim $axis", {axis: number});
-      const joint = new Joint(this, number, name, limits[2], limits[3]);
+      const limits = (await call(this.info.rpc, "get llim $axis", {axis: number})).slice(2, 4);
+      const type = (await call(this.info.rpc, "get type $axis", {axis: number}))[2];
+      const joint = new Joint(this, number, name, type === PRISMATIC, limits);
       joint.slider.value = targets[number];
       joint.show(targets[number]);
       this.joints.push(joint);
       part(this.element, "joints").append(joint.element);
     }
     const names = this.joints.map((joint) => joint.name);
-    this.curves = new Curves(this.info.name, "°, position", names);
+    this.curves = new Curves(this.info.name, "position", names);
     this.curves.element.classList.add("joints");
     listen(this.info.state, (time, angles) => this.show(time, angles), () => this.ask());
     this.followOthers();
@@ -399,7 +404,7 @@ for (;;) {
   for (const camera of cameras) camera.tell();
   const lost = heard === null || performance.now() - heard > 2000;
   state.classList.toggle("warn", lost && count > 0);
-  const click = gaze === null ? "" : ", click on a picture to look there";
+  const click = gaze && cameras.length ? ", click on a picture to look there" : "";
   say(state, lost && count ? "the robot is silent" : `live: drag the sliders${click}`);
   await pause(500);
 }
