@@ -59,10 +59,17 @@ def test_larger_than_the_model_says(model):
 
 
 def test_where_nothing_can_draw(model, monkeypatch):
+    """MuJoCo is not asked twice: the second time it would wait for ever."""
+    asked = []
+
     class Blind:
         def __init__(self, *arguments):
+            asked.append(arguments)
             raise RuntimeError("no display")
 
     monkeypatch.setattr(mujoco_camera.mujoco(), "Renderer", Blind)
-    with pytest.raises(UnknownPlugin, match=r"libegl1 .*no display"):
-        Painter(model, 80, 60)
+    monkeypatch.setattr(Painter, "_spoiled", "")
+    for _ in range(2):
+        with pytest.raises(UnknownPlugin, match=r"libegl1 .*no display"):
+            Painter(model, 80, 60)
+    assert len(asked) == 1

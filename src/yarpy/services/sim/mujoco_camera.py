@@ -13,7 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from math import atan, degrees, radians, tan
 from queue import SimpleQueue
-from typing import Any, Final, TypeVar
+from typing import Any, ClassVar, Final, TypeVar
 
 from yarpy.data.image import Image
 from yarpy.errors import UnknownPlugin
@@ -36,6 +36,8 @@ T = TypeVar("T")
 class Painter:
     """Draws `width` times `height` pixels of a model. Raises UnknownPlugin if nothing can draw."""
 
+    _spoiled: ClassVar[str] = ""  # why nothing can draw in this process
+
     def __init__(self, model: Model, width: int, height: int) -> None:
         self._model = model
         self._work: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
@@ -47,8 +49,12 @@ class Painter:
         screen.offwidth = max(screen.offwidth, width)
         screen.offheight = max(screen.offheight, height)
         try:
+            if Painter._spoiled:
+                raise RuntimeError(Painter._spoiled)
             self._renderer: Any = self._do(self._open)
         except Exception as error:
+            # MuJoCo that failed once waits for ever when it is asked again, and Python with it.
+            Painter._spoiled = Painter._spoiled or str(error) or type(error).__name__
             self._work.put(None)
             how = os.environ.get("MUJOCO_GL", "")
             raise UnknownPlugin(f"{_ADVICE} (MUJOCO_GL={how}: {error})") from error
