@@ -2,6 +2,7 @@
 
 import signal
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -56,8 +57,14 @@ def test_name_that_is_taken(here, names):
     assert names.list("/taken") == []
 
 
+def needs_mujoco():
+    """Not by importing it: how it draws is decided when it is imported, and not here."""
+    if find_spec("mujoco") is None:
+        pytest.skip("no MuJoCo: pip install 'yarpy[sim]'")
+
+
 def test_mujoco_model(cli, names):
-    pytest.importorskip("mujoco", reason="no MuJoCo: pip install 'yarpy[sim]'")
+    needs_mujoco()
     with (
         cli.start("sim", "--mujoco", str(ARM), "--size", "64x48") as process,
         yarpy.BufferedPort("/sim/watching", strict=True, names=names) as watching,
@@ -77,7 +84,7 @@ def test_mujoco_model(cli, names):
 
 
 def test_file_that_is_no_model(here, tmp_path):
-    pytest.importorskip("mujoco", reason="no MuJoCo: pip install 'yarpy[sim]'")
+    needs_mujoco()
     file = tmp_path / "model.xml"
     file.write_text("<mujoco><worldbody><nonsense/></worldbody></mujoco>")
     said = here("sim", "--mujoco", str(file))

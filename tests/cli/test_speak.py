@@ -50,7 +50,7 @@ def test_a_file(cli, names, song, version):
 
 def test_it_waits_for_a_listener(cli, names, song):
     with cli.start("speak", "--play", str(song), "--name", "/speak/b") as process:
-        wait_until(lambda: names.query("/speak/b"), PATIENCE)
+        wait_until(lambda: yarpy.exists("/speak/b", names=names), PATIENCE)
         with yarpy.BufferedPort("/speak/late", strict=True, names=names) as late:
             late.listen_to("/speak/b")
             assert gathered(late, 4)[0][0].array[0, 1] == 1
@@ -61,7 +61,7 @@ def test_what_one_speaks_another_hears(cli, names, song, tmp_path):
     path = tmp_path / "heard.wav"
     words = ("--record", str(path), "--name", "/speak/hear", "--duration", "0.35")
     with cli.start("hear", *words) as hearing:
-        wait_until(lambda: names.query("/speak/hear"), PATIENCE)
+        wait_until(lambda: yarpy.exists("/speak/hear", names=names), PATIENCE)
         said = cli.run("speak", "/speak/hear", "--play", str(song), "--name", "/speak/c")
         assert said.returncode == 0
         assert hearing.wait(PATIENCE) == 0

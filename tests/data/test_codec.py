@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from support.label import spelled
 from support.message import bottles, kinds
 from support.vectors import binaries, rows
 
@@ -99,7 +100,7 @@ def test_golden_types(row):
         (np.str_("x"), "x"),
         (np.array(5), 5),
     ],
-    ids=repr,
+    ids=spelled,
 )
 def test_natural_values(obj, natural):
     found = codec.decode(joined(obj))
@@ -154,7 +155,7 @@ def test_objects_that_know_their_wire_form():
         codec.encode(Point)
 
 
-@pytest.mark.parametrize("obj", [object(), 1j, {1, 2}, int, ..., iter([])], ids=repr)
+@pytest.mark.parametrize("obj", [object(), 1j, {1, 2}, int, ..., iter([])], ids=spelled)
 def test_what_cannot_be_sent(obj):
     with pytest.raises(TypeError, match=r"cannot be sent; .*to_wire"):
         codec.encode(obj)
@@ -235,7 +236,7 @@ def test_text_of_an_image_from_cpp():
         ([1], object, [1]),
         (1, object, 1),
     ],
-    ids=repr,
+    ids=spelled,
 )
 def test_decode_as(obj, type_, value):
     found = codec.decode_as(joined(obj), type_)
@@ -267,7 +268,7 @@ def test_decode_as(obj, type_, value):
         ([1, 2], Stamp, "stamp"),
         ("word", np.ndarray, "an array, got word"),
     ],
-    ids=repr,
+    ids=spelled,
 )
 def test_decode_as_says_what_came_instead(obj, type_, said):
     with pytest.raises(DecodeError) as caught:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.label import spelled
 from support.steps import measured
 
 from yarpy.data import xmlrpc as ours
@@ -55,7 +56,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize(("value", "text", "python"), VALUES, ids=repr)
+@pytest.mark.parametrize(("value", "text", "python"), VALUES, ids=spelled)
 def test_values_are_written(value: Any, text: str | None, python: Any) -> None:
     data = ours.encode_answer(["before", value])
     if text is not None:
@@ -112,7 +113,7 @@ CALLS = [
 ]
 
 
-@pytest.mark.parametrize(("message", "name", "arguments"), CALLS, ids=repr)
+@pytest.mark.parametrize(("message", "name", "arguments"), CALLS, ids=spelled)
 def test_calls_are_written(message: Any, name: str, arguments: tuple[Any, ...]) -> None:
     assert xmlrpc.client.loads(ours.encode_call(message)) == (arguments, name)
 
@@ -135,7 +136,7 @@ READ = [
 ]
 
 
-@pytest.mark.parametrize(("arguments", "message"), READ, ids=repr)
+@pytest.mark.parametrize(("arguments", "message"), READ, ids=spelled)
 def test_calls_are_read(arguments: tuple[Any, ...], message: list[Any]) -> None:
     text = xmlrpc.client.dumps(arguments, "go", allow_none=True)
     found = ours.decode_call(text.encode())

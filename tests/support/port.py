@@ -2,9 +2,11 @@
 
 Rules: numbers come from below the kernel's range for outgoing connections, so that no outgoing
 connection of another process takes one between the look and the bind; a number is handed out once
-per process; a block is free for TCP and for UDP.
+per process; a block is free for TCP and for UDP. Where tests run side by side (pytest-xdist) each
+process has a part of the range for itself.
 """
 
+import os
 import random
 import socket
 from pathlib import Path
@@ -24,12 +26,20 @@ def free_block(size: int) -> int:
     for attempt in range(1000):
         if attempt == 500:
             _given.clear()  # a long run has had them all; what is still in use is not free
-        first = random.randrange(_LOWEST, _ceiling() - size)
+        lowest, highest = _range()
+        first = random.randrange(lowest, highest - size)
         block = range(first, first + size)
         if _given.isdisjoint(block) and all(_is_free(number) for number in block):
             _given.update(block)
             return first
     raise OSError(f"no {size} consecutive free ports between {_LOWEST} and {_ceiling()}")
+
+
+def _range() -> tuple[int, int]:
+    """The numbers of this process: all, or one of as many parts as there are processes."""
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+    size = (_ceiling() - _LOWEST) // int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    return _LOWEST + worker * size, _LOWEST + (worker + 1) * size
 
 
 def _ceiling() -> int:
