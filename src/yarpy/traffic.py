@@ -45,6 +45,7 @@ class End:
     qos: Qos = field(default_factory=Qos)
     monitors: list[str] = field(default_factory=list)
     parameters: dict[str, Any] = field(default_factory=dict)
+    state: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -117,16 +118,20 @@ def _pairs(item: Any) -> Bottle:
 def read(told: Property) -> tuple[str, str, End]:
     """One connection in the answer to [stat]: source, target, and how it is doing."""
     monitors = told.get("monitors")
-    parameters = told.get("parameters")
     end = End(
         plain_text(told.get("carrier", "")),
         **{key: told.get(key) for key in ("messages", "bytes", "drops")},
         **{key: told.get(key) for key in ("rate", "jitter", "latency")},
         qos=Qos(told.get("policy"), told.get("priority"), _packets(told.get("packets"))),
         monitors=[plain_text(one) for one in monitors] if isinstance(monitors, list) else [],
-        parameters=dict(Property.from_bottle(_pairs(parameters))) if parameters else {},
+        parameters=_dict(told.get("parameters")),
+        state=_dict(told.get("state")),
     )
     return plain_text(told.get("source", "")), plain_text(told.get("target", "")), end
+
+
+def _dict(told: Any) -> dict[str, Any]:
+    return dict(Property.from_bottle(_pairs(told))) if told else {}
 
 
 def _packets(value: Any) -> str | int | None:

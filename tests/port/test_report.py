@@ -19,6 +19,9 @@ class Level:
     def parameters(self) -> dict[str, object]:
         return {"level": 3}
 
+    def state(self) -> dict[str, object]:
+        return {"filled": 0.5}
+
 
 def test_every_connection_with_a_port_and_no_visitor() -> None:
     registry.monitors.add("level", Level)
@@ -41,6 +44,7 @@ def test_every_connection_with_a_port_and_no_visitor() -> None:
             assert end.latency is None
             end = read(came)[2]
             assert (end.monitors, end.parameters) == (["level"], {"level": 3})
+            assert end.state == {"filled": 0.5}
             assert end.qos.policy == "SCHED_OTHER"
     finally:
         registry.monitors.remove("level")

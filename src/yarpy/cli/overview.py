@@ -181,6 +181,11 @@ def _packets(end: End) -> str:
 
 
 def _state(end: End) -> str:
-    """The parameters of an end's monitors, in short."""
-    told = " ".join(f"{key}={value}" for key, value in end.parameters.items() if value != "")
+    """The parameters of an end's monitors and how they are doing, in short."""
+    values = {**end.parameters, **end.state}
+    told = " ".join(f"{key}={_short(value)}" for key, value in values.items() if value != "")
     return f" ({told})" if told else ""
+
+
+def _short(value: object) -> str:
+    return f"{value:.3g}" if isinstance(value, float) else str(value)

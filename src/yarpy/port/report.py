@@ -48,5 +48,6 @@ def connection(link: Inbound | Outbound) -> Property:
     if monitors:
         chain = link.own_chain if isinstance(link, Inbound) else link.chain
         found["monitors"] = Bottle(monitors)
-        found["parameters"] = Property() if chain is None else chain.parameters()
+        if chain is not None:
+            found["parameters"], found["state"] = chain.parameters(), chain.state()
     return found
