@@ -106,7 +106,7 @@ def test_clean_leaves_the_living(network: CppYarp, cli: CommandLine) -> None:
 def test_stats_of_a_cpp_port(network: CppYarp, cli: CommandLine) -> None:
     with network.popen("write", "/tool/w") as writer:
         assert cli.run("wait", "/tool/w").returncode == 0
-        with cli.start("stats", "/tool/w", "--duration", "1") as stats:
+        with cli.start("stats", "/tool/w", "--duration", "5") as stats:
             stats.wait_line("Receiving input", stream="err")
             for _ in range(10):
                 writer.write_line("x")
