@@ -89,9 +89,8 @@ class Outbound:
                 raise LinkClosed(f'the connection to "{self.route.target}" is gone')
             return self.offer(packet)
         if self.chain is not None:
-            passed = self.chain.send(packet)
+            passed = self._pass(self.chain, packet)
             if passed is None:
-                self.counter.drops += 1
                 return False
             packet = passed
         if self._queue is not None:
@@ -116,15 +115,21 @@ class Outbound:
             self.counter.drops += 1  # before anything is made of a message that does not go
             return False
         if self.chain is not None:
-            passed = self.chain.send(packet)
+            passed = self._pass(self.chain, packet)
             if passed is None:
-                self.counter.drops += 1
                 return False
             packet = passed
         if not carrier.prepare(packet):
             self.counter.drops += 1
             return False
         return queue.put(packet, carrier.backlog)
+
+    def _pass(self, chain: Chain, packet: Packet) -> Packet | None:
+        """What the monitors make of a packet; None, and counted, if one drops it."""
+        passed = chain.send(packet)
+        if passed is None:
+            self.counter.drops += 1
+        return passed
 
     def _timely(self) -> bool:
         """Whether the carrier's interval is over. On the average, so that no beat is missed."""
@@ -262,9 +267,8 @@ class Outbound:
         assert packet.key == CALL or packet.key == "a"
         chain = self.chain if packet.key == CALL else None
         if chain is not None:
-            passed = chain.send(packet)
+            passed = self._pass(chain, packet)
             if passed is None:
-                self.counter.drops += 1
                 return None
             packet = passed
         deadline = None if timeout is None else time.monotonic() + timeout
