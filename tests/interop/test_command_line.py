@@ -107,7 +107,7 @@ def test_stats_of_a_cpp_port(network: CppYarp, cli: CommandLine) -> None:
     with network.popen("write", "/tool/w") as writer:
         assert cli.run("wait", "/tool/w").returncode == 0
         with cli.start("stats", "/tool/w", "--duration", "5") as stats:
-            stats.wait_line("Receiving input", stream="err")
+            stats.wait_line("btl/s", stream="out")  # earlier the writer may not have the output
             for _ in range(10):
                 writer.write_line("x")
             assert stats.wait() == 0

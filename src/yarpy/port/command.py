@@ -114,11 +114,17 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
     if contact is None:
         raise Refused(f"Do not know how to connect to {text}")
     target = wanted.name or f"/{wanted.address}/"
-    if wanted.name:
-        for old in hub.outputs:
-            if old.route.target == wanted.name:
-                close_output(hub, old)
+    with hub.dialling.alone(target):
+        return _connect(hub, text, contact, target, carrier)
+
+
+def _connect(hub: Hub, text: str, contact: Contact, target: str, carrier: str) -> str:
+    """The rest of `connect`, while nobody else dials the target."""
     repair.give_up(hub, target)
+    if contact.name:
+        for old in hub.outputs:
+            if old.route.target == target:
+                close_output(hub, old)
     try:
         kind = find_carrier(carrier)
     except UnknownPlugin as error:

@@ -32,6 +32,7 @@ from yarpy.names.client import YarpNameClient
 from yarpy.names.configuration import port_name, port_number
 from yarpy.names.default import DEFAULT, secret
 from yarpy.port import admin, command, repair
+from yarpy.port.dialling import Dialling
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.monitoring import Monitoring
@@ -85,6 +86,7 @@ class Hub:
         self.on_inputs: Callable[[], None] = lambda: None  # the reader looks at them again
         self._greeting: set[threading.Thread] = set()  # connections that are being welcomed
         self.lock = threading.Lock()  # replaces the tuples of links
+        self.dialling = Dialling()
         self.monitoring = Monitoring(self)
         self.group_name = ""  # the temporary name of our multicast group
         self.key = secret()

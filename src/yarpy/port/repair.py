@@ -37,7 +37,7 @@ CALM: Final = 0.5  # seconds between looks when nothing is
 INPUT_PATIENCE: Final = 60.0  # seconds for a sender that vanished to come back
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _Lost:
     """A connection that failed."""
 
@@ -204,14 +204,27 @@ class Repairer:
 
     def _mend_output(self, item: _Lost) -> bool:
         hub, route = item.hub, item.route
-        if any(link.route.target == route.target for link in hub.outputs):
-            return True
-        contact = command.locate(hub, parse_contact(route.target))
-        if contact is None:
-            return False
-        command.open_output(hub, contact, route.target, route.secret or route.carrier)
-        log.info("%s: the connection to %s is back", hub.name, route.target)
+        with hub.dialling.alone(route.target, wait=False) as alone:
+            if not alone:
+                return False
+            if item not in self._lost or any(
+                link.route.target == route.target for link in hub.outputs
+            ):
+                return True
+            contact = command.locate(hub, parse_contact(route.target))
+            if contact is None:
+                return False
+            command.open_output(hub, contact, route.target, route.secret or route.carrier)
+            if item not in self._lost:  # somebody disconnected it meanwhile
+                self._undo(hub, route.target)
+            else:
+                log.info("%s: the connection to %s is back", hub.name, route.target)
         return True
+
+    def _undo(self, hub: Hub, target: str) -> None:
+        for link in hub.outputs:
+            if link.route.target == target:
+                command.close_output(hub, link)
 
     def _mend_input(self, item: _Lost) -> bool:
         """Ask the sender, once it lives again, to send to us as before."""
@@ -219,7 +232,8 @@ class Repairer:
         if any(link.route.source == route.source for link in hub.inputs):
             return True
         if _is_pulled(route):
-            return self._dial_again(hub, route)
+            with hub.dialling.alone(route.source, wait=False) as alone:
+                return alone and self._dial_again(hub, route)
         contact = hub.names.query(route.source) if hub.names is not None else None
         if contact is None or not probe.is_alive(contact, hub.key):
             item.seen_gone = True

@@ -185,7 +185,10 @@ class RpcClient(BasePort):
             self._hub.drop_output(link, "the server hung up")
         if target:
             super().connect(target, carrier)
-            return next(link for link in self._hub.outputs if not link.carrier.lossy)
+            for link in self._hub.outputs:
+                if not link.carrier.lossy:
+                    return link
+            raise LinkClosed(f'"{target}" went away at once')
         raise LocalProtocolError(
             f'"{self.name}" is not connected to a server: connect("/server"), or from outside '
             f"`yarpy connect {self.name} /server`"

@@ -1,0 +1,95 @@
+"""One attempt at a time to connect a port to a target, whoever makes it."""
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+from support.wait import wait_until
+
+import yarpy
+from yarpy.port import command
+from yarpy.port.dialling import Dialling
+from yarpy.port.hub import Hub
+
+
+def test_the_second_waits_or_leaves_it_alone() -> None:
+    dialling = Dialling()
+    order: list[str] = []
+
+    def second() -> None:
+        with dialling.alone("/b") as alone:
+            assert alone
+            order.append("second")
+
+    with dialling.alone("/b") as alone:
+        assert alone
+        with dialling.alone("/b", wait=False) as again:
+            assert not again
+        with dialling.alone("/c", wait=False) as other:
+            assert other
+        thread = threading.Thread(target=second)
+        thread.start()
+        time.sleep(0.02)
+        order.append("first")
+    thread.join(5)
+    assert order == ["first", "second"]
+
+
+def test_a_failed_attempt_lets_the_next_one_in() -> None:
+    dialling = Dialling()
+    with pytest.raises(ValueError, match="no"), dialling.alone("/b"):
+        raise ValueError("no")
+    with dialling.alone("/b", wait=False) as alone:
+        assert alone
+
+
+class Slow:
+    """`command.open_output`, but the thread of repairs pauses once inside until it is let go."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.inside = threading.Event()
+        self.go_on = threading.Event()
+        self._real = command.open_output
+        monkeypatch.setattr(command, "open_output", self)
+
+    def __call__(self, hub: Hub, *arguments: object) -> None:
+        if threading.current_thread().name == "yarpy repair" and not self.inside.is_set():
+            self.inside.set()
+            assert self.go_on.wait(10)
+        self._real(hub, *arguments)  # type: ignore[arg-type]
+
+
+@contextmanager
+def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[yarpy.Port, Slow]]:
+    """A port whose connection to /in broke and is just being repaired."""
+    slow = Slow(monkeypatch)
+    with yarpy.NameServer(), yarpy.Port("/out") as out, yarpy.BufferedPort("/in", strict=True):
+        out.connect("/in")
+        out._hub.outputs[0].driver.transport.interrupt()
+        assert slow.inside.wait(10)
+        try:
+            yield out, slow
+        finally:
+            slow.go_on.set()
+
+
+def test_a_program_that_connects_during_a_repair_keeps_its_connection(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with broken(monkeypatch) as (out, slow):
+        threading.Timer(0.1, slow.go_on.set).start()
+        out.connect("/in", "fast_tcp")
+        time.sleep(0.3)
+        assert [link.carrier for link in out.outputs] == ["fast_tcp"]
+        assert not out._hub.outputs[0].ended()
+
+
+def test_disconnecting_during_a_repair_ends_the_repair(monkeypatch: pytest.MonkeyPatch) -> None:
+    with broken(monkeypatch) as (out, slow):
+        out.disconnect("/in")
+        slow.go_on.set()
+        wait_until(lambda: not out._hub.dialling._targets)
+        time.sleep(0.1)
+        assert not out.outputs
