@@ -68,8 +68,9 @@ def admin(
         ) from error
 
 
-class Route:
-    """Who is to be asked about a connection, and in which words (core-3 section 6.2)."""
+class Pairing:
+    """Two ports whose connection is made, looked for or ended from outside: over which carrier, and
+    which of them is asked, in which words (core-3 section 6.2)."""
 
     def __init__(
         self, source: str, target: str, carrier: str | None, names: NameClient | None
@@ -103,7 +104,7 @@ class Route:
                 f"a {asked.carrier} endpoint takes no YARP commands"
             )
         self.asked = asked
-        self.peer = _route_name(from_ if self.pull else to)
+        self.peer = _peer_name(from_ if self.pull else to)
         # Perhaps a camera, which does not understand us: its watcher is asked first.
         self.plain = from_.reachable and not from_.name and not self.pull
 
@@ -139,7 +140,7 @@ class Route:
         if self.pull or not _competent(self.there):
             return Bottle()
         try:
-            return probe.ask(self.there, [*words, _route_name(self.source)], timeout=10.0)
+            return probe.ask(self.there, [*words, _peer_name(self.source)], timeout=10.0)
         except (LinkClosed, Timeout, RemoteProtocolError):
             return Bottle()
 
@@ -169,7 +170,7 @@ def _written(text: str) -> str:
     )
 
 
-def _route_name(contact: Contact) -> str:
+def _peer_name(contact: Contact) -> str:
     return contact.name or f"/{contact.address}/"
 
 
@@ -207,19 +208,21 @@ def connect(
 
 
 def _connect(source: str, target: str, carrier: str | None, names: NameClient | None) -> str:
-    route = Route(source, target, carrier, names)
-    if route.topical:
+    pairing = Pairing(source, target, carrier, names)
+    if pairing.topical:
         ask_server(names, ["subscribe", _decorated(source, ""), _decorated(target, carrier or "")])
         return "connection to topic added."
-    active = route.source if route.pull else route.target
+    active = pairing.source if pairing.pull else pairing.target
     address = f"/{active.address}" if active.reachable else active.name
-    reply = route.admin(Vocab("add"), f"{route.carrier}:/{address}")
+    reply = pairing.admin(Vocab("add"), f"{pairing.carrier}:/{address}")
     text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
     if reply and reply[0] == 0:
         return text
     # The other end may not be there yet: a camera that still starts, a program that died.
     kind = LinkClosed if text.startswith("Cannot connect") else LocalProtocolError
-    raise kind(f'"{source}" -> "{target}" over {route.carrier} was refused: {text or "no answer"}')
+    raise kind(
+        f'"{source}" -> "{target}" over {pairing.carrier} was refused: {text or "no answer"}'
+    )
 
 
 def _decorated(text: str, carrier: str) -> str:
@@ -229,11 +232,11 @@ def _decorated(text: str, carrier: str) -> str:
 
 def disconnect(source: str, target: str, *, names: NameClient | None = None) -> bool:
     """End the connection of two ports; False if there was none. Raises as `connect`."""
-    route = Route(source, target, None, names)
-    if route.topical:
+    pairing = Pairing(source, target, None, names)
+    if pairing.topical:
         ask_server(names, ["unsubscribe", source, target])
         return True
-    return route.delete()
+    return pairing.delete()
 
 
 def is_connected(
@@ -241,7 +244,7 @@ def is_connected(
 ) -> bool:
     """Whether two ports are connected (over `carrier`, if given)."""
     try:
-        found = Route(source, target, None, names).existing()
+        found = Pairing(source, target, None, names).existing()
     except (UnknownName, LinkClosed):
         return False
     return bool(found) and carrier in (None, found)

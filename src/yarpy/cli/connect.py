@@ -86,11 +86,11 @@ def _existing(source: str, target: str, carrier: str | None) -> str:
 
     The new one says who is asked: a camera that takes a single connection is not to waste it on us.
     """
-    from yarpy.network import Route
+    from yarpy.network import Pairing
 
     try:
-        route = Route(source, target, carrier, None)
-        return "" if route.topical else route.existing()
+        pairing = Pairing(source, target, carrier, None)
+        return "" if pairing.topical else pairing.existing()
     except yarpy.YarpError:
         return ""  # connecting will say it
 

@@ -36,9 +36,9 @@ def command(port: str, target: str | None, as_json: bool) -> int:
 def _carrier(port: str, target: str) -> str:
     """What the two are connected over, "" if they are not."""
     from yarpy.errors import LinkClosed, Timeout, UnknownName
-    from yarpy.network import Route
+    from yarpy.network import Pairing
 
     try:
-        return Route(port, target, None, None).existing()
+        return Pairing(port, target, None, None).existing()
     except (UnknownName, LinkClosed, Timeout):
         return ""
