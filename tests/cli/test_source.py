@@ -57,7 +57,7 @@ def test_it_is_waited_for_and_comes_back_however_late(listener, monkeypatch):
     for number in range(2):
         with yarpy.Port("/source/late") as out:
             wait_until(lambda: found.connected, PATIENCE)
-            wait_until(lambda: lines[-1] == "", PATIENCE)
+            wait_until(lambda: lines[-1] == "" and out.outputs, PATIENCE)
             out.write([number])
             assert listener.read(timeout=PATIENCE).value == [number]
         wait_until(lambda: not found.connected, PATIENCE)

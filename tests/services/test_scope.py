@@ -95,6 +95,7 @@ def lists(page: Page, selector: str, texts: list[str]) -> None:
 # The vertical places, from 0 at the top to 1, of all pixels of about a colour in a plot.
 PLACES = """([number, red, green, blue]) => {
     const canvas = document.querySelectorAll("canvas")[number];
+    if (!canvas) return [];
     const {width, height} = canvas;
     const data = canvas.getContext("2d").getImageData(0, 0, width, height).data;
     const found = [];
