@@ -6,11 +6,11 @@
     GET /r                          every message that the port writes, as long as one reads
     GET /r  Accept: text/event-stream          the same for JavaScript's EventSource
 
-Rules: what a request means is `http_request`, the page is `http_page`, who may act is `origin`;
-here is the protocol alone, with an h11 for each request anew. Every request gets exactly one
-response, also if the port says nothing (204, or `[]` in JSON), or if it comes too slowly (408). Bad
-requests get their status and end the connection. Who reads slowly misses messages. Between ports
-each message is a POST and its response the acknowledgement (`http_client`).
+Rules: what a request means is `http_request`, what is answered `http_response`, who may act is
+`origin`; here is the protocol alone, with an h11 for each request anew. Every request gets exactly
+one response, also if the port says nothing (204, or `[]` in JSON), or if it comes too slowly (408).
+Bad requests get their status and end the connection. Who reads slowly misses messages. Between
+ports each message is a POST and its response the acknowledgement (`http_client`).
 """
 
 from __future__ import annotations
@@ -22,21 +22,26 @@ from yarpy.carriers.base import MAGIC_SIZE, Carrier
 from yarpy.carriers.http_client import ENVELOPE, HttpClient
 from yarpy.carriers.http_message import (
     CONTINUE,
-    HTML,
-    JSON,
     LAST_CHUNK,
     MAX_BODY,
     MAX_HEAD,
-    TEXT,
-    Headers,
     chunk,
     next_event,
-    response_head,
 )
-from yarpy.carriers.origin import hostname, origins_of
+from yarpy.carriers.http_response import (
+    CUT_OFF,
+    LATE,
+    MAY_NOT_ACT,
+    NO_SUCH_METHOD,
+    UNSPEAKABLE,
+    Responder,
+    Response,
+    bare,
+    complaint,
+    refused,
+)
+from yarpy.carriers.origin import origins_of
 from yarpy.contact import Route
-from yarpy.data import codec
-from yarpy.data.bottle import Bottle
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import CALL, QUIT, Lines, Message, Packet
@@ -45,30 +50,12 @@ from yarpy.wire.stream import ByteStream
 if TYPE_CHECKING:
     import h11
 
-    from yarpy.carriers.http_request import Form, Refusal, Request, Wish
+    from yarpy.carriers.http_request import Form, Request, Wish
 
 DRAIN: Final = 1 << 20  # bytes of a refused body that are read, so that the refusal arrives
 PATIENCE: Final = 60.0  # seconds a connection may be idle, and a request may take to come
-PRELUDE: Final = 2048  # blanks with which an endless page begins, as in C++: browsers wait for some
 
 _METHODS: Final = (b"GET /", b"POST /", b"HEAD /", b"OPTIONS ", b"PUT /", b"DELETE /", b"PATCH /")
-_TYPES: Final = {"page": HTML, "json": JSON, "text": TEXT, "events": "text/event-stream"}
-_COMMON: Final = [
-    ("Cache-Control", "no-store"),
-    ("X-Content-Type-Options", "nosniff"),
-    ("Access-Control-Allow-Origin", "*"),
-]
-# Our own page needs neither scripts nor anything from elsewhere.
-_PAGE_POLICY: Final = (
-    "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; base-uri 'none'"
-)
-# A page that a program made: its scripts run, but not as those of the port's own pages.
-_GUEST_POLICY: Final = (
-    "Content-Security-Policy",
-    "sandbox allow-scripts allow-forms allow-popups",
-)
-_MAY_NOT_ACT: Final = b"the owner of this port lets only some pages act here (YARPY_WEB_ORIGINS)\n"
-_LATE: Final = b"the request takes too long to come\n"
 
 
 class Http(Carrier):
@@ -86,6 +73,7 @@ class Http(Carrier):
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self.origins = origins_of()
+        self._responder = Responder(route, self.origins)
         # Of the request that is being read or answered:
         self._headers: Mapping[str, str] = {}
         self._head_only = False
@@ -118,7 +106,7 @@ class Http(Carrier):
             while stream.waiting < MAX_HEAD and not _complete(stream):
                 yield from stream.more(stream.waiting + 1)
         except Timeout:
-            self._respond(stream, 408, TEXT, _LATE)
+            self._respond(stream, LATE)
             raise
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
@@ -176,11 +164,11 @@ class Http(Carrier):
             event, refusal = None, (error.error_status_hint, str(error))
         except Timeout:
             self._stays = False
-            self._respond(stream, 408, TEXT, _LATE)
+            self._respond(stream, LATE)
             raise
         except LinkClosed:
             if self._headers:
-                self._respond(stream, 400, TEXT, b"the body is shorter than its length\n")
+                self._respond(stream, CUT_OFF)
             raise
         if not isinstance(event, h11.EndOfMessage):
             yield from self._refuse(stream, *refusal)
@@ -201,7 +189,7 @@ class Http(Carrier):
     def _refuse(self, stream: ByteStream, status: int, text: str) -> Steps[None]:
         """Answer a request that cannot be read to its end; the connection is over."""
         self._stays = False
-        self._respond(stream, status, TEXT, _encoded(text + "\n"))
+        self._respond(stream, complaint(status, text))
         if status in (413, 431):
             # Hanging up on somebody who still sends would take the answer away from him.
             left = DRAIN
@@ -216,13 +204,13 @@ class Http(Carrier):
 
     def _understood(self, stream: ByteStream, request: Request) -> Wish | None:
         """What is wanted of the port; None if the request is answered without it."""
-        from yarpy.carriers.http_request import page_asked, read_wish
+        from yarpy.carriers.http_request import Refusal, page_asked, read_wish
 
         if request.method == "OPTIONS":
-            self._preflight(stream)
+            self._respond(stream, self._responder.preflight(self._headers))
             return None
         if request.method not in ("GET", "HEAD", "POST"):
-            self._respond(stream, 405, TEXT, b"", [("Allow", "GET, HEAD, POST, OPTIONS")])
+            self._respond(stream, NO_SUCH_METHOD)
             return None
         if request.method == "GET" and request.target.startswith("/?action="):
             self._show_pictures(stream, request.target)
@@ -230,24 +218,21 @@ class Http(Carrier):
         asked = page_asked(request) if self.pages is not None else None
         page = self.pages(*asked) if asked and self.pages is not None else None
         if page is not None:
-            framing = self.origins.framing
-            policy = [("Content-Security-Policy", framing)] if framing else []
-            self._respond(stream, page.status, page.kind, page.to_bytes(), policy)
+            self._respond(stream, self._responder.shown(page))
             return None
-        return self._screened(stream, read_wish(request))
-
-    def _screened(self, stream: ByteStream, wish: Wish | Refusal) -> Wish | None:
-        """Answer what needs no port, or must not come to it."""
-        from yarpy.carriers.http_request import Refusal
-
+        wish = read_wish(request)
         if isinstance(wish, Refusal):
-            text = f"{wish.text}\n" if wish.text else ""
-            self._respond(stream, wish.status, wish.kind, _encoded(text))
-        elif wish.acts and not self.origins.admits(self._headers):
-            self._respond(stream, 403, TEXT, _MAY_NOT_ACT)
+            self._respond(stream, refused(wish))
+            return None
+        return self._screened(stream, wish)
+
+    def _screened(self, stream: ByteStream, wish: Wish) -> Wish | None:
+        """The wish, unless it must not come to the port."""
+        if wish.acts and not self.origins.admits(self._headers):
+            self._respond(stream, MAY_NOT_ACT)
         elif self._head_only and (wish.acts or wish.key == "r"):
             # Asking for a head must change nothing, so there is no reply to tell the length of.
-            self._respond(stream, 200, _TYPES.get(wish.form, TEXT), None)
+            self._respond(stream, bare(wish))
         else:
             return wish
         return None
@@ -259,31 +244,22 @@ class Http(Carrier):
         if wish is None:
             return  # nobody waits for it any more
         try:
-            if wish.form == "json":
-                self._respond(stream, 200, JSON, _json_body(value, wish))
-            elif wish.form == "none":
-                self._respond(stream, 204, TEXT, b"")
-            elif self._show_guest(stream, value):
-                pass
-            elif wish.form == "page":
-                self._show(stream, wish, _lines(value))
+            response = self._responder.reply(wish, value, self._host)
+            if response.endless:
+                self._wish = None
+                self._begin_stream(stream, "guest", response)
+                self.holding = True
             else:
-                self._respond(stream, 200, TEXT, _text_body(value))
+                self._respond(stream, response)
         except (TypeError, ValueError, YarpError):
             if self._wish is not None:
-                self._respond(stream, 500, TEXT, b"the port's answer cannot be sent\n")
+                self._respond(stream, UNSPEAKABLE)
             raise
 
     def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
-        wish = self._wish
-        if wish is None:
-            return
-        if wish.form == "page":
-            self._show(stream, wish, lines)
-        elif wish.form == "json":
-            self._respond(stream, 200, JSON, _json_body(["list", *lines], wish))
-        else:
-            self._respond(stream, 200, TEXT, Lines(lines).to_text())
+        if self._wish is not None:
+            said = self._responder.said(self._wish, Lines(lines), self._host)
+            self._respond(stream, said)
 
     def encode_ack(self, stream: ByteStream) -> None:
         """The response to a message that the port did not reply to."""
@@ -297,78 +273,27 @@ class Http(Carrier):
         self._streaming = False
 
     def _answer_nothing(self, stream: ByteStream) -> None:
-        wish = self._wish
-        assert wish is not None
-        if wish.form == "json":
-            self._respond(stream, 200, JSON, b"[]\n")
-        elif wish.form == "page":
-            self._show(stream, wish, ["(no reply)"])
-        else:
-            self._respond(stream, 204, TEXT, b"")
+        assert self._wish is not None
+        self._respond(stream, self._responder.nothing(self._wish, self._host))
 
-    def _show(self, stream: ByteStream, wish: Wish, lines: list[str]) -> None:
-        from yarpy.carriers.http_page import page
+    @property
+    def _host(self) -> str:
+        return self._headers.get("host", "")
 
-        host = hostname(self._headers.get("host", ""))
-        body = page(self.route.target, lines, wish.shown, host)
-        self._respond(stream, 200, HTML, body, [self._policy()])
-
-    def _policy(self) -> tuple[str, str]:
-        """What browsers are told to refuse to the page; its form is not for others to frame."""
-        framing = self.origins.framing
-        return "Content-Security-Policy", _PAGE_POLICY + (f"; {framing}" if framing else "")
-
-    def _show_guest(self, stream: ByteStream, value: object) -> bool:
-        """Answer with the page that a program put under the key `web`; False if there is none."""
-        from yarpy.carriers.http_stream import web_of
-
-        body = web_of(value) if isinstance(value, (list, tuple)) else None
-        if body is None or not isinstance(value, (list, tuple)):
-            return False
-        mime = Bottle(value).group("mime")
-        kind = str(mime[1]) if mime is not None and len(mime) > 1 else HTML
-        if not (kind.isascii() and kind.isprintable()):
-            return False
-        if Bottle(value).group("stream") is None:
-            self._respond(stream, 200, kind, body, [_GUEST_POLICY])
-            return True
+    def _respond(self, stream: ByteStream, response: Response) -> None:
+        """Write a whole response."""
         self._wish = None
-        self._begin_stream(stream, "guest", [("Content-Type", kind), _GUEST_POLICY])
-        self._write_part(stream, b" " * PRELUDE + body)
-        self.holding = True
-        return True
-
-    def _preflight(self, stream: ByteStream) -> None:
-        acting = ", POST" if self.origins.admits(self._headers) else ""
-        headers = [
-            ("Allow", "GET, HEAD, POST, OPTIONS"),
-            ("Access-Control-Allow-Methods", f"GET, HEAD{acting}"),
-            ("Access-Control-Allow-Headers", f"Content-Type, {ENVELOPE.title()}"),
-            ("Access-Control-Max-Age", "600"),
-        ]
-        self._respond(stream, 204, TEXT, b"", headers)
-
-    def _respond(
-        self, stream: ByteStream, status: int, kind: str, body: bytes | None, more: Headers = ()
-    ) -> None:
-        """Write a whole response. No body: only the head was asked for, and nobody knows it."""
-        self._wish = None
-        headers = [*_COMMON, *more]
-        if status != 204:
-            headers.append(("Content-Type", kind))
-            if body is not None:
-                headers.append(("Content-Length", str(len(body))))
+        last = []
         if not self._stays:
-            headers.append(("Connection", "close"))
+            last.append(("Connection", "close"))
             self.finished = True
         try:
-            head = response_head(status, headers)
+            head = response.head(*last)
         except LocalProtocolError as error:
-            body = _encoded(f"{error}\n")
-            size = ("Content-Length", str(len(body)))
-            head = response_head(500, [*_COMMON, ("Content-Type", TEXT), size])
-        if body and not self._head_only:
-            stream.write(head, body)
+            response = complaint(500, str(error))
+            head = response.head()
+        if response.body and not self._head_only:
+            stream.write(head, response.body)
         else:
             stream.write(head)
 
@@ -376,23 +301,17 @@ class Http(Carrier):
 
     def _begin_reading(self, stream: ByteStream, wish: Wish) -> None:
         """Answer `/r`: everything that the port writes, from now on."""
-        from yarpy.carriers.http_page import stream_head
-        from yarpy.carriers.http_stream import KINDS
-
         self._pixels = wish.pixels
-        policy = [self._policy()] if wish.form == "page" else []
-        self._begin_stream(stream, wish.form, [("Content-Type", KINDS[wish.form]), *policy])
-        if wish.form == "page":
-            self._write_part(stream, stream_head(self.route.target))
-        elif wish.form == "events":
-            self._write_part(stream, b": reading\n\n")
+        self._begin_stream(stream, wish.form, self._responder.reading(wish))
 
-    def _begin_stream(self, stream: ByteStream, form: Form, headers: Headers) -> None:
-        """The head of a response that does not end; the connection becomes an output."""
+    def _begin_stream(self, stream: ByteStream, form: Form, response: Response) -> None:
+        """The beginning of a response that does not end; the connection becomes an output."""
         self._streaming, self._form = True, form
         self.acks, self.lossy, self.backlog = False, True, 16
         way = ("Transfer-Encoding", "chunked") if self._modern else ("Connection", "close")
-        stream.write(response_head(200, [*_COMMON, *headers, way]))
+        stream.write(response.head(way))
+        if response.body:
+            self._write_part(stream, response.body)
 
     def _show_pictures(self, stream: ByteStream, target: str) -> None:
         """A browser asks for MJPEG on a connection that it has used for a page before."""
@@ -452,26 +371,3 @@ def _complete(stream: ByteStream) -> bool:
 def _envelope(headers: Mapping[str, str]) -> str:
     text = headers.get(ENVELOPE, "")
     return text if text.isascii() and text.isprintable() else ""
-
-
-def _json_body(value: object, wish: Wish) -> bytes:
-    from yarpy.data.json import to_json
-
-    if isinstance(value, Lines):
-        value = ["list", *value]
-    return (to_json(value, wish.outer) + "\n").encode()
-
-
-def _text_body(value: object) -> bytes:
-    return value.to_text() if isinstance(value, Lines) else codec.encode_text(value) + b"\r\n"
-
-
-def _lines(value: object) -> list[str]:
-    """What a reply is on a page."""
-    if isinstance(value, Lines):
-        return list(value)
-    return [codec.encode_text(value).decode("utf-8", "surrogateescape")]
-
-
-def _encoded(text: str) -> bytes:
-    return text.encode("utf-8", "replace")
