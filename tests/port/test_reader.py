@@ -209,3 +209,89 @@ def test_strict_port_counts_what_waits(names: LocalNames) -> None:
         assert in_.waiting == 10
         in_.read(timeout=5)
         assert in_.waiting == 9
+
+
+# ------------------------------------------------------------------------- questions, threads
+
+
+def test_several_threads_read_and_answer_side_by_side(names: LocalNames) -> None:
+    """Nobody's `read` closes the question that another thread is still at."""
+    with Port("/in", names=names) as in_:
+
+        def work() -> None:
+            for message in in_:
+                time.sleep(0.001)  # another thread reads meanwhile
+                message.reply([message.value[0] + 1])
+
+        answers: list[object] = []
+
+        def ask(number: int) -> None:
+            with RpcClient("/in", names=names, name=f"/c{number}") as client:
+                answers.extend(client.call([n], timeout=20)[0] - n for n in range(20))
+
+        workers = [threading.Thread(target=work) for _ in range(3)]
+        clients = [threading.Thread(target=ask, args=(number,)) for number in range(3)]
+        for thread in (*workers, *clients):
+            thread.start()
+        for thread in clients:
+            thread.join(60)
+        assert answers == [1] * 60
+    for thread in workers:
+        thread.join(20)
+
+
+def _hold(in_: Port, held: threading.Event, free: threading.Event) -> None:
+    """Answer every question but `hold`, which is left when `free`."""
+    for message in in_:
+        if message.value[0] == "hold":
+            held.set()
+            free.wait(20)
+        else:
+            message.reply(["yes"])
+
+
+def test_question_left_open_is_closed_though_another_connection_came(names: LocalNames) -> None:
+    held, free = threading.Event(), threading.Event()
+    with Port("/in", names=names) as in_, RpcClient("/in", names=names) as client:
+        reader = threading.Thread(target=_hold, args=(in_, held, free))
+        reader.start()
+        wait_until(lambda: client.call("x") and in_._hub.inputs[0].wanted, what="the turn")
+        answers: list[object] = []
+        asker = threading.Thread(target=lambda: answers.append(client.call("hold", timeout=20)))
+        asker.start()
+        assert held.wait(5)
+        with RpcClient("/in", names=names) as other:
+            free.set()
+            assert other.call("x", timeout=20) == ["yes"]
+        asker.join(20)
+        assert answers == [[]]
+    reader.join(20)
+
+
+def test_question_of_an_asker_who_left_is_no_error_of_the_next_read(names: LocalNames) -> None:
+    held, free = threading.Event(), threading.Event()
+    with Port("/in", names=names) as in_:
+        reader = threading.Thread(target=_hold, args=(in_, held, free))
+        reader.start()
+        with RpcClient("/in", names=names) as client:
+            wait_until(lambda: client.call("x") and in_._hub.inputs[0].wanted, what="the turn")
+            with pytest.raises(Timeout):
+                client.call("hold", timeout=0.05)
+        free.set()
+        with RpcClient("/in", names=names) as other:
+            assert other.call("x", timeout=20) == ["yes"]
+    reader.join(20)
+
+
+def test_question_of_a_thread_that_ended_is_closed_by_the_next_read(names: LocalNames) -> None:
+    with Port("/in", names=names) as in_, RpcClient("/in", names=names) as client:
+        reader = threading.Thread(target=in_.read)
+        reader.start()
+        answers: list[object] = []
+        asker = threading.Thread(target=lambda: answers.append(client.call("x", timeout=20)))
+        asker.start()
+        reader.join(20)
+        with pytest.raises(Timeout):
+            in_.read(timeout=0)
+        asker.join(20)
+        assert answers == [[]]

@@ -150,7 +150,7 @@ class Inbound:
                 continue  # the reader is waiting for data right now
             try:
                 gone = time.perf_counter() - self.visited > PARKED
-                if not self.wanted or (gone and self._answering is None):
+                if (gone or not self.wanted) and self._answering is None:
                     self.wanted = self._leaving = False
                     self._limit(None)
             finally:

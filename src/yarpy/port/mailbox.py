@@ -183,11 +183,16 @@ class _Offer:
 
 
 class Rendezvous(Mailbox):
-    """A plain port: each connection waits until its message was taken, and answered if it asks."""
+    """A plain port: each connection waits until its message was taken, and answered if it asks.
+
+    Several threads may read, and answer side by side: each is done with its own messages only.
+    """
 
     def __init__(self) -> None:
         super().__init__()
-        self._pending: _Offer | None = None
+        # Questions that were taken, each with the thread that answers it. Changed by single
+        # dictionary operations only, by the thread itself and by who finds it gone.
+        self._pending: dict[threading.Thread, _Offer] = {}
 
     def put(self, link: Inbound, message: Message) -> None:
         offer = _Offer(link, message)
@@ -217,17 +222,28 @@ class Rendezvous(Mailbox):
         return super().take(timeout)
 
     def settle(self) -> None:
-        """The reader is done with the message it took last; unanswered questions get no answer."""
-        pending, self._pending = self._pending, None
-        if pending is not None:
-            pending.done.set()
+        """This thread is done with the message it took last; unanswered questions get no answer,
+        nor do those of threads that have ended."""
+        if not self._pending:
+            return
+        own = threading.current_thread()
+        for thread in tuple(self._pending):
+            if thread is own or not thread.is_alive():
+                self._leave(thread)
+
+    def _leave(self, thread: threading.Thread) -> None:
+        offer = self._pending.pop(thread, None)
+        if offer is not None:
+            offer.done.set()
 
     def _next(self, token: object) -> Message | None:
         assert isinstance(token, _Offer)
         if token.message.answer is None:
             token.done.set()
         else:
-            self._pending = token
+            self._pending[threading.current_thread()] = token
+            if self.stopped:
+                token.done.set()  # `interrupt` may have looked before it was there
         return token.message
 
     def _discard(self, token: object) -> None:
@@ -237,7 +253,8 @@ class Rendezvous(Mailbox):
 
     def interrupt(self) -> None:
         super().interrupt()
-        self.settle()
+        for thread in tuple(self._pending):
+            self._leave(thread)
 
 
 class Callback(Mailbox):

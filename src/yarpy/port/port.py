@@ -20,7 +20,7 @@ from yarpy.wire.stream import DEFAULT_LIMIT
 class Port(ReadingPort):
     """A plain port: every message is read once, and its sender waits until it was.
 
-    A question that was read and is left unanswered is closed by the next `read`.
+    A question that was read and is left unanswered is closed by the next `read` of that thread.
 
     name: begins with `/`; `...` asks the name server for one; "" opens an unregistered port.
     names: a name client, None for the default (see `yarpy.NameServer`, `yarpy.LocalNames`).

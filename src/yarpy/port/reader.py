@@ -6,10 +6,11 @@ around one connection: it saves waking a second thread for every message.
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Iterator
 
-from yarpy.errors import PortClosed, Timeout
+from yarpy.errors import PortClosed, Timeout, YarpError
 from yarpy.link.inbound import PATIENCE, Inbound
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Latest
@@ -69,7 +70,8 @@ class Reader:
         self._spin = spin
         self._sole: Inbound | None = None
         self._left = 0.0
-        self._asking: Message | None = None
+        # Questions read straight from a link and not answered yet, each with the thread at it.
+        self._asking: dict[threading.Thread, tuple[Inbound, Message]] = {}
         self._settle = getattr(hub.mailbox, "settle", None)
         self._newest = isinstance(hub.mailbox, Latest)
         self._quick = _NEWEST_QUICK if self._newest else _QUICK
@@ -143,11 +145,13 @@ class Reader:
                 message = link.fetch(until, self._spin)
                 if message is not None:
                     if message.answer is not None:
-                        self._asking = message
                         if self._settle is None:
                             link.settle(message)
+                        else:
+                            self._asking[threading.current_thread()] = link, message
                     if hub.mailbox.stopped:
-                        hub.mailbox.put(link, message)
+                        hub.mailbox.put(link, message)  # which drops and counts it
+                        _leave_unanswered(link, message)
                         return None
                     return message
                 if deadline is not None and time.monotonic() >= deadline:
@@ -157,9 +161,21 @@ class Reader:
             link.give_back()
 
     def _finish(self) -> None:
-        """The reader is done with the message it took last."""
+        """This thread is done with the message it took last, and threads that ended with theirs."""
         if self._settle is not None:
             self._settle()
-        asking, self._asking = self._asking, None
-        if asking is not None and asking.answer is not None and self._sole is not None:
-            self._sole.settle(asking)
+        if not self._asking:
+            return
+        own = threading.current_thread()
+        for thread in tuple(self._asking):
+            if thread is own or not thread.is_alive():
+                link, message = self._asking.pop(thread, (None, None))
+                if link is not None and message is not None:
+                    _leave_unanswered(link, message)
+
+
+def _leave_unanswered(link: Inbound, message: Message) -> None:
+    try:
+        link.settle(message)
+    except YarpError:
+        pass  # who asked has gone
