@@ -254,3 +254,13 @@ def test_questions_leave_no_trace(names: LocalNames, caplog: pytest.LogCaptureFi
         network.admin("/in", "ver", names=names)
         wait_until(lambda: not port._hub.inputs)
         assert caplog.records == []
+
+
+def test_connection_to_an_address_with_a_name_can_be_ended_by_it(names: LocalNames) -> None:
+    with yarpy.Port("/out", names=names) as out, yarpy.Port("/in", names=names) as in_:
+        target = f"tcp://{in_.address}/in"
+        yarpy.connect("/out", target, names=names)
+        assert [link.target for link in out.outputs] == ["/in"]
+        assert yarpy.is_connected("/out", target, names=names)
+        assert yarpy.disconnect("/out", target, names=names)
+        assert not out.outputs

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from yarpy.contact import Contact, base_carrier, check_name, parse_contact
+from yarpy.contact import Contact, base_carrier, check_name, masked, parse_contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -19,14 +19,17 @@ from yarpy.errors import (
     AddressError,
     LinkClosed,
     LocalProtocolError,
+    LoginRefused,
     RemoteProtocolError,
     Timeout,
     UnknownName,
+    YarpError,
 )
 from yarpy.link.handshake import find_carrier
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
 from yarpy.port import probe
+from yarpy.port.command import NOT_ADMITTED
 from yarpy.port.wiring import unknown
 
 _POLL = 0.05  # seconds between looks while waiting
@@ -193,7 +196,7 @@ def connect(
     """Connect two ports; the connected port's own words are returned. An existing one is remade.
 
     `source` or `target` may be `topic://name`. With `timeout`, wait for ports that are not there
-    yet. Raises UnknownName, UnknownPlugin, LinkClosed, LocalProtocolError (refused).
+    yet. Raises UnknownName, UnknownPlugin, LinkClosed, LoginRefused, LocalProtocolError (refused).
     """
     if carrier:
         find_carrier(carrier)
@@ -213,16 +216,18 @@ def _connect(source: str, target: str, carrier: str | None, names: NameClient | 
         ask_server(names, ["subscribe", _decorated(source, ""), _decorated(target, carrier or "")])
         return "connection to topic added."
     active = pairing.source if pairing.pull else pairing.target
-    address = f"/{active.address}" if active.reachable else active.name
+    address = f"/{active.address}{active.name}" if active.reachable else active.name
     reply = pairing.admin(Vocab("add"), f"{pairing.carrier}:/{address}")
     text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
     if reply and reply[0] == 0:
         return text
-    # The other end may not be there yet: a camera that still starts, a program that died.
-    kind = LinkClosed if text.startswith("Cannot connect") else LocalProtocolError
-    raise kind(
-        f'"{source}" -> "{target}" over {pairing.carrier} was refused: {text or "no answer"}'
-    )
+    kind: type[YarpError] = LocalProtocolError
+    if text.startswith("Cannot connect"):
+        kind = LinkClosed  # it may not be there yet: a camera that still starts
+    elif text.startswith(NOT_ADMITTED):
+        kind = LoginRefused
+    way = masked(f'"{source}" -> "{target}" over {pairing.carrier}')
+    raise kind(f"{way} was refused: {text or 'no answer'}")
 
 
 def _decorated(text: str, carrier: str) -> str:
@@ -247,7 +252,7 @@ def is_connected(
         found = Pairing(source, target, None, names).existing()
     except (UnknownName, LinkClosed):
         return False
-    return bool(found) and carrier in (None, found)
+    return bool(found) and (carrier is None or masked(carrier) == found)
 
 
 def exists(name: str, target: str | None = None, *, names: NameClient | None = None) -> bool:

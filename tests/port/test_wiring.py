@@ -47,3 +47,16 @@ def test_nearest_name_is_suggested(names: LocalNames) -> None:
 def test_own_multicast_group_does_not_count_as_a_name(names: LocalNames) -> None:
     with pytest.raises(UnknownName), Port("/out", names=names) as out:
         out.connect("/nobody", "mcast")
+
+
+@pytest.mark.parametrize("end", ["", "/", "/in"])
+def test_carrier_in_front_of_an_address_counts(names: LocalNames, end: str) -> None:
+    with Port("/in", names=names) as in_, Port("/out", names=names) as out:
+        out.connect(f"text://{in_.address}{end}")
+        assert [link.carrier for link in out.outputs] == ["text"]
+
+
+def test_unknown_carrier_in_front_of_an_address(names: LocalNames) -> None:
+    with Port("/in", names=names) as in_, Port("/out", names=names) as out:
+        with pytest.raises(UnknownPlugin, match="texxt"):
+            out.connect(f"texxt://{in_.address}/")

@@ -5,9 +5,16 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from yarpy.contact import parse_contact
+from yarpy.contact import masked, parse_contact
 from yarpy.data.text import plain_text
-from yarpy.errors import LinkClosed, LocalProtocolError, UnknownName, UnknownPlugin, YarpError
+from yarpy.errors import (
+    LinkClosed,
+    LocalProtocolError,
+    LoginRefused,
+    UnknownName,
+    UnknownPlugin,
+    YarpError,
+)
 from yarpy.link.handshake import find_carrier
 from yarpy.port import command, probe
 
@@ -19,8 +26,10 @@ _POLL = 0.05
 
 def connect(hub: Hub, target: str, carrier: str, timeout: float | None) -> None:
     """Connect `hub` to `target`; see Port.connect."""
-    kind = find_carrier(carrier)
     wanted = parse_contact(target)
+    if wanted.reachable and ":/" in target:
+        carrier = wanted.carrier  # as with names, what is written in front of it counts
+    kind = find_carrier(carrier)
     text = target if wanted.carrier and not wanted.reachable else command.joined(target, carrier)
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
@@ -28,16 +37,20 @@ def connect(hub: Hub, target: str, carrier: str, timeout: float | None) -> None:
             command.connect(hub, text)
             return
         except command.Refused as error:
-            if deadline is None or time.monotonic() >= deadline:
+            # A camera locks those out who try a wrong password again and again.
+            final = isinstance(error.__cause__, LoginRefused)
+            if final or deadline is None or time.monotonic() >= deadline:
                 raise explained(hub, target, kind.name, error) from error.__cause__
         time.sleep(_POLL)
 
 
 def explained(hub: Hub, target: str, carrier: str, error: command.Refused) -> YarpError:
     """The error of the tree that fits a refusal."""
-    cause, line = error.__cause__, str(error)
+    cause, line, target = error.__cause__, str(error), masked(target)
     if isinstance(cause, UnknownPlugin):
         return cause
+    if isinstance(cause, LoginRefused):
+        return LoginRefused(f'"{hub.name}" is not admitted to "{target}": {cause}')
     if line.startswith("Do not know"):
         return unknown(target, hub.service())
     if line.startswith("Cannot connect"):
