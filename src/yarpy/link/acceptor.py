@@ -102,6 +102,12 @@ class Acceptor:
             log.error("%s: a connection is refused: %s", self._name, error)
             sock.close()
 
+    def abandon(self) -> None:
+        """Give back this process's copies of the sockets, in a process without our thread."""
+        self._listener.release()
+        for sock in self._silent.values():
+            sock.close()
+
     def close(self) -> None:
         """Stop listening; connections that are being served are not touched."""
         self._listener.close()

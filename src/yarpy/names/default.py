@@ -42,6 +42,10 @@ class DefaultNames:
         with self._lock:
             self._stack = [item for item in self._stack if item is not client]
 
+    def start_over(self) -> None:
+        """Go on in a forked process, where the thread that had the lock may be missing."""
+        self._lock = threading.Lock()
+
     def current(self) -> NameClient:
         """The service to use now. Raises NoNameServer when none is configured."""
         with self._lock:

@@ -146,6 +146,8 @@ class BasePort:
         hub = self._hub
         if hub.closing or hub.interrupted:
             state = "closed" if hub.closing else "interrupted"
+            if hub.inherited:
+                state = "a port of the process that this one was forked from; open one here"
             raise PortClosed(f'"{hub.name}" is {state}')
 
 

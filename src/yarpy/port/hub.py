@@ -31,7 +31,7 @@ from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.configuration import port_name, port_number
 from yarpy.names.default import DEFAULT, secret
-from yarpy.port import admin, command, repair
+from yarpy.port import admin, command, fork, repair
 from yarpy.port.dialling import Dialling
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Mailbox
@@ -79,6 +79,7 @@ class Hub:
         self.inputs: tuple[Inbound, ...] = ()
         self.outputs: tuple[Outbound, ...] = ()
         self.closing = False
+        self.inherited = False  # from the process that this one was forked from
         self.interrupted = False
         self.on_admin: Callable[[Message], object] | None = None
         self.on_page: Pages | None = None  # what the program shows to browsers
@@ -135,6 +136,7 @@ class Hub:
         self.name = contact.name
         if names is not None:
             self.describe(names)
+        fork.prepare()
         repair.watch(self)
         log.info("Port %s active at %s", self.name, f"tcp://{contact.address}/")
 
@@ -150,8 +152,8 @@ class Hub:
             )
 
     def _listen(self, port: int) -> None:
-        self._acceptor = Acceptor(self.name, port, self._serve, speaks_first=bool(self.key))
-        self.port = self._acceptor.port
+        self.acceptor = Acceptor(self.name, port, self._serve, speaks_first=bool(self.key))
+        self.port = self.acceptor.port
 
     def describe(self, names: NameClient) -> None:
         """Tell a name service what we are, and that we listen."""
@@ -174,7 +176,7 @@ class Hub:
     @property
     def thread_id(self) -> int:
         """The kernel's id of the thread that accepts connections."""
-        return self._acceptor.thread.native_id or -1
+        return self.acceptor.thread.native_id or -1
 
     # -- connections in ---------------------------------------------------------------------------
 
@@ -405,7 +407,7 @@ class Hub:
         for link in self.inputs:
             if link.thread is not None and link.thread is not threading.current_thread():
                 link.thread.join(max(0.0, deadline - time.monotonic()))
-        self._acceptor.close()
+        self.acceptor.close()
         self.monitoring.close()
         if self.registered and self.names is not None:
             try:

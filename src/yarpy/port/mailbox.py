@@ -30,6 +30,7 @@ class Mailbox:
     def __init__(self) -> None:
         self.stopped = False
         self.drops = 0
+        self._why = "the port was closed or interrupted while reading"
         self._ready: SimpleQueue[object] = SimpleQueue()
         # A message goes in, or the mailbox stops: what came in between would wait for ever.
         self._gate = threading.Lock()
@@ -47,7 +48,7 @@ class Mailbox:
         if token is _STOP:
             if self.stopped:
                 self._ready.put(_STOP)  # for the next reader
-                raise PortClosed("the port was closed or interrupted while reading")
+                raise PortClosed(self._why)
             return self.take(timeout)  # left over from an interrupt that was resumed
         return self._next(token)
 
@@ -74,6 +75,14 @@ class Mailbox:
         with self._gate:
             self._clear()
             self.stopped = False
+
+    def abandon(self, why: str) -> None:
+        """Stop for ever, in a process where threads that had a lock may be missing."""
+        self._gate = threading.Lock()
+        self._ready = SimpleQueue()
+        self._why = why
+        self.stopped = True
+        self._ready.put(_STOP)
 
     def _next(self, token: object) -> Message | None:
         raise NotImplementedError

@@ -54,14 +54,24 @@ class Repairer:
     """The thread and its lists."""
 
     def __init__(self) -> None:
+        self._lines: dict[int, tuple[YarpNameClient, object]] = {}
+        self._begin()
+
+    def _begin(self) -> None:
         self._hubs: list[Hub] = []
         self._lost: list[_Lost] = []
         self._dead_servers: set[int] = set()
-        self._lines: dict[int, tuple[YarpNameClient, object]] = {}
         self._pulse = Pulse(self._lose)
         self._thread: threading.Thread | None = None
         self._wake = threading.Event()
         self._lock = threading.Lock()  # ports come and go from any thread
+
+    def start_over(self) -> list[Hub]:
+        """Begin anew in a forked process, which has no thread of ours; the ports of before."""
+        left = self._hubs
+        self._drop_lines()
+        self._begin()
+        return left
 
     # -- what ports say ---------------------------------------------------------------------------
 
