@@ -70,7 +70,7 @@ def test_connecting_in_every_spelling(names: LocalNames) -> None:
             assert in_.wait_for_inputs(timeout=5)
             out.write([target])
             assert in_.read(timeout=5).value == [target]
-            assert out.disconnect(connection.target)
+            assert out.disconnect(target)
             wait_until(lambda: not in_.inputs)
         assert not out.disconnect("/in")
 

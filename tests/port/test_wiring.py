@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from support.wait import wait_until
 
 from yarpy.errors import LinkClosed, LocalProtocolError, UnknownName, UnknownPlugin, YarpError
 from yarpy.names.local import LocalNames
 from yarpy.port import wiring
+from yarpy.port.buffered import BufferedPort
 from yarpy.port.command import Refused
 from yarpy.port.port import Port
 
@@ -59,3 +61,14 @@ def test_carrier_in_front_of_an_address_counts(names: LocalNames, end: str) -> N
 def test_unknown_carrier_in_front_of_an_address(names: LocalNames) -> None:
     with Port("/out", names=names) as out, pytest.raises(UnknownPlugin, match="texxt"):
         out.connect("texxt://127.0.0.1:10002/")
+
+
+def test_what_pulls_is_ended_by_who_has_made_it(names: LocalNames) -> None:
+    """A port that watches a camera has an input from it, and ends it in the words it began with."""
+    with Port("/camera", names=names) as camera, BufferedPort("/view", names=names) as view:
+        for target in ("/camera", f"/{camera.address}", f"mjpeg://{camera.address}/"):
+            view.connect(target, "mjpeg")
+            assert view.inputs
+            assert view.disconnect(target)
+            wait_until(lambda: not view.inputs and not camera.outputs)
+            assert not view.disconnect(target)

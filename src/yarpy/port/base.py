@@ -74,9 +74,8 @@ class BasePort:
         return self
 
     def disconnect(self, target: str) -> bool:
-        """End the connections to `target`; whether there were any."""
-        found, _ = command.disconnect_output(self._hub, target)
-        return bool(found)
+        """End what `connect` with this target has made; whether there was anything."""
+        return wiring.disconnect(self._hub, target)
 
     def listen_to(self, source: str, carrier: str = "tcp") -> Self:
         """Ask the port `source` to send here. Raises UnknownName, LinkClosed,

@@ -1,4 +1,4 @@
-"""Connecting a port of ours, with errors for programs where `command` has lines for people."""
+"""Connecting and disconnecting a port of ours, with errors for programs where `command` has lines for people."""
 
 from __future__ import annotations
 
@@ -42,6 +42,18 @@ def connect(hub: Hub, target: str, carrier: str, timeout: float | None) -> None:
             if final or deadline is None or time.monotonic() >= deadline:
                 raise explained(hub, target, kind.name, error) from error.__cause__
         time.sleep(_POLL)
+
+
+def disconnect(hub: Hub, target: str) -> bool:
+    """End what `connect` has made, whichever way the messages go; see Port.disconnect."""
+    wanted = parse_contact(target)
+    name = wanted.name or f"/{wanted.address}/"
+    found, _ = command.disconnect_output(hub, name)
+    for link in hub.inputs:
+        if link.route.source == name and not link.carrier.push:
+            command.close_input(hub, link)
+            found = True
+    return found
 
 
 def explained(hub: Hub, target: str, carrier: str, error: command.Refused) -> YarpError:
