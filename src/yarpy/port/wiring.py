@@ -1,4 +1,5 @@
-"""Connecting and disconnecting a port of ours, with errors for programs where `command` has lines for people."""
+"""Connecting and disconnecting a port of ours: errors for programs where `command` has lines for
+people."""
 
 from __future__ import annotations
 
