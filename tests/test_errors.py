@@ -22,6 +22,7 @@ TREE = [
     ("Truncated", errors.DecodeError),
     ("LocalProtocolError", errors.YarpError),
     ("RemoteProtocolError", errors.YarpError),
+    ("LoginRefused", errors.RemoteProtocolError),
 ]
 
 

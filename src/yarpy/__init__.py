@@ -63,6 +63,7 @@ _WHERE = {
     "Truncated": "yarpy.errors",
     "LocalProtocolError": "yarpy.errors",
     "RemoteProtocolError": "yarpy.errors",
+    "LoginRefused": "yarpy.errors",
 }
 
 __all__ = ["__version__", *_WHERE]
@@ -88,6 +89,7 @@ if TYPE_CHECKING:
     from yarpy.errors import DecodeError as DecodeError
     from yarpy.errors import LinkClosed as LinkClosed
     from yarpy.errors import LocalProtocolError as LocalProtocolError
+    from yarpy.errors import LoginRefused as LoginRefused
     from yarpy.errors import NoNameServer as NoNameServer
     from yarpy.errors import PortClosed as PortClosed
     from yarpy.errors import RemoteProtocolError as RemoteProtocolError

@@ -12,6 +12,7 @@
     |   `-- Truncated                    ... because they end too early
     |-- LocalProtocolError               we asked for the impossible (a reply where none can go)
     `-- RemoteProtocolError              the peer broke the rules: its link closes, the port lives
+        `-- LoginRefused                 ... or has its own rules: it wants another name, password
 
 Rules: a message says what happened and what to do next; names come in quotes, as typed.
 """
@@ -69,3 +70,7 @@ class LocalProtocolError(YarpError):
 
 class RemoteProtocolError(YarpError):
     """The peer broke the rules of its protocol; its link is closed."""
+
+
+class LoginRefused(RemoteProtocolError):
+    """The peer wants a name and a password, or others than ours; asking again does not help."""

@@ -18,6 +18,10 @@ LINES = [
     (b"HOST:x\n\n", {"host": "x"}),
     (b"a : b:c \r\nA:d\r\n\r\n", {"a": "d"}),
     (b"no colon\r\n\r\n", {"no colon": ""}),
+    (
+        b"WWW-Authenticate: A b=c\r\nx: y\r\nwww-authenticate:D\r\n\r\n",
+        {"www-authenticate": "A b=c, D", "x": "y"},
+    ),
     (b"x: \xe9\r\n\r\n", {"x": "\xe9"}),
 ]
 

@@ -19,7 +19,7 @@ from yarpy.data.image import Image
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, YarpError
 from yarpy.link.handshake import recognise
 from yarpy.testing import CarrierConformance, Dialogue, End, said
-from yarpy.wire.effects import Steps
+from yarpy.wire.effects import Open, Steps
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.stream import ByteStream
 
@@ -93,36 +93,71 @@ def test_frames_of_cpp_are_understood(piece: int) -> None:
     assert carrier.lost == 0
 
 
-def dialled(carrier: str, answer: bytes) -> tuple[Mjpeg, bytes, str]:
-    """A camera's answer to a request: the carrier, what it asked, why it gives up."""
+def dialled(carrier: str, *answers: bytes) -> tuple[Mjpeg, list[bytes], str]:
+    """A camera's answers, each in a connection of its own: the carrier, what it asked, and why it
+    gives up, if it does."""
     end, watcher = End(), Mjpeg(Route("", "", carrier, 80, "cam"))
     end.begin(watcher.greet(end.stream))
-    asked = end.take()
-    with pytest.raises(RemoteProtocolError) as caught:
-        end.feed(answer)
-    return watcher, asked, str(caught.value)
+    asked = [end.take()]
+    try:
+        for head in answers:
+            end.feed(head)
+            asked.append(end.take())
+    except RemoteProtocolError as error:
+        return watcher, asked, str(error)
+    assert end.opened == [Open("tcp", listen=False)] * (len(answers) - 1)
+    return watcher, asked, ""
 
 
-WANTS = b'HTTP/1.1 401 Unauthorized\r\nWWW-Authenticate: %s realm="cam"\r\n\r\n'
+WANTS = b'HTTP/1.1 401 Unauthorized\r\nWWW-Authenticate: %s realm="cam"%s\r\n\r\n'
+BASIC = WANTS % (b"Basic", b"")
+DIGEST = WANTS % (b"Digest", b', nonce="77", qop="auth"')
+SECRET = "mjpeg+path.video+user.me%2Byou+password.p.a%3As"
 
 
 def test_name_and_password() -> None:
-    secret = "mjpeg+path.video+user.me%2Byou+password.p.a%3As"
-    watcher, asked, why = dialled(secret, WANTS % b"Basic")
-    assert b"\r\nAuthorization: Basic %s\r\n" % b64encode(b"me+you:p.a:s") in asked
-    assert asked.startswith(b"GET /video HTTP/1.0\r\n")
-    assert "does not accept" in why
-    assert watcher.route.carrier == "mjpeg+path.video+user.me%2Byou+password.***"
-    assert watcher.route.secret == secret
-    assert "p.a" not in repr(watcher.route) + str(watcher.route) + why
+    """The camera asks first; then it gets what it asked for, on a connection of its own."""
+    clear = b"\r\nAuthorization: Basic %s\r\n\r\n" % b64encode(b"me+you:p.a:s")
+    hashed = b'\r\nAuthorization: Digest username="me+you"'
+    for wants, login in ((BASIC, clear), (DIGEST, hashed)):
+        watcher, asked, why = dialled(SECRET, wants, answer())
+        assert asked[0] == request("mjpeg+path.video", "cam", 80)
+        assert asked[1].startswith(asked[0][:-2])
+        assert login in asked[1]
+        assert asked[1].endswith(b"\r\n\r\n")
+        assert (asked[2:], why) == ([b""], "")
+        assert watcher.route.carrier == "mjpeg+path.video+user.me%2Byou+password.***"
+        assert watcher.route.secret == SECRET
+        assert "p.a" not in repr(watcher.route) + str(watcher.route) + why
 
 
-def test_password_that_is_wanted() -> None:
-    for kind, words in ((b"Basic", "user.<name>+password.<word>"), (b"Digest", "Digest")):
-        watcher, asked, why = dialled("mjpeg+path.video", WANTS % kind)
-        assert words in why
-        assert b"Authorization" not in asked
-        assert watcher.route.carrier == "mjpeg+path.video"
+def test_open_camera_is_told_no_password() -> None:
+    _, asked, why = dialled(SECRET, answer())
+    assert asked == [request("mjpeg+path.video", "cam", 80), b""]
+    assert why == ""
+
+
+def test_digest_is_for_what_is_asked() -> None:
+    _, asked, _ = dialled("mjpeg+path.a/b?c=d,e+user.u+password.p", DIGEST, answer())
+    assert asked[1].startswith(b"GET /a/b?c=d,e HTTP/1.0\r\n")
+    assert b' uri="/a/b?c=d,e",' in asked[1]
+
+
+@pytest.mark.parametrize("wants", [BASIC, DIGEST])
+def test_wrong_password_is_tried_once(wants: bytes) -> None:
+    watcher, asked, why = dialled(SECRET, wants, wants)
+    assert len(asked) == 2
+    assert "does not accept this name and password" in why
+    assert "p.a" not in why
+    assert "***" in watcher.route.carrier
+
+
+@pytest.mark.parametrize("wants", [BASIC, DIGEST])
+def test_password_that_is_wanted(wants: bytes) -> None:
+    watcher, asked, why = dialled("mjpeg+path.video", wants)
+    assert "user.<name>+password.<word>" in why
+    assert len(asked) == 1
+    assert watcher.route.carrier == "mjpeg+path.video"
 
 
 # ------------------------------------------------------------------------------------ the sender

@@ -7,10 +7,8 @@ import socket
 import subprocess
 import threading
 import time
-from base64 import b64encode
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +17,7 @@ from support.capture import load_capture
 from support.port import free_port
 from support.process import Process
 from support.wait import wait_until
+from support.web_camera import CARRIER, PICTURE, WebCamera, is_the_picture
 
 import yarpy
 from yarpy import network
@@ -26,69 +25,7 @@ from yarpy.data import jpeg
 from yarpy.names.default import secret
 from yarpy.port.repair import pending
 
-Y, X = np.mgrid[:48, :64]
-PICTURE = yarpy.Image(np.stack([X * 3, Y * 5, X + Y], -1).astype("u1"))
 PATIENCE = 10.0
-
-
-class Camera(ThreadingHTTPServer):
-    """A web camera with ten pictures a second at /mjpg/video.mjpg?camera=1, and nothing else."""
-
-    daemon_threads = True
-    allow_reuse_address = True
-
-    def __init__(self, port: int = 0) -> None:
-        super().__init__(("127.0.0.1", port), Show)
-        self.asked: list[str] = []
-        self.login = ""  # name:password, if it wants one
-        self.shown: list[socket.socket] = []
-        threading.Thread(target=self.serve_forever, args=(0.02,), daemon=True).start()
-
-    @property
-    def name(self) -> str:
-        return f"/127.0.0.1:{self.server_port}"
-
-    def leave(self) -> None:
-        self.shutdown()
-        self.server_close()
-        for sock in self.shown:
-            with suppress(OSError):
-                sock.shutdown(socket.SHUT_RDWR)
-
-
-class Show(BaseHTTPRequestHandler):
-    server: Camera
-
-    def do_GET(self) -> None:
-        self.server.asked.append(self.path)
-        if self.path != "/mjpg/video.mjpg?camera=1":
-            self.send_error(404)
-            return
-        login = f"Basic {b64encode(self.server.login.encode()).decode()}"
-        if self.server.login and self.headers["Authorization"] != login:
-            self.send_response(401)
-            self.send_header("WWW-Authenticate", 'Basic realm="lab"')
-            self.end_headers()
-            return
-        assert self.headers["Host"] == f"127.0.0.1:{self.server.server_port}"
-        self.server.shown.append(self.connection)
-        self.send_response(200)
-        self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=frame")
-        self.end_headers()
-        data = jpeg.encode(PICTURE)
-        try:
-            while True:
-                self.wfile.write(b"--frame\r\ncontent-length: %d\r\n" % len(data))
-                self.wfile.write(b"content-type: image/jpeg\r\n\r\n" + data + b"\r\n")
-                time.sleep(0.1)
-        except OSError:
-            pass
-
-    def log_message(self, *args: object) -> None:
-        pass
-
-
-CARRIER = "mjpeg+path.mjpg/video.mjpg?camera=1"
 
 
 @contextmanager
@@ -98,14 +35,9 @@ def viewer(strict: bool = False) -> Iterator[tuple[yarpy.LocalNames, yarpy.Buffe
         yield names, view
 
 
-def is_the_picture(image: yarpy.Image) -> bool:
-    difference = image.array.astype(int) - PICTURE.array.astype(int)
-    return image.code == "rgb" and float(np.abs(difference).mean()) < 4
-
-
 def test_camera_is_seen_comes_back_and_is_let_go() -> None:
     with viewer() as (names, view):
-        camera = Camera()
+        camera = WebCamera()
         name, port = camera.name, camera.server_port
         line = network.connect(name, "/view", CARRIER, names=names)
         assert line == f"Added connection from /view to {CARRIER}:/{name}"
@@ -115,7 +47,7 @@ def test_camera_is_seen_comes_back_and_is_let_go() -> None:
         assert network.is_connected(name, "/view", names=names)
         camera.leave()
         wait_until(lambda: not view.inputs, PATIENCE)
-        camera = Camera(port)
+        camera = WebCamera(port)
         wait_until(lambda: view.inputs, PATIENCE)
         assert is_the_picture(view.read(timeout=PATIENCE).value)
         assert network.disconnect(name, "/view", names=names)
@@ -125,31 +57,6 @@ def test_camera_is_seen_comes_back_and_is_let_go() -> None:
         time.sleep(1.0)
         assert len(camera.asked) == count, "a connection that somebody ended comes back"
         camera.leave()
-
-
-def test_camera_with_a_password(caplog: pytest.LogCaptureFixture) -> None:
-    carrier = f"{CARRIER}+user.me+password.se%2Bcret"
-    with viewer() as (names, view):
-        camera = Camera()
-        camera.login = "me:se+cret"
-        with pytest.raises(yarpy.LinkClosed, match="Cannot connect"):
-            network.connect(camera.name, "/view", f"{CARRIER}+user.me+password.no", names=names)
-        assert "does not accept this name and password" in caplog.text
-        network.connect(camera.name, "/view", carrier, names=names)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
-        assert view.inputs[0].carrier == f"{CARRIER}+user.me+password.***"
-        for question in (["list", "in", f"{camera.name}/"], ["list", "in"]):
-            assert "se%2B" not in str(network.admin("/view", *question, names=names))
-        port = camera.server_port
-        camera.leave()
-        wait_until(lambda: not view.inputs, PATIENCE)
-        camera = Camera(port)
-        camera.login = "me:se+cret"
-        wait_until(lambda: view.inputs, PATIENCE)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
-        camera.leave()
-    assert "password.no" not in caplog.text
-    assert "se%2Bcret" not in caplog.text
 
 
 @contextmanager
@@ -245,20 +152,20 @@ def test_watching_goes_on_after_a_broken_stream(rest: bytes) -> None:
 
 def test_camera_that_went_away_can_be_let_go() -> None:
     with viewer() as (names, view):
-        camera = Camera()
+        camera = WebCamera()
         network.connect(camera.name, "/view", CARRIER, names=names)
         view.read(timeout=PATIENCE)
         camera.leave()
         wait_until(lambda: not view.inputs, PATIENCE)
         network.admin("/view", "del", f"{camera.name}/", names=names)
-        camera = Camera(camera.server_port)
+        camera = WebCamera(camera.server_port)
         time.sleep(1.0)
         assert not camera.asked
         camera.leave()
 
 
 def test_camera_with_a_name() -> None:
-    camera = Camera()
+    camera = WebCamera()
     with viewer() as (names, view):
         names.register("/cam", CARRIER, "127.0.0.1", camera.server_port)
         network.connect("/cam", "/view", names=names)
@@ -303,7 +210,7 @@ def test_cpp_asks_a_port_to_watch() -> None:
 
 
 def test_wrong_path_is_told() -> None:
-    camera = Camera()
+    camera = WebCamera()
     with viewer() as (names, view):
         with pytest.raises(yarpy.LinkClosed, match="Cannot connect"):
             network.connect(camera.name, "/view", "mjpeg+path.wrong", names=names)
@@ -437,7 +344,7 @@ def test_camera_knows_nothing_of_our_key(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))
     assert secret()
     with viewer() as (names, view), yarpy.Port("/cam", names=names) as cam:
-        camera = Camera()
+        camera = WebCamera()
         network.connect(camera.name, "/view", CARRIER, names=names)
         assert is_the_picture(view.read(timeout=PATIENCE).value)
         assert network.disconnect(camera.name, "/view", names=names)

@@ -7,6 +7,7 @@ import threading
 import time
 
 import pytest
+from support.port import free_port
 from support.transport import ScriptTransport, scripted
 
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
@@ -174,6 +175,45 @@ def test_udp_is_opened_on_request() -> None:
     assert isinstance(driver.transport, DatagramTransport)
     assert 0 < number < 65536
     driver.transport.close()
+
+
+def test_peer_is_dialled_once_more() -> None:
+    """By somebody who wants to ask again, with what is left of the time."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        driver, old = scripted(open_ended=True)
+        old.remote = listener.getsockname()
+
+        def steps() -> Steps[bytes]:
+            again = yield Open("tcp", listen=False)
+            fresh = ByteStream()
+            yield Switch(again, fresh)
+            fresh.write(b"me again")
+            return bytes((yield from fresh.read_exact(2)))
+
+        def serve() -> None:
+            sock, _ = listener.accept()
+            assert sock.recv(8, socket.MSG_WAITALL) == b"me again"
+            sock.sendall(b"ok")
+            sock.close()
+
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        assert driver.run(steps(), time.monotonic() + 10) == b"ok"
+        assert old.closed
+        thread.join(5)
+        driver.transport.close()
+
+
+def test_peer_that_cannot_be_dialled_once_more() -> None:
+    driver, transport = scripted(open_ended=True)
+    transport.remote = ("127.0.0.1", free_port())
+
+    def steps() -> Steps[None]:
+        yield Open("tcp", listen=False)
+
+    with pytest.raises(ConnectionRefusedError):
+        driver.run(steps(), time.monotonic() + 10)
+    assert driver.transport is transport  # for whoever opened it to close
 
 
 def test_group_is_asked_for() -> None:

@@ -12,8 +12,7 @@ compressed once for all watchers that want the same quality (`/?action=stream&qu
 or `mjpeg+quality.50+rate.10` between ports; pictures per second). What is no picture is not sent,
 and counted. The envelope is the comment in the JPEG file. Cameras are understood that order, spell
 or leave out headers in their own way, or send in chunks; a damaged picture is dropped, and counted
-in `lost`. A camera that wants a password gets it as `mjpeg+path.video+user.NAME+password.WORD`, %2B
-for a plus; it is sent as it is (HTTP's basic authentication) and never shown.
+in `lost`. A camera that wants a password is dialled once more, with the answer that login.py knows.
 """
 
 from __future__ import annotations
@@ -22,12 +21,13 @@ from typing import Final
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.chunk import Chunks
-from yarpy.carriers.header import MAX_LINE, read_headers
-from yarpy.contact import Route, masked, modifier
+from yarpy.carriers.header import CHALLENGES, MAX_LINE, read_headers
+from yarpy.carriers.login import refusal, take_login
+from yarpy.contact import Route, modifier
 from yarpy.data import jpeg
 from yarpy.data.image import Image, is_image
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
-from yarpy.wire.effects import Steps
+from yarpy.wire.effects import Open, Steps, Switch
 from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.stream import Buffer, ByteStream
 
@@ -114,25 +114,24 @@ class Mjpeg(Carrier):
     # -- the receiver -----------------------------------------------------------------------------
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        stream.write(self._request())
-        self._hide_password()
-        line = yield from stream.read_line(MAX_LINE)
-        words = line.split(None, 2)
-        if words[1:2] == [b"401"]:
-            raise RemoteProtocolError(self._login_wanted((yield from read_headers(stream))))
-        if len(words) < 2 or not words[0].startswith(b"HTTP/") or words[1] != b"200":
-            text = line[:80].decode("utf-8", "replace")
-            raise RemoteProtocolError(
-                f'asked for {self._path()} the camera says "{text}"; the carrier '
-                "mjpeg+path.<path> says what to ask for"
-            )
-        headers = yield from read_headers(stream)
+        login = take_login(self.route)
+        path = self._path()
+        admitted, headers = yield from self._ask(stream, path)
+        if not admitted and login is not None:
+            answer = login.answer(headers.get(CHALLENGES, ""), path.encode())
+            # Most cameras hang up after a refusal, so the answer takes a connection of its own.
+            again = yield Open("tcp", listen=False)
+            stream = ByteStream(stream.limit)
+            yield Switch(again, stream)
+            admitted, headers = yield from self._ask(stream, path, answer)
+        if not admitted:
+            raise refusal(headers.get(CHALLENGES, ""), login)
         kind, _, options = headers.get("content-type", "").partition(";")
         kind = kind.strip().lower()
         # ffmpeg as a server says octet-stream, whatever it sends.
         if kind != "application/octet-stream" and not kind.startswith("multipart/"):
             raise RemoteProtocolError(
-                f"{self._path()} is no stream of pictures but {kind or 'of no known type'}"
+                f"{path} is no stream of pictures but {kind or 'of no known type'}"
                 "; the carrier mjpeg+path.<path> says what to ask for"
             )
         if "chunked" in headers.get("transfer-encoding", "").lower():
@@ -142,50 +141,33 @@ class Mjpeg(Carrier):
             if key.strip().lower() == "boundary":
                 self._mark = b"--" + value.strip().strip('"').lstrip("-").encode("latin-1")
 
-    def _request(self) -> bytes:
+    def _ask(
+        self, stream: ByteStream, path: str, login: bytes = b""
+    ) -> Steps[tuple[bool, dict[str, str]]]:
+        """Whether the camera lets us in, and the headers of its answer."""
+        stream.write(self._request(path, login))
+        line = yield from stream.read_line(MAX_LINE)
+        words = line.split(None, 2)
+        if len(words) < 2 or not words[0].startswith(b"HTTP/") or words[1] not in (b"200", b"401"):
+            text = line[:80].decode("utf-8", "replace")
+            raise RemoteProtocolError(
+                f'asked for {path} the camera says "{text}"; the carrier '
+                "mjpeg+path.<path> says what to ask for"
+            )
+        return words[1] == b"200", (yield from read_headers(stream))
+
+    def _request(self, path: str, login: bytes) -> bytes:
         route = self.route
         host = f"[{route.host}]" if ":" in route.host else route.host
         # 1.0, so that the answer comes as it is, not in chunks.
         lines = [
-            f"GET {self._path()} HTTP/1.0",
+            f"GET {path} HTTP/1.0",
             f"Host: {host}:{route.port}",
             "User-Agent: yarpy",
             "Accept: multipart/x-mixed-replace, image/jpeg",
-            *self._login(),
-            "\r\n",
         ]
-        return "\r\n".join(lines).encode()
-
-    def _login(self) -> list[str]:
-        """The header that names us to a camera, if somebody said how."""
-        from base64 import b64encode
-        from urllib.parse import unquote
-
-        carrier = self.route.carrier
-        user, password = (modifier(carrier, key) for key in ("user", "password"))
-        if user is None and password is None:
-            return []
-        login = f"{unquote(user or '')}:{unquote(password or '')}"
-        return [f"Authorization: Basic {b64encode(login.encode()).decode()}"]
-
-    def _hide_password(self) -> None:
-        """Let nobody see it who asks for the connections of this port."""
-        route = self.route
-        shown = masked(route.carrier)
-        if shown != route.carrier:
-            route.carrier, route.secret = shown, route.carrier
-
-    def _login_wanted(self, headers: dict[str, str]) -> str:
-        """What to do about a camera that does not let us in."""
-        wanted = headers.get("www-authenticate", "")
-        if wanted and "basic" not in wanted.lower():
-            return (
-                f"the camera wants {wanted.split()[0]} authentication, which yarpy does not speak; "
-                "let the camera allow basic authentication, or watching without a password"
-            )
-        if modifier(self.route.carrier, "user") is None:
-            return "the camera wants a password: mjpeg+path.<path>+user.<name>+password.<word>"
-        return "the camera does not accept this name and password"
+        head = "\r\n".join(lines).encode()
+        return head + (b"\r\nAuthorization: " + login if login else b"") + b"\r\n\r\n"
 
     def _path(self) -> str:
         carrier = self.route.carrier

@@ -69,12 +69,13 @@ def _wire(path: str) -> int:
 
     from yarpy.cli.complaint import complain
     from yarpy.cli.wiring import read
+    from yarpy.contact import masked
 
     failed = 0
     for wire in read(Path(path)):
         try:
             wire.make()
-            print_line(f"Connected {wire.source} to {wire.target} using {wire.carrier}")
+            print_line(f"Connected {wire.source} to {wire.target} using {masked(wire.carrier)}")
         except yarpy.YarpError as error:
             complain(str(error))
             failed = 1

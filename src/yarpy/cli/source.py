@@ -25,7 +25,7 @@ class Source:
     """`port` is to hear `name` (`/cam`, `udp://cam`, `mjpeg+path.video://10.0.0.5:8080/`).
 
     tell: called with a line for people while it waits, and with "" when it is connected.
-    Raises AddressError, UnknownPlugin, NoNameServer.
+    Raises AddressError, UnknownPlugin, NoNameServer, LoginRefused.
     """
 
     def __init__(
@@ -35,16 +35,19 @@ class Source:
         carrier: str | None = None,
         tell: Callable[[str], object] = lambda line: None,
     ) -> None:
-        from yarpy.contact import parse_contact
+        from yarpy.contact import masked, parse_contact
 
         self._port = port
         self._name = name
+        self._shown = masked(name)
         self._carrier = carrier
         self._tell = tell
         self._contact = parse_contact(name)
         self._wanted = True
         self._look()
-        threading.Thread(target=self._follow, name=f"yarpy source {name}", daemon=True).start()
+        threading.Thread(
+            target=self._follow, name=f"yarpy source {self._shown}", daemon=True
+        ).start()
 
     @property
     def connected(self) -> bool:
@@ -75,8 +78,11 @@ class Source:
             hear_from(self._port, self._name, self._carrier)
         except (yarpy.UnknownPlugin, yarpy.AddressError, yarpy.NoNameServer):
             raise
+        except yarpy.LoginRefused:
+            self._wanted = False  # a camera locks those out who try again and again
+            raise
         except yarpy.YarpError as error:
-            self._tell(f"Waiting for {self._name}: {error}")
+            self._tell(f"Waiting for {self._shown}: {error}")
         else:
             self._wanted = False
             self._tell("")

@@ -15,6 +15,7 @@ from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
 from yarpy.transports.base import Transport
 from yarpy.transports.datagram import open_mcast, open_udp
 from yarpy.transports.inproc import InprocTransport, open_inproc
+from yarpy.transports.tcp import CONNECT_TIMEOUT, dial
 from yarpy.transports.unix import open_unix
 from yarpy.wire.effects import Group, Open, Steps, Switch
 from yarpy.wire.stream import DEFAULT_LIMIT, ByteStream, ObjectStream
@@ -69,7 +70,7 @@ class Driver:
                         raise
                     answer = None
                 else:
-                    answer = self._perform(effect)
+                    answer = self._perform(effect, deadline)
         except StopIteration as stop:
             self.flush()
             value: T = stop.value
@@ -186,7 +187,7 @@ class Driver:
         else:
             self.stream.feed_object(item[0])
 
-    def _perform(self, effect: object) -> Any:
+    def _perform(self, effect: object, deadline: float | None) -> Any:
         transport = self.transport
         if isinstance(effect, Switch):
             self.flush()
@@ -202,6 +203,9 @@ class Driver:
             return self._group(transport.local[0])
         if isinstance(effect, Open):
             local, remote = transport.local, transport.remote
+            if effect.kind == "tcp":
+                left = CONNECT_TIMEOUT if deadline is None else deadline - time.monotonic()
+                return dial(*remote, max(left, 0.001))
             if effect.kind == "udp":
                 return open_udp(effect.listen, local, remote, effect.port)
             if effect.kind == "mcast":

@@ -12,13 +12,16 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
-from yarpy.contact import Contact, Route, base_carrier, modifier, parse_contact
+from yarpy.contact import Contact, Route, base_carrier, masked, modifier, parse_contact
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import (
     AddressError,
     LinkClosed,
+    LocalProtocolError,
+    LoginRefused,
     PortClosed,
+    RemoteProtocolError,
     Timeout,
     UnknownPlugin,
     YarpError,
@@ -34,6 +37,7 @@ from yarpy.wire.message import Message
 if TYPE_CHECKING:
     from yarpy.port.hub import Hub
 
+NOT_ADMITTED: Final = "Not admitted to"  # how a line begins that tells of a password
 JOINING: Final = 0.5  # seconds for a receiver to join a multicast group
 HELP = (
     "This is a YARP port.  Here are the commands it responds to:",
@@ -105,17 +109,18 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
 
     An existing connection to the same port is replaced. Raises Refused.
     """
+    shown = masked(text)
     try:
         wanted = parse_contact(text)
     except AddressError as error:
-        raise Refused(f"Do not know how to connect to {text}") from error
+        raise Refused(f"Do not know how to connect to {shown}") from error
     carrier = wanted.carrier or "tcp"
     contact = locate(hub, wanted)
     if contact is None:
-        raise Refused(f"Do not know how to connect to {text}")
+        raise Refused(f"Do not know how to connect to {shown}")
     target = wanted.name or f"/{wanted.address}/"
     with hub.dialling.alone(target):
-        return _connect(hub, text, contact, target, carrier)
+        return _connect(hub, shown, contact, target, carrier)
 
 
 def _connect(hub: Hub, text: str, contact: Contact, target: str, carrier: str) -> str:
@@ -171,7 +176,12 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
         if chain is not None:
             chain.close()
         _complain(hub, target, error)
-        raise Refused(f"Cannot connect to {text or target}") from error
+        if isinstance(error, LoginRefused):
+            raise Refused(f"{NOT_ADMITTED} {text or target}: {error}") from error
+        line = f"Cannot connect to {text or target}"
+        if isinstance(error, LocalProtocolError | RemoteProtocolError):
+            line += f": {error}"  # they met, and one of them knows what to change
+        raise Refused(line) from error
     if speaker.push:
         if speaker.broadcast:
             _wait_for_member(hub, contact, speaker.name)
@@ -340,4 +350,4 @@ def joined(dest: str, carrier: str) -> str:
     return f"{carrier}:/{dest}"
 
 
-__all__ = ["Refused", "base_carrier", "connect", "describe", "joined", "obey"]
+__all__ = ["NOT_ADMITTED", "Refused", "base_carrier", "connect", "describe", "joined", "obey"]

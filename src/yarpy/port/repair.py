@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 
 from yarpy.contact import Contact, Route, modifier, parse_contact
 from yarpy.data.value import Vocab
-from yarpy.errors import YarpError
+from yarpy.errors import LoginRefused, YarpError
 from yarpy.link.handshake import find_carrier
 from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
@@ -34,6 +34,7 @@ log = logging.getLogger("yarpy.port")
 
 TICK: Final = 0.1  # seconds between looks at what is broken
 CALM: Final = 0.5  # seconds between looks when nothing is
+LOCKED: Final = 60.0  # seconds between two logins: cameras lock those out who try too often
 INPUT_PATIENCE: Final = 60.0  # seconds for a sender that vanished to come back
 
 
@@ -201,6 +202,10 @@ class Repairer:
         done = False
         try:
             done = self._mend_input(item) if item.incoming else self._mend_output(item)
+        except command.Refused as error:
+            if isinstance(error.__cause__, LoginRefused):
+                item.pause = LOCKED
+                log.warning("%s: %s; it is asked again every %g s", item.hub.name, error, LOCKED)
         except (YarpError, OSError):
             pass  # not yet
         if item.incoming and not _is_pulled(item.route) and now - item.since > INPUT_PATIENCE:
@@ -210,7 +215,7 @@ class Repairer:
                 self._lost = [other for other in self._lost if other is not item]
         else:
             item.due = now + item.pause
-            item.pause = min(item.pause * 1.5, CALM)
+            item.pause = min(item.pause * 1.5, max(item.pause, CALM))
 
     def _mend_output(self, item: _Lost) -> bool:
         hub, route = item.hub, item.route

@@ -191,5 +191,7 @@ def address_of(raw: object) -> Address:
     """`(host, port)` of what the socket module calls an address."""
     if isinstance(raw, tuple) and len(raw) >= 2:
         host = str(raw[0])
+        if len(raw) > 3 and raw[3] and "%" not in host:
+            host += f"%{raw[3]}"  # an address of one network alone: which one
         return host.removeprefix("::ffff:"), int(raw[1])
     return str(raw), 0

@@ -2,7 +2,8 @@
 
 Rules: plain values, no behaviour. `None` asks for more bytes; everything else is listed here. A
 connection greets over TCP; carriers that move elsewhere (UDP, multicast, Unix sockets, in-process)
-`Open` the new place, tell the peer about it, and `Switch` onto it.
+`Open` the new place, tell the peer about it, and `Switch` onto it. One that has to ask once more a
+peer that hangs up opens `tcp`.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ T = TypeVar("T")
 class Open:
     """Open another way to the same peer; the driver sends back a handle with `.port` (0: none).
 
-    `kind` names the transport (`udp`, `mcast`, `unix`, `inproc`). `listen` is true on the side
-    that accepted the TCP connection. `group` and `port` say where: a multicast group, the peer's
-    UDP port.
+    `kind` names the transport (`tcp`, `udp`, `mcast`, `unix`, `inproc`). `listen` is true on the
+    side that accepted the TCP connection. `group` and `port` say where: a multicast group, the
+    peer's UDP port.
     """
 
     kind: str

@@ -1,0 +1,224 @@
+"""Logging in at a camera that wants a name and a password: HTTP's digest and basic schemes.
+
+    mjpeg+path.video+user.NAME+password.WORD            %2B for a plus, %25 for %
+
+    WWW-Authenticate: Digest realm="cam", nonce="6a9f", qop="auth", algorithm=SHA-256
+    Authorization: Digest username="NAME", realm="cam", nonce="6a9f", ... response="..."
+
+Rules: pure; the camera asks first, so a password is never sent that nobody wanted. Of the digests
+that a camera offers the strongest is taken, among equals the first; the password itself is sent
+only to a camera that offers no digest. What a camera says is limited before it is read, and comes
+back to it in quotes. Source: RFC 7616, and RFC 2617 for cameras without `qop`.
+"""
+
+from __future__ import annotations
+
+import re
+import secrets
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Final
+
+from yarpy.contact import Route, masked, modifier
+from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
+
+MAX_CHALLENGES: Final = 8192  # characters of all that a camera offers
+MAX_VALUE: Final = 1024  # characters of what goes back to it, its nonce above all
+
+HOW: Final = (
+    "mjpeg+path.<path>+user.<name>+password.<word>, with %2B for a plus, %25 for a percent sign"
+)
+
+_STRENGTH: Final = {"md5": 1, "sha-256": 2}
+_PIECE: Final = re.compile(r'(?:[^,"]|"(?:[^"\\]|\\.)*"?)+')
+_PARAMETER: Final = re.compile(r"(?:([^\s=\"]+)\s+)?([^\s=\"]+)\s*=\s*(.*)")
+_CONTROL: Final = re.compile(r"[\x00-\x1f\x7f]")
+
+
+@dataclass(frozen=True, slots=True)
+class Challenge:
+    """One way to log in that a camera offers: the scheme and its parameters, in small letters."""
+
+    scheme: str
+    values: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def algorithm(self) -> str:
+        """What a digest is made with, as the camera spells it."""
+        return self.values.get("algorithm") or "MD5"
+
+    @property
+    def strength(self) -> int:
+        """How good a digest it is; 0 for one that is not spoken here."""
+        if self.qop not in ("", "auth"):
+            return 0
+        return _STRENGTH.get(self.algorithm.lower().removesuffix("-sess"), 0)
+
+    @property
+    def qop(self) -> str:
+        """`auth` if the camera knows it, "" if it speaks the elder digest without, else what it
+        wants."""
+        wanted = self.values.get("qop", "").strip()
+        return "auth" if "auth" in re.split(r"[\s,]+", wanted.lower()) else wanted
+
+
+@dataclass(frozen=True, slots=True)
+class Login:
+    """Name and password, as bytes of UTF-8."""
+
+    user: bytes
+    password: bytes = field(repr=False)
+
+    def answer(
+        self, wanted: str, target: bytes, random: Callable[[int], bytes] = secrets.token_bytes
+    ) -> bytes:
+        """The value of `Authorization` for a GET of `target`.
+
+        wanted: all that came as `WWW-Authenticate`. Raises LoginRefused if nothing is offered that
+        is spoken here, RemoteProtocolError for what is no challenge, LocalProtocolError.
+        """
+        challenges = parse_challenges(wanted)
+        digests = [item for item in challenges if item.scheme == "digest"]
+        if digests:
+            best = max(digests, key=lambda item: item.strength)
+            if best.strength:
+                return self.digest(best, target, random(16).hex().encode())
+            unknown = f"digest authentication with {_shown(best.algorithm)}"
+            if best.qop not in ("", "auth"):
+                unknown += f" and {_shown(best.qop)}"
+        elif not challenges or any(item.scheme == "basic" for item in challenges):
+            return self.basic()  # a camera that forgets to say how mostly means this
+        else:
+            unknown = f"{_shown(challenges[0].scheme)} authentication"
+        raise LoginRefused(
+            f"the camera wants {unknown}, which yarpy does not speak; let it allow digest "
+            "authentication with SHA-256 or MD5, or watching without a password"
+        )
+
+    def basic(self) -> bytes:
+        """Name and password as they are; base64 hides nothing."""
+        from base64 import b64encode
+
+        return b"Basic " + b64encode(self.user + b":" + self.password)
+
+    def digest(self, challenge: Challenge, target: bytes, cnonce: bytes) -> bytes:
+        """The answer to a digest challenge that is spoken here, with our random `cnonce`."""
+        from hashlib import new
+
+        values = {key: _returned(challenge.values, key) for key in ("realm", "nonce", "opaque")}
+        nonce = values["nonce"]
+        if not nonce:
+            raise RemoteProtocolError("the camera wants digest authentication, but gives no nonce")
+        algorithm = challenge.algorithm.lower()
+        name = algorithm.removesuffix("-sess").replace("-", "")
+
+        def hashed(*parts: bytes) -> bytes:
+            return new(name, b":".join(parts), usedforsecurity=False).hexdigest().encode()
+
+        secret = hashed(self.user, values["realm"], self.password)
+        if algorithm.endswith("-sess"):
+            secret = hashed(secret, nonce, cnonce)
+        request = hashed(b"GET", target)
+        # The first time that this nonce is used: a nonce serves for one answer.
+        extra = (b"00000001", cnonce, b"auth") if challenge.qop else ()
+        parts = [
+            b"username=" + _quoted(self.user),
+            b"realm=" + _quoted(values["realm"]),
+            b"nonce=" + _quoted(nonce),
+            b"uri=" + _quoted(target),
+            b"response=" + _quoted(hashed(secret, nonce, *extra, request)),
+        ]
+        if "algorithm" in challenge.values:
+            parts.append(b"algorithm=" + challenge.algorithm.encode())
+        if extra:
+            parts += [b"qop=auth", b"nc=00000001"]
+        if extra or algorithm.endswith("-sess"):
+            parts.append(b"cnonce=" + _quoted(cnonce))
+        if "opaque" in challenge.values:
+            parts.append(b"opaque=" + _quoted(values["opaque"]))
+        return b"Digest " + b", ".join(parts)
+
+
+def take_login(route: Route) -> Login | None:
+    """The login in a route's carrier string, if there is one; from then on the route, which
+    everybody may see who asks a port for its connections, shows no password.
+
+    Raises LocalProtocolError for a name that HTTP cannot spell.
+    """
+    from urllib.parse import unquote_to_bytes
+
+    carrier = route.secret or route.carrier
+    shown = masked(carrier)
+    if shown != carrier:
+        route.carrier, route.secret = shown, carrier
+    words = [modifier(carrier, key) for key in ("user", "password")]
+    if words == [None, None]:
+        return None
+    user, password = (unquote_to_bytes((w or "").encode("utf-8", "surrogateescape")) for w in words)
+    if b":" in user or _CONTROL.search((user + password).decode("latin-1")):
+        raise LocalProtocolError(
+            "a user's name without a colon, and no control characters in name or password, please"
+        )
+    return Login(user, password)
+
+
+def parse_challenges(text: str) -> list[Challenge]:
+    """The ways to log in that one or more `WWW-Authenticate` lines, joined by commas, offer.
+
+    text: Latin-1, as headers are read; what goes back is then the same bytes. What
+    cannot be understood is passed over. Raises RemoteProtocolError if there is too much of it.
+    """
+    if len(text) > MAX_CHALLENGES:
+        raise RemoteProtocolError(
+            f"the camera says in {len(text)} characters how to log in; the limit is "
+            f"{MAX_CHALLENGES}"
+        )
+    found: list[Challenge] = []
+    for piece in _PIECE.findall(text):
+        piece = piece.strip()
+        match = _PARAMETER.fullmatch(piece)
+        scheme = match[1] if match else piece.partition(" ")[0]
+        if scheme:
+            found.append(Challenge(scheme.lower()))
+        if match and found:
+            found[-1].values.setdefault(match[2].lower(), _unquoted(match[3]))
+    return found
+
+
+def refusal(wanted: str, login: Login | None) -> LoginRefused:
+    """What to tell somebody whom a camera does not let in."""
+    if login is None:
+        return LoginRefused(f"the camera wants a name and a password: {HOW}")
+    if any(item.values.get("stale", "").lower() == "true" for item in parse_challenges(wanted)):
+        return LoginRefused("the camera has forgotten at once what it asked; connect once more")
+    return LoginRefused(
+        "the camera does not accept this name and password: check both, and whether this user may "
+        f"watch ({HOW})"
+    )
+
+
+def _returned(values: dict[str, str], key: str) -> bytes:
+    """What a camera said, as it is to come back to it."""
+    value = values.get(key, "")
+    if len(value) > MAX_VALUE:
+        raise RemoteProtocolError(
+            f"the camera's {key} has {len(value)} characters; the limit is {MAX_VALUE}"
+        )
+    if _CONTROL.search(value):
+        raise RemoteProtocolError(f"there are control characters in the camera's {key}")
+    return value.encode("latin-1")
+
+
+def _shown(text: str) -> str:
+    """A word of a camera's in an error for people."""
+    return "".join(c for c in text[:40] if c.isprintable())
+
+
+def _unquoted(text: str) -> str:
+    if not text.startswith('"'):
+        return text
+    return re.sub(r"\\(.)", r"\1", text[1:].removesuffix('"'))
+
+
+def _quoted(value: bytes) -> bytes:
+    return b'"' + value.replace(b"\\", b"\\\\").replace(b'"', b'\\"') + b'"'
