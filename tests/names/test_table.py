@@ -177,6 +177,22 @@ def test_a_write_that_fails_leaves_nothing_and_can_be_repeated(files: Files) -> 
         assert len(files.tags()) == 5
 
 
+def test_somebody_who_reads_the_file_holds_only_one_write_up(files: Files) -> None:
+    table = PortTable(files.ports)
+    table.connection.execute("PRAGMA busy_timeout = 10")
+    table.save(PortChanges({"/a": {}, "/b": {}}))
+    reader = sqlite3.connect(files.ports, isolation_level=None)
+    reader.execute("BEGIN")
+    reading = reader.execute("SELECT * FROM tags")
+    reading.fetchone()
+    with pytest.raises(AddressError, match="cannot be written"):
+        table.save(PortChanges({"/c": {}}))
+    reading.close()
+    reader.close()
+    table.save(PortChanges({"/c": {}}))
+    assert [row[4] for row in files.tags()] == ["/a", "/b", "/c"]
+
+
 def test_nothing_changed() -> None:
     assert not PortChanges()
     assert not RuleChanges()

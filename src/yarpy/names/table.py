@@ -292,10 +292,10 @@ def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
         connection.execute("BEGIN IMMEDIATE")
         try:
             yield
+            connection.execute("COMMIT")
         except BaseException:
-            connection.execute("ROLLBACK")
+            connection.rollback()  # also when a reader held the commit up: the next one begins anew
             raise
-        connection.execute("COMMIT")
     except sqlite3.Error as error:
         raise AddressError(f"the name server's database cannot be written: {error}") from error
 
