@@ -189,6 +189,9 @@ def test_wrong_password_is_told_at_once(
         with pytest.raises(yarpy.LoginRefused, match='"/view" is not admitted to') as direct:
             view.listen_to(server.name, words)
         assert len(server.logins) == 4
+        with pytest.raises(yarpy.LoginRefused):
+            view.connect(server.name, words, timeout=PATIENCE)
+        assert len(server.logins) == 6
         assert not view.inputs
     for text in (str(caught.value), str(direct.value), caplog.text):
         assert "wr0ng" not in text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import threading
 
 import pytest
 from support.wait import wait_until
@@ -55,6 +56,29 @@ def test_refusal_knows_more_for_programs(names: LocalNames) -> None:
         with pytest.raises(command.Refused) as caught:
             command.connect(out._hub, "nosuch://in")
         assert isinstance(caught.value.__cause__, UnknownPlugin)
+
+
+def test_refusal_says_what_a_peer_does_not_like(names: LocalNames) -> None:
+    """Where somebody answers, it is known why; and nobody sees the password."""
+    said = {b"HTTP/1.1 500 No\r\n\r\n": "Cannot connect to", b"HTTP/1.1 401 \r\n\r\n": "Not admit"}
+    for answer, begins in said.items():
+        with socket.create_server(("127.0.0.1", 0)) as camera, Port("/out", names=names) as out:
+
+            def serve(camera: socket.socket = camera, answer: bytes = answer) -> None:
+                for _ in range(2):
+                    sock, _ = camera.accept()
+                    with sock:
+                        sock.recv(1000)
+                        sock.sendall(answer)
+
+            threading.Thread(target=serve, daemon=True).start()
+            address = f"127.0.0.1:{camera.getsockname()[1]}"
+            with pytest.raises(command.Refused) as caught:
+                command.connect(out._hub, f"mjpeg+user.a+password.b://{address}")
+            line = str(caught.value)
+            assert line.startswith(begins)
+            assert f"mjpeg+user.a+password.***://{address}: " in line
+            assert line.endswith(str(caught.value.__cause__))
 
 
 def test_description_lists_every_connection(names: LocalNames) -> None:

@@ -5,7 +5,14 @@ from __future__ import annotations
 import pytest
 from support.wait import wait_until
 
-from yarpy.errors import LinkClosed, LocalProtocolError, UnknownName, UnknownPlugin, YarpError
+from yarpy.errors import (
+    LinkClosed,
+    LocalProtocolError,
+    LoginRefused,
+    UnknownName,
+    UnknownPlugin,
+    YarpError,
+)
 from yarpy.names.local import LocalNames
 from yarpy.port import wiring
 from yarpy.port.buffered import BufferedPort
@@ -24,6 +31,7 @@ CASES = [
     (refusal("Cannot connect to /in"), LinkClosed, "no answer"),
     (refusal("Cannot connect to /in", LinkClosed("nobody answers")), LinkClosed, "nobody answers"),
     (refusal("Cannot connect to x://in", UnknownPlugin("no carrier")), UnknownPlugin, "no carrier"),
+    (refusal("Not admitted to x", LoginRefused("who?")), LoginRefused, 'admitted to "/in": who?'),
     (refusal("Outputs not allowed"), LocalProtocolError, "Outputs not allowed"),
     (refusal("RPC output already connected"), LocalProtocolError, "already connected"),
 ]
