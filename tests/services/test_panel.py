@@ -133,9 +133,11 @@ def test_what_the_page_loads(url: str) -> None:
         page = answer.read().decode()
     files = re.findall(r'(?:src|href)="/([\w.]+)"', page)
     assert {"panel.js", "panel.css", "style.css"} <= {*files}
-    for name in [*files, "plot.js", "common.js", "horizon.js"]:
+    for name in files:
         with urllib.request.urlopen(url + name, timeout=PATIENCE) as answer:
             assert answer.status == 200
+            files += {*re.findall(r'from "./([\w.]+)"', answer.read().decode())} - {*files}
+    assert {"common.js", "panel_camera.js", "horizon.js"} <= {*files}
     policy = re.search(r'Content-Security-Policy" content="([^"]+)"', page)
     assert policy is not None and "unsafe" not in policy[1]
 

@@ -23,7 +23,10 @@ if TYPE_CHECKING:
     from yarpy.names.base import NameClient
     from yarpy.port.base import BasePort
 
-_FILES = ("panel.js", "panel.css", "style.css", "common.js", "plot.js", "horizon.js")
+_FILES = (
+    *("panel.css", "style.css", "panel.js", "panel_camera.js", "panel_curve.js", "panel_joint.js"),
+    *("panel_port.js", "panel_sensor.js", "common.js", "plot.js", "horizon.js"),
+)
 
 
 class Panel:

@@ -1,0 +1,58 @@
+// Curves of the last seconds, a plot for what belongs together.
+
+import {copyOf, part, say} from "./common.js";
+import {short} from "./panel_port.js";
+import {Plot, colour} from "./plot.js";
+
+const WINDOW = 10; // seconds of a curve
+
+export const drawn = []; // what is drawn anew for each picture of the screen
+
+export class Curves {
+  constructor(name, unit, names) {
+    this.element = copyOf("curve");
+    say(part(this.element, "name"), short(name));
+    say(part(this.element, "unit"), unit);
+    this.canvas = part(this.element, "plot");
+    this.canvas.role = "img";
+    this.canvas.ariaLabel = `${name}, the last ${WINDOW} seconds`;
+    this.plot = new Plot(this.canvas);
+    this.times = [];
+    this.values = names.map(() => []);
+    this.items = names.map((name) => {
+      const item = document.createElement("li");
+      item.textContent = name;
+      part(this.element, "legend").append(item);
+      return item;
+    });
+    this.paint();
+    document.getElementById("curves").append(this.element);
+    drawn.push(this);
+  }
+
+  paint() {
+    this.items.forEach((item, number) => item.style.setProperty("--tint", colour(number)));
+  }
+
+  add(time, values) {
+    const {times} = this;
+    if (times.length && time <= times.at(-1)) {
+      if (time > times.at(-1) - 1) return;
+      this.times.length = 0; // the robot's clock was set back
+      for (const each of this.values) each.length = 0;
+    }
+    times.push(time);
+    this.values.forEach((each, number) => each.push(values[number] ?? null));
+    if (times.length > 3000) {
+      times.splice(0, 1000);
+      for (const each of this.values) each.splice(0, 1000);
+    }
+  }
+
+  draw() {
+    if (!this.times.length) return;
+    const curves = this.values.map((values, number) => ({times: this.times, values, number}));
+    const view = {end: this.times.at(-1), window: WINDOW, low: null, high: null, hover: null};
+    this.plot.draw(curves, view);
+  }
+}
