@@ -23,7 +23,6 @@ from yarpy.errors import (
     RemoteProtocolError,
     Timeout,
     UnknownName,
-    YarpError,
 )
 from yarpy.link.handshake import find_carrier
 from yarpy.names.base import NameClient
@@ -221,11 +220,10 @@ def _connect(source: str, target: str, carrier: str | None, names: NameClient | 
     text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
     if reply and reply[0] == 0:
         return text
-    kind: type[YarpError] = LocalProtocolError
-    if text.startswith("Cannot connect"):
-        kind = LinkClosed  # it may not be there yet: a camera that still starts
-    elif text.startswith(NOT_ADMITTED):
-        kind = LoginRefused
+    if text.startswith(NOT_ADMITTED):
+        raise LoginRefused(text)
+    # The other end may not be there yet: a camera that still starts, a program that died.
+    kind = LinkClosed if text.startswith("Cannot connect") else LocalProtocolError
     way = masked(f'"{source}" -> "{target}" over {pairing.carrier}')
     raise kind(f"{way} was refused: {text or 'no answer'}")
 

@@ -25,10 +25,6 @@ from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
 MAX_CHALLENGES: Final = 8192  # characters of all that a camera offers
 MAX_VALUE: Final = 1024  # characters of what goes back to it, its nonce above all
 
-HOW: Final = (
-    "mjpeg+path.<path>+user.<name>+password.<word>, with %2B for a plus, %25 for a percent sign"
-)
-
 _STRENGTH: Final = {"md5": 1, "sha-256": 2}
 _PIECE: Final = re.compile(r'(?:[^,"]|"(?:[^"\\]|\\.)*"?)+')
 _PARAMETER: Final = re.compile(r"(?:([^\s=\"]+)\s+)?([^\s=\"]+)\s*=\s*(.*)")
@@ -188,12 +184,14 @@ def parse_challenges(text: str) -> list[Challenge]:
 def refusal(wanted: str, login: Login | None) -> LoginRefused:
     """What to tell somebody whom a camera does not let in."""
     if login is None:
-        return LoginRefused(f"the camera wants a name and a password: {HOW}")
+        return LoginRefused(
+            "the camera wants a name and a password: mjpeg+path.<path>+user.<name>+password.<word>"
+        )
     if any(item.values.get("stale", "").lower() == "true" for item in parse_challenges(wanted)):
         return LoginRefused("the camera has forgotten at once what it asked; connect once more")
     return LoginRefused(
-        "the camera does not accept this name and password: check both, and whether this user may "
-        f"watch ({HOW})"
+        "the camera does not accept this name and password: check both (a plus is %2B, a percent "
+        "sign %25), and whether this user may watch"
     )
 
 
