@@ -18,6 +18,8 @@ from __future__ import annotations
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Final
 
+from yarpy.data.image import image_blocks
+from yarpy.data.pixel import pixel_of
 from yarpy.data.value import (
     BIG,
     FLOAT32,
@@ -88,9 +90,7 @@ def blocks(array: NDArray[Any]) -> Blocks:
     elif array.ndim == 2 or array.ndim == 3:
         code = _IMAGES.get((kind, 1 if array.ndim == 2 else array.shape[2]))
         if code is not None:
-            from yarpy.data.image import Image
-
-            return Image(array, code).to_wire()
+            return image_blocks(array, pixel_of(code))
     raise TypeError(
         f"no YARP type goes with an array of {array.dtype} and shape {array.shape}; say what is "
         "meant with Vector(array), Matrix(array) or Image(array, code)"

@@ -26,6 +26,7 @@ from struct import Struct
 from typing import Any, Final, TypeVar, cast
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.image import Image
 from yarpy.data.property import Property, bottle_of, text_of
 from yarpy.data.reader import read_bottle
 from yarpy.data.stamp import Stamp
@@ -144,10 +145,9 @@ def decode(view: Buffer) -> Any:
         if count == 4 and len(view) >= 16:
             tag, word = _read_head(view, 8)
             if tag == VOCAB32 and word == _MAT:
-                from yarpy.data.image import Image, is_image
-
-                if is_image(view):
-                    return Image.from_wire(view)
+                image = Image.found(view)
+                if image is not None:
+                    return image
             elif tag == 0:
                 from yarpy.data.sound import Sound
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 _HEAD = Struct("<10ihh4i")
 _MAT = 0x0074616D
+_BEGINNING = (256, 4, 9, _MAT, 9)
 
 #: row padding of images that C++ allocates, also meant by quantum 0
 QUANTUM = 8
@@ -69,7 +70,7 @@ class Image:
                 f"and shape (height, width{channels}), not of {given.dtype} and shape {given.shape}"
             )
         self.height, self.width = shape[:2]
-        self.code = Vocab.from_code(kind.code)
+        self.code = kind.vocab
         self.quantum = quantum or QUANTUM
         self.top_down = top_down
         self._array: NDArray[Any] | None = None
@@ -81,22 +82,33 @@ class Image:
         """An Image over the bytes of a message; DecodeError if they are none."""
         if len(view) < _HEAD.size:
             raise Truncated(f"an Image has a header of {_HEAD.size} bytes", _HEAD.size)
-        if not is_image(view):
+        self = cls.found(view)
+        if self is None:
             raise DecodeError("no Image: the header is another one")
+        return self
+
+    @classmethod
+    def found(cls, view: bytes | bytearray | memoryview) -> Self | None:
+        """As `from_wire`, but None if the bytes do not begin with the header of an image."""
+        if len(view) < _HEAD.size:
+            return None
         head = _HEAD.unpack_from(view)
+        if head[:5] != _BEGINNING or head[6:8] != (257, 5) or head[14] != 12:
+            return None
         code, depth, quantum, flipped, width, height = head[5], head[8], *head[10:14]
         if width < 0 or height < 0 or quantum < 0:
             raise DecodeError(f"an Image of {width} times {height} with quantum {quantum}")
         self = cls.__new__(cls)
         self.width, self.height = width, height
-        self.code = Vocab.from_code(code)
+        known = pixel(code)
+        self.code = Vocab.from_code(code) if known is None else known.vocab
         self.quantum = quantum or QUANTUM
         self.top_down = flipped == 0
         self._array = None
         if not width or not height:
             self._pixels = memoryview(b"")
             return self
-        kind = _received(code, depth)
+        kind = _received(code, depth, known)
         # What C++ reads is what it computes; the size in the header is not looked at.
         end = _HEAD.size + _row_bytes(width, kind, self.quantum) * height
         if len(view) < end:
@@ -106,14 +118,10 @@ class Image:
 
     def to_wire(self) -> tuple[bytes | memoryview, ...]:
         """Header and pixels, two blocks; the pixels are the memory of the image itself."""
-        code, size = self.code.code, len(self._pixels)
+        code = self.code.code
         known = pixel(code)
-        shape = self.width, self.height
-        head = _HEAD.pack(
-            *(256, 4, 9, _MAT, 9, code, 257, 5, known.depth if known else 0, size, self.quantum),
-            *(not self.top_down, *shape, 12, size),
-        )
-        return (head, self._pixels) if size else (head,)
+        rows = self.quantum, not self.top_down, self.width, self.height
+        return _wire(code, known.depth if known else 0, rows, self._pixels)
 
     @property
     def array(self) -> NDArray[Any]:
@@ -177,20 +185,36 @@ class Image:
 FlexImage = Image
 
 
+def image_blocks(array: NDArray[Any], kind: Pixel) -> tuple[bytes | memoryview, ...]:
+    """What `Image(array, kind.code).to_wire()` is, for an array that is known to fit."""
+    height, width = array.shape[:2]
+    shape = (height, width, kind.channels)
+    pixels = _laid_out(array, kind, shape, _row_bytes(width, kind, QUANTUM))
+    return _wire(kind.code, kind.depth, (QUANTUM, False, width, height), pixels)
+
+
 def is_image(view: bytes | bytearray | memoryview) -> bool:
     """Do these bytes begin with the header of an image?"""
     if len(view) < _HEAD.size:
         return False
     head = _HEAD.unpack_from(view)
-    return head[:5] == (256, 4, 9, _MAT, 9) and head[6:8] == (257, 5) and head[14] == 12
+    return head[:5] == _BEGINNING and head[6:8] == (257, 5) and head[14] == 12
+
+
+def _wire(
+    code: int, depth: int, rows: tuple[int, bool, int, int], pixels: memoryview
+) -> tuple[bytes | memoryview, ...]:
+    """Header and pixels; `rows` are quantum, whether the lowest is first, width, height."""
+    size = len(pixels)
+    head = _HEAD.pack(256, 4, 9, _MAT, 9, code, 257, 5, depth, size, *rows, 12, size)
+    return (head, pixels) if size else (head,)
 
 
 def _row_bytes(width: int, kind: Pixel, quantum: int) -> int:
     return -(-width * kind.stride // quantum) * quantum
 
 
-def _received(code: int, depth: int) -> Pixel:
-    kind = pixel(code)
+def _received(code: int, depth: int, kind: Pixel | None) -> Pixel:
     if kind is None:
         raise DecodeError(f"an Image with the unknown pixel code {str(Vocab.from_code(code))!r}")
     if kind.depth != depth:

@@ -7,7 +7,7 @@ row: they differ for `yuvc` only, whose depth C++ announces as 1.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 from yarpy.data.value import Vocab, vocab_code
@@ -21,14 +21,15 @@ class Pixel:
     depth: int
     dtype: str
     channels: int = 1
+    name: str = field(init=False, repr=False)
+    #: the code as a word, empty for anonymous pixels, as `name` is
+    vocab: Vocab = field(init=False, repr=False)
+    stride: int = field(init=False, repr=False)
 
-    @property
-    def name(self) -> str:
-        return str(Vocab.from_code(self.code))
-
-    @property
-    def stride(self) -> int:
-        return int(self.dtype[-1]) * self.channels
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vocab", Vocab.from_code(self.code))
+        object.__setattr__(self, "name", str(self.vocab))
+        object.__setattr__(self, "stride", int(self.dtype[-1]) * self.channels)
 
 
 _TABLE = (
@@ -96,6 +97,7 @@ def pixel(code: int) -> Pixel | None:
     return Pixel(code, size, "<u1", size)
 
 
+@lru_cache(maxsize=256)
 def pixel_of(name: str | int) -> Pixel:
     """The pixel of a name or code; ValueError that lists the names."""
     code = name if isinstance(name, int) else Vocab(name).code

@@ -46,6 +46,8 @@ _FILLER: Final = b"\xff" * 8
 _PLAIN: Final = INDEX + b"\x02\x01" + _FILLER  # two blocks, as nearly every message has
 _PLAIN_SIZE: Final = len(_PLAIN) + 12  # + two lengths + the reply's length
 _HEAD_SIZE: Final = len(_PLAIN)
+# The whole index of a message with so many blocks: their lengths, and the reply's.
+_LENGTHS: Final = [struct.Struct(f"<8s2B8s{count + 1}i") for count in range(8)]
 
 # Port commands: eight bytes, with the key inside (`D`) or in a text that follows (envelopes, quit).
 _KEYS: Final = {key: b"\0\0\0\0~" + key.encode() + b"\0\1" for key in "Dda"}
@@ -92,9 +94,10 @@ def _encode_blocks(command: bytes, blocks: tuple[Buffer, ...]) -> list[Buffer]:
     if len(blocks) > 200:  # the count is one byte; the reader does not care about borders
         blocks = (b"".join(blocks),)
     sizes = [len(command), *map(len, blocks)]
-    index = bytearray(INDEX)
-    index += bytes((len(sizes), 1)) + _FILLER
-    index += struct.pack(f"<{len(sizes)}i", *sizes) + b"\0\0\0\0" + command
+    count = len(sizes)
+    lengths = _LENGTHS[count] if count < len(_LENGTHS) else struct.Struct(f"<8s2B8s{count + 1}i")
+    index = bytearray(lengths.pack(INDEX, count, 1, _FILLER, *sizes, 0))
+    index += command
     out: list[Buffer] = []
     for block in blocks:
         if len(block) < LARGE:
@@ -158,6 +161,11 @@ _DECODED: Final = ("D", "d", "a")
 
 def _read_any(stream: ByteStream) -> Steps[Message | None]:
     """The general form of a message; None for a port command that is broken (C++ skips it)."""
+    large = _parse_large(stream)
+    if large is not None:
+        message, rest = large
+        message.payload = yield from stream.read_exact(rest)
+        return message
     head = yield from stream.read_exact(_HEAD_SIZE)
     blocks, replies = head[8], head[9]
     lengths = yield from stream.read_exact(4 * (blocks + replies))
@@ -183,6 +191,29 @@ def _read_any(stream: ByteStream) -> Steps[Message | None]:
         # No payload is that short: the index lies, the payload must tell where it ends.
         message.payload = yield from read_payload(stream)
     return message
+
+
+def _parse_large(stream: ByteStream) -> tuple[Message, int] | None:
+    """What begins a large message without envelope, and how much follows; None: look closer.
+
+    As with `parse_plain`, no generator runs: what a large message costs beside its bytes.
+    """
+    head, buffer = stream.head, stream.buffer
+    blocks = buffer[head + 8]
+    if not 1 < blocks < len(_LENGTHS) or buffer[head + 9] != 1:
+        return None
+    start = head + _HEAD_SIZE + 4 * blocks + 4
+    if stream.tail < start + 8:
+        return None
+    _, _, _, _, command, *sizes, _ = _LENGTHS[blocks].unpack_from(buffer, head)
+    rest = sum(sizes)
+    if command != 8 or min(sizes) < 0 or not LARGE < rest <= stream.limit - 8:
+        return None
+    key = _CHARACTERS.get(buffer[start + 5])
+    if key is None or buffer[start + 4] != 0x7E:
+        return None
+    stream.head = start + 8
+    return Message(key), rest
 
 
 def read_command(stream: ByteStream) -> Steps[tuple[Message, int] | None]:
