@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias
 
 from yarpy.carriers.base import PAGE
+from yarpy.carriers.http_message import TEXT
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
 from yarpy.data.json import Outer, from_json
@@ -86,7 +87,7 @@ class Refusal:
 
     status: int
     text: str = ""
-    kind: str = "text/plain; charset=utf-8"
+    kind: str = TEXT
 
 
 def read_wish(request: Request) -> Wish | Refusal:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final
 from yarpy.carriers.http_client import ENVELOPE
 from yarpy.carriers.http_message import HTML, JSON, TEXT, Headers, response_head
 from yarpy.carriers.origin import Origins, hostname
+from yarpy.carriers.text import reply_text
 from yarpy.contact import Route
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
@@ -121,7 +122,7 @@ class Responder:
             return Response(200, JSON, _json_body(value, wish))
         if wish.form == "page":
             return self._page(wish, _lines(value), host)
-        return Response(200, TEXT, _text_body(value))
+        return Response(200, TEXT, reply_text(value))
 
     def nothing(self, wish: Wish, host: str) -> Response:
         """The answer to a message that the port did not reply to."""
@@ -193,10 +194,6 @@ def _json_body(value: object, wish: Wish) -> bytes:
     if isinstance(value, Lines):
         value = ["list", *value]
     return (to_json(value, wish.outer) + "\n").encode()
-
-
-def _text_body(value: object) -> bytes:
-    return value.to_text() if isinstance(value, Lines) else codec.encode_text(value) + b"\r\n"
 
 
 def _lines(value: object) -> list[str]:

@@ -8,10 +8,10 @@ commands.
 from __future__ import annotations
 
 from yarpy.carriers.base import Carrier
+from yarpy.carriers.text import reply_text
 from yarpy.contact import Route
-from yarpy.data import codec
 from yarpy.wire.effects import Steps
-from yarpy.wire.message import CALL, Lines, Message, Packet
+from yarpy.wire.message import CALL, Message, Packet
 from yarpy.wire.stream import ByteStream
 
 _PREFIX = b"NAME_SERVER "
@@ -52,10 +52,7 @@ class NameSer(Carrier):
         """Nothing ends this protocol but closing."""
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
-        if isinstance(value, Lines):
-            stream.write(value.to_text())
-        else:
-            stream.write(codec.encode_text(value) + b"\r\n")
+        stream.write(reply_text(value))
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         return Message(CALL, (yield from stream.read_line(MAX_LINE)), spelling="text")

@@ -56,11 +56,12 @@ class Text(Carrier):
     def encode_quit(self, stream: ByteStream) -> None:
         stream.write(b"q" + _END)
 
+    def hear_out(self, stream: ByteStream) -> Steps[None]:
+        while True:  # the welcome, and what else the peer says
+            yield from stream.read_line(MAX_LINE)
+
     def encode_reply(self, stream: ByteStream, value: object) -> None:
-        if isinstance(value, Lines):
-            stream.write(value.to_text())
-        else:
-            stream.write(codec.encode_text(value) + _END)
+        stream.write(reply_text(value))
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         if not self._welcomed:
@@ -103,6 +104,11 @@ class TextAck(Text):
         if stream.buffer.startswith(b"<ACK>", stream.head):
             return None
         return (yield from super().expect_reply(stream))
+
+
+def reply_text(value: object) -> bytes:
+    """A reply as it is shown to people: a line of text, or its own lines."""
+    return value.to_text() if isinstance(value, Lines) else codec.encode_text(value) + _END
 
 
 def read_text(stream: ByteStream, limit: int) -> Steps[bytes]:

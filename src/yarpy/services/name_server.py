@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from queue import SimpleQueue
-from types import TracebackType
 from typing import TYPE_CHECKING, Final, Self
 
 from yarpy.data.bottle import Bottle
@@ -281,12 +280,7 @@ class NameServer:
         DEFAULT.push(self.client)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *details: object) -> None:
         DEFAULT.pop(self.client)
         self.close()
 

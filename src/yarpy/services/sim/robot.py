@@ -13,11 +13,11 @@ import time
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from types import TracebackType
-from typing import TYPE_CHECKING, Final, Self
+from typing import TYPE_CHECKING, Final
 
 from yarpy.devices.control_board import Joints
 from yarpy.devices.frame_grabber import Camera
+from yarpy.devices.opened import Opened, prefix
 from yarpy.services.sim.axis import ICUB_HEAD
 from yarpy.services.sim.board import Board
 from yarpy.services.sim.body import Body, Clock
@@ -58,7 +58,7 @@ def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
     )
 
 
-class Robot:
+class Robot(Opened):
     """Serves `parts` while it is open; a context manager.
 
     name: prefix of all ports. fps: pictures per second. names: a name client, None for the default.
@@ -70,7 +70,7 @@ class Robot:
     ) -> None:
         from yarpy.devices import ControlBoardServer, FrameGrabberServer, MultiSensorServer
 
-        self.name = name = "/" + name.strip("/")
+        self.name = name = prefix(name)
         self.ports: list[str] = []  # prefixes
         with ExitStack() as opened:
             for part, board in parts.boards.items():
@@ -83,18 +83,3 @@ class Robot:
                 measures = MultiSensorServer(f"{name}/{part}", sensors, names=names)
                 self.ports.append(opened.enter_context(measures).name)
             self._opened = opened.pop_all()
-
-    def close(self) -> None:
-        """Close the ports. Idempotent."""
-        self._opened.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
