@@ -291,3 +291,19 @@ def test_writer_to_a_stuck_reader_can_be_closed(names: LocalNames) -> None:
         thread.join(5)
         assert not thread.is_alive()
         sock.close()
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text", "text_ack", "udp", "unix_stream"])
+def test_what_was_written_before_a_goodbye_arrives(carrier: str, names: LocalNames) -> None:
+    """Over text a sender that hung up used to take back what the reader had not read yet."""
+    count = 1000 if carrier == "udp" else 3000  # a kernel holds so many datagrams
+    with (
+        Port("/out", names=names) as out,
+        BufferedPort("/in", strict=True, names=names) as in_,
+    ):
+        out.connect("/in", carrier)
+        for number in range(count):
+            out.write([number, "x" * 1000])
+        out.disconnect("/in")
+        got = [in_.read(timeout=20).value[0] for _ in range(count)]
+        assert got == list(range(count))

@@ -171,3 +171,40 @@ def test_member_leaves_without_troubling_the_group() -> None:
     assert staying.try_recv_into(room) == -1
     leaving.close()
     staying.close()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no receiving without waiting on Windows")
+def test_what_has_come_before_the_end_is_read() -> None:
+    near, far = pair()
+    near.send([b"one", b"two"])
+    far.interrupt()
+    assert [receive(far) for _ in range(3)] == [b"one", b"two", b""]
+    near.close()
+    far.close()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no receiving without waiting on Windows")
+def test_sender_who_goes_on_after_the_end_is_not_followed_for_ever() -> None:
+    near, far = pair()
+    far._woken = True  # as by an interrupt whose waker found no room
+    got = 0
+    while True:
+        near.send([b"x" * 60_000])
+        if not receive(far):
+            break
+        got += 1
+    assert 0 < got < 200
+    near.close()
+    far.close()
+
+
+def test_what_a_group_had_sent_before_the_end_is_counted() -> None:
+    number = free_port()
+    member = open_mcast(True, HOME, GROUP, number)
+    sender = open_mcast(False, HOME, GROUP, number)
+    sender.send([b"one", b"two"])
+    member.interrupt()
+    assert receive(member) == b""
+    assert member.dropped == 2
+    member.close()
+    sender.close()

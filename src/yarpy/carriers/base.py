@@ -126,6 +126,15 @@ class Carrier:
         """Write the message that ends the connection in good order, if there is one."""
         stream.write(framing.QUIT)
 
+    def hear_out(self, stream: ByteStream) -> Steps[None]:
+        """Without acknowledgements: read what the peer says until it hangs up, after our goodbye.
+
+        For protocols whose peers may have said something that nobody read. Who closes a TCP
+        connection with unread bytes destroys what he has sent himself.
+        """
+        return
+        yield
+
     def listen(self, stream: ByteStream) -> Steps[None]:
         """Deal with what a reader says while we send to it; returns when it wants no more."""
         return

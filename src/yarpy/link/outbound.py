@@ -431,6 +431,8 @@ class Outbound:
                     if self.carrier.acks:
                         self.unacknowledged += 1
                         self._collect(wait=True, all_=True, deadline=deadline)
+                    else:
+                        driver.run(self.carrier.hear_out(driver.stream), deadline)
             except (YarpError, OSError):
                 lost = max(self.unacknowledged - 1, 0)
                 self.counter.messages -= lost

@@ -12,7 +12,7 @@ import struct
 import sys
 from collections.abc import Sequence
 
-from yarpy.transports.base import Address, SocketTransport
+from yarpy.transports.base import MSG_DONTWAIT, Address, SocketTransport
 from yarpy.wire.stream import Buffer
 
 RECEIVE_BUFFER = 1 << 23
@@ -27,6 +27,7 @@ class DatagramTransport(SocketTransport):
         self._target = target
         self._connected = False
         self._woken = False
+        self._room = RECEIVE_BUFFER  # bytes that may still be read once woken
         self.dropped = 0  # datagrams the kernel threw away for want of room
         for size in (RECEIVE_BUFFER, RECEIVE_BUFFER // 8):
             try:
@@ -47,11 +48,20 @@ class DatagramTransport(SocketTransport):
 
     def recv_into(self, view: memoryview) -> int:
         while True:
-            count = self._recv_datagram(view)
             if self._woken:
-                return 0
+                return self._rest(view)
+            count = self._recv_datagram(view)
             if count:
                 return count  # an empty datagram is not an end: anybody can send one
+
+    def _rest(self, view: memoryview) -> int:
+        """What had come when we were woken: it was sent before the end. 0 when that is all."""
+        try:
+            count = self._recv_into(view, 0, MSG_DONTWAIT) if MSG_DONTWAIT else 0
+        except OSError:
+            return 0
+        self._room -= count
+        return count if self._room > 0 else 0  # a sender who goes on is not followed for ever
 
     def _recv_datagram(self, view: memoryview) -> int:
         if not _SO_RXQ_OVFL:
@@ -162,6 +172,9 @@ class McastReceiver(DatagramTransport):
                 return super().recv_into(view)
             except BlockingIOError:
                 continue
+        while self._rest(view):
+            # Not handed on: where the sender has come anew, its new connection has them as well.
+            self.dropped += 1
         return 0
 
     def interrupt(self) -> None:
