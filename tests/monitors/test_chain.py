@@ -133,7 +133,9 @@ def test_bytes_and_envelope_may_be_replaced() -> None:
     assert (packet.line, packet.envelope) == (b"raw", b"9 1.5")
 
 
-@pytest.mark.parametrize("error", [ValueError("odd"), DecodeError("odd"), IndexError("odd")])
+@pytest.mark.parametrize(
+    "error", [ValueError("odd"), DecodeError("odd"), IndexError("odd"), SystemExit("odd")]
+)
 def test_monitor_that_fails_costs_the_message_and_one_line(caplog, error) -> None:
     class Fails:
         def update(self, message: Message) -> object:

@@ -183,6 +183,14 @@ def test_callback_that_fails_names_its_line(callback: str) -> None:
         call(message("hi"))
 
 
+@pytest.mark.parametrize("callback", ["accept", "update", "update_reply", "setparam"])
+def test_callback_cannot_end_the_program(callback: str) -> None:
+    script = load(f"import sys\ndef {callback}(x):\n    sys.exit('odd')\n")
+    call = {"setparam": script.configure}.get(callback) or getattr(script, callback)
+    with pytest.raises(ScriptError, match=r"^/nowhere/gate\.py:3: SystemExit: odd"):
+        call(message("hi"))
+
+
 @pytest.mark.parametrize("callback", ["trig", "getparam", "destroy"])
 def test_callbacks_without_arguments_fail_alike(callback: str) -> None:
     script = load(f"def {callback}():\n    raise ValueError('odd')\n")

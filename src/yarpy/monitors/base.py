@@ -44,6 +44,9 @@ class _Drop:
 
 DROP: Final = _Drop()
 
+FAILURES: Final = (Exception, SystemExit)
+"""What a monitor may raise, and only it fails. It cannot end the program, or a thread of ours."""
+
 
 class Group:
     """The monitors at the receiving ends of one port's connections, who decide together.

@@ -17,7 +17,7 @@ from yarpy import registry
 from yarpy.data import codec
 from yarpy.data.property import Property
 from yarpy.errors import LocalProtocolError, YarpError
-from yarpy.monitors.base import DROP, Group, Place, split_tokens
+from yarpy.monitors.base import DROP, FAILURES, Group, Place, split_tokens
 from yarpy.wire.message import Message, Packet
 
 log = logging.getLogger("yarpy.monitors")
@@ -52,7 +52,7 @@ def make(name: str, place: Place) -> object:
         return kind(place)
     except YarpError:
         raise
-    except Exception as error:
+    except FAILURES as error:
         raise LocalProtocolError(
             f'monitor "{name}" cannot start at {place}: {type(error).__name__}: {error}'
         ) from error
@@ -126,7 +126,7 @@ class Chain:
                         return None
                     if made is not None and made is not message:
                         message = made if isinstance(made, Message) else message.replaced(made)
-        except Exception as error:
+        except FAILURES as error:
             self._complain(error)
             return None
         return message
@@ -147,11 +147,11 @@ class Chain:
                 made = update(message)
                 if made is not None and made is not DROP and made is not message:
                     message = made if isinstance(made, Message) else message.replaced(made)
-        except Exception as error:
+        except FAILURES as error:
             self._complain(error)
         return message
 
-    def _complain(self, error: Exception) -> None:
+    def _complain(self, error: BaseException) -> None:
         text = f"{error}" if isinstance(error, YarpError) else f"{type(error).__name__}: {error}"
         if text not in self._told and len(self._told) < _MOST_TOLD:
             self._told.add(text)
@@ -194,5 +194,5 @@ class Chain:
                 self._group.remove(monitor)
             try:
                 getattr(monitor, "close", lambda: None)()
-            except Exception as error:
+            except FAILURES as error:
                 log.warning("%s: a monitor did not close: %s", self._where, error)

@@ -29,6 +29,7 @@ from types import ModuleType
 from typing import Any, Final
 
 from yarpy.data.property import Property
+from yarpy.monitors.base import FAILURES
 from yarpy.monitors.control import Control
 from yarpy.monitors.script import ScriptError
 from yarpy.wire.message import Message
@@ -62,7 +63,7 @@ class PythonScript:
             exec(compile(source, self._path, "exec"), vars(module))
             kind = getattr(module, "Monitor", None)
             owner = kind() if isinstance(kind, type) else module
-        except Exception as error:
+        except FAILURES as error:
             sys.modules.pop(module.__name__, None)
             raise self._failed(error) from error
         found = {key: self._find(owner, names) for key, names in _NAMES.items()}
@@ -79,7 +80,7 @@ class PythonScript:
                 return found
         return None
 
-    def _failed(self, error: Exception) -> ScriptError:
+    def _failed(self, error: BaseException) -> ScriptError:
         """What went wrong, and in which line of the script."""
         line: int | None = None
         if isinstance(error, SyntaxError) and error.filename == self._path:
@@ -104,7 +105,7 @@ class PythonScript:
             return True
         try:
             return bool(self._accept(message))
-        except Exception as error:
+        except FAILURES as error:
             raise self._failed(error) from error
 
     def update(self, message: Message) -> object:
@@ -112,7 +113,7 @@ class PythonScript:
             return None
         try:
             return self._update(message)
-        except Exception as error:
+        except FAILURES as error:
             raise self._failed(error) from error
 
     def update_reply(self, message: Message) -> object:
@@ -147,7 +148,7 @@ class PythonScript:
         """With as many of the arguments as it takes."""
         try:
             return callback(*arguments[: _taken(callback)])
-        except Exception as error:
+        except FAILURES as error:
             raise self._failed(error) from error
 
 
