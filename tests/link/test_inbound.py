@@ -48,7 +48,7 @@ class Owner:
 
     def receive(self, link: Inbound, message: Message) -> None:
         self.heard.append(message)
-        if isinstance(self.answer, Exception):
+        if isinstance(self.answer, BaseException):
             raise self.answer
         if self.answer is not None and message.wants_reply:
             message.reply(self.answer)
@@ -215,6 +215,16 @@ def test_defect_of_ours_is_logged_with_its_traceback(caplog: pytest.LogCaptureFi
     assert "ZeroDivisionError" in owner.ended[0][0]
     assert transport.closed
     assert caplog.records[0].exc_info is not None
+
+
+def test_reader_who_means_to_end_its_thread_ends_the_link(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Else its peer would wait for ever for a link that nobody serves."""
+    owner, transport, _ = served(Tcp, message([1]), answer=SystemExit(3))
+    assert owner.ended == [("SystemExit: 3", False)]
+    assert transport.closed
+    assert "fails on a defect" in caplog.text
 
 
 def test_error_of_ours_ends_the_link_quietly(caplog: pytest.LogCaptureFixture) -> None:

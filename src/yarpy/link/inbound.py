@@ -109,7 +109,7 @@ class Inbound:
             reason = f"{error}"
             if self.carrier.patience is None or not isinstance(error, Timeout):
                 self._tell(error)  # silence beyond a carrier's patience is nobody's fault
-        except Exception as error:
+        except BaseException as error:  # a callback's sys.exit() too ends this link, and no more
             reason = f"{type(error).__name__}: {error}"
             log.exception("%s: connection %s fails on a defect", self.owner.name, self.route)
         if self._reversed:
