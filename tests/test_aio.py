@@ -1,6 +1,8 @@
 """Ports in an event loop."""
 
 import asyncio
+import gc
+import threading
 
 import pytest
 
@@ -109,5 +111,76 @@ def test_a_question_still_open_when_the_port_closes_gets_an_empty_answer():
             assert message.wants_reply
         assert await asyncio.wait_for(call, 10) == []
         await client.close()
+
+    asyncio.run(main())
+
+
+def test_drops_of_latest_are_counted_on_their_connection():
+    async def main():
+        async with aio.Port("/aio/in", latest=True) as reader:
+            with yarpy.Port("/aio/out") as writer:
+                writer.connect("/aio/in")
+
+                def write():
+                    for number in range(200):
+                        writer.write([number])
+                    writer.flush()
+
+                await asyncio.to_thread(write)
+                got = 0
+                with pytest.raises(yarpy.Timeout):
+                    while True:
+                        await reader.read(timeout=0.2)
+                        got += 1
+                stats = reader.inputs[0].stats
+                assert (stats["messages"], stats["drops"]) == (200, 200 - got)
+                assert reader.drops == 200 - got
+
+    asyncio.run(main())
+
+
+def test_cancelled_opening_leaves_no_port_behind():
+    async def main():
+        for patience in (0, 0.0005, 0.002, 0.005):
+            reader = aio.Port("/aio/in")
+            opening = asyncio.create_task(reader.open())
+            await asyncio.sleep(patience)
+            if opening.cancel():
+                with pytest.raises(asyncio.CancelledError):
+                    await opening
+            await reader.close()
+            for _ in range(2000):
+                if yarpy.query("/aio/in") is None and not _open_ports():
+                    break
+                await asyncio.sleep(0.01)
+            assert not _open_ports()
+
+    def _open_ports():
+        return [thread for thread in threading.enumerate() if thread.name == "yarpy /aio/in"]
+
+    asyncio.run(main())
+
+
+def test_port_opened_by_two_tasks_at_once_is_one():
+    async def main():
+        reader = aio.Port("/aio/in")
+        await asyncio.gather(reader.open(), reader.open())
+        await reader.close()
+        assert yarpy.query("/aio/in") is None
+
+    asyncio.run(main())
+
+
+def test_question_that_everybody_forgot_gets_an_empty_answer():
+    async def main():
+        async with aio.Port("/aio/in") as reader, aio.RpcClient("/aio/in") as client:
+            asking = asyncio.create_task(client.call("x", timeout=20))
+            message = await reader.read(timeout=20)
+            with pytest.raises(yarpy.Timeout):
+                await reader.read(timeout=0.05)  # it may still be answered, by any task
+            assert message.wants_reply
+            del message
+            gc.collect()
+            assert await asking == []
 
     asyncio.run(main())

@@ -15,16 +15,24 @@ import asyncio
 import threading
 from collections import deque
 from collections.abc import AsyncIterator, Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 from yarpy.data.stamp import Stamp
 from yarpy.errors import PortClosed, Timeout
+from yarpy.link.inbound import Inbound
 from yarpy.names.base import NameClient
 from yarpy.port import port as plain
 from yarpy.port import rpc
+from yarpy.port.base import BasePort
 from yarpy.port.connection import Connection
+from yarpy.port.hub import Hub
+from yarpy.port.mailbox import Mailbox
+from yarpy.port.reader import ReadingPort
 from yarpy.wire.message import Message
+
+P = TypeVar("P", bound=BasePort)
 
 
 class Port:
@@ -32,7 +40,9 @@ class Port:
 
     Every message is read once, in order. `queue` is how many may wait unread; beyond that a sender
     waits, and nothing is lost. With `latest` only the newest waits, older ones are dropped and
-    counted in `drops`. Other parameters as `yarpy.Port`.
+    counted, in `drops` and on their connection. A question may be answered by any task, at any
+    time; one that everybody has forgotten unanswered gets an empty answer. Other parameters as
+    `yarpy.Port`.
     """
 
     def __init__(
@@ -53,6 +63,7 @@ class Port:
         self._arrived = asyncio.Event()
         self._port: plain.Port | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._opening = asyncio.Lock()
         self._asked: set[_Arrival] = set()  # questions that were read and not answered yet
         self._closed = False
         self.drops = 0
@@ -61,12 +72,13 @@ class Port:
 
     async def open(self) -> Self:
         """Open and register. Raises AddressError, NoNameServer."""
-        if self._port is None:
-            self._closed = False
-            self._loop = asyncio.get_running_loop()
-            self._port = await asyncio.to_thread(
-                lambda: plain.Port(self._name, callback=self._take, **self._arguments)
-            )
+        async with self._opening:
+            if self._port is None:
+                self._closed = False
+                self._loop = asyncio.get_running_loop()
+                self._port = await _opened(
+                    lambda: _Port(self._name, _Door(self._take), **self._arguments)
+                )
         return self
 
     async def close(self) -> None:
@@ -75,7 +87,9 @@ class Port:
         self._closed = True
         if port is not None:
             self._arrived.set()
-            for arrival in (*self._inbox, *self._asked):
+            for arrival in self._inbox:
+                arrival.drop()
+            for arrival in self._asked:
                 arrival.release()
             self._inbox.clear()
             self._asked.clear()
@@ -162,25 +176,26 @@ class Port:
 
     # -- from the threads of connections ----------------------------------------------------------
 
-    def _take(self, message: Message) -> None:
+    def _take(self, link: Inbound, message: Message) -> bool:
         """A message came, in its connection's thread, which waits while the inbox is full."""
         loop = self._loop
         assert loop is not None
-        arrival = _Arrival(message, keep=message.wants_reply)
+        arrival = _Arrival(link, message)
         try:
             loop.call_soon_threadsafe(self._put, arrival)
-        except RuntimeError as error:  # the loop is closed
-            raise PortClosed(f'the event loop of "{self.name}" is closed') from error
+        except RuntimeError:
+            return False  # the loop is closed
         arrival.wait()
+        return True
 
     def _put(self, arrival: _Arrival) -> None:
         """In the loop: keep the message, and let its connection go on if there is room."""
         if self._closed:
-            arrival.release()
+            arrival.drop()
             return
         if self._latest:
             while self._inbox:
-                self._inbox.popleft().release()
+                self._inbox.popleft().drop()
                 self.drops += 1
         self._inbox.append(arrival)
         if len(self._inbox) <= self._limit:
@@ -195,27 +210,82 @@ class Port:
             self._asked.add(arrival)
         if len(self._inbox) >= self._limit:
             self._inbox[self._limit - 1].go_on()
-        return arrival.message
+        return arrival.hand_out()
+
+
+async def _opened(make: Callable[[], P]) -> P:
+    """What `make` opens, in a thread. Who is cancelled meanwhile leaves nothing open."""
+    executor = ThreadPoolExecutor(1, "yarpy opening")
+    opening = executor.submit(make)
+    executor.shutdown(wait=False)
+    try:
+        return await asyncio.shield(asyncio.wrap_future(opening))
+    except asyncio.CancelledError:
+        opening.add_done_callback(_close_again)
+        raise
+
+
+def _close_again(opening: Future[P]) -> None:
+    if opening.exception() is None:
+        threading.Thread(target=opening.result().close, daemon=True).start()
+
+
+class _Door(Mailbox):
+    """Hands each message to the loop, in the thread of its connection."""
+
+    def __init__(self, take: Callable[[Inbound, Message], bool]) -> None:
+        super().__init__()
+        self._take = take
+
+    def put(self, link: Inbound, message: Message) -> None:
+        if self.stopped or not self._take(link, message):
+            with self._gate:
+                self._drop(link)
+
+    def take(self, timeout: float | None = None) -> Message | None:
+        raise PortClosed("this port is read in its event loop")
+
+
+class _Port(plain.Port):
+    """The port underneath, with a mailbox that leads to the loop."""
+
+    def __init__(
+        self,
+        name: str,
+        mailbox: Mailbox,
+        names: NameClient | None,
+        spin: bool = False,
+        **options: Any,
+    ) -> None:
+        ReadingPort.__init__(self, Hub(name, mailbox, names, **options), spin)
 
 
 class _Arrival:
     """A message and the connection's thread that may be waiting for room, or for a reply."""
 
-    def __init__(self, message: Message, keep: bool) -> None:
-        self.message = message
-        self._keep = keep  # a question: its connection waits for the answer
+    def __init__(self, link: Inbound, message: Message) -> None:
+        self._link = link
+        self._keep = message.wants_reply  # a question: its connection waits for the answer
         self._done = threading.Event()
-        if keep:
-            answer = message.answer
-            assert answer is not None
+        self._message: Message | None = message
+        answer = message.answer
+        if answer is not None:
+            # A message of the reader's own: the connection's thread holds on to the other one.
+            # Once the reader forgets it nobody is left who could answer.
+            reply = _Reply(answer, self._done)
+            self._message = message.replaced(message.payload)
+            self._message.spelling, self._message.answer = message.spelling, reply
 
-            def reply(value: object, send: Callable[[object], None] = answer) -> None:
-                try:
-                    send(value)
-                finally:
-                    self._done.set()
+    def hand_out(self) -> Message:
+        """The message, once: from now on it is the reader's."""
+        message, self._message = self._message, None
+        assert message is not None
+        return message
 
-            message.answer = reply
+    def drop(self) -> None:
+        """Nobody will read it; it is counted."""
+        self._link.counter.drops += 1
+        self.release()
 
     @property
     def done(self) -> bool:
@@ -236,6 +306,29 @@ class _Arrival:
         self._done.set()
 
 
+class _Reply:
+    """The way back of one question; its connection goes on when it is used or forgotten."""
+
+    __slots__ = ("_done", "_send")
+
+    def __init__(self, send: Callable[[object], None], done: threading.Event) -> None:
+        self._send = send
+        self._done = done
+
+    def __call__(self, value: object) -> None:
+        try:
+            self._send(value)
+        except TypeError:
+            raise  # it cannot be sent: the question is still open
+        except BaseException:
+            self._done.set()
+            raise
+        self._done.set()
+
+    def __del__(self) -> None:
+        self._done.set()
+
+
 class RpcClient:
     """Asks the server called `target` without blocking the loop.
 
@@ -253,9 +346,7 @@ class RpcClient:
         """Ask, and return the answer's value; see `yarpy.RpcClient.call`."""
         async with self._turn:
             if self._client is None:
-                self._client = await asyncio.to_thread(
-                    lambda: rpc.RpcClient(self._target, **self._options)
-                )
+                self._client = await _opened(lambda: rpc.RpcClient(self._target, **self._options))
             client = self._client
             return await asyncio.to_thread(lambda: client.call(*args, timeout=timeout))
 
