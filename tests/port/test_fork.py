@@ -119,10 +119,10 @@ def test_others_notice_the_death_of_a_parent_whose_child_lives_on() -> None:
                 os.kill(os.getpid(), signal.SIGKILL)
 
         wait_until(lambda: len(in_.inputs) == 1)
-        number = child_of(work)
-        wait_until(lambda: len(in_.inputs) == 2)
-        os.waitpid(number, 0)
-        wait_until(lambda: len(in_.inputs) == 1)
+        events = []
+        in_.on_connection(events.append)
+        os.waitpid(child_of(work), 0)
+        wait_until(lambda: [event.created for event in events] == [True, False])
         print(yarpy.exists("/parent"))
         """
     )

@@ -18,8 +18,11 @@ from support.wait import wait_until
 from yarpy import network
 from yarpy.contact import Contact
 from yarpy.errors import AddressError, LinkClosed, NoNameServer, UnknownName, YarpError
+from yarpy.names.client import YarpNameClient
 from yarpy.names.local import LocalNames
+from yarpy.names.several import SeveralNames
 from yarpy.port.port import Port
+from yarpy.port.probe import is_alive
 from yarpy.services.name_server import NameServer
 from yarpy.wire import framing
 
@@ -388,3 +391,79 @@ def test_snapshot_tells_all(names: LocalNames) -> None:
         assert stats["outputs"] == []
         assert stats["waiting"] == 0
         assert out.stats["outputs"][0]["target"] == "/in"
+
+
+def test_port_opens_though_one_of_several_name_services_is_away() -> None:
+    first = LocalNames()
+    names = SeveralNames([first, YarpNameClient("127.0.0.1", free_port())])
+    with Port("/here", names=names) as port:
+        assert first.query("/here") == port.contact
+    assert first.query("/here") is None
+
+
+class Dying(LocalNames):
+    """A name service that fails at one of its calls, after it has done what it should."""
+
+    def __init__(self, call: str) -> None:
+        super().__init__()
+        self.call = call
+        self.while_registering = lambda number: None  # what happens before we know that we are in
+
+    def register(
+        self,
+        name: str,
+        carrier: str | None = None,
+        host: str | None = None,
+        port: int | None = None,
+        type_: str | None = None,
+    ) -> Contact:
+        contact = super().register(name, carrier, host, port, type_)
+        self.while_registering(contact.port)
+        self._die("register")
+        return contact
+
+    def set(self, name: str, key: str, *values: str | int | float) -> list[str]:
+        self._die("set")
+        return super().set(name, key, *values)
+
+    def _die(self, call: str) -> None:
+        if call == self.call:
+            raise NoNameServer("it died")
+
+
+@pytest.mark.parametrize("call", ["register", "set"])
+def test_port_that_cannot_be_opened_leaves_nothing_behind(call: str) -> None:
+    names = Dying(call)
+    for _ in range(2):
+        with pytest.raises(NoNameServer):
+            Port("/here", names=names)  # not: the name is in use
+    assert [thread for thread in threading.enumerate() if thread.name == "yarpy /here"] == []
+    if call == "set":
+        assert names.query("/here") is None
+
+
+def test_port_can_be_asked_before_it_knows_that_it_is_registered(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    names = Dying("")
+    asking: list[threading.Thread] = []
+    found: list[bool] = []
+
+    def ask(number: int) -> None:
+        contact = Contact("tcp", "/here", "127.0.0.1", number)
+        thread = threading.Thread(target=lambda: found.append(is_alive(contact)))
+        thread.start()
+        asking.append(thread)
+        time.sleep(0.05)  # while the service thinks
+
+    names.while_registering = ask
+    with Port("/here", names=names):
+        asking[0].join(10)
+        assert found == [True]
+    assert "defect" not in caplog.text
+
+
+@pytest.mark.parametrize("number", [-1, 65536])
+def test_number_that_no_port_can_have(number: int, names: LocalNames) -> None:
+    with pytest.raises(AddressError, match="below 65536"):
+        Port("/here", names=names, port=number)

@@ -38,7 +38,8 @@ def _leave_behind() -> None:
 def _abandon(hub: Hub) -> None:
     hub.closing = hub.inherited = True
     hub.mailbox.abandon("this port was opened before the process was forked; open one here")
-    hub.acceptor.abandon()
+    if hub.acceptor is not None:
+        hub.acceptor.abandon()
     links: tuple[Inbound | Outbound, ...] = (*hub.inputs, *hub.outputs)
     for link in links:
         sock = getattr(link.driver.transport, "sock", None)

@@ -95,19 +95,32 @@ class Hub:
         if name and not name.startswith(("...", "=")):
             name = check_name(port_name(name, os.environ))
         self.name = name
+        self._has_name = False  # in the name service
         self.names = names
         if self.registered and names is None:
             self.names = DEFAULT.current()
-        self._open(port or port_number(name, os.environ), host)
+        self.acceptor: Acceptor | None = None
+        self._opened = threading.Event()  # who dials us before we know our name has to wait
+        try:
+            self._open(port or port_number(name, os.environ), host)
+        except BaseException:
+            self._give_up()
+            raise
 
     # -- opening ----------------------------------------------------------------------------------
 
     def _open(self, port: int, host: str) -> None:
+        if not 0 <= port < 65536:
+            raise AddressError(
+                f'"{self.name}" cannot listen on TCP port {port}: choose a number below 65536, or '
+                "0 for any free one"
+            )
         names = self.names if self.registered else None
         if names is not None and names.allocates and not port:
             self._refuse_taken(names)
             contact = names.register(self.name, type_=self.type or None)
             self.name = contact.name
+            self._has_name = True
             try:
                 self._listen(contact.port)
             except OSError:
@@ -134,17 +147,34 @@ class Hub:
                 contact = Contact("tcp", self.name, where, self.port)
         self.contact = contact
         self.name = contact.name
+        self._has_name = names is not None
+        self._opened.set()
         if names is not None:
             self.describe(names)
         fork.prepare()
         repair.watch(self)
         log.info("Port %s active at %s", self.name, f"tcp://{contact.address}/")
 
+    def _give_up(self) -> None:
+        """Opening failed: leave nothing behind."""
+        self.closing = True
+        self._opened.set()
+        if self.acceptor is not None:
+            self.acceptor.close()
+        if self._has_name and self.names is not None:
+            try:
+                self.names.unregister(self.name)
+            except YarpError:
+                pass  # nobody to tell; a name server forgets names where nobody listens
+
     def _refuse_taken(self, names: NameClient) -> None:
         """A name belongs to the living port that has it. C++ would take it away in silence."""
         if not self.name.startswith("/"):
             return
-        known = names.query(self.name)
+        try:
+            known = names.query(self.name)
+        except NoNameServer:
+            return  # of several services one may be away; if all are, registering tells
         if known is not None and known.carrier == "tcp" and is_alive(known, self.key):
             raise AddressError(
                 f'"{self.name}" is in use by a port at {known.address}: close that program, or '
@@ -176,12 +206,13 @@ class Hub:
     @property
     def thread_id(self) -> int:
         """The kernel's id of the thread that accepts connections."""
-        return self.acceptor.thread.native_id or -1
+        return -1 if self.acceptor is None else self.acceptor.thread.native_id or -1
 
     # -- connections in ---------------------------------------------------------------------------
 
     def _serve(self, sock: socket.socket) -> None:
         """The life of one accepted connection, in its own thread."""
+        self._opened.wait()
         transport = TcpTransport(sock)
         peer = _peer(transport)
         self._greeting.add(threading.current_thread())
@@ -208,15 +239,24 @@ class Hub:
             self._serve_reader(driver, carrier)
             return
         link = Inbound(self, driver, carrier)
-        carrier.pages = self.page
-        link.thread = threading.current_thread()
-        link.thread.name = f"yarpy {link.route}"
         try:
-            self.monitoring.incoming(link)
+            self.take_input(link)
+        except PortClosed:
+            return
         except YarpError as error:
             log.warning("%s: connection %s refused: %s", self.name, link.route, error)
-            driver.transport.close()
             return
+        self.serve_input(link)
+
+    def take_input(self, link: Inbound) -> None:
+        """Make an open connection one of our inputs, to be served next. Raises PortClosed, and as
+        monitors do that cannot start; the connection is closed then."""
+        link.carrier.pages = self.page
+        try:
+            self.monitoring.incoming(link)
+        except YarpError:
+            link.driver.transport.close()
+            raise
         if link.route.source.startswith("/"):
             self._displace(link.route.source)
         with self.lock:
@@ -225,11 +265,18 @@ class Hub:
                 self.inputs = (*self.inputs, link)
         if late:
             self._ask_to_leave(link.route.source)
-            driver.transport.close()
-        else:
-            self.on_inputs()
-            self.report(link, created=True)
-            link.serve()
+            link.driver.transport.close()
+            if link.own_chain is not None:
+                link.own_chain.close()
+            raise PortClosed(f'"{self.name}" is closed')
+
+    def serve_input(self, link: Inbound) -> None:
+        """Serve an input, in this thread, until it ends."""
+        link.thread = threading.current_thread()
+        link.thread.name = f"yarpy {link.route}"
+        self.on_inputs()
+        self.report(link, created=True)
+        link.serve()
         if link.own_chain is not None:
             link.own_chain.close()
 
@@ -407,7 +454,8 @@ class Hub:
         for link in self.inputs:
             if link.thread is not None and link.thread is not threading.current_thread():
                 link.thread.join(max(0.0, deadline - time.monotonic()))
-        self.acceptor.close()
+        if self.acceptor is not None:
+            self.acceptor.close()
         self.monitoring.close()
         if self.registered and self.names is not None:
             try:
