@@ -8,7 +8,8 @@ import threading
 import pytest
 from support.wait import wait_until
 
-from yarpy.errors import UnknownPlugin
+import yarpy
+from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.names.local import LocalNames
 from yarpy.port import command
 from yarpy.port.buffered import BufferedPort
@@ -79,6 +80,36 @@ def test_refusal_says_what_a_peer_does_not_like(names: LocalNames) -> None:
             assert line.startswith(begins)
             assert f"mjpeg+user.a+password.***://{address}: " in line
             assert line.endswith(str(caught.value.__cause__))
+
+
+@pytest.mark.parametrize(
+    ("carrier", "words"),
+    [
+        ("websocket+recv.throttleDown", "websocket does not tell the receiver of throttleDown"),
+        ("xmlrpc+recv.a+recv.b", "xmlrpc does not tell the receiver of a, b"),
+        ("mjpeg+send.throttleDown", "mjpeg does not tell the sender of throttleDown"),
+    ],
+)
+def test_monitor_that_the_other_end_would_not_hear_of(
+    carrier: str, words: str, names: LocalNames
+) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names):
+        with pytest.raises(LocalProtocolError, match=words):
+            out.connect("/in", carrier)
+        assert not out.outputs and not out.inputs
+
+
+def test_what_is_fetched_is_an_input_at_once_or_refused(names: LocalNames) -> None:
+    """Who dials a camera is the receiver, and hears what is wrong with its own monitors."""
+    with Port("/camera", names=names) as camera, Port("/view", names=names) as view:
+        with pytest.raises(UnknownPlugin, match="nosuch"):
+            view.connect("/camera", "mjpeg+recv.nosuch")
+        assert not view.inputs
+        view.connect("/camera", "mjpeg+recv.throttleDown+period_ms.5")
+        assert [link.source for link in view.inputs] == ["/camera"]
+        told = yarpy.admin("/view", "get", "in", "/camera", names=names)
+        assert told == [[["period_ms", 5.0]]]
+        wait_until(lambda: len(camera.outputs) == 1)
 
 
 def test_description_lists_every_connection(names: LocalNames) -> None:

@@ -1,7 +1,9 @@
 """Broken things come back by themselves: connections, registrations, with no line of user code."""
 
 import os
+import socket
 import sys
+import threading
 import time
 
 import pytest
@@ -144,6 +146,23 @@ def test_what_the_receiver_disconnected_stays_disconnected(carrier: str) -> None
             time.sleep(0.1)
         assert not reader.inputs
         assert not writer.outputs
+
+
+def test_camera_that_is_away_can_be_disconnected(names: yarpy.LocalNames) -> None:
+    """Its viewer dials it again and again; who disconnects the two is not told of a failure."""
+    answer = b"HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace\r\n\r\n"
+    with yarpy.BufferedPort("/view", names=names) as view:
+        with socket.create_server(("127.0.0.1", 0)) as camera:
+            name = f"/127.0.0.1:{camera.getsockname()[1]}"
+            dialling = threading.Thread(target=view.connect, args=(name, "mjpeg"))
+            dialling.start()
+            sock, _ = camera.accept()
+            sock.sendall(answer)
+            dialling.join()
+        sock.close()
+        wait_until(lambda: not view.inputs)
+        assert yarpy.disconnect(name, "/view", names=names)
+        assert "Could not find" in yarpy.admin("/view", "del", f"{name}/", names=names)[1]
 
 
 def test_the_way_back_is_another_connection() -> None:

@@ -50,6 +50,7 @@ class Carrier:
     spelling: Spelling = "binary"  # what `encode` uses of a packet
     escapes: ClassVar[bool] = True  # messages begin with a port command, so admin works
     foreign: ClassVar[bool] = False  # whom we dial may know nothing of YARP, nor of its keys
+    introduces: ClassVar[bool] = True  # who dials says its name, and what its carrier string adds
     gathers: ClassVar[bool] = True  # small messages of a burst may leave in one send
     connectionless: ClassVar[bool] = False  # closing must be told to the peer some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group

@@ -60,6 +60,7 @@ class WebSocket(Carrier):
 
     name = "websocket"
     magic = b"GET /?ws"
+    introduces = False
     gathers = False
     backlog = 8
 

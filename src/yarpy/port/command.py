@@ -144,6 +144,13 @@ def _connect(hub: Hub, text: str, contact: Contact, target: str, carrier: str) -
             raise Refused("RPC output already connected")
     if not kind.push and not hub.admits_inputs:
         raise Refused("Inputs not allowed")
+    unheard = named(carrier, "recv" if kind.push else "send")
+    if unheard and (kind.foreign or not kind.introduces):
+        raise Refused(
+            f"{kind.name} does not tell the {'receiver' if kind.push else 'sender'} of "
+            f"{', '.join(name for name, _ in unheard)}: take another carrier, or attach it to "
+            "that port by the administrative message atch"
+        )
     open_output(hub, contact, target, carrier, text)
     line = f"Added connection from {hub.name} to {text}"
     if log_taps == "in":
@@ -206,7 +213,12 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
     else:
         # Who dials a pull carrier is the one that receives.
         route.source, route.target = target, hub.name
-        threading.Thread(target=hub.run_input, args=(driver, speaker), daemon=True).start()
+        source = Inbound(hub, driver, speaker)
+        try:
+            hub.take_input(source)
+        except YarpError as error:
+            raise Refused(f"Cannot connect to {text or target}: {error}") from error
+        threading.Thread(target=hub.serve_input, args=(source,), daemon=True).start()
 
 
 def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:
@@ -294,11 +306,11 @@ def _receiver(hub: Hub, target: str) -> Contact | None:
 
 def disconnect_output(hub: Hub, target: str) -> tuple[bool, str]:
     """Remove the outputs to `target`; whether there were any, and the line that says so."""
-    repair.give_up(hub, target)
+    tried = repair.give_up(hub, target, incoming=False)
     found = [link for link in hub.outputs if link.route.target == target]
     for link in found:
         close_output(hub, link)
-    if found:
+    if found or tried:
         return True, f"Removed connection from {hub.name} to {target}"
     return False, f"Could not find an outgoing connection to {target}"
 
@@ -308,6 +320,7 @@ def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bo
 
     `by_sender`: in the way in which senders of datagrams say goodbye, so they need not be told.
     """
+    tried = repair.give_up(hub, source, incoming=True)
     found = [link for link in hub.inputs if link.route.source == source]
     told = [link for link in found if link.asking or (by_sender and link.carrier.connectionless)]
     if len(told) < len(found):
@@ -317,7 +330,7 @@ def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bo
     for link in found:
         if link.thread is not None and not link.asking:
             link.thread.join(2.0)
-    if found:
+    if found or tried:
         return True, f"Removing connection from {source} to {hub.name}"
     return False, f"Could not find an incoming connection from {source}"
 

@@ -98,15 +98,19 @@ class Repairer:
             self._lost.append(_Lost(hub, route, incoming))
         self._wake.set()
 
-    def give_up(self, hub: Hub, target: str) -> None:
-        """Somebody takes the connection to or from `target` in hand."""
+    def give_up(self, hub: Hub, name: str, incoming: bool | None = None) -> bool:
+        """Somebody takes the connection to or from `name` in hand, or the one of these that
+        `incoming` tells; whether it was being tried again."""
+
+        def meant(item: _Lost) -> bool:
+            peer = item.route.source if item.incoming else item.route.target
+            return item.hub is hub and peer == name and incoming in (None, item.incoming)
+
         with self._lock:
-            self._lost = [
-                item
-                for item in self._lost
-                if item.hub is not hub
-                or target not in (item.route.source if item.incoming else item.route.target, "")
-            ]
+            left = [item for item in self._lost if not meant(item)]
+            found = len(left) < len(self._lost)
+            self._lost = left
+        return found
 
     def pending(self, hub: Hub) -> list[Route]:
         """Outputs that are being tried again."""
@@ -248,7 +252,7 @@ class Repairer:
             return True
         if _is_pulled(route):
             with hub.dialling.alone(route.source, wait=False) as alone:
-                return alone and self._dial_again(hub, route)
+                return alone and self._dial_again(item)
         contact = hub.names.query(route.source) if hub.names is not None else None
         if contact is None or not probe.is_alive(contact, hub.key):
             item.seen_gone = True
@@ -264,13 +268,17 @@ class Repairer:
         probe.ask(contact, [Vocab("add"), f"{carrier}:/{hub.name}"], secret_=hub.key)
         return True
 
-    def _dial_again(self, hub: Hub, route: Route) -> bool:
+    def _dial_again(self, item: _Lost) -> bool:
         """Dial a camera, or another source that we fetch from, once more."""
+        hub, route = item.hub, item.route
         contact = command.locate(hub, parse_contact(route.source))
         if contact is None:
             return False
         command.open_output(hub, contact, route.source, route.secret or route.carrier)
-        log.info("%s: the connection from %s is back", hub.name, route.source)
+        if item not in self._lost:  # somebody disconnected it meanwhile
+            command.disconnect_input(hub, route.source)
+        else:
+            log.info("%s: the connection from %s is back", hub.name, route.source)
         return True
 
 
