@@ -107,6 +107,18 @@ def test_handshake_without_a_key_is_refused() -> None:
         end.feed_eof()
 
 
+def test_handshake_of_another_version_is_refused() -> None:
+    end, served = End(), Served()
+    end.begin(serve(end, served, answer))
+    end.feed(
+        b"GET /?ws HTTP/1.1\r\nHost: h\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        b"Sec-WebSocket-Version: 8\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+    )
+    said = end.take()
+    assert said.startswith(b"HTTP/1.1 426 ")
+    assert b"Sec-WebSocket-Version: 13\r\n" in said
+
+
 def test_messages_go_out_block_by_block_as_from_cpp() -> None:
     """core-4 7.10: `82 08` and the port command, `82 1a` and a Bottle of 26 bytes."""
     page = Page()
@@ -260,10 +272,19 @@ def test_close_ends_in_good_order() -> None:
 
 
 @pytest.mark.parametrize(
-    "frame", [b"\x82\x01x", b"\x83\x80\0\0\0\0", b"\xc2\x80\0\0\0\0", b"\x89\xfe\1\0\0\0\0\0"]
+    "frame",
+    [
+        b"\x82\x01x",
+        b"\x83\x80\0\0\0\0",
+        b"\xc2\x80\0\0\0\0",
+        b"\x89\xfe\1\0\0\0\0\0",
+        b"\x80\x81\0\0\0\0x",
+        b"\x02\x81\0\0\0\0x" * 2,
+    ],
 )
 def test_broken_frames(frame: bytes) -> None:
-    """Not masked, an unknown kind, a reserved bit, a ping that is too long."""
+    """Not masked, an unknown kind, a reserved bit, a ping that is too long, the end of a message
+    that nobody has begun, a message within another."""
     page = Page()
     with pytest.raises(RemoteProtocolError, match="frame"):
         page.end.feed(frame)

@@ -38,6 +38,7 @@ T = TypeVar("T")
 
 JSON: Final = "yarp.json"
 MAX_TEXT: Final = 1 << 24  # bytes of a message in JSON
+_CONTINUATION = 0x0
 _TEXT = 0x1
 _BINARY = 0x2
 _CLOSE = 0x8
@@ -75,6 +76,7 @@ class WebSocket(Carrier):
         self._bytes = ByteStream()  # what the frames carry
         self._rest = memoryview(b"")  # of a frame's payload
         self._text = bytearray()  # of a message in JSON
+        self._inside = False  # of a message that comes in several frames
         self._ended = False  # a close frame came
 
     # -- beginning --------------------------------------------------------------------------------
@@ -114,7 +116,8 @@ class WebSocket(Carrier):
         self.enveloped = "envelope" in wishes
         self.pixels = "pixels" in wishes
         key = headers.get("sec-websocket-key", "")
-        if not key or "websocket" not in headers.get("upgrade", "").lower():
+        known = headers.get("sec-websocket-version", "13") == "13"
+        if not (key and known and "websocket" in headers.get("upgrade", "").lower()):
             more = "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
             text = "This address is for WebSockets.\n"
             yield from _refuse(stream, "426 Upgrade Required", text, more)
@@ -300,8 +303,12 @@ class WebSocket(Carrier):
             elif frame.opcode == _PING:
                 self._write(stream, _PONG, payload)
             elif frame.opcode != _PONG:
+                if (frame.opcode == _CONTINUATION) != self._inside:
+                    self._write(stream, _CLOSE, _PROTOCOL_ERROR)
+                    raise RemoteProtocolError("WebSocket frames of two messages in one another")
                 self._rest = memoryview(payload)
-                return frame.frame_finished and frame.message_finished
+                self._inside = not (frame.frame_finished and frame.message_finished)
+                return not self._inside
 
 
 def _refuse(stream: ByteStream, status: str, text: str, more: str = "") -> Steps[None]:
