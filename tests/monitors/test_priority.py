@@ -86,12 +86,14 @@ def test_weights_are_tenths(contest: Contest) -> None:
     one.configure(Property.from_text("(ex (/d 5))"))
     assert one.competitor.weights == (("/d", 0.5),)
     assert one.parameters()["ex"] == 'ex ("/d" 5)'
-    one.configure(Property.from_text("(ex)"))
-    assert one.competitor.weights == ()
+    for nothing in ("(ex)", '(ex "")'):
+        one.configure(Property.from_text("(ex (/d 5))"))
+        one.configure(Property.from_text(nothing))
+        assert one.competitor.weights == ()
 
 
 @pytest.mark.parametrize("tokens", ["+st.many", "+bs", "+tc.nan", "+tr.inf", "+bs.1e99",
-                                    "+(ex (/a much))", "+(ex (/a))", "+(ex (/a nan))"])  # fmt: skip
+                                    "+(ex (/a much))", "+(ex (/a))", "+(ex (/a nan))", "+ex./a,-10", "+ex./5"])  # fmt: skip
 def test_wrong_parameters_refuse(contest: Contest, tokens: str) -> None:
     with pytest.raises(LocalProtocolError, match=r"takes (a number|links)"):
         contest.join("/a", tokens)
@@ -109,7 +111,9 @@ def test_settings_while_running_are_not_scaled(contest: Contest) -> None:
     assert text == '(bs 0.25) (ex "") (st 0.5) (tc 2.0) (tr 1.0) (virtual 1)'
 
 
-@pytest.mark.parametrize("text", ["(tc x)", "(bs ())", "(bs nan)", "(st inf)", "(ex (/a x))"])
+@pytest.mark.parametrize(
+    "text", ["(tc x)", "(bs ())", "(bs nan)", "(st inf)", "(ex (/a x))", "(ex /a -10)"]
+)
 def test_wrong_settings_change_nothing(contest: Contest, text: str) -> None:
     one = contest.join("/a")
     before = one.parameters()

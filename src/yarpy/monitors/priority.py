@@ -164,21 +164,24 @@ def _links(value: str | Bottle | None) -> Bottle:
         return Bottle()
     if isinstance(value, str):
         value = Bottle.from_text(value.replace(",", " ").replace(")(", ") ("))
-    return Bottle(["ex", *(item for item in value if isinstance(item, list))])
+    # As a group it begins with its own key.
+    return Bottle(["ex", *(item for item in value if item not in ("ex", ""))])
 
 
 def _weights(links: Iterable[Any]) -> tuple[tuple[str, float], ...]:
     """The links with their weights. Raises LocalProtocolError."""
     found = []
     for link in links:
-        if not isinstance(link, list):
+        if link == "ex":
             continue
         try:
+            if not isinstance(link, list):
+                raise TypeError
             target, weight = link[:2]
             found.append((plain_text(target), _finite(weight) / _SCALE))
         except (TypeError, ValueError):
             raise LocalProtocolError(
-                f'"ex" takes links (/source weight), not ({Bottle(link).to_text()})'
+                f'"ex" takes links (/source weight), not {Bottle([link]).to_text()}'
             ) from None
     if len(found) > _LINKS:
         raise LocalProtocolError(f'"ex" takes at most {_LINKS} links')
