@@ -93,7 +93,8 @@ def test_weights_are_tenths(contest: Contest) -> None:
 
 
 @pytest.mark.parametrize("tokens", ["+st.many", "+bs", "+tc.nan", "+tr.inf", "+bs.1e99",
-                                    "+(ex (/a much))", "+(ex (/a))", "+(ex (/a nan))", "+ex./a,-10", "+ex./5"])  # fmt: skip
+                                    "+(ex (/a much))", "+(ex (/a))", "+(ex (/a nan))", "+ex./a,-10",
+                                    "+ex./5"])  # fmt: skip
 def test_wrong_parameters_refuse(contest: Contest, tokens: str) -> None:
     with pytest.raises(LocalProtocolError, match=r"takes (a number|links)"):
         contest.join("/a", tokens)
