@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import os
 import socket
@@ -467,3 +468,32 @@ def test_port_can_be_asked_before_it_knows_that_it_is_registered(
 def test_number_that_no_port_can_have(number: int, names: LocalNames) -> None:
     with pytest.raises(AddressError, match="below 65536"):
         Port("/here", names=names, port=number)
+
+
+class Frozen(LocalNames):
+    """A name service that at some time does not answer any more."""
+
+    frozen = False
+    asked = 0  # by the test's own thread, in vain
+
+    def query(self, name: str) -> Contact | None:
+        if self.frozen:
+            self.asked += threading.current_thread() is threading.main_thread()
+            raise NoNameServer("it does not answer within 10 s")
+        return super().query(name)
+
+
+def test_closing_waits_once_for_a_name_service_that_does_not_answer() -> None:
+    """It used to wait for each connection: minutes, with a dozen of them."""
+    names = Frozen()
+    with contextlib.ExitStack() as stack:
+        for number in range(3):
+            stack.enter_context(Port(f"/out{number}", names=names))
+        here = Port("/here", names=names)
+        for number in range(3):
+            network.connect(f"/out{number}", "/here", names=names)
+        wait_until(lambda: len(here.inputs) == 3)
+        names.frozen = True
+        here.close()
+        assert names.asked == 1
+        names.frozen = False

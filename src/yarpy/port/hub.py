@@ -7,6 +7,7 @@ lock; no lock is held while user code runs or bytes move. Every end of a connect
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import os
 import socket
@@ -31,6 +32,7 @@ from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.configuration import port_name, port_number
 from yarpy.names.default import DEFAULT, secret
+from yarpy.names.several import SeveralNames
 from yarpy.port import admin, command, fork, repair
 from yarpy.port.dialling import Dialling
 from yarpy.port.event import ConnectionEvent
@@ -174,7 +176,9 @@ class Hub:
         try:
             known = names.query(self.name)
         except NoNameServer:
-            return  # of several services one may be away; if all are, registering tells
+            if isinstance(names, SeveralNames):
+                return  # all but the first may be away, and registering asks that one
+            raise
         if known is not None and known.carrier == "tcp" and is_alive(known, self.key):
             raise AddressError(
                 f'"{self.name}" is in use by a port at {known.address}: close that program, or '
@@ -264,7 +268,8 @@ class Hub:
             if not late:
                 self.inputs = (*self.inputs, link)
         if late:
-            self._ask_to_leave(link.route.source)
+            with contextlib.suppress(NoNameServer):
+                self._ask_to_leave(link.route.source)
             link.driver.transport.close()
             if link.own_chain is not None:
                 link.own_chain.close()
@@ -445,7 +450,7 @@ class Hub:
         soon = time.monotonic() + 0.3
         for thread in tuple(self._greeting):  # who is just arriving is told to leave as well
             thread.join(max(0.0, soon - time.monotonic()))
-        self._ask_senders_to_leave()
+        answers = self._ask_senders_to_leave()
         for output in self.outputs:
             command.close_output(self, output)
         for link in self.inputs:
@@ -459,6 +464,8 @@ class Hub:
         self.monitoring.close()
         if self.registered and self.names is not None:
             try:
+                if not answers:
+                    raise NoNameServer("it did not answer just now")
                 if self.group_name:
                     self.names.unregister(self.group_name)
                 current = self.names.query(self.name)
@@ -467,15 +474,25 @@ class Hub:
             except NoNameServer as error:
                 log.info("%s: the name stays registered: %s", self.name, error)
 
-    def _ask_senders_to_leave(self) -> None:
-        """Ports that send to us hear it from us, so that they do not take it for a failure."""
+    def _ask_senders_to_leave(self) -> bool:
+        """Ports that send to us hear it from us, so that they do not take it for a failure.
+
+        False if nobody tells where they are: a name service that does not answer is not waited for
+        again and again.
+        """
         for link in self.inputs:
-            self._ask_to_leave(link.route.source)
+            try:
+                self._ask_to_leave(link.route.source)
+            except NoNameServer:
+                return False
+        return True
 
     def _ask_to_leave(self, source: str) -> None:
         if source.startswith("/") and source != self.name:
             try:
                 repair.ask_to_disconnect(self, source)
+            except NoNameServer:
+                raise
             except (YarpError, OSError):
                 pass  # it will notice by itself
 
