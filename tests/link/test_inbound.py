@@ -335,6 +335,47 @@ def test_borrower_obeys_commands_and_answers() -> None:
         assert got == wanted
 
 
+def test_borrower_that_wants_the_newest_gets_the_last_of_those_that_are_there() -> None:
+    """What it passes over is acknowledged, and counted; a command among it is obeyed."""
+    with linked() as (near, link, _):
+        take(link)
+        near.sendall(message([1]))
+        wait_until(lambda: link.borrow())
+        near.sendall(
+            message([2]) + message([3]) + message([Vocab("ver")], "a") + message([4]) + b"YA\n"
+        )
+        wait_until(lambda: link.driver.stream.waiting or link.driver.try_fill())
+        found = link.fetch(None, newest=True)
+        assert found is not None
+        assert found.value == [4]
+        assert link.snapshot()["drops"] == 2
+        assert link.snapshot()["messages"] == 5
+        link.give_back()
+        near.sendall(message([5])[3:])
+        wanted = ACK * 3 + Bottle([Vocab("ver"), 1, 2, 3]).to_bytes() + ACK * 3
+        got = b""
+        while len(got) < len(wanted):
+            got += near.recv(1000)
+        assert got == wanted
+
+
+def test_question_is_never_passed_over_for_something_newer() -> None:
+    with linked() as (near, link, _):
+        take(link)
+        near.sendall(message([1]))
+        wait_until(lambda: link.borrow())
+        near.sendall(message([2]) + message([3], "d") + message([4]))
+        wait_until(lambda: link.driver.stream.waiting or link.driver.try_fill())
+        found = link.fetch(None, newest=True)
+        assert found is not None
+        assert (found.value, found.wants_reply) == ([3], True)
+        found.reply(["answer"])
+        found = link.fetch(None, newest=True)
+        assert found is not None
+        assert found.value == [4]
+        link.give_back()
+
+
 def test_end_met_by_a_borrower_is_told_by_the_thread() -> None:
     with linked() as (near, link, owner):
         take(link)

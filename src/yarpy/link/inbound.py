@@ -203,11 +203,14 @@ class Inbound:
                 self._steps = carrier.decode(driver.stream)  # meets the end, and says how
         if self._begun:
             self._forget_hurry()
+        self._count(message)
+        return message
+
+    def _count(self, message: Message) -> None:
         message.source = self.route.source
         counter = self.counter
         counter.count(time.perf_counter())
-        counter.bytes = driver.bytes_in
-        return message
+        counter.bytes = self.driver.bytes_in
 
     def _fill_in_time(self, hurry: float, deadline: float | None) -> None:
         """Wait for more bytes, but for a message that has begun no longer than it may take."""
@@ -257,10 +260,13 @@ class Inbound:
         self.visited = time.perf_counter()
         self._turn.release()
 
-    def fetch(self, deadline: float | None, spin: bool = False) -> Message | None:
+    def fetch(
+        self, deadline: float | None, spin: bool = False, newest: bool = False
+    ) -> Message | None:
         """The next data message, read by a borrower; None when it should look around again.
 
-        `deadline` is for waits shorter than PATIENCE only.
+        `deadline` is for waits shorter than PATIENCE only. With `newest` it is the last of those
+        that are there; the others are dropped and counted.
         """
         try:
             while True:
@@ -276,7 +282,7 @@ class Inbound:
                             continue
                         message = passed
                     self.accept(message)
-                    return message
+                    return self._newest(message) if newest else message
                 self._obey(message)
                 if self._quit or self._reversed:
                     break
@@ -289,6 +295,29 @@ class Inbound:
         self.wanted = False
         self._woken.set()
         return None
+
+    def _newest(self, message: Message) -> Message:
+        """The last of the messages that have come already; `message` has been accepted."""
+        stream, parse, chain = self.driver.stream, self.carrier.parse, self.chain
+        while message.key == DATA and stream.waiting and not (self._quit or self._reversed):
+            try:
+                later = parse(stream)
+            except YarpError:
+                break  # whoever reads next meets the same
+            if later is None:
+                break
+            self._count(later)
+            if later.key != DATA and later.key != CALL:
+                self._obey(later)
+                continue
+            passed = later if chain is None else chain.take(later)
+            if passed is None:
+                self._refuse(later)
+                continue
+            self.counter.drops += 1
+            message = passed
+            self.accept(message)
+        return message
 
     def _spin(self, deadline: float | None) -> bool:
         """Ask the socket again and again instead of sleeping; False when the time is over."""

@@ -21,7 +21,7 @@ from yarpy.wire.message import Message
 _QUICK = 0.005
 # One that wants the newest and works longer than this between messages leaves reading to the link's
 # thread, which drops what is old and keeps no sender waiting.
-_NEWEST_QUICK = 0.0003
+_NEWEST_QUICK = 0.001
 
 
 class ReadingPort(Writer):
@@ -93,12 +93,13 @@ class Reader:
         """See Port.read."""
         deadline = None if timeout is None else time.monotonic() + timeout
         self._finish()
-        if self._newest:
-            self._reconsider()
+        late = self._newest and self._was_long()
         while True:
             link = self._sole
             if link is not None and link.wanted and not self._hub.mailbox.waiting:
                 message = self._directly(link, deadline)
+                if late:
+                    link.release()
                 if message is not None:
                     return message
             elif link is not None and link.sched.policy < 1 and self._is_quick():
@@ -110,17 +111,18 @@ class Reader:
             if deadline is not None and time.monotonic() >= deadline:
                 raise Timeout(f'nothing came to "{self._hub.name}" within {timeout} s')
 
-    def _reconsider(self) -> None:
-        """Give the turn up after having been away for long.
+    def _was_long(self) -> bool:
+        """Whether the reader was away for so long that it has to give the turn up.
 
-        Who wants every message keeps it: a busy writer in the same process makes every turn of its
-        reader late, and handing each message over by another thread would make it later still.
+        Not before it has looked itself once more: the newest is there, while the link's thread
+        would begin with the oldest. Who wants every message keeps the turn: a busy writer in the
+        same process makes every turn of its reader late, and handing each message over by another
+        thread would make it later still.
         """
         link = self._sole
         if link is None or not link.wanted or self._spin:
-            return
-        if time.perf_counter() - link.visited > self._quick:
-            link.release()
+            return False
+        return time.perf_counter() - link.visited > self._quick
 
     def _is_quick(self) -> bool:
         """Whether the reader comes back fast enough to be worth the turn."""
@@ -142,7 +144,7 @@ class Reader:
                 until = deadline
                 if until is not None and until - time.monotonic() > PATIENCE:
                     until = None
-                message = link.fetch(until, self._spin)
+                message = link.fetch(until, self._spin, self._newest)
                 if message is not None:
                     if message.answer is not None:
                         if self._settle is None:
