@@ -86,10 +86,22 @@ function Bottle:append(other)
     end
 end
 
-function Bottle:copy(other)
+function Bottle:copy(other, first, count)
     local given = copied(other, self._root, 0)
-    self._t, self._v, self._n = given._t, given._v, given._n
-    self._root._dirty = true
+    self:clear()
+    first = first and whole(first, "an index") or 0
+    local last = first + (count and whole(count, "a number of elements") or given._n)
+    for index = first + 1, last < given._n and last or given._n do
+        if index > 0 then
+            add(self, given._t[index], given._v[index])
+        end
+    end
+end
+
+function Bottle:tail()
+    local made = new_bottle()
+    made:copy(self, 1)
+    return made
 end
 
 function Bottle:toString()
