@@ -30,7 +30,7 @@ from yarpy.port.connection import Connection
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.reader import ReadingPort
-from yarpy.wire.message import Message
+from yarpy.wire.message import UNSENDABLE, Message
 
 P = TypeVar("P", bound=BasePort)
 
@@ -318,7 +318,7 @@ class _Reply:
     def __call__(self, value: object) -> None:
         try:
             self._send(value)
-        except TypeError:
+        except UNSENDABLE:
             raise  # it cannot be sent: the question is still open
         except BaseException:
             self._done.set()

@@ -125,17 +125,20 @@ def test_message_that_cannot_be_decoded_is_refused(names: LocalNames) -> None:
         assert client.call(Stamp(5, 1.0), timeout=5) == [5]
 
 
+@pytest.mark.parametrize(
+    ("odd", "why"), [(object(), "cannot be sent"), (2**70, "64 bits"), ("\ud800", "surrogates")]
+)
 def test_answer_that_cannot_be_sent_is_an_answer_too(
-    names: LocalNames, caplog: pytest.LogCaptureFixture
+    odd: object, why: str, names: LocalNames
 ) -> None:
     """The asker does not wait for ever for an object that has no spelling."""
     with (
-        RpcServer("/server", lambda message: object(), names=names),
+        RpcServer("/server", lambda message: odd, names=names),
         RpcClient("/server", names=names) as client,
     ):
         answer = client.call("x", timeout=5)
         assert answer[0] == Vocab("fail")
-        assert "cannot be sent" in answer[1]
+        assert why in answer[1]
         assert client.call("x", timeout=5)[0] == Vocab("fail")
 
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from collections.abc import Callable
+
 import pytest
 
 from yarpy.data.bottle import Bottle
@@ -10,7 +14,15 @@ from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.data.vector import Vector
 from yarpy.errors import DecodeError, LocalProtocolError
-from yarpy.wire.message import CALL, DATA, Lines, Message, Packet
+from yarpy.wire.message import CALL, DATA, UNSENDABLE, Lines, Message, Packet
+
+
+def nested(depth: int) -> list[object]:
+    """A list in a list in a list ..."""
+    value: list[object] = []
+    for _ in range(depth):
+        value = [value]
+    return value
 
 
 class Counting:
@@ -135,3 +147,31 @@ def test_repr_tells_who_and_what_in_one_line() -> None:
     assert "5 2.5" in text
     assert len(text) < 160
     assert repr(Message(DATA, Bottle([Vocab("set")]).to_bytes())).startswith("<Message")
+
+
+@pytest.mark.parametrize("how", [copy.copy, copy.deepcopy, lambda m: pickle.loads(pickle.dumps(m))])
+@pytest.mark.parametrize("looked", [False, True])
+def test_copy_says_the_same_and_answers_nobody(
+    how: Callable[[Message], Message], looked: bool
+) -> None:
+    received = bytearray(b"".join(Vector(range(1000)).to_wire()))
+    message = Message(CALL, memoryview(received), "7 1.5")
+    message.source, message.answer = "/out", lambda value: None
+    if looked:
+        _ = message.value
+    found = how(message)
+    received[8:] = bytes(len(received) - 8)
+    assert found.as_(Vector).tolist() == list(range(1000))
+    assert (found.source, found.stamp) == ("/out", Stamp(7, 1.5))
+    assert not found.wants_reply
+
+
+@pytest.mark.parametrize("value", [object(), 2**70, "\ud800", nested(200)])
+def test_reply_that_cannot_be_sent_leaves_the_question_open(value: object) -> None:
+    sent: list[object] = []
+    message = Message(CALL)
+    message.answer = lambda value: sent.append(Packet(value).blocks)
+    with pytest.raises(UNSENDABLE):
+        message.reply(value)
+    message.reply([1])
+    assert len(sent) == 1

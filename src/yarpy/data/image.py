@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from yarpy.data.pixel import NATURAL, Pixel, pixel, pixel_of
 from yarpy.data.value import Vocab
+from yarpy.data.wired import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ _BEGINNING = (256, 4, 9, _MAT, 9)
 QUANTUM = 8
 
 
-class Image:
+class Image(Wired):
     """Width, height, a pixel code and the pixels.
 
     `Image(array)` takes an array of shape (height, width) or (height, width, channels); the code

@@ -11,6 +11,7 @@ from struct import Struct
 from typing import TYPE_CHECKING, Any, Self
 
 from yarpy.data.value import BIG
+from yarpy.data.wired import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 _HEAD = Struct("<8i")
 
 
-class Matrix:
+class Matrix(Wired):
     """Rows and columns of float64. `Matrix(array)` takes whatever numpy makes two dimensions of."""
 
     __slots__ = ("_array", "_data", "cols", "rows")

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Self
 
+from yarpy.data.wired import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ KINDS = {
 _BY_CODE = {kind.code: kind for kind in KINDS.values()}
 
 
-class PointCloud:
+class PointCloud(Wired):
     """Points in `height` rows of `width`.
 
     `PointCloud(numbers)` makes points of kind `xyz` from an array (n, 3) or (height, width, 3), of

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import BIG, Vocab
+from yarpy.data.wired import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ _INT16_LIST = 256 + 64
 _OLD_START = Struct("<4i").pack(256, 2, 256, 4)
 
 
-class Sound:
+class Sound(Wired):
     """int16 samples, shape (channels, n), and how many of them make a second.
 
     `Sound(samples, frequency=16000)`; samples of one dimension are one channel.

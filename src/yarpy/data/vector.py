@@ -14,6 +14,7 @@ from struct import Struct, error
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from yarpy.data.value import BIG, FLOAT32, FLOAT64, INT8, INT16, INT32, INT64, UNIT_MASK
+from yarpy.data.wired import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ _NAMES: Final = {tag: name for name, (tag, _, _) in KINDS.items()}
 _HEAD = Struct("<ii")
 
 
-class Vector(Sequence[Any]):
+class Vector(Wired, Sequence[Any]):
     """A list of numbers with a numpy array inside.
 
     `Vector([1, 2.5])`, `Vector(numpy_array)`, `Vector([1, 2], dtype="int32")`. It has a length, can

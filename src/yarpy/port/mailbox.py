@@ -15,7 +15,7 @@ from typing import Final
 
 from yarpy.errors import PortClosed, YarpError
 from yarpy.link.inbound import Inbound
-from yarpy.wire.message import Message
+from yarpy.wire.message import UNSENDABLE, Message
 
 log = logging.getLogger("yarpy.port")
 
@@ -211,7 +211,7 @@ class Rendezvous(Mailbox):
             def reply(value: object) -> None:
                 try:
                     answer(value)
-                except TypeError:
+                except UNSENDABLE:
                     raise  # it cannot be sent: the question is still open
                 except BaseException:
                     offer.done.set()

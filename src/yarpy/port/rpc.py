@@ -16,7 +16,7 @@ from yarpy.names.base import NameClient
 from yarpy.port.base import BasePort
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Mailbox
-from yarpy.wire.message import CALL, Message, Packet
+from yarpy.wire.message import CALL, UNSENDABLE, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
 
 log = logging.getLogger("yarpy.port")
@@ -77,7 +77,7 @@ class RpcServer(BasePort):
         if message.answer is not None:
             try:
                 message.reply(answer)
-            except TypeError as error:
+            except UNSENDABLE as error:
                 log.error("%s: the answer of the handler: %s", self.name, error)
                 message.reply(Bottle([Vocab("fail"), str(error)]))
 

@@ -21,7 +21,7 @@ class Writer(BasePort):
         on their way unacknowledged; beyond that a writer waits for its slowest reader. With `wait`
         it returns when every reader that acknowledges has taken this message. `stamp` travels as
         the envelope. A connection that breaks is dropped, counted, and mended in the background.
-        Raises PortClosed; TypeError for what cannot be sent.
+        Raises PortClosed; TypeError, ValueError or OverflowError for what cannot be sent.
         """
         hub = self._hub
         if hub.closing or hub.interrupted:

@@ -26,9 +26,14 @@ CALL: Final = "d"  # data, the sender reads a reply
 ADMIN: Final = "a"
 QUIT: Final = "q"
 
+#: What encoding raises for a value that cannot be sent: an odd type, a number too large, a list too
+#: deep.
+UNSENDABLE: Final = (TypeError, ValueError, OverflowError)
+
 SMALL: Final = 2048  # bytes; larger messages gain nothing from waiting for others
 
 _UNSET: Final = object()
+_COPIED: Final = ("key", "envelope", "spelling", "text", "source")
 
 
 class Lines(tuple[str, ...]):
@@ -168,6 +173,19 @@ class Message:
         fresh.source, fresh.answer = self.source, self.answer
         return fresh
 
+    def __getstate__(self) -> dict[str, Any]:
+        """For copies, also those in other processes: memory of their own, nobody to answer to."""
+        payload = self.payload
+        return {
+            **{name: getattr(self, name) for name in _COPIED},
+            "payload": bytearray(payload) if isinstance(payload, memoryview) else payload,
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            setattr(self, name, value)
+        self.answer, self._value = None, _UNSET
+
     def to_bytes(self) -> Buffer:
         """The payload's binary spelling."""
         if self.spelling == "binary":
@@ -226,8 +244,8 @@ class Message:
     def reply(self, value: object) -> None:
         """Answer the sender. Once, and only if it asked: `wants_reply` tells.
 
-        Raises LocalProtocolError otherwise, LinkClosed if the sender has gone; TypeError for what
-        cannot be sent, which leaves the question open.
+        Raises LocalProtocolError otherwise, LinkClosed if the sender has gone; TypeError,
+        ValueError or OverflowError for what cannot be sent, which leaves the question open.
         """
         answer = self.answer
         if answer is None:
@@ -238,7 +256,7 @@ class Message:
         self.answer = None
         try:
             answer(value)
-        except TypeError:
+        except UNSENDABLE:
             self.answer = answer
             raise
 
