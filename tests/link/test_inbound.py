@@ -7,138 +7,30 @@ from __future__ import annotations
 
 import logging
 import socket
-import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import pytest
 from support.capture import load_capture
-from support.transport import ScriptTransport, scripted
+from support.inbound import Owner, linked, message, served
+from support.transport import scripted
 from support.wait import wait_until
 
-from yarpy.carriers.base import Carrier
-from yarpy.carriers.tcp import FastTcp, Tcp
+from yarpy.carriers.tcp import Tcp
 from yarpy.carriers.text import TextAck
 from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError, LinkClosed
+from yarpy.errors import DecodeError
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import recognise
-from yarpy.link.inbound import MAX_UNSENT_ACKS, Inbound
+from yarpy.link.inbound import Inbound
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
-from yarpy.wire.effects import Steps
-from yarpy.wire.message import Message, Packet
+from yarpy.wire.message import Message
 from yarpy.wire.stream import ByteStream
-
-
-class Owner:
-    """A port that does what a test says."""
-
-    name = "/here"
-
-    def __init__(self) -> None:
-        self.heard: list[Message] = []
-        self.ended: list[tuple[str, bool]] = []
-        self.reversed: list[Inbound] = []
-        self.answer: object = None
-        self.leave: Inbound | None = None
-
-    def receive(self, link: Inbound, message: Message) -> None:
-        self.heard.append(message)
-        if isinstance(self.answer, BaseException):
-            raise self.answer
-        if self.answer is not None and message.wants_reply:
-            message.reply(self.answer)
-
-    def administer(self, link: Inbound, message: Message) -> Bottle:
-        if self.leave is not None:
-            self.leave.close()
-        return Bottle([Vocab("ver"), 1, 2, 3])
-
-    def command(self, link: Inbound, message: Message) -> list[str]:
-        if self.leave is not None:
-            self.leave.close()
-        return [f"you said {message.key}{message.text}"]
-
-    def reverse(self, link: Inbound) -> None:
-        self.reversed.append(link)
-
-    def closed(self, link: Inbound, reason: str, quit_: bool) -> None:
-        self.ended.append((reason, quit_))
-
-
-def served(
-    kind: type[Carrier], *incoming: bytes, answer: object = None
-) -> tuple[Owner, ScriptTransport, Inbound]:
-    """Serve a connection whose whole input is known."""
-    driver, transport = scripted(*incoming)
-    owner = Owner()
-    owner.answer = answer
-    link = Inbound(owner, driver, kind(Route("/peer", "/here", kind.name)))
-    link.serve()
-    return owner, transport, link
-
-
-def message(value: object, key: str = "D", envelope: str = "") -> bytes:
-    return b"".join(framing.encode(Packet(value, envelope.encode(), key)))  # type: ignore[arg-type]
-
 
 ACK = framing.ACK
 QUIT = framing.QUIT
-
-
-def test_messages_are_handed_on_and_acknowledged() -> None:
-    owner, transport, link = served(Tcp, message([1]), message([2], envelope="7 1.5"), QUIT)
-    assert [(m.value, m.envelope, m.source) for m in owner.heard] == [
-        ([1], "", "/peer"),
-        ([2], "7 1.5", "/peer"),
-    ]
-    assert transport.said == ACK * 3
-    assert owner.ended == [("", True)]
-    assert transport.closed
-    assert link.counter.messages == 3
-    assert link.counter.bytes > 0
-
-
-def test_acknowledgements_of_a_burst_leave_together() -> None:
-    burst = b"".join(message([n]) for n in range(20))
-    _, transport, _ = served(Tcp, burst, QUIT)
-    assert transport.said == ACK * 21
-    assert transport.sends <= 3
-
-
-def test_acknowledgements_are_not_held_back_for_ever() -> None:
-    count = 3 * MAX_UNSENT_ACKS
-    burst = b"".join(message([n]) for n in range(count))
-    _, transport, _ = served(Tcp, burst + QUIT)
-    assert transport.said == ACK * (count + 1)
-    assert transport.sends >= 3
-
-
-def test_call_is_answered_before_its_acknowledgement() -> None:
-    _, transport, _ = served(Tcp, message([1], "d"), QUIT, answer=["ok"])
-    assert transport.said == Bottle(["ok"]).to_bytes() + ACK + ACK
-
-
-def test_acknowledgements_keep_their_order_with_replies() -> None:
-    reply = Bottle(["ok"]).to_bytes()
-    data = message([1]) + message([2], "d") + message([3]) + QUIT
-    _, transport, _ = served(Tcp, data, answer=["ok"])
-    assert transport.said == ACK + reply + ACK + ACK + ACK
-
-
-def test_unanswered_call_gets_an_empty_answer() -> None:
-    """C++ clients would take the acknowledgement for an answer, and wait for ever."""
-    owner, transport, _ = served(Tcp, message([1], "d"), QUIT)
-    assert transport.said == Bottle().to_bytes() + ACK + ACK
-    assert not owner.heard[0].wants_reply
-    _, transport, _ = served(FastTcp, message([1], "d"), QUIT)
-    assert transport.said == b""
-    _, transport, _ = served(TextAck, b"d\r\n1\r\nq\r\n")
-    assert transport.said == b"<ACK>\r\n<ACK>\r\n"
 
 
 def test_port_commands_and_administration() -> None:
@@ -245,22 +137,6 @@ def test_peer_that_does_not_take_its_acknowledgements() -> None:
 
 
 # ---------------------------------------------------------------------------------- over sockets
-
-
-@contextmanager
-def linked(kind: type[Carrier] = Tcp) -> Iterator[tuple[socket.socket, Inbound, Owner]]:
-    near, far = socket.socketpair()
-    near.settimeout(5)
-    owner = Owner()
-    link = Inbound(owner, Driver(SocketTransport(far)), kind(Route("/peer", "/here", kind.name)))
-    link.thread = threading.Thread(target=link.serve, daemon=True)
-    link.thread.start()
-    try:
-        yield near, link, owner
-    finally:
-        near.close()
-        link.thread.join(5)
-        assert not link.thread.is_alive()
 
 
 def test_close_from_another_thread_wakes_the_reader() -> None:
@@ -400,13 +276,6 @@ def test_quit_met_by_a_borrower() -> None:
         assert owner.ended == [("", True)]
 
 
-def test_drops_of_the_protocol_are_shown() -> None:
-    _, _, link = served(Tcp, message([1]), QUIT)
-    link.counter.drops = 2
-    link.carrier.lost = 3
-    assert link.snapshot()["drops"] == 5
-
-
 def test_golden_greeting_then_link() -> None:
     """From the first byte of a capture to its last, by the real link."""
     capture = load_capture("conn_tcp_rpc")
@@ -425,19 +294,6 @@ def test_golden_greeting_then_link() -> None:
     owner.receive = receive  # type: ignore[method-assign]
     Inbound(owner, driver, carrier).serve()
     assert transport.said == capture.said("b")
-
-
-def test_link_closed_is_what_a_late_reply_gets() -> None:
-    driver, transport = scripted(message([1], "d"))
-    owner = Owner()
-    kept: list[Message] = []
-    owner.receive = lambda link, message: kept.append(message)  # type: ignore[method-assign]
-    link = Inbound(owner, driver, FastTcp(Route("/peer", "/here", "fast_tcp")))
-    answers = link._reply
-    link.serve()
-    assert transport.closed
-    with pytest.raises(LinkClosed):
-        answers(["late"])
 
 
 # ---------------------------------------------------------------------------------- short talks
@@ -477,31 +333,3 @@ def test_silence_beyond_the_carriers_patience_ends_quietly(
         assert 0.02 < time.monotonic() - started < 2.0
     assert owner.ended == [("the peer is silent", False)]
     assert not caplog.records
-
-
-class Interim(TextAck):
-    """A carrier that says something in the middle of a message."""
-
-    name = "interim"
-
-    def decode(self, stream: ByteStream) -> Steps[Message]:
-        yield from stream.read_line()
-        stream.write(b"go on\r\n")
-        yield from stream.read_line()
-        return Message("q")
-
-
-def test_what_is_written_while_reading_leaves_before_waiting() -> None:
-    near, far = socket.socketpair()
-    with far:
-        far.settimeout(5)
-        link = Inbound(
-            Owner(), Driver(SocketTransport(near)), Interim(Route("/peer", "/here", "interim"))
-        )
-        thread = threading.Thread(target=link.serve, daemon=True)
-        thread.start()
-        far.sendall(b"one\r\n")
-        assert far.recv(100) == b"go on\r\n"
-        far.sendall(b"two\r\n")
-        thread.join(5)
-        assert not thread.is_alive()

@@ -17,6 +17,7 @@ from yarpy.wire.message import Packet
 
 if TYPE_CHECKING:
     from yarpy.link.outbound import Outbound
+    from yarpy.link.sender import Sender
 
 GATHER_SECONDS: Final = 200e-6  # how long a burst's message may wait for others
 
@@ -101,7 +102,7 @@ class Background:
 class Sweeper:
     """Sends what a burst left behind, if its writer does not come back to do so."""
 
-    def __init__(self, link: Outbound) -> None:
+    def __init__(self, link: Sender) -> None:
         self._link = link
         self._wake = threading.Semaphore(0)
         self._asleep = True

@@ -1,79 +1,48 @@
 """Outbound: a connection that carries a port's messages away.
 
-Rules: sends in the caller's thread, or in its own when background writing is asked for. One lock,
-held for one message at a time. Acknowledgements are read late: up to `WINDOW` messages may be on
-their way unconfirmed, then a send waits. When messages follow each other without a pause, the
-first leaves at once and those behind it are gathered into one send; a short timer sends what a
-writer leaves behind.
+Rules: sends in the caller's thread, or in its own when background writing is asked for. A question
+waits until every message before it was acknowledged, and for its reply.
 """
 
 from __future__ import annotations
 
 import threading
 import time
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
-from yarpy.link.background import GATHER_SECONDS, Background, Sweeper
-from yarpy.link.counter import Counter
+from yarpy.link.background import Background
+from yarpy.link.sender import Sender, seconds
 from yarpy.qos import Sched
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import CALL, Message, Packet
 
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
-    from yarpy.contact import Route
     from yarpy.link.driver import Driver
     from yarpy.monitors.chain import Chain
     from yarpy.wire.effects import Steps
 
-# How far a sender may be ahead of acknowledgements: so many messages, bytes, seconds. A slow reader
-# thus holds its sender up, as it does in C++, instead of getting old data.
-WINDOW: Final = 256
-WINDOW_BYTES: Final = 1 << 16
-WINDOW_SECONDS: Final = 0.005
-ASK_EVERY: Final = 32  # messages after which acknowledgements are looked for
 UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may hold back
 LISTEN_MOST: Final = 64  # reads at a time of what a reader says
 LISTEN_PATIENCE: Final = 0.1  # seconds for an answer to what a reader says while we send
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
-# Gathering. A writer that comes back within RUSH times what a send takes on this machine, BURST
-# times in a row, is flooding.
-RUSH: Final = 3.0
-BURST: Final = 16
-GATHER: Final = 64  # messages
 
-
-class Outbound:
+class Outbound(Sender):
     """One connection out of a port. `background` links send from a thread of their own."""
 
     def __init__(self, driver: Driver, carrier: Carrier, dialled: bool = True) -> None:
-        self.driver = driver
+        super().__init__(driver, carrier)
         self.dialled = dialled  # by us; else the reader came to us, and has to come again
-        self.carrier = carrier
-        self.route: Route = carrier.route
-        self.counter = Counter(since=time.time())
-        self.unacknowledged = 0
-        self._ahead_since = 0.0
-        self._ahead_from = 0
-        self._due = 0.0  # when the carrier's interval is over
-        self.broken = False
         self.sched = Sched()  # what somebody asked for; -1: nothing
         self.tos = 0
         self.chain: Chain | None = None  # the monitors that ride on it
         self.active = True  # of the multicast links of a port only one sends
         self.thread: threading.Thread | None = None
-        self.lock = threading.Lock()  # one message at a time on the wire
-        self._acks: Steps[None] | None = None
+        self._due = 0.0  # when the carrier's interval is over
         self._listening: Steps[None] | None = None
         self._queue: Background | None = None
-        self._rush = 0
-        self._cost = 12e-6  # what a send takes when nothing holds it up: the least seen, in seconds
-        self.left = 0.0  # when the last send ended
-        self._gathered = 0  # messages that wait in the stream for the next send
-        self._gathered_since = 0.0
-        self._sweeper: Sweeper | None = None
 
     # -- sending ----------------------------------------------------------------------------------
 
@@ -139,100 +108,6 @@ class Outbound:
         self._due = max(self._due + self.carrier.interval, now)
         return True
 
-    def _caught_up(self) -> bool:
-        """Whether the reader has taken the last message."""
-        if not self.lock.acquire(blocking=False):
-            return False
-        try:
-            self._collect(wait=False)
-        except YarpError:
-            self._break()
-            return True  # sending finds out, and says so
-        finally:
-            self.lock.release()
-        return not self.unacknowledged
-
-    def send_now(self, packet: Packet) -> None:
-        if self.broken:
-            self.counter.drops += 1
-            raise LinkClosed(f'the connection to "{self.route.target}" is gone')
-        carrier, driver = self.carrier, self.driver
-        now = time.perf_counter()
-        try:
-            if self.unacknowledged and (
-                now - self._ahead_since > WINDOW_SECONDS
-                or driver.bytes_out - self._ahead_from > WINDOW_BYTES
-            ):
-                self._collect(wait=True, all_=True)
-            carrier.encode(driver.stream, packet)
-            if now - self.left > RUSH * self._cost:
-                self._rush = 0
-                self._flush_at_once(now)
-            elif self._rush < BURST:
-                self._rush += 1
-                self._flush_at_once(now)
-            elif carrier.gathers and packet.small:
-                self._gather(now)
-            else:
-                self._flush()
-        except YarpError:
-            self.counter.drops += 1
-            self._break()
-            raise
-        counter = self.counter
-        counter.count(now)
-        counter.bytes = driver.bytes_out
-        if carrier.acks:
-            if not self.unacknowledged:
-                self._ahead_since = now
-                self._ahead_from = driver.bytes_out
-            self.unacknowledged += 1
-            if self.unacknowledged % ASK_EVERY == 0:
-                self._look_for_acks()
-        self.left = time.perf_counter()
-
-    def _look_for_acks(self) -> None:
-        try:
-            self._collect(wait=self.unacknowledged >= WINDOW)
-        except YarpError:
-            self._break()
-            raise
-
-    def _flush(self) -> None:
-        self.driver.flush()
-        self._gathered = 0
-
-    def _flush_at_once(self, now: float) -> None:
-        """Send, and learn what that takes; often it seems more, when the reader runs first."""
-        self._flush()
-        self._cost = min(self._cost, time.perf_counter() - now)
-
-    def _gather(self, now: float) -> None:
-        """Leave the message in the stream for the next send of many, which comes soon."""
-        if not self._gathered:
-            self._gathered_since = now
-            if self._sweeper is None:
-                self._sweeper = Sweeper(self)
-            self._sweeper.watch()
-        if self._gathered + 1 >= GATHER or now - self._gathered_since >= GATHER_SECONDS:
-            self._flush()
-        else:
-            self._gathered += 1
-
-    def sweep(self, timeout: float | None = None) -> bool:
-        """Send what a burst left behind; False if somebody is stuck in sending for `timeout`
-        seconds."""
-        if not self.lock.acquire(timeout=_seconds(timeout)):
-            return False
-        try:
-            if self._gathered and not self.broken:
-                self._flush()
-        except YarpError:
-            self._break()
-        finally:
-            self.lock.release()
-        return True
-
     def start_background(self) -> None:
         """Give the link a thread that sends; `send` and `offer` then only hand over."""
         with self.lock:
@@ -252,7 +127,7 @@ class Outbound:
         done = self._queue.wait_empty(timeout) if self._queue is not None else True
         return done and self.sweep(timeout)
 
-    # -- what comes back --------------------------------------------------------------------------
+    # -- questions --------------------------------------------------------------------------------
 
     def call(self, packet: Packet, timeout: float | None = None) -> Message | None:
         """Send a question and wait for its reply; None if the peer has none to give.
@@ -302,14 +177,6 @@ class Outbound:
         finally:
             self.lock.release()
 
-    def _take_turn(self, timeout: float | None) -> None:
-        """Take the lock once nothing waits to be sent. Raises Timeout, LinkClosed."""
-        if not (self.drain(timeout) and self.lock.acquire(timeout=_seconds(timeout))):
-            raise Timeout(f'"{self.route.target}" did not take earlier messages within {timeout} s')
-        if self.broken:
-            self.lock.release()
-            raise LinkClosed(f'the connection to "{self.route.target}" is gone')
-
     def wait_acknowledged(self, timeout: float | None = None) -> None:
         """Wait until the peer has taken every message, unless it may miss some. Raises Timeout,
         LinkClosed."""
@@ -327,48 +194,15 @@ class Outbound:
         finally:
             self.lock.release()
 
-    def _collect(self, wait: bool, all_: bool = False, deadline: float | None = None) -> None:
-        """Read acknowledgements: those that are there; with `wait`, until half the window is
-        free."""
-        target = 0 if all_ or (wait and self.unacknowledged < WINDOW) else WINDOW // 2
-        driver = self.driver
-        if self._gathered:
-            self._flush()
-        before = self.unacknowledged
-        while self.unacknowledged > (target if wait else 0):
-            if self._acks is None:
-                found = self.carrier.parse_acks(driver.stream, self.unacknowledged)
-                if found:
-                    self.unacknowledged -= found
-                    continue
-                self._acks = self.carrier.expect_ack(driver.stream)
-            try:
-                next(self._acks)
-            except StopIteration:
-                self._acks = None
-                self.unacknowledged -= 1
-                continue
-            if wait:
-                driver.fill(deadline)
-            elif not driver.try_fill():
-                break
-        if self.unacknowledged < before:
-            self._ahead_since = time.perf_counter()
-            self._ahead_from = driver.bytes_out
-        if deadline is not None:
-            driver.transport.limit_waiting(None)
+    def _take_turn(self, timeout: float | None) -> None:
+        """Take the lock once nothing waits to be sent. Raises Timeout, LinkClosed."""
+        if not (self.drain(timeout) and self.lock.acquire(timeout=seconds(timeout))):
+            raise Timeout(f'"{self.route.target}" did not take earlier messages within {timeout} s')
+        if self.broken:
+            self.lock.release()
+            raise LinkClosed(f'the connection to "{self.route.target}" is gone')
 
     # -- ending -----------------------------------------------------------------------------------
-
-    def _break(self) -> None:
-        """The connection failed: what was never acknowledged is lost, and counted."""
-        if not self.broken:
-            self.broken = True
-            lost = self.unacknowledged if self.carrier.acks else self._gathered
-            self.counter.messages -= lost
-            self.counter.drops += lost
-            self.unacknowledged = self._gathered = 0
-            self.driver.transport.close()
 
     def ended(self) -> bool:
         """Whether the peer has hung up, found out without sending anything."""
@@ -439,12 +273,3 @@ class Outbound:
                 self.counter.drops += lost
             self.broken = True
             driver.transport.close()
-
-    def snapshot(self) -> dict[str, Any]:
-        """Counters as plain numbers."""
-        return {**self.counter.as_dict(), "unacknowledged": self.unacknowledged}
-
-
-def _seconds(timeout: float | None) -> float:
-    """A time limit as locks want it."""
-    return -1 if timeout is None else timeout

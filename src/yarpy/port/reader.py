@@ -11,7 +11,8 @@ import time
 from collections.abc import Iterator
 
 from yarpy.errors import PortClosed, Timeout, YarpError
-from yarpy.link.inbound import PATIENCE, Inbound
+from yarpy.link.inbound import Inbound
+from yarpy.link.receiver import PATIENCE
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Latest
 from yarpy.port.writer import Writer

@@ -1,0 +1,126 @@
+"""Messages read one after the other, acknowledged and answered in order."""
+
+from __future__ import annotations
+
+import socket
+import threading
+
+import pytest
+from support.inbound import Owner, message, served
+from support.transport import scripted
+
+from yarpy.carriers.tcp import FastTcp, Tcp
+from yarpy.carriers.text import TextAck
+from yarpy.contact import Route
+from yarpy.data.bottle import Bottle
+from yarpy.errors import LinkClosed
+from yarpy.link.driver import Driver
+from yarpy.link.inbound import Inbound
+from yarpy.link.receiver import MAX_UNSENT_ACKS
+from yarpy.transports.base import SocketTransport
+from yarpy.wire import framing
+from yarpy.wire.effects import Steps
+from yarpy.wire.message import Message
+from yarpy.wire.stream import ByteStream
+
+ACK = framing.ACK
+QUIT = framing.QUIT
+
+
+def test_messages_are_handed_on_and_acknowledged() -> None:
+    owner, transport, link = served(Tcp, message([1]), message([2], envelope="7 1.5"), QUIT)
+    assert [(m.value, m.envelope, m.source) for m in owner.heard] == [
+        ([1], "", "/peer"),
+        ([2], "7 1.5", "/peer"),
+    ]
+    assert transport.said == ACK * 3
+    assert owner.ended == [("", True)]
+    assert transport.closed
+    assert link.counter.messages == 3
+    assert link.counter.bytes > 0
+
+
+def test_acknowledgements_of_a_burst_leave_together() -> None:
+    burst = b"".join(message([n]) for n in range(20))
+    _, transport, _ = served(Tcp, burst, QUIT)
+    assert transport.said == ACK * 21
+    assert transport.sends <= 3
+
+
+def test_acknowledgements_are_not_held_back_for_ever() -> None:
+    count = 3 * MAX_UNSENT_ACKS
+    burst = b"".join(message([n]) for n in range(count))
+    _, transport, _ = served(Tcp, burst + QUIT)
+    assert transport.said == ACK * (count + 1)
+    assert transport.sends >= 3
+
+
+def test_call_is_answered_before_its_acknowledgement() -> None:
+    _, transport, _ = served(Tcp, message([1], "d"), QUIT, answer=["ok"])
+    assert transport.said == Bottle(["ok"]).to_bytes() + ACK + ACK
+
+
+def test_acknowledgements_keep_their_order_with_replies() -> None:
+    reply = Bottle(["ok"]).to_bytes()
+    data = message([1]) + message([2], "d") + message([3]) + QUIT
+    _, transport, _ = served(Tcp, data, answer=["ok"])
+    assert transport.said == ACK + reply + ACK + ACK + ACK
+
+
+def test_unanswered_call_gets_an_empty_answer() -> None:
+    """C++ clients would take the acknowledgement for an answer, and wait for ever."""
+    owner, transport, _ = served(Tcp, message([1], "d"), QUIT)
+    assert transport.said == Bottle().to_bytes() + ACK + ACK
+    assert not owner.heard[0].wants_reply
+    _, transport, _ = served(FastTcp, message([1], "d"), QUIT)
+    assert transport.said == b""
+    _, transport, _ = served(TextAck, b"d\r\n1\r\nq\r\n")
+    assert transport.said == b"<ACK>\r\n<ACK>\r\n"
+
+
+def test_drops_of_the_protocol_are_shown() -> None:
+    _, _, link = served(Tcp, message([1]), QUIT)
+    link.counter.drops = 2
+    link.carrier.lost = 3
+    assert link.snapshot()["drops"] == 5
+
+
+def test_link_closed_is_what_a_late_reply_gets() -> None:
+    driver, transport = scripted(message([1], "d"))
+    owner = Owner()
+    kept: list[Message] = []
+    owner.receive = lambda link, message: kept.append(message)  # type: ignore[method-assign]
+    link = Inbound(owner, driver, FastTcp(Route("/peer", "/here", "fast_tcp")))
+    answers = link._reply
+    link.serve()
+    assert transport.closed
+    with pytest.raises(LinkClosed):
+        answers(["late"])
+
+
+class Interim(TextAck):
+    """A carrier that says something in the middle of a message."""
+
+    name = "interim"
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        yield from stream.read_line()
+        stream.write(b"go on\r\n")
+        yield from stream.read_line()
+        return Message("q")
+
+
+def test_what_is_written_while_reading_leaves_before_waiting() -> None:
+    near, far = socket.socketpair()
+    with far:
+        far.settimeout(5)
+        link = Inbound(
+            Owner(), Driver(SocketTransport(near)), Interim(Route("/peer", "/here", "interim"))
+        )
+        thread = threading.Thread(target=link.serve, daemon=True)
+        thread.start()
+        far.sendall(b"one\r\n")
+        assert far.recv(100) == b"go on\r\n"
+        far.sendall(b"two\r\n")
+        thread.join(5)
+        assert not thread.is_alive()

@@ -1,0 +1,173 @@
+"""Messages on the wire: gathered, ahead of their acknowledgements, and all accounted for."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+from support.capture import load_capture
+from support.outbound import connected, link_on, open_link, read_messages, total
+from support.transport import scripted
+from support.wait import wait_until
+
+from yarpy.carriers.base import Carrier
+from yarpy.carriers.tcp import FastTcp, Tcp
+from yarpy.data.value import Vocab
+from yarpy.errors import LinkClosed
+from yarpy.link import sender as module
+from yarpy.link.sender import WINDOW
+from yarpy.wire import framing
+from yarpy.wire.message import Packet
+
+ACK = framing.ACK
+
+
+def test_golden_stream() -> None:
+    """What the link sends from the first message to the goodbye is what C++ sent."""
+    capture = load_capture("conn_tcp_stream_envelope")
+    said = b"".join(s.data for s in capture.steps[2:] if s.sender == "a")
+    acks = b"".join(s.data for s in capture.steps[2:] if s.sender == "b")
+    link, transport = open_link(Tcp, acks)
+    nested = [["a", [1, 2]], [1.5, "x y"]]
+    for envelope, value in (
+        (b"1 0.25", []),
+        (b"2 1.25", [1, "ping", 3.14]),
+        (b"3 2.25", [*nested, Vocab("set")]),
+    ):
+        link.send(Packet(value, envelope))
+    link.close()
+    assert transport.said == said
+    assert transport.closed
+    assert link.counter.messages == 3
+    assert link.counter.drops == 0
+
+
+def test_messages_and_bytes_are_counted() -> None:
+    link, transport = open_link(FastTcp)
+    for number in range(10):
+        link.send(Packet([number]))
+        time.sleep(0.0005)
+    assert link.counter.messages == 10
+    assert link.counter.bytes == len(transport.said)
+    assert link.snapshot()["messages"] == 10
+
+
+def test_burst_is_gathered_and_nothing_is_left_behind() -> None:
+    """The first messages leave at once; a flood shares its sends; a timer sends the rest."""
+    link, transport = open_link(FastTcp)
+    count = 2000
+    for number in range(count):
+        link.send(Packet([number]))
+    size = len(b"".join(framing.encode(Packet([0]))))  # type: ignore[arg-type]
+    wait_until(lambda: len(transport.said) == count * size)
+    assert transport.sends < count
+    assert link.counter.messages == count
+    link.close()
+
+
+def test_value_that_cannot_be_sent_is_the_writers_error() -> None:
+    link, transport = open_link(Tcp, ACK)
+    with pytest.raises(TypeError, match="cannot be sent"):
+        link.send(Packet(object()))
+    assert not link.broken
+    assert transport.said == b""
+    link.send(Packet([1]))
+    assert link.counter.messages == 1
+
+
+def test_large_buffers_are_sent_from_where_they_are() -> None:
+    link, transport = open_link(FastTcp)
+    pixels = bytearray(1 << 20)
+    seen: list[bool] = []
+    transport.send = lambda buffers: seen.append(  # type: ignore[method-assign]
+        any(getattr(b, "obj", None) is pixels for b in buffers)
+    )
+    link.send(Packet([memoryview(pixels)]))
+    assert seen == [True]
+
+
+def test_acknowledgements_are_read_late_but_within_a_window() -> None:
+    with connected() as (link, far):
+        done = threading.Event()
+
+        def flood() -> None:
+            for number in range(2 * WINDOW):
+                link.send(Packet([number]))
+            done.set()
+
+        threading.Thread(target=flood, daemon=True).start()
+        read_messages(far, 10, ack=False)
+        assert not done.wait(0.1), "a sender runs ahead of a reader that does not acknowledge"
+        assert link.unacknowledged <= WINDOW
+        far.sendall(ACK * 10)
+        read_messages(far, 2 * WINDOW - 10)
+        assert done.wait(5)
+        link.wait_acknowledged(5)
+        assert link.unacknowledged == 0
+
+
+def test_slow_reader_holds_its_sender_up() -> None:
+    """After some milliseconds without an acknowledgement a send waits, as it does in C++."""
+    with connected() as (link, far):
+        link.send(Packet([1]))
+        time.sleep(2 * module.WINDOW_SECONDS)
+        threading.Timer(0.1, far.sendall, (ACK,)).start()
+        started = time.monotonic()
+        link.send(Packet([2]))
+        assert time.monotonic() - started > 0.05
+        assert link.unacknowledged == 1
+
+
+@pytest.mark.parametrize("sends", [0, 1, 5, 17])
+@pytest.mark.parametrize("kind", [FastTcp, Tcp])
+def test_sent_is_delivered_and_drops(kind: type[Carrier], sends: int) -> None:
+    """Whatever number of sends succeed, no message is counted twice or not at all."""
+    link, transport = open_link(kind)
+    transport.fails_after = sends
+    attempts = 0
+    with pytest.raises(LinkClosed):
+        for number in range(1000):
+            attempts += 1
+            link.send(Packet([number]))
+    assert link.broken
+    assert transport.closed
+    assert total(link) == attempts
+    assert 0 <= link.counter.messages <= sends
+    if kind is Tcp:  # nothing was acknowledged, so nothing is known to have arrived
+        assert link.counter.messages == 0
+    with pytest.raises(LinkClosed):
+        link.send(Packet(["more"]))
+    assert total(link) == attempts + 1
+
+
+@pytest.mark.parametrize("acks", [0, 1, 31, 32, 40, 64])
+def test_what_was_acknowledged_counts_as_delivered(acks: int) -> None:
+    """The peer takes some messages and goes."""
+    link = link_on(scripted(ACK * acks), Tcp)
+    attempts = 0
+    with pytest.raises(LinkClosed):
+        for number in range(1000):
+            attempts += 1
+            link.send(Packet([number]))
+            if attempts % 50 == 0:
+                link.wait_acknowledged(1)
+    assert link.counter.messages == acks
+    assert total(link) == attempts
+
+
+def test_gathered_messages_that_never_left_are_drops() -> None:
+    link, transport = open_link(FastTcp)
+    attempts = 0
+    for number in range(200):  # a flood: the last ones wait for the timer
+        attempts += 1
+        link.send(Packet([number]))
+        if link._gathered > 3:
+            break
+    waiting = link._gathered
+    assert waiting
+    sent = attempts - waiting
+    transport.fails_after = transport.sends
+    wait_until(lambda: link.broken)
+    assert link.counter.messages == sent
+    assert total(link) == attempts
