@@ -312,3 +312,30 @@ def test_reader_of_a_lossy_carrier_gets_a_short_burst_whole() -> None:
         found = read_messages(far, 5, ack=False)
         assert found == [b"".join(framing.encode(Packet([n]))) for n in range(5)]  # type: ignore[arg-type]
         assert link.counter.drops == 2
+
+
+def interrupted(deadline: float | None = None) -> None:
+    """What Ctrl-C does to who waits."""
+    raise KeyboardInterrupt
+
+
+def test_interrupted_question_does_not_leave_its_answer_to_the_next() -> None:
+    with connected() as (link, _):
+        link.driver.fill = interrupted  # type: ignore[method-assign]
+        with pytest.raises(KeyboardInterrupt):
+            link.call(Packet([1], key=CALL))
+        assert link.broken
+        with pytest.raises(LinkClosed):
+            link.call(Packet([2], key=CALL))
+
+
+def test_question_that_cannot_be_sent_is_the_error_of_its_asker() -> None:
+    with connected() as (link, far):
+        for value in (object(), 2**70):
+            with pytest.raises((TypeError, OverflowError)):
+                link.call(Packet(value, key=CALL))
+            with pytest.raises((TypeError, OverflowError)):
+                link.send(Packet(value))
+        assert not link.broken
+        link.send(Packet([2]))
+        assert read_messages(far, 1)

@@ -171,3 +171,17 @@ def test_gathered_messages_that_never_left_are_drops() -> None:
     wait_until(lambda: link.broken)
     assert link.counter.messages == sent
     assert total(link) == attempts
+
+
+def test_interrupted_send_ends_the_connection_and_is_counted() -> None:
+    """By Ctrl-C: half a message may be on its way, so another must not follow."""
+    with connected() as (link, _):
+
+        def interrupted(buffers: object) -> None:
+            raise KeyboardInterrupt
+
+        link.driver.transport.send = interrupted  # type: ignore[method-assign]
+        with pytest.raises(KeyboardInterrupt):
+            link.send(Packet([1]))
+        assert link.broken
+        assert (link.counter.messages, link.counter.drops) == (0, 1)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
 from yarpy.link.background import Background
-from yarpy.link.sender import Sender, seconds
+from yarpy.link.sender import Sender, interrupts, seconds
 from yarpy.qos import Sched
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import CALL, Message, Packet
@@ -163,8 +163,9 @@ class Outbound(Sender):
                 raise Timeout(
                     f'"{self.route.target}" did not reply within {timeout} s; is its program stuck?'
                 ) from None
-            except YarpError:
-                self._break()
+            except BaseException as error:
+                if interrupts(error):
+                    self._break()  # its answer must not be taken for that of the next question
                 raise
             now = time.perf_counter()
             self.counter.count(now)

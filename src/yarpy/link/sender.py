@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 from yarpy.errors import LinkClosed, YarpError
 from yarpy.link.background import GATHER_SECONDS, Sweeper
 from yarpy.link.counter import Counter
-from yarpy.wire.message import Packet
+from yarpy.wire.message import UNSENDABLE, Packet
 
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
@@ -83,9 +83,10 @@ class Sender:
                 self._gather(now)
             else:
                 self._flush()
-        except YarpError:
-            self.counter.drops += 1
-            self._break()
+        except BaseException as error:
+            if interrupts(error):
+                self.counter.drops += 1
+                self._break()
             raise
         counter = self.counter
         counter.count(now)
@@ -200,6 +201,12 @@ class Sender:
     def snapshot(self) -> dict[str, Any]:
         """Counters as plain numbers."""
         return {**self.counter.as_dict(), "unacknowledged": self.unacknowledged}
+
+
+def interrupts(error: BaseException) -> bool:
+    """Whether a dialogue that met `error` is left half way, such as by Ctrl-C; a value that could
+    not be encoded has not begun one."""
+    return isinstance(error, YarpError) or not isinstance(error, UNSENDABLE)
 
 
 def seconds(timeout: float | None) -> float:
