@@ -122,7 +122,9 @@ def test_others_notice_the_death_of_a_parent_whose_child_lives_on() -> None:
         events = []
         in_.on_connection(events.append)
         os.waitpid(child_of(work), 0)
-        wait_until(lambda: [event.created for event in events] == [True, False])
+        wait_until(
+            lambda: [e.created for e in events if e.source == "/parent"] == [True, False]
+        )
         print(yarpy.exists("/parent"))
         """
     )
