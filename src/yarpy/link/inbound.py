@@ -256,6 +256,7 @@ class Inbound(Receiver):
     def _obey(self, message: Message) -> None:
         """A port command that is not data."""
         carrier, stream = self.carrier, self.driver.stream
+        self.counter.messages -= 1  # nobody reads it
         self._owe_acks()
         self._asker = threading.get_ident()
         if message.key == "a":

@@ -180,5 +180,11 @@ class Receiver:
     def snapshot(self) -> dict[str, Any]:
         """Counters as plain numbers, with the protocol's and the kernel's own losses in `drops`."""
         found: dict[str, Any] = self.counter.as_dict()
-        found["drops"] += self.carrier.lost + getattr(self.driver.transport, "dropped", 0)
+        found["drops"] += self.lost
         return found
+
+    @property
+    def lost(self) -> int:
+        """What the protocol and the kernel lost on the way."""
+        dropped: int = getattr(self.driver.transport, "dropped", 0)
+        return self.carrier.lost + dropped

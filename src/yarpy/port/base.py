@@ -61,7 +61,8 @@ class BasePort:
 
     @property
     def stats(self) -> dict[str, Any]:
-        """Counters of every connection and of the mailbox, as plain data."""
+        """Counters of every connection and of the mailbox, as plain data; under `past` the sums
+        over connections that have ended."""
         return self._hub.snapshot()
 
     def connect(self, target: str, carrier: str = "tcp", timeout: float | None = None) -> Self:

@@ -38,6 +38,7 @@ from yarpy.port.dialling import Dialling
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.monitoring import Monitoring
+from yarpy.port.past import Past
 from yarpy.port.probe import is_alive
 from yarpy.registry import carriers
 from yarpy.transports.tcp import TcpTransport
@@ -80,6 +81,7 @@ class Hub:
         self.properties = Property()
         self.inputs: tuple[Inbound, ...] = ()
         self.outputs: tuple[Outbound, ...] = ()
+        self.past_inputs, self.past_outputs = Past(), Past()
         self.closing = False
         self.inherited = False  # from the process that this one was forked from
         self.interrupted = False
@@ -360,6 +362,8 @@ class Hub:
         with self.lock:
             known = link in self.inputs
             self.inputs = tuple(item for item in self.inputs if item is not link)
+        if known:
+            self.past_inputs.add(link.counter, link.lost)
         self.on_inputs()
         return known
 
@@ -382,6 +386,7 @@ class Hub:
             self.outputs = tuple(item for item in self.outputs if item is not link)
             self._elect()
         if known:
+            self.past_outputs.add(link.counter)
             if link.chain is not None:
                 link.chain.close()
             self.report(link, created=False, reason=reason)
@@ -502,6 +507,10 @@ class Hub:
             "name": self.name,
             "inputs": [{**_route(link), **link.snapshot()} for link in self.inputs],
             "outputs": [{**_route(link), **link.snapshot()} for link in self.outputs],
+            "past": {
+                "inputs": self.past_inputs.as_dict(),
+                "outputs": self.past_outputs.as_dict(),
+            },
             "waiting": self.mailbox.waiting,
         }
 

@@ -1,0 +1,65 @@
+"""Sums over connections that have ended: nothing of the books is lost with a connection."""
+
+from __future__ import annotations
+
+import pytest
+from support.wait import wait_until
+
+from yarpy.link.counter import Counter
+from yarpy.names.local import LocalNames
+from yarpy.port.buffered import BufferedPort
+from yarpy.port.past import KEEP, Past
+from yarpy.port.port import Port
+
+
+def test_sums() -> None:
+    past = Past()
+    assert past.as_dict() == {"messages": 0, "bytes": 0, "drops": 0}
+    counters = [Counter(messages=1, bytes=10, drops=2) for _ in range(3 * KEEP)]
+    for counter in counters:
+        past.add(counter, 1)
+    expected = {"messages": 3 * KEEP, "bytes": 30 * KEEP, "drops": 9 * KEEP}
+    assert past.as_dict() == expected
+    counters[-1].drops += 5  # what waited is dropped later
+    assert past.as_dict()["drops"] == 9 * KEEP + 5
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text", "unix_stream"])
+def test_books_balance_over_broken_connections(carrier: str, names: LocalNames) -> None:
+    with Port("/out", names=names) as out, BufferedPort("/in", strict=True, names=names) as in_:
+        out.connect("/in", carrier)
+        taken = dropped = 0
+        for number in range(300):
+            if number % 100 == 50:
+                wait_until(lambda: in_._hub.inputs)
+                for link in in_._hub.inputs:
+                    link.driver.transport.interrupt()
+                wait_until(lambda: not in_._hub.inputs or out.outputs)
+            if out.outputs:
+                took = out.write([number])
+                taken, dropped = taken + took, dropped + 1 - took
+            else:
+                wait_until(lambda: out.outputs, patience=20)
+        out.disconnect("/in")
+        wait_until(lambda: not in_.inputs, patience=20)
+        books = out.stats["past"]["outputs"]
+        assert books["messages"] + books["drops"] == taken + dropped
+        read = 0
+        while in_.poll():
+            read += 1
+        into = in_.stats["past"]["inputs"]
+        assert into["messages"] == read
+        assert into["drops"] == 0
+
+
+def test_what_was_never_read_is_dropped_when_the_port_closes(names: LocalNames) -> None:
+    with Port("/out", names=names) as out:
+        in_ = BufferedPort("/in", strict=True, names=names)
+        out.connect("/in")
+        for number in range(20):
+            out.write([number])
+        out.disconnect("/in")
+        wait_until(lambda: in_.waiting == 20 and not in_.inputs)
+        in_.close()
+        past = in_.stats["past"]["inputs"]
+        assert (past["messages"], past["drops"]) == (20, 20)
