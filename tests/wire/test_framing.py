@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import struct
 import time
+from collections.abc import Iterable
 
 import pytest
 from hypothesis import given, settings
@@ -427,13 +428,93 @@ def test_replies_are_walked_to_their_end() -> None:
         assert output(stream) == b""
 
 
+@settings(max_examples=200)
+@given(bottles | bottles.map(lambda bottle: [bottle]) | st.integers() | st.text(max_size=9))
+def test_reply_that_is_there_is_what_walking_to_its_end_gives(value: object) -> None:
+    try:
+        reply = b"".join(Packet(value).blocks)
+    except (TypeError, OverflowError):
+        return
+    stream = ByteStream()
+    payload = run(framing.read_payload(stream), stream, [reply + framing.ACK])
+    stream = ByteStream()
+    stream.feed(reply + framing.ACK)
+    message = framing.parse_reply(stream)
+    if message is None:
+        assert stream.waiting == len(reply) + 8
+        assert len(reply) < 12 or reply[:4] != b"\0\1\0\0" or reply[4] == 4
+        return
+    assert stream.waiting == 8
+    assert message.payload == payload
+    wanted = Message("d", payload).value
+    assert message.value == wanted
+    assert kinds(message.value) == kinds(wanted)
+    for size in range(len(reply)):
+        part = ByteStream()
+        part.feed(reply[:size])
+        assert framing.parse_reply(part) is None
+        assert part.waiting == size
+
+
+def test_reply_beyond_the_limit_is_left_to_be_refused() -> None:
+    stream = ByteStream(100)
+    stream.feed(b"".join(Packet(["x" * 200]).blocks))
+    assert framing.parse_reply(stream) is None
+
+
+@settings(max_examples=200)
+@given(st.binary(max_size=60) | bottles.map(lambda b: b"".join(Packet(b).blocks)), st.data())
+def test_reply_of_noise_is_nothing_or_what_walking_gives(data: bytes, draw: st.DataObject) -> None:
+    changed = bytearray(data)
+    if changed:
+        changed[draw.draw(st.integers(0, len(changed) - 1))] = draw.draw(st.integers(0, 255))
+    stream = ByteStream()
+    stream.feed(changed)
+    message = framing.parse_reply(stream)
+    if message is None:
+        assert stream.waiting == len(changed)
+        return
+    walked = ByteStream()
+    assert run(framing.read_payload(walked), walked, [bytes(changed)]) == message.payload
+
+
+@pytest.mark.parametrize("blocks", [2, 3, 4, 8])
+def test_head_of_a_large_message_is_read_in_place_as_it_is_in_pieces(blocks: int) -> None:
+    """Every byte of it is changed in turn."""
+    parts = [bytes(2 * LARGE // (blocks - 1))] * (blocks - 1)
+    whole = encode(ListOfBlocks(parts), "", "D")
+    end = 18 + 4 * blocks + 4 + 8
+    for at in range(8, end):
+        for change in (1, 0x80, 0xFF):
+            data = bytearray(whole)
+            data[at] ^= change
+            rest = chop(bytes(data[end:]), 30_000)
+            head = bytes(data[:end])
+            assert_alike(outcome_of([*chop(head, 1), *rest]), outcome_of([head, *rest]))
+
+
+class ListOfBlocks:
+    """A value in so many blocks."""
+
+    def __init__(self, parts: list[bytes]) -> None:
+        self.parts = parts
+
+    def to_wire(self) -> tuple[bytes, ...]:
+        return tuple(self.parts)
+
+
 # ---------------------------------------------------------------------------------- fuzz
 
 
 def outcome(data: bytes, piece: int) -> object:
     """What a reader makes of bytes that end: messages, then how it ended."""
+    return outcome_of(chop(data, piece))
+
+
+def outcome_of(pieces: Iterable[bytes]) -> object:
     stream = ByteStream(1 << 16)
-    feeds = iter(chop(data, piece))
+    feeds = iter(pieces)
+    rest = b""
     found: list[object] = []
     try:
         while True:
@@ -445,9 +526,11 @@ def outcome(data: bytes, piece: int) -> object:
                     message = stop.value
                     found.append((message.key, message.envelope, bytes(message.payload)))
                     break
-                data = next(feeds, b"")
-                if data:
-                    stream.feed(data)
+                rest = rest or next(feeds, b"")
+                if rest:
+                    room = len(stream.get_buffer())
+                    stream.feed(rest[:room])
+                    rest = rest[room:]
                 else:
                     stream.feed_eof()
     except YarpError as error:

@@ -154,6 +154,10 @@ class Carrier:
             return None
         return Message(CALL, (yield from framing.read_payload(stream)))
 
+    def parse_reply(self, stream: ByteStream) -> Message | None:
+        """A reply that is already in the stream's buffer, if it can be had without waiting."""
+        return None
+
     def encode_ack(self, stream: ByteStream) -> None:
         """Write the acknowledgement of a message."""
         stream.write(framing.ACK)
@@ -198,6 +202,9 @@ class Indexed(Carrier):
 
     def parse(self, stream: ByteStream) -> Message | None:
         return framing.parse_plain(stream)
+
+    def parse_reply(self, stream: ByteStream) -> Message | None:
+        return framing.parse_reply(stream)
 
     def encode_acks(self, stream: ByteStream, count: int) -> None:
         stream.write(framing.ACK * count)

@@ -28,7 +28,7 @@ from typing import Any, Final, TypeVar, cast
 from yarpy.data.bottle import Bottle
 from yarpy.data.image import Image
 from yarpy.data.property import Property, bottle_of, text_of
-from yarpy.data.reader import read_bottle
+from yarpy.data.reader import read_bottle, read_leading
 from yarpy.data.stamp import Stamp
 from yarpy.data.text import parse_text, print_text
 from yarpy.data.value import (
@@ -54,6 +54,7 @@ __all__ = [
     "Walker",
     "decode",
     "decode_as",
+    "decode_leading",
     "decode_text",
     "decode_text_as",
     "encode",
@@ -155,6 +156,22 @@ def decode(view: Buffer) -> Any:
     elif count and (code == LIST + FLOAT64 or code == LIST + FLOAT32):
         return Vector.from_wire(view)
     return read_bottle(view)
+
+
+def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
+    """The natural value of the message that `buffer` begins with, and the bytes it takes.
+
+    None if it is not all there, or is not one of the usual: lists and single values.
+    """
+    if len(buffer) < 12:
+        return None
+    code, count = _read_head(buffer)
+    if code != LIST or count == 4:  # four elements may be an Image or a Sound
+        return None
+    found = read_leading(buffer)
+    if found is None or count != 1 or _read_i32(buffer, 8)[0] & GROUP_MASK:
+        return found
+    return found[0][0], found[1]
 
 
 def decode_text(line: bytes | str) -> Bottle:

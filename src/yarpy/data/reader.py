@@ -68,6 +68,18 @@ def read_bottle(view: Buffer) -> Bottle:
     return items
 
 
+def read_leading(buffer: bytes) -> tuple[Bottle, int] | None:
+    """The Bottle that `buffer` begins with and the bytes it takes; None if it is not all there."""
+    if len(buffer) < 8:
+        return None
+    code, count = _read_pair(buffer)
+    items = Bottle()
+    try:
+        return items, _read_items(buffer, 8, code & UNIT_MASK, count, 0, items)
+    except (struct_error, DecodeError):
+        return None
+
+
 def _read_items(
     buffer: bytes | memoryview, pos: int, kind: int, count: int, depth: int, items: list[Any]
 ) -> int:

@@ -152,12 +152,18 @@ class Outbound(Sender):
             started = time.perf_counter()
             driver = self.driver
             try:
-                self._collect(wait=True, deadline=deadline)
-                self.carrier.encode(driver.stream, packet)
+                if self.unacknowledged:
+                    self._collect(wait=True, deadline=deadline)
+                carrier, stream = self.carrier, driver.stream
+                carrier.encode(stream, packet)
                 self._flush()
-                reply = driver.run(self.carrier.expect_reply(driver.stream), deadline)
-                if self.carrier.acks:
-                    driver.run(self.carrier.expect_ack(driver.stream), deadline)
+                if not stream.waiting:
+                    driver.fill(deadline)
+                reply = carrier.parse_reply(stream)
+                if reply is None:
+                    reply = driver.run(carrier.expect_reply(stream), deadline)
+                if carrier.acks and not carrier.parse_acks(stream, 1):
+                    driver.run(carrier.expect_ack(stream), deadline)
             except Timeout:
                 self._break()
                 raise Timeout(
@@ -167,6 +173,9 @@ class Outbound(Sender):
                 if interrupts(error):
                     self._break()  # its answer must not be taken for that of the next question
                 raise
+            finally:
+                if deadline is not None:
+                    driver.transport.limit_waiting(None)
             now = time.perf_counter()
             self.counter.count(now)
             self.counter.bytes = driver.bytes_out
@@ -197,7 +206,9 @@ class Outbound(Sender):
 
     def _take_turn(self, timeout: float | None) -> None:
         """Take the lock once nothing waits to be sent. Raises Timeout, LinkClosed."""
-        if not (self.drain(timeout) and self.lock.acquire(timeout=seconds(timeout))):
+        if self._queue is None and not self._gathered and self.lock.acquire(blocking=False):
+            pass  # as nearly always
+        elif not (self.drain(timeout) and self.lock.acquire(timeout=seconds(timeout))):
             raise Timeout(f'"{self.route.target}" did not take earlier messages within {timeout} s')
         if self.broken:
             self.lock.release()

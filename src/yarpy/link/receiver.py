@@ -141,9 +141,9 @@ class Receiver:
             return
         message.answer = None
         self._answering = None
-        # Without any answer a C++ caller takes the acknowledgement for one and waits for ever. A
-        # person at a text prompt, and a name service, are told nothing rather than an empty line.
-        if self.carrier.spelling == "binary" and self.carrier.acks:
+        # Without any answer a caller waits for ever; one in C++ takes the acknowledgement for it. A
+        # person at a text prompt, a name service, and a page are told nothing rather than that.
+        if self.carrier.spelling != "text" and not self.carrier.lossy:
             self._reply(Bottle())
         else:
             self._acknowledge(message)

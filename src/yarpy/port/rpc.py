@@ -63,7 +63,8 @@ class RpcServer(BasePort):
             self._opened.set()
 
     def _answer(self, message: Message) -> None:
-        self._opened.wait()
+        if not self._opened.is_set():
+            self._opened.wait()
         try:
             reply = self._handler(message)
         except DecodeError as error:

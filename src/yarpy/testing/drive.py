@@ -272,7 +272,11 @@ class Dialogue:
 
 
 def _reply_and_ack(carrier: Carrier, stream: ByteStream) -> Steps[Message | None]:
-    reply = yield from carrier.expect_reply(stream)
+    if not stream.waiting:
+        yield None
+    reply = carrier.parse_reply(stream) if stream.waiting else None
+    if reply is None:
+        reply = yield from carrier.expect_reply(stream)
     if carrier.acks:
         yield from carrier.expect_ack(stream)
     return reply

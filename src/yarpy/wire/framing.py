@@ -10,6 +10,7 @@ from __future__ import annotations
 import struct
 from typing import Final
 
+from yarpy.data.codec import decode_leading
 from yarpy.data.walker import Walker
 from yarpy.errors import LinkClosed, RemoteProtocolError
 from yarpy.wire.effects import Steps
@@ -265,6 +266,23 @@ def read_payload(stream: ByteStream) -> Steps[bytes | memoryview]:
         return (bytes(view[:need]), need) if walker.done else need
 
     return (yield from stream.read_parsed(extent))
+
+
+def parse_reply(stream: ByteStream) -> Message | None:
+    """A whole reply at the head of the stream's buffer, if it is a usual one; None: look closer.
+
+    As with `parse_plain`, nothing is waited for. Replies have no length: decoding tells it.
+    """
+    head, tail = stream.head, stream.tail
+    if tail - head > LARGE:
+        return None
+    data = bytes(stream.buffer[head:tail])
+    found = decode_leading(data)
+    if found is None or found[1] > stream.limit:
+        return None
+    value, size = found
+    stream.head = head + size
+    return Message.decoded("d", data[:size], value)
 
 
 def read_name(stream: ByteStream) -> Steps[str]:

@@ -160,6 +160,13 @@ class Message:
         self._value: object = _UNSET
 
     @classmethod
+    def decoded(cls, key: str, payload: bytes, value: object) -> Message:
+        """A message whose value is known already."""
+        message = cls(key, payload)
+        message._value = value
+        return message
+
+    @classmethod
     def of(cls, packet: Packet) -> Message:
         """What is about to be sent, as a monitor looks at it."""
         return cls(packet.key, packet.value, packet.envelope.decode(), "object")
