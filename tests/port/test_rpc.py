@@ -10,6 +10,7 @@ from support.wait import wait_until
 
 from yarpy import network
 from yarpy.data.bottle import Bottle
+from yarpy.data.property import Property
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.data.vector import Vector
@@ -96,6 +97,19 @@ def test_handler_may_answer_itself(names: LocalNames) -> None:
         RpcClient("/server", names=names) as client,
     ):
         assert [client.call("x", timeout=5) for _ in range(3)] == [["mine"]] * 3
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "unix_stream", "local", "text_ack"])
+def test_question_that_nobody_answers(carrier: str, names: LocalNames) -> None:
+    """A handler that gives nothing, a monitor that drops the question: nobody waits for ever."""
+    with (
+        RpcServer("/server", lambda message: None, names=names) as server,
+        RpcClient("/server", carrier=carrier, names=names) as client,
+    ):
+        assert client.call("x", timeout=20) == []
+        server._hub.monitoring.attach("in", Property(monitor="throttleDown"))
+        assert client.call("x", timeout=20) == []
+        assert client.call("x", timeout=20) == []
 
 
 def test_failing_handler_says_why_and_goes_on(
