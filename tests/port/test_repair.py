@@ -12,7 +12,8 @@ from support.process import Process
 from support.wait import wait_until
 
 import yarpy
-from yarpy.port import probe
+from yarpy.contact import Route
+from yarpy.port import probe, repair
 
 RECOVERY = 20.0  # generous on a busy machine; the goal is 2 s, and the benchmark tells
 
@@ -210,3 +211,11 @@ def _wait_until(condition) -> bool:
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.01)
     return bool(condition())
+
+
+def test_nothing_is_mended_for_a_port_that_is_closed(names: yarpy.LocalNames) -> None:
+    """A connection that breaks while its port closes would be remembered for ever."""
+    port = yarpy.Port("/out", names=names)
+    port.close()
+    repair.output_lost(port._hub, Route("/out", "/in", "tcp"))
+    assert repair.pending(port._hub) == []

@@ -95,6 +95,8 @@ class Repairer:
     def add(self, hub: Hub, route: Route, incoming: bool) -> None:
         """A connection failed."""
         with self._lock:
+            if hub.closing:
+                return  # `forget` may have been here already
             self._lost.append(_Lost(hub, route, incoming))
         self._wake.set()
 
