@@ -18,7 +18,14 @@ from support.wait import wait_until
 
 from yarpy import network
 from yarpy.contact import Contact
-from yarpy.errors import AddressError, LinkClosed, NoNameServer, UnknownName, YarpError
+from yarpy.errors import (
+    AddressError,
+    LinkClosed,
+    NoNameServer,
+    PortClosed,
+    UnknownName,
+    YarpError,
+)
 from yarpy.names.client import YarpNameClient
 from yarpy.names.local import LocalNames
 from yarpy.names.several import SeveralNames
@@ -497,3 +504,12 @@ def test_closing_waits_once_for_a_name_service_that_does_not_answer() -> None:
         here.close()
         assert names.asked == 1
         names.frozen = False
+
+
+def test_closed_port_cannot_be_resumed(names: LocalNames) -> None:
+    """Its readers would wait for ever."""
+    port = Port("/here", names=names)
+    port.close()
+    port.resume()
+    with pytest.raises(PortClosed):
+        port.read(timeout=5)

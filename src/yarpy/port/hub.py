@@ -440,7 +440,10 @@ class Hub:
         self.mailbox.interrupt()
 
     def resume(self) -> None:
-        """Undo `interrupt`."""
+        """Undo `interrupt`; a closed port stays closed."""
+        with self.lock:
+            if self.closing:
+                return
         self.interrupted = False
         self.mailbox.resume()
 
