@@ -165,6 +165,7 @@ REFUSED = [
     (Request("POST", "/form", {"content-type": "application/json"}, b"{"), 400),
     (Request("POST", "/form", {"content-type": "application/json"}, b"[" * 100_000), 400),
     (Request("POST", "/form", {}, b"a=1&" * (MAX_FIELDS + 1)), 400),
+    (Request("POST", "/form", {}, b'["get", "encs"]'), 400),
     (Request("GET", "/favicon.ico", {}), 204),
     (Request("GET", "/web/main.css", {}), 200),
     (Request("GET", "/robots.txt", {}), 404),

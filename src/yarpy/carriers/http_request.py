@@ -173,9 +173,11 @@ def _posted(request: Request, fields: dict[str, str]) -> Wish | Refusal:
     body = request.body
     if kind == FORM:
         fields |= read_fields(body.decode("utf-8", "surrogateescape").strip("\r\n"))
-        if not fields.keys() & {"cmd", "req", "data"}:
-            return Wish("*", _form(request, fields, "page"), text=PAGE)
-        return _by_fields(request, fields)
+        if fields.keys() & {"cmd", "req", "data"}:
+            return _by_fields(request, fields)
+        if body.strip() and b"=" not in body:  # curl says so of whatever it is given
+            return Refusal(400, f"no form, as {FORM} says: JSON and text want a Content-Type too")
+        return Wish("*", _form(request, fields, "page"), text=PAGE)
     if kind == "text/plain":
         text = body.decode("utf-8", "surrogateescape")
         return _asked(request, fields, text, "text", substituting=False)
