@@ -1,4 +1,4 @@
-"""Hub: a port without its reader - a name, a listening socket, and the links in and out.
+"""Hub: a port without its reader - a listening socket, and the links in and out.
 
 Rules: the tuples of links are replaced under `lock`, never changed, so who walks them needs no
 lock; no lock is held while user code runs or bytes move. Every end of a connection comes through
@@ -18,29 +18,24 @@ from typing import Any
 
 from yarpy.carriers.base import PAGE, Carrier
 from yarpy.carriers.guest import Page, Pages
-from yarpy.contact import Contact, check_name
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
-from yarpy.errors import AddressError, NoNameServer, PortClosed, YarpError
+from yarpy.errors import NoNameServer, PortClosed, YarpError
 from yarpy.link.acceptor import Acceptor
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import welcome
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
-from yarpy.names.address import local_addresses, outward_address
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
-from yarpy.names.configuration import port_name, port_number
-from yarpy.names.default import DEFAULT, secret
-from yarpy.names.several import SeveralNames
+from yarpy.names.configuration import port_number
 from yarpy.port import admin, command, fork, repair
 from yarpy.port.dialling import Dialling
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.monitoring import Monitoring
 from yarpy.port.past import Past
-from yarpy.port.probe import is_alive
-from yarpy.registry import carriers
+from yarpy.port.registration import Registered
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import Message
 from yarpy.wire.stream import DEFAULT_LIMIT
@@ -48,7 +43,7 @@ from yarpy.wire.stream import DEFAULT_LIMIT
 log = logging.getLogger("yarpy.port")
 
 
-class Hub:
+class Hub(Registered):
     """A port's connections. `names` None: the default service; `register` False: no name service.
 
     `admits_outputs` and `rpc` are what admin requests for outputs are checked against. `limit` is
@@ -71,8 +66,8 @@ class Hub:
         on_connection: Callable[[ConnectionEvent], None] | None = None,
         register: bool = True,
     ) -> None:
+        super().__init__(name, names, type_, register)
         self.mailbox = mailbox
-        self.type = type_
         self.admits_inputs = admits_inputs
         self.admits_outputs = admits_outputs
         self.rpc = rpc
@@ -93,71 +88,17 @@ class Hub:
         self.lock = threading.Lock()  # replaces the tuples of links
         self.dialling = Dialling()
         self.monitoring = Monitoring(self)
-        self.group_name = ""  # the temporary name of our multicast group
-        self.key = secret()
-        self.registered = register and bool(name)
-        if name and not name.startswith(("...", "=")):
-            name = check_name(port_name(name, os.environ))
-        self.name = name
-        self._has_name = False  # in the name service
-        self.names = names
-        if self.registered and names is None:
-            self.names = DEFAULT.current()
         self.acceptor: Acceptor | None = None
-        self._opened = threading.Event()  # who dials us before we know our name has to wait
         try:
-            self._open(port or port_number(name, os.environ), host)
+            self._open(port or port_number(self.name, os.environ), host)
         except BaseException:
             self._give_up()
             raise
-
-    # -- opening ----------------------------------------------------------------------------------
-
-    def _open(self, port: int, host: str) -> None:
-        if not 0 <= port < 65536:
-            raise AddressError(
-                f'"{self.name}" cannot listen on TCP port {port}: choose a number below 65536, or '
-                "0 for any free one"
-            )
-        names = self.names if self.registered else None
-        if names is not None and names.allocates and not port:
-            self._refuse_taken(names)
-            contact = names.register(self.name, type_=self.type or None)
-            self.name = contact.name
-            self._has_name = True
-            try:
-                self._listen(contact.port)
-            except OSError:
-                # Somebody who never asked the name server listens on that number.
-                self._listen(0)
-                contact = names.register(
-                    self.name, "tcp", contact.host, self.port, self.type or None
-                )
-        else:
-            if names is not None:
-                self._refuse_taken(names)
-            try:
-                self._listen(port)
-            except OSError as error:
-                raise AddressError(
-                    f'"{self.name}" cannot listen on TCP port {port} ({error.strerror}); '
-                    "choose another number, or 0 for any free one"
-                ) from error
-            where = host or ("127.0.0.1" if names is not None else outward_address())
-            if names is not None:
-                contact = names.register(self.name, "tcp", where, self.port, self.type or None)
-            else:
-                self.name = self.name or f"/{where}_{self.port}"
-                contact = Contact("tcp", self.name, where, self.port)
-        self.contact = contact
-        self.name = contact.name
-        self._has_name = names is not None
-        self._opened.set()
-        if names is not None:
-            self.describe(names)
         fork.prepare()
         repair.watch(self)
-        log.info("Port %s active at %s", self.name, f"tcp://{contact.address}/")
+        log.info("Port %s active at %s", self.name, f"tcp://{self.contact.address}/")
+
+    # -- opening ----------------------------------------------------------------------------------
 
     def _give_up(self) -> None:
         """Opening failed: leave nothing behind."""
@@ -165,49 +106,11 @@ class Hub:
         self._opened.set()
         if self.acceptor is not None:
             self.acceptor.close()
-        if self._has_name and self.names is not None:
-            try:
-                self.names.unregister(self.name)
-            except YarpError:
-                pass  # nobody to tell; a name server forgets names where nobody listens
-
-    def _refuse_taken(self, names: NameClient) -> None:
-        """A name belongs to the living port that has it. C++ would take it away in silence."""
-        if not self.name.startswith("/"):
-            return
-        try:
-            known = names.query(self.name)
-        except NoNameServer:
-            if isinstance(names, SeveralNames):
-                return  # all but the first may be away, and registering asks that one
-            raise
-        if known is not None and known.carrier == "tcp" and is_alive(known, self.key):
-            raise AddressError(
-                f'"{self.name}" is in use by a port at {known.address}: close that program, or '
-                "choose another name"
-            )
+        self._forget_name()
 
     def _listen(self, port: int) -> None:
         self.acceptor = Acceptor(self.name, port, self._serve, speaks_first=bool(self.key))
         self.port = self.acceptor.port
-
-    def describe(self, names: NameClient) -> None:
-        """Tell a name service what we are, and that we listen."""
-        known = [*carriers.names()]
-        names.set(self.name, "offers", *known)
-        names.set(self.name, "accepts", *known)
-        names.set(self.name, "ips", *local_addresses())
-        names.set(self.name, "process", os.getpid())
-        names.announce(self.name)
-
-    def service(self) -> NameClient | None:
-        """The name service to look others up with, None if there is none."""
-        if self.names is None:
-            try:
-                self.names = DEFAULT.current()
-            except NoNameServer:
-                return None
-        return self.names
 
     @property
     def thread_id(self) -> int:
@@ -402,19 +305,6 @@ class Hub:
                 link.active = not elected
                 elected = True
 
-    def group(self, local_host: str) -> tuple[str, int]:
-        """The multicast group of this port: one for all its connections."""
-        names = self.service()
-        if names is None:
-            return "224.3.1.1", 11000  # what C++ falls back to without a name server
-        contact = names.query(self.group_name) if self.group_name else None
-        if contact is None:
-            contact = names.register("...", "mcast", None, None if names.allocates else self.port)
-            self.group_name = contact.name
-            if self.registered:
-                names.set(self.name, "owns", contact.name)
-        return contact.host, contact.port
-
     # -- reports ----------------------------------------------------------------------------------
 
     def report(self, link: Inbound | Outbound, created: bool, reason: str = "") -> None:
@@ -470,17 +360,12 @@ class Hub:
         if self.acceptor is not None:
             self.acceptor.close()
         self.monitoring.close()
-        if self.registered and self.names is not None:
-            try:
-                if not answers:
-                    raise NoNameServer("it did not answer just now")
-                if self.group_name:
-                    self.names.unregister(self.group_name)
-                current = self.names.query(self.name)
-                if current is None or current.port == self.port:
-                    self.names.unregister(self.name)
-            except NoNameServer as error:
-                log.info("%s: the name stays registered: %s", self.name, error)
+        try:
+            if not answers:
+                raise NoNameServer("it did not answer just now")
+            self._give_name_back()
+        except NoNameServer as error:
+            log.info("%s: the name stays registered: %s", self.name, error)
 
     def _ask_senders_to_leave(self) -> bool:
         """Ports that send to us hear it from us, so that they do not take it for a failure.

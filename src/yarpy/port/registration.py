@@ -1,0 +1,161 @@
+"""Registration: a port's name, where it listens, and what the name service knows of the two.
+
+Rules: a name belongs to the living port that has it. Nothing stays registered of a port that could
+not be opened. A name service that does not answer is an error when a port opens, and none when it
+closes.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import threading
+
+from yarpy.contact import Contact, check_name
+from yarpy.errors import AddressError, NoNameServer, YarpError
+from yarpy.names.address import local_addresses, outward_address
+from yarpy.names.base import NameClient
+from yarpy.names.configuration import port_name
+from yarpy.names.default import DEFAULT, secret
+from yarpy.names.several import SeveralNames
+from yarpy.port.probe import is_alive
+from yarpy.registry import carriers
+
+log = logging.getLogger("yarpy.port")
+
+
+class Registered:
+    """What of a port is known to others. `names` None: the default service; `register` False: no
+    name service.
+
+    Raises AddressError (name unusable), NoNameServer.
+    """
+
+    def __init__(self, name: str, names: NameClient | None, type_: str, register: bool) -> None:
+        self.type = type_
+        self.port = 0
+        self.contact: Contact
+        self.group_name = ""  # the temporary name of our multicast group
+        self.key = secret()
+        self.registered = register and bool(name)
+        if name and not name.startswith(("...", "=")):
+            name = check_name(port_name(name, os.environ))
+        self.name = name
+        self._has_name = False  # in the name service
+        self.names = names
+        if self.registered and names is None:
+            self.names = DEFAULT.current()
+        self._opened = threading.Event()  # who dials us before we know our name has to wait
+
+    def _listen(self, port: int) -> None:
+        """Listen on `port`, 0 for any free one, and set `self.port`. Raises OSError."""
+        raise NotImplementedError
+
+    def _open(self, port: int, host: str) -> None:
+        """Listen and register. Raises AddressError (name or number in use), NoNameServer."""
+        if not 0 <= port < 65536:
+            raise AddressError(
+                f'"{self.name}" cannot listen on TCP port {port}: choose a number below 65536, or '
+                "0 for any free one"
+            )
+        names = self.names if self.registered else None
+        if names is not None and names.allocates and not port:
+            self._refuse_taken(names)
+            contact = names.register(self.name, type_=self.type or None)
+            self.name = contact.name
+            self._has_name = True
+            try:
+                self._listen(contact.port)
+            except OSError:
+                # Somebody who never asked the name server listens on that number.
+                self._listen(0)
+                contact = names.register(
+                    self.name, "tcp", contact.host, self.port, self.type or None
+                )
+        else:
+            if names is not None:
+                self._refuse_taken(names)
+            try:
+                self._listen(port)
+            except OSError as error:
+                raise AddressError(
+                    f'"{self.name}" cannot listen on TCP port {port} ({error.strerror}); '
+                    "choose another number, or 0 for any free one"
+                ) from error
+            where = host or ("127.0.0.1" if names is not None else outward_address())
+            if names is not None:
+                contact = names.register(self.name, "tcp", where, self.port, self.type or None)
+            else:
+                self.name = self.name or f"/{where}_{self.port}"
+                contact = Contact("tcp", self.name, where, self.port)
+        self.contact = contact
+        self.name = contact.name
+        self._has_name = names is not None
+        self._opened.set()
+        if names is not None:
+            self.describe(names)
+
+    def _refuse_taken(self, names: NameClient) -> None:
+        """A name belongs to the living port that has it. C++ would take it away in silence."""
+        if not self.name.startswith("/"):
+            return
+        try:
+            known = names.query(self.name)
+        except NoNameServer:
+            if isinstance(names, SeveralNames):
+                return  # all but the first may be away, and registering asks that one
+            raise
+        if known is not None and known.carrier == "tcp" and is_alive(known, self.key):
+            raise AddressError(
+                f'"{self.name}" is in use by a port at {known.address}: close that program, or '
+                "choose another name"
+            )
+
+    def describe(self, names: NameClient) -> None:
+        """Tell a name service what we are, and that we listen."""
+        known = [*carriers.names()]
+        names.set(self.name, "offers", *known)
+        names.set(self.name, "accepts", *known)
+        names.set(self.name, "ips", *local_addresses())
+        names.set(self.name, "process", os.getpid())
+        names.announce(self.name)
+
+    def service(self) -> NameClient | None:
+        """The name service to look others up with, None if there is none."""
+        if self.names is None:
+            try:
+                self.names = DEFAULT.current()
+            except NoNameServer:
+                return None
+        return self.names
+
+    def group(self, local_host: str) -> tuple[str, int]:
+        """The multicast group of this port: one for all its connections."""
+        names = self.service()
+        if names is None:
+            return "224.3.1.1", 11000  # what C++ falls back to without a name server
+        contact = names.query(self.group_name) if self.group_name else None
+        if contact is None:
+            contact = names.register("...", "mcast", None, None if names.allocates else self.port)
+            self.group_name = contact.name
+            if self.registered:
+                names.set(self.name, "owns", contact.name)
+        return contact.host, contact.port
+
+    def _forget_name(self) -> None:
+        """Opening failed: leave no name behind."""
+        if self._has_name and self.names is not None:
+            try:
+                self.names.unregister(self.name)
+            except YarpError:
+                pass  # nobody to tell; a name server forgets names where nobody listens
+
+    def _give_name_back(self) -> None:
+        """The port closes. What somebody else has registered under its name meanwhile stays."""
+        if not self.registered or self.names is None:
+            return
+        if self.group_name:
+            self.names.unregister(self.group_name)
+        current = self.names.query(self.name)
+        if current is None or current.port == self.port:
+            self.names.unregister(self.name)
