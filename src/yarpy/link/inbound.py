@@ -163,6 +163,10 @@ class Inbound(Receiver):
         self.visited = time.perf_counter()
         self._turn.release()
 
+    def idle(self) -> bool:
+        """Whether nothing has come yet; for who has the turn."""
+        return not (self.driver.stream.waiting or self.carrier.holding or self.driver.try_fill())
+
     def fetch(
         self, deadline: float | None, spin: bool = False, newest: bool = False
     ) -> Message | None:

@@ -98,9 +98,7 @@ class Reader:
         while True:
             link = self._sole
             if link is not None and link.wanted and not self._hub.mailbox.waiting:
-                message = self._directly(link, deadline)
-                if late:
-                    link.release()
+                message = self._directly(link, deadline, late)
                 if message is not None:
                     return message
             elif link is not None and link.sched.policy < 1 and self._is_quick():
@@ -113,7 +111,8 @@ class Reader:
                 raise Timeout(f'nothing came to "{self._hub.name}" within {timeout} s')
 
     def _was_long(self) -> bool:
-        """Whether the reader was away for so long that it has to give the turn up.
+        """Whether the reader was away for so long that it gives the turn up if it kept a sender
+        waiting.
 
         Not before it has looked itself once more: the newest is there, while the link's thread
         would begin with the oldest. Who wants every message keeps the turn: a busy writer in the
@@ -136,10 +135,11 @@ class Reader:
             left = PATIENCE if left is None else min(left, PATIENCE)
         return self._mailbox.take(left)
 
-    def _directly(self, link: Inbound, deadline: float | None) -> Message | None:
+    def _directly(self, link: Inbound, deadline: float | None, late: bool) -> Message | None:
         hub = self._hub
         if not link.borrow():
             return None
+        late = late and not link.idle()
         try:
             while not (self._mailbox.waiting or self._mailbox.stopped) and link.wanted:
                 until = deadline
@@ -162,6 +162,8 @@ class Reader:
             return None
         finally:
             link.give_back()
+            if late:
+                link.release()
 
     def _finish(self) -> None:
         """This thread is done with the message it took last, and threads that ended with theirs."""
