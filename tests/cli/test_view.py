@@ -116,6 +116,7 @@ class Ffmpeg(Process):
 def middle(page):
     script = """() => {
         const canvas = document.querySelector("canvas");
+        if (!canvas) return [0, 0, 0, 0, 0];
         const x = canvas.width >> 1, y = canvas.height >> 1;
         return [canvas.width, ...canvas.getContext("2d").getImageData(x, y, 1, 1).data];
     }"""

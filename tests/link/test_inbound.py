@@ -21,6 +21,7 @@ from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
+from yarpy.link import inbound
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import recognise
 from yarpy.link.inbound import Inbound
@@ -148,6 +149,12 @@ def test_close_from_another_thread_wakes_the_reader() -> None:
         wait_until(lambda: owner.ended)
         assert near.recv(8) == ACK
         assert near.recv(1) == b""
+
+
+@pytest.fixture(autouse=True)
+def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Links wait longer for a reader with the turn than a busy machine makes it wait."""
+    monkeypatch.setattr(inbound, "PARKED", 0.5)
 
 
 def take(link: Inbound) -> None:

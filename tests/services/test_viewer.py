@@ -85,6 +85,7 @@ def colour(page: Page, number: int = 0) -> list[int]:
     """The pixel in the middle of a picture on the page; its alpha is 0 before anything is drawn."""
     script = """number => {
         const canvas = document.querySelectorAll("canvas")[number];
+        if (!canvas) return [0, 0, 0, 0];
         const x = canvas.width >> 1, y = canvas.height >> 1;
         return [...canvas.getContext("2d").getImageData(x, y, 1, 1).data];
     }"""
