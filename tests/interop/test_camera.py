@@ -142,7 +142,7 @@ def test_what_is_no_camera_is_told(
 def test_watching_goes_on_after_a_broken_stream(rest: bytes) -> None:
     """The connection ends, the port dials again."""
     good = MULTIPART + frame(jpeg.encode(PICTURE))
-    with raw_camera(good + rest, good) as (name, asked), viewer() as (names, view):
+    with raw_camera(good + rest, good) as (name, asked), viewer(strict=True) as (names, view):
         network.connect(name, "/view", "mjpeg", names=names)
         assert is_the_picture(view.read(timeout=PATIENCE).value)
         wait_until(lambda: len(asked) == 2, PATIENCE)
