@@ -207,7 +207,10 @@ class Repairer:
             return
         done = False
         try:
-            done = self._mend_input(item) if item.incoming else self._mend_output(item)
+            if item.incoming:
+                done = self._mend_input(item)
+            else:
+                done = self._dial_again(item, item.route.target)
         except command.Refused as error:
             if isinstance(error.__cause__, LoginRefused):
                 item.pause = LOCKED
@@ -223,38 +226,13 @@ class Repairer:
             item.due = now + item.pause
             item.pause = min(item.pause * 1.5, max(item.pause, CALM))
 
-    def _mend_output(self, item: _Lost) -> bool:
-        hub, route = item.hub, item.route
-        with hub.dialling.alone(route.target, wait=False) as alone:
-            if not alone:
-                return False
-            if item not in self._lost or any(
-                link.route.target == route.target for link in hub.outputs
-            ):
-                return True
-            contact = command.locate(hub, parse_contact(route.target))
-            if contact is None:
-                return False
-            command.open_output(hub, contact, route.target, route.secret or route.carrier)
-            if item not in self._lost:  # somebody disconnected it meanwhile
-                self._undo(hub, route.target)
-            else:
-                log.info("%s: the connection to %s is back", hub.name, route.target)
-        return True
-
-    def _undo(self, hub: Hub, target: str) -> None:
-        for link in hub.outputs:
-            if link.route.target == target:
-                command.close_output(hub, link)
-
     def _mend_input(self, item: _Lost) -> bool:
         """Ask the sender, once it lives again, to send to us as before."""
         hub, route = item.hub, item.route
-        if any(link.route.source == route.source for link in hub.inputs):
+        if _is_there(item):
             return True
         if _is_pulled(route):
-            with hub.dialling.alone(route.source, wait=False) as alone:
-                return alone and self._dial_again(item)
+            return self._dial_again(item, route.source)
         contact = hub.names.query(route.source) if hub.names is not None else None
         if contact is None or not probe.is_alive(contact, hub.key):
             item.seen_gone = True
@@ -270,18 +248,34 @@ class Repairer:
         probe.ask(contact, [Vocab("add"), f"{carrier}:/{hub.name}"], secret_=hub.key)
         return True
 
-    def _dial_again(self, item: _Lost) -> bool:
-        """Dial a camera, or another source that we fetch from, once more."""
+    def _dial_again(self, item: _Lost, peer: str) -> bool:
+        """Dial a receiver, or a camera that we fetch from, once more; not if somebody else does."""
         hub, route = item.hub, item.route
-        contact = command.locate(hub, parse_contact(route.source))
-        if contact is None:
-            return False
-        command.open_output(hub, contact, route.source, route.secret or route.carrier)
-        if item not in self._lost:  # somebody disconnected it meanwhile
-            command.disconnect_input(hub, route.source)
-        else:
-            log.info("%s: the connection from %s is back", hub.name, route.source)
+        with hub.dialling.alone(peer, wait=False) as alone:
+            if not alone:
+                return False
+            if item not in self._lost or _is_there(item):
+                return True
+            contact = command.locate(hub, parse_contact(peer))
+            if contact is None:
+                return False
+            command.open_output(hub, contact, peer, route.secret or route.carrier)
+            if item in self._lost:
+                way = "from" if item.incoming else "to"
+                log.info("%s: the connection %s %s is back", hub.name, way, peer)
+            elif item.incoming:  # somebody disconnected it meanwhile
+                command.disconnect_input(hub, peer)
+            else:
+                command.disconnect_output(hub, peer)
         return True
+
+
+def _is_there(item: _Lost) -> bool:
+    """Whether there is such a connection already."""
+    hub, route = item.hub, item.route
+    if item.incoming:
+        return any(link.route.source == route.source for link in hub.inputs)
+    return any(link.route.target == route.target for link in hub.outputs)
 
 
 def _is_pulled(route: Route) -> bool:
