@@ -242,6 +242,27 @@ def test_borrower_that_wants_the_newest_gets_the_last_of_those_that_are_there() 
         assert got == wanted
 
 
+@pytest.mark.parametrize("newest", [False, True])
+def test_message_of_a_sender_who_has_gone_is_not_lost(newest: bool) -> None:
+    """Its acknowledgement finds nobody, which is no reason to forget it."""
+    with linked() as (near, link, owner):
+        take(link)
+        near.sendall(message([1]))
+        wait_until(lambda: link.borrow())
+        large = [b"x" * 20_000]  # is acknowledged at once; of small ones, every so many together
+        values: list[object] = [[number] for number in range(100)] if newest else [large]
+        near.sendall(b"".join(map(message, values)))
+        wait_until(lambda: link.driver.stream.waiting or link.driver.try_fill())
+        near.close()
+        found = link.fetch(None, newest=newest)
+        assert found is not None
+        link.give_back()
+        wait_until(lambda: owner.ended)
+        heard = [item.value for item in owner.heard]
+        drops = link.snapshot()["drops"]
+        assert [[1], found.value, *heard[1:]] == [[1], *values[drops:]]
+
+
 def test_question_is_never_passed_over_for_something_newer() -> None:
     with linked() as (near, link, _):
         take(link)

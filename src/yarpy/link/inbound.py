@@ -188,8 +188,7 @@ class Inbound(Receiver):
                             self._refuse(message)
                             continue
                         message = passed
-                    self.accept(message)
-                    return self._newest(message) if newest else message
+                    return self._take(message, newest)
                 self._obey(message)
                 if self._quit or self._reversed:
                     break
@@ -203,27 +202,28 @@ class Inbound(Receiver):
         self._woken.set()
         return None
 
-    def _newest(self, message: Message) -> Message:
-        """The last of the messages that have come already; `message` has been accepted."""
+    def _take(self, message: Message, newest: bool) -> Message:
+        """Accept a message; with `newest`, the last of those that have come already."""
         stream, parse, chain = self.driver.stream, self.carrier.parse, self.chain
-        while message.key == DATA and stream.waiting and not (self._quit or self._reversed):
-            try:
-                later = parse(stream)
-            except YarpError:
-                break  # whoever reads next meets the same
-            if later is None:
-                break
-            self._count(later)
-            if later.key != DATA and later.key != CALL:
-                self._obey(later)
-                continue
-            passed = later if chain is None else chain.take(later)
-            if passed is None:
-                self._refuse(later)
-                continue
-            self.counter.drops += 1
-            message = passed
+        try:
             self.accept(message)
+            while newest and message.key == DATA and stream.waiting:
+                later = parse(stream)
+                if later is None:
+                    break
+                self._count(later)
+                if later.key != DATA and later.key != CALL:
+                    self._obey(later)
+                    continue
+                passed = later if chain is None else chain.take(later)
+                if passed is None:
+                    self._refuse(later)
+                    continue
+                self.counter.drops += 1
+                message = passed
+                self.accept(message)
+        except YarpError:
+            pass  # the sender has gone, or breaks the rules: who reads next meets it
         return message
 
     def _spin(self, deadline: float | None) -> bool:

@@ -139,8 +139,8 @@ class Reader:
         hub = self._hub
         if not link.borrow():
             return None
-        late = late and not link.idle()
         try:
+            late = late and not link.idle()
             while not (self._mailbox.waiting or self._mailbox.stopped) and link.wanted:
                 until = deadline
                 if until is not None and until - time.monotonic() > PATIENCE:
