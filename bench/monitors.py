@@ -14,8 +14,8 @@ from pathlib import Path
 
 from yarpy.data.bottle import Bottle
 from yarpy.monitors.base import Group, Place, split_tokens
-from yarpy.monitors.portmonitor import portmonitor
-from yarpy.monitors.priority import Priority
+from yarpy.monitors.script.portmonitor import portmonitor
+from yarpy.monitors.stock.priority import Priority
 from yarpy.wire.message import DATA, Message
 
 RUNS, COUNT = 7, 5000

@@ -22,7 +22,6 @@ import time
 from pathlib import Path
 
 import yarpy
-from yarpy import priority
 
 PORT = 10000  # of the name server
 SERVER = "10.78.1.1"
@@ -227,7 +226,7 @@ def measure(hosts: Hosts, options: argparse.Namespace) -> dict[str, dict]:
                 loaded = name != "unloaded"
                 for source, target in CONTROL:
                     qos = CONDITIONS[name]
-                    priority.grant(source, target, sender=qos, receiver=qos)
+                    qos.grant(source, target, sender=qos, receiver=qos)
                 with hogs(2 * (os.cpu_count() or 1) if loaded else 0):
                     for source, target in BULK:
                         (yarpy.connect if loaded else yarpy.disconnect)(source, target)

@@ -21,14 +21,15 @@ TESTS = ROOT / "tests"
 # Rooms are packages, or single files of the top level.
 LAYERS: list[set[str]] = [
     {"errors"},
-    {"registry", "contact"},
+    {"registry", "contact", "route"},
     {"wire", "data", "idl"},
     {"carriers", "transports"},
     {"link", "monitors", "qos"},
+    {"config"},
     {"names"},
     {"port", "ros", "devices", "record"},
-    {"network", "traffic", "priority", "module", "resource", "aio", "wrap", "realtime"},
-    {"services"},
+    {"network", "module", "resource", "aio", "wrap", "realtime"},
+    {"views", "sim", "nameserver"},
     {"cli", "testing"},
     {"__main__"},
 ]
@@ -42,10 +43,9 @@ BESIDE = {
     ("record", "port"),
     ("wrap", "network"),
     ("aio", "network"),
-    ("priority", "network"),
-    ("traffic", "priority"),
     ("module", "network"),
     ("module", "resource"),
+    ("views", "sim"),
 }
 # The files of the wire that may know how messages are spelled.
 WIRE_KNOWS_DATA = {"message.py", "framing.py", "datagram.py"}

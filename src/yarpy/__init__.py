@@ -22,11 +22,11 @@ _WHERE = {
     "RpcClient": "yarpy.port.rpc",
     "ConnectionEvent": "yarpy.port.event",
     "Message": "yarpy.wire.message",
-    "Page": "yarpy.carriers.guest",
+    "Page": "yarpy.carriers.http.page",
     "Contact": "yarpy.contact",
     "Qos": "yarpy.qos",
-    "NameServer": "yarpy.services.name_server",
-    "LocalNames": "yarpy.names.local",
+    "NameServer": "yarpy.nameserver.server",
+    "LocalNames": "yarpy.nameserver.local",
     "YarpNameClient": "yarpy.names.client",
     "Bottle": "yarpy.data.bottle",
     "Property": "yarpy.data.property",
@@ -42,14 +42,14 @@ _WHERE = {
     "FlexImage": "yarpy.data.image",
     "Sound": "yarpy.data.sound",
     "PointCloud": "yarpy.data.pointcloud",
-    "connect": "yarpy.network",
-    "disconnect": "yarpy.network",
-    "is_connected": "yarpy.network",
-    "exists": "yarpy.network",
-    "query": "yarpy.network",
-    "ping": "yarpy.network",
-    "wait_for": "yarpy.network",
-    "admin": "yarpy.network",
+    "connect": "yarpy.network.connection",
+    "disconnect": "yarpy.network.connection",
+    "is_connected": "yarpy.network.connection",
+    "exists": "yarpy.network.connection",
+    "query": "yarpy.network.connection",
+    "ping": "yarpy.network.connection",
+    "wait_for": "yarpy.network.connection",
+    "admin": "yarpy.network.connection",
     "realtime": "yarpy.realtime",
     "YarpError": "yarpy.errors",
     "AddressError": "yarpy.errors",
@@ -69,7 +69,7 @@ _WHERE = {
 __all__ = ["__version__", *_WHERE]
 
 if TYPE_CHECKING:
-    from yarpy.carriers.guest import Page as Page
+    from yarpy.carriers.http.page import Page as Page
     from yarpy.contact import Contact as Contact
     from yarpy.data.bottle import Bottle as Bottle
     from yarpy.data.image import FlexImage as FlexImage
@@ -99,15 +99,16 @@ if TYPE_CHECKING:
     from yarpy.errors import UnknownPlugin as UnknownPlugin
     from yarpy.errors import YarpError as YarpError
     from yarpy.names.client import YarpNameClient as YarpNameClient
-    from yarpy.names.local import LocalNames as LocalNames
-    from yarpy.network import admin as admin
-    from yarpy.network import connect as connect
-    from yarpy.network import disconnect as disconnect
-    from yarpy.network import exists as exists
-    from yarpy.network import is_connected as is_connected
-    from yarpy.network import ping as ping
-    from yarpy.network import query as query
-    from yarpy.network import wait_for as wait_for
+    from yarpy.nameserver.local import LocalNames as LocalNames
+    from yarpy.nameserver.server import NameServer as NameServer
+    from yarpy.network.connection import admin as admin
+    from yarpy.network.connection import connect as connect
+    from yarpy.network.connection import disconnect as disconnect
+    from yarpy.network.connection import exists as exists
+    from yarpy.network.connection import is_connected as is_connected
+    from yarpy.network.connection import ping as ping
+    from yarpy.network.connection import query as query
+    from yarpy.network.connection import wait_for as wait_for
     from yarpy.port.buffered import BufferedPort as BufferedPort
     from yarpy.port.event import ConnectionEvent as ConnectionEvent
     from yarpy.port.port import Port as Port
@@ -115,7 +116,6 @@ if TYPE_CHECKING:
     from yarpy.port.rpc import RpcServer as RpcServer
     from yarpy.qos import Qos as Qos
     from yarpy.realtime import realtime as realtime
-    from yarpy.services.name_server import NameServer as NameServer
     from yarpy.wire.message import Message as Message
 
 

@@ -14,6 +14,8 @@ from typing import Any, Final
 
 from yarpy.errors import UnknownPlugin
 
+_STOCK: Final = "yarpy.monitors.stock"
+
 # What ships with yarpy is listed here as well as in pyproject.toml: a lookup of `tcp` must not cost
 # a scan of every installed distribution (tens of milliseconds), and works from a bare source tree.
 SHIPPED: Final[dict[str, dict[str, str]]] = {
@@ -27,33 +29,33 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "unix_stream": "yarpy.carriers.unix_stream:UnixStream",
         "local": "yarpy.carriers.local:Local",
         "name_ser": "yarpy.carriers.name_ser:NameSer",
-        "http": "yarpy.carriers.http:Http",
+        "http": "yarpy.carriers.http.carrier:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
         "websocket": "yarpy.carriers.websocket:WebSocket",
         "xmlrpc": "yarpy.carriers.xmlrpc:XmlRpc",
     },
     "monitors": {
-        "bayer": "yarpy.monitors.bayer:Bayer",
-        "bottle_compression_zlib": "yarpy.monitors.bottle_compression_zlib:BottleCompressionZlib",
-        "depthimage_compression_zlib": "yarpy.monitors.depthimage_compression_zlib:DepthZlib",
-        "depthimage_to_mono": "yarpy.monitors.depthimage_to_mono:DepthImageToMono",
-        "depthimage_to_rgb": "yarpy.monitors.depthimage_to_rgb:DepthImageToRgb",
-        "depthimage_to_vector": "yarpy.monitors.depthimage_to_vector:DepthImageToVector",
-        "image_compression_jpeg": "yarpy.monitors.image_compression_jpeg:ImageCompressionJpeg",
-        "image_compression_png": "yarpy.monitors.image_compression_png:ImageCompressionPng",
-        "image_rotation": "yarpy.monitors.image_rotation:ImageRotation",
-        "image_to_mono": "yarpy.monitors.image_to_mono:ImageToMono",
-        "portmonitor": "yarpy.monitors.portmonitor:portmonitor",
-        "priority": "yarpy.monitors.priority:Priority",
-        "segmentationimage_to_rgb": "yarpy.monitors.segmentationimage_to_rgb:LabelColours",
-        "sensorMeasurements_to_vector": "yarpy.monitors.sensor_measurements_to_vector:SensorPose",
-        "simulated_network_delay": "yarpy.monitors.simulated_network_delay:SimulatedNetworkDelay",
-        "soundfilter_resample": "yarpy.monitors.soundfilter_resample:SoundFilterResample",
-        "sound_marker": "yarpy.monitors.sound_marker:SoundMarker",
-        "throttleDown": "yarpy.monitors.throttle_down:ThrottleDown",
+        "bayer": f"{_STOCK}.bayer:Bayer",
+        "bottle_compression_zlib": f"{_STOCK}.bottle_compression_zlib:BottleCompressionZlib",
+        "depthimage_compression_zlib": f"{_STOCK}.depthimage_compression_zlib:DepthZlib",
+        "depthimage_to_mono": f"{_STOCK}.depthimage_to_mono:DepthImageToMono",
+        "depthimage_to_rgb": f"{_STOCK}.depthimage_to_rgb:DepthImageToRgb",
+        "depthimage_to_vector": f"{_STOCK}.depthimage_to_vector:DepthImageToVector",
+        "image_compression_jpeg": f"{_STOCK}.image_compression_jpeg:ImageCompressionJpeg",
+        "image_compression_png": f"{_STOCK}.image_compression_png:ImageCompressionPng",
+        "image_rotation": f"{_STOCK}.image_rotation:ImageRotation",
+        "image_to_mono": f"{_STOCK}.image_to_mono:ImageToMono",
+        "portmonitor": "yarpy.monitors.script.portmonitor:portmonitor",
+        "priority": f"{_STOCK}.priority:Priority",
+        "segmentationimage_to_rgb": f"{_STOCK}.segmentationimage_to_rgb:LabelColours",
+        "sensorMeasurements_to_vector": f"{_STOCK}.sensor_measurements_to_vector:SensorPose",
+        "simulated_network_delay": f"{_STOCK}.simulated_network_delay:SimulatedNetworkDelay",
+        "soundfilter_resample": f"{_STOCK}.soundfilter_resample:SoundFilterResample",
+        "sound_marker": f"{_STOCK}.sound_marker:SoundMarker",
+        "throttleDown": f"{_STOCK}.throttle_down:ThrottleDown",
         # These two have ports of their own, and so live above them.
-        "rpc_monitor": "yarpy.services.rpc_monitor:RpcMonitor",
-        "stats_monitor": "yarpy.services.stats_monitor:StatsMonitor",
+        "rpc_monitor": "yarpy.network.rpc_monitor:RpcMonitor",
+        "stats_monitor": "yarpy.network.stats_monitor:StatsMonitor",
     },
 }
 

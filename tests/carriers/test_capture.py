@@ -360,7 +360,7 @@ def initiator_of_datagrams(kind: str) -> Any:
 @pytest.mark.parametrize("piece", PIECES, ids=["whole", "bytewise"])
 @pytest.mark.parametrize("name", ["ns_events", "ns_rpc_tcp", "ns_rpc_fast_tcp"])
 def test_name_server_over_binary_carriers(name: str, piece: int) -> None:
-    """What is asked is understood; the answers are compared in tests/names and tests/services."""
+    """What is asked is understood; the answers are compared in tests/names and tests/nameserver."""
     capture = load_capture(name)
     end, served = End(piece), Served()
     end.begin(serve(end, served, lambda message: []))

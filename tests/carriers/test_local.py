@@ -8,7 +8,7 @@ from support.capture import load_capture
 from yarpy.carriers.local import Local
 from yarpy.contact import Route
 from yarpy.errors import RemoteProtocolError
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 from yarpy.testing import CarrierConformance, Dialogue, End
 from yarpy.transports.tcp import dial

@@ -11,7 +11,7 @@ from support.capture import load_capture
 from support.replay import Served, echo, serve
 from support.steps import chop, measured
 
-from yarpy.carriers.http import Http
+from yarpy.carriers.http.carrier import Http
 from yarpy.carriers.xmlrpc import XmlRpc
 from yarpy.contact import Route
 from yarpy.data import xmlrpc

@@ -56,7 +56,7 @@ def test_table_on_a_terminal(ports, monkeypatch):
     from yarpy.cli.overview import Overview, _table
 
     monkeypatch.setattr("yarpy.cli.overview.flows", lambda: found)
-    from yarpy.traffic import End, Flow
+    from yarpy.network.traffic import End, Flow
 
     found = [Flow("/[bold]a", "/b", End("tcp", 5, 100, 2, 10.0), End("tcp", 5, 100, 1, 10.0))]
     overview = Overview()

@@ -50,7 +50,7 @@ def test_carrier(listener):
 
 
 def test_it_is_waited_for_and_comes_back_however_late(listener, monkeypatch):
-    monkeypatch.setattr("yarpy.port.repair.INPUT_PATIENCE", 0.0)  # the port itself gives up
+    monkeypatch.setattr("yarpy.port.reconnect.INPUT_PATIENCE", 0.0)  # the port itself gives up
     found, lines = follow(listener, "/source/late")
     assert not found.connected
     assert lines[0].startswith('Waiting for /source/late: no port "/source/late"')

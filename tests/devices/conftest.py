@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 import pytest
 
 from yarpy.devices.adjustable import Adjustable
-from yarpy.devices.control_board import Gains
+from yarpy.devices.control_board.interface import Gains
 
 
 class Remote:

@@ -19,7 +19,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.data import jpeg
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -23,7 +23,7 @@ import yarpy
 from yarpy import network
 from yarpy.data import jpeg
 from yarpy.names.default import secret
-from yarpy.port.repair import pending
+from yarpy.port.reconnect import pending
 
 PATIENCE = 10.0
 

@@ -16,7 +16,7 @@ from support.web_camera import CARRIER, PATH, WebCamera, is_the_picture
 
 import yarpy
 from yarpy import network
-from yarpy.port import repair
+from yarpy.port import reconnect
 
 PATIENCE = 20.0
 LOGIN = 'me "x":se+cret%'  # what has to be quoted in the carrier string, and for the camera
@@ -155,7 +155,7 @@ def test_password_that_was_changed_is_not_tried_again_and_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Cameras lock those out who do. A minute later is soon enough; here it is an hour."""
-    monkeypatch.setattr(repair, "LOCKED", 3600.0)
+    monkeypatch.setattr(reconnect, "LOCKED", 3600.0)
     with camera("MD5") as server:
         network.connect(server.name, "/view", CARRIER + WORDS, names=names)
         view.read(timeout=PATIENCE)

@@ -16,7 +16,7 @@ from support.wait import wait_until
 import yarpy
 from yarpy import Bottle, Vocab
 from yarpy.devices import ControlBoard, ControlBoardServer
-from yarpy.devices.control_board import Gains
+from yarpy.devices.control_board.interface import Gains
 from yarpy.errors import LocalProtocolError
 
 PATIENCE = 20.0

@@ -13,7 +13,7 @@ from support.command_line import CommandLine
 from support.wait import wait_until
 
 import yarpy
-from yarpy import traffic
+from yarpy.network import traffic
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
 PATIENCE = 30.0

@@ -16,7 +16,7 @@ from support.cpp_program import CppProgram
 from support.wait import wait_until
 
 import yarpy
-from yarpy.monitors import demosaic
+from yarpy.monitors.stock import demosaic
 
 ZLIB = "bottle_compression_zlib"
 

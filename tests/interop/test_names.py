@@ -12,9 +12,9 @@ from support.name_line import new_service, serve_names
 
 from yarpy.contact import Contact
 from yarpy.names.client import YarpNameClient
-from yarpy.names.command import NameService
-from yarpy.names.database import Database
 from yarpy.names.discovery import Responder, search
+from yarpy.nameserver.command import NameService
+from yarpy.nameserver.database import Database
 
 
 def client_of(server: CppYarp) -> YarpNameClient:

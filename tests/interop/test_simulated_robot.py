@@ -17,8 +17,8 @@ from support.wait import wait_until
 import yarpy
 from yarpy.cli.service import server
 from yarpy.devices import ControlBoard, FrameGrabber, MultiSensor
-from yarpy.services.panel import Panel
-from yarpy.services.sim.robot import Robot, icub_head
+from yarpy.sim.robot import Robot, icub_head
+from yarpy.views.panel import Panel
 
 if TYPE_CHECKING:
     from support.browser import Browser

@@ -8,8 +8,8 @@ from support.name_line import serve_names
 from yarpy.contact import Contact
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
-from yarpy.names.local import LocalNames
-from yarpy.names.several import SeveralNames
+from yarpy.names.fallback_client import SeveralNames
+from yarpy.nameserver.local import LocalNames
 
 
 @pytest.fixture(params=["local", "client", "several"])

@@ -7,7 +7,7 @@ from support.capture import Capture, load_capture
 from support.name_line import NameLines, TextLines, new_service
 
 from yarpy.data.bottle import Bottle
-from yarpy.names.command import NameService
+from yarpy.nameserver.command import NameService
 
 SERVER = 21600
 

@@ -9,8 +9,8 @@ from support.port import free_port
 import yarpy
 from yarpy.errors import AddressError, NoNameServer
 from yarpy.names.default import DefaultNames, own_host, prove, secret
-from yarpy.names.local import LocalNames
-from yarpy.names.several import SeveralNames
+from yarpy.names.fallback_client import SeveralNames
+from yarpy.nameserver.local import LocalNames
 
 
 @pytest.fixture(autouse=True)

@@ -9,7 +9,7 @@ import pytest
 from yarpy import network
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port import admin
 from yarpy.port.port import Port
 from yarpy.wire.message import ADMIN, Message, Packet

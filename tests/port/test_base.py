@@ -16,7 +16,7 @@ from yarpy.errors import (
     UnknownName,
     UnknownPlugin,
 )
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.base import BasePort
 from yarpy.port.buffered import BufferedPort
 from yarpy.port.port import Port

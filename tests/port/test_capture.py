@@ -44,7 +44,7 @@ SPECIAL = {
     "telnet_rooted_sender_dup",
     "telnet_env_reader",
     "telnet_drop_self_after",
-    "telnet_ns",  # tests/services/test_name_server.py
+    "telnet_ns",  # tests/nameserver/test_server.py
 }
 REPLAYED = sorted(
     {

@@ -10,7 +10,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.errors import LocalProtocolError, UnknownPlugin
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port import command
 from yarpy.port.buffered import BufferedPort
 from yarpy.port.port import Port

@@ -6,7 +6,7 @@ import time
 
 from support.wait import wait_until
 
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 
 

@@ -9,7 +9,7 @@ import pytest
 from support.wait import wait_until
 
 from yarpy import network
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.port import Port
 

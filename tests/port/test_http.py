@@ -17,10 +17,10 @@ import pytest
 from support.wait import wait_until
 
 import yarpy
-from yarpy.carriers.http import Http
+from yarpy.carriers.http.carrier import Http
 from yarpy.carriers.xmlrpc import XmlRpc
 from yarpy.link import handshake
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 
 FAST = 5.0  # seconds that nothing here needs
 

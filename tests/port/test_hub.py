@@ -25,9 +25,9 @@ from yarpy.errors import (
     UnknownName,
     YarpError,
 )
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
+from yarpy.nameserver.server import NameServer
 from yarpy.port.port import Port
-from yarpy.services.name_server import NameServer
 from yarpy.wire import framing
 
 # ---------------------------------------------------------------------------------- opening

@@ -6,7 +6,7 @@ import pytest
 from support.wait import wait_until
 
 from yarpy.link.counter import Counter
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.buffered import BufferedPort
 from yarpy.port.past import KEEP, Past
 from yarpy.port.port import Port

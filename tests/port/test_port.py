@@ -15,7 +15,7 @@ from yarpy import network
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.errors import LinkClosed, LocalProtocolError, PortClosed, Timeout
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient
 from yarpy.wire import framing

@@ -15,7 +15,7 @@ from support.wait import wait_until
 from yarpy.contact import Contact
 from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed, Timeout, YarpError
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port import probe
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcServer

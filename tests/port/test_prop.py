@@ -12,7 +12,7 @@ from support.wait import wait_until
 from yarpy import network
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.buffered import BufferedPort
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer

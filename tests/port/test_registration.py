@@ -13,11 +13,11 @@ from support.wait import wait_until
 from yarpy.contact import Contact
 from yarpy.errors import AddressError, NoNameServer
 from yarpy.names.client import YarpNameClient
-from yarpy.names.local import LocalNames
-from yarpy.names.several import SeveralNames
+from yarpy.names.fallback_client import SeveralNames
+from yarpy.nameserver.local import LocalNames
+from yarpy.nameserver.server import NameServer
 from yarpy.port.port import Port
 from yarpy.port.probe import is_alive
-from yarpy.services.name_server import NameServer
 
 
 class Dying(LocalNames):

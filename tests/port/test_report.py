@@ -7,9 +7,9 @@ from support.wait import wait_until
 import yarpy
 from yarpy import registry
 from yarpy.data.property import Property
+from yarpy.network.traffic import read
 from yarpy.port import probe
 from yarpy.port.report import report
-from yarpy.traffic import read
 
 
 class Level:

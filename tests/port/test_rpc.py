@@ -22,7 +22,7 @@ from yarpy.errors import (
     Timeout,
     UnknownName,
 )
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.wire.message import Message

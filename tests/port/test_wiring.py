@@ -13,7 +13,7 @@ from yarpy.errors import (
     UnknownPlugin,
     YarpError,
 )
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port import wiring
 from yarpy.port.buffered import BufferedPort
 from yarpy.port.command import Refused

@@ -13,7 +13,7 @@ from support.wait import wait_until
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.errors import PortClosed
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.buffered import BufferedPort
 from yarpy.port.port import Port
 from yarpy.port.writer import Writer, envelope_of

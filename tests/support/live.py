@@ -18,7 +18,7 @@ from support.difference import LIVE_DIFFERENT
 from yarpy import network
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.base import BasePort
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer

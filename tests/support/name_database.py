@@ -7,8 +7,8 @@ from pathlib import Path
 
 from support.name_line import new_service
 
-from yarpy.names.command import NameService
-from yarpy.names.database import Database
+from yarpy.nameserver.command import NameService
+from yarpy.nameserver.database import Database
 
 
 class Files:

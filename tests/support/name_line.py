@@ -11,10 +11,10 @@ import threading
 from collections.abc import Iterator
 from typing import Any
 
-from yarpy.names.command import NameService
-from yarpy.names.reply import Reply
-from yarpy.names.store import NameStore
-from yarpy.names.topology import Topology
+from yarpy.nameserver.command import NameService
+from yarpy.nameserver.reply import Reply
+from yarpy.nameserver.store import NameStore
+from yarpy.nameserver.topology import Topology
 
 
 class NameLines:

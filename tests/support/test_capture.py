@@ -16,7 +16,7 @@ REPLAYS = [
     TESTS / "port" / "test_monitor_capture.py",
     TESTS / "names" / "test_capture.py",
     TESTS / "names" / "test_discovery.py",
-    TESTS / "services" / "test_name_server.py",
+    TESTS / "nameserver" / "test_server.py",
     TESTS / "carriers" / "test_local.py",
     TESTS / "carriers" / "test_mjpeg.py",
     TESTS / "carriers" / "test_websocket.py",
@@ -95,4 +95,4 @@ def test_replays_take_whole_groups() -> None:
     assert carriers >= WHOLE_GROUPS
     assert port >= WHOLE_GROUPS
     assert {"conn_", "reverse_"} <= carriers
-    assert "http_*.json" in words(TESTS / "carriers" / "test_http.py")
+    assert "http_*.json" in words(TESTS / "carriers" / "http" / "test_carrier.py")

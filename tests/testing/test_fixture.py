@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from yarpy.names.default import DEFAULT
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
+from yarpy.nameserver.server import NameServer
 from yarpy.network import query
 from yarpy.port.port import Port
-from yarpy.services.name_server import NameServer
 from yarpy.testing.fixture import name_server, names
 
 __all__ = ["name_server", "names"]

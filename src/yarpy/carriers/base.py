@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import ClassVar, TypeAlias
 
-from yarpy.carriers.guest import Page
+from yarpy.carriers.http.page import Page
 from yarpy.contact import Route, read_specifier, specifier
 from yarpy.data import codec
 from yarpy.wire import framing

@@ -20,9 +20,9 @@ from __future__ import annotations
 from typing import Final
 
 from yarpy.carriers.base import Carrier
-from yarpy.carriers.chunk import Chunks
-from yarpy.carriers.header import CHALLENGES, MAX_LINE, read_headers
-from yarpy.carriers.login import refusal, take_login
+from yarpy.carriers.http.chunk import Chunks
+from yarpy.carriers.http.header import CHALLENGES, MAX_LINE, read_headers
+from yarpy.carriers.http.login import refusal, take_login
 from yarpy.contact import Route, modifier
 from yarpy.data import jpeg
 from yarpy.data.image import Image, is_image

@@ -19,8 +19,8 @@ from base64 import b64encode
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from yarpy.carriers.base import Carrier
-from yarpy.carriers.header import MAX_LINE, read_headers
-from yarpy.carriers.origin import origins_of
+from yarpy.carriers.http.header import MAX_LINE, read_headers
+from yarpy.carriers.http.origin import origins_of
 from yarpy.contact import Route
 from yarpy.data import codec
 from yarpy.data.json import from_json, to_json

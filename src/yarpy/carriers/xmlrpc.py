@@ -15,7 +15,7 @@ from __future__ import annotations
 from typing import Final
 
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
-from yarpy.carriers.header import MAX_LINE, read_headers
+from yarpy.carriers.http.header import MAX_LINE, read_headers
 from yarpy.contact import Route, modifier
 from yarpy.data import codec, xmlrpc
 from yarpy.data.bottle import Bottle
@@ -69,7 +69,7 @@ class XmlRpc(Carrier):
         while not (head := _head(stream)) and stream.waiting < MAX_HEAD:
             yield from stream.more(stream.waiting + 1)
         if b"xml" not in head.lower():
-            from yarpy.carriers.http import Http
+            from yarpy.carriers.http.carrier import Http
 
             self.instead = Http
             stream.head += len(first)

@@ -1,6 +1,6 @@
 """`yarpy VERB ...`: finds the verb, runs it, and turns errors into one line and an exit code.
 
-Rules: a verb is a module of this package that has a click command called `command`, and a line in
+Rules: a verb is a module of `verbs` that has a click command called `command`, and a line in
 `VERBS`; it is imported when it is used, so that `yarpy --help` and small verbs start fast. Packages
 add verbs by the entry point group `yarpy.commands`. What a command returns is the exit code, None
 is 0. Standard output belongs to the verb; errors go to standard error as `error: ...`.
@@ -16,8 +16,8 @@ from typing import Any, Final, NoReturn
 
 import click
 
-from yarpy.cli import ending
-from yarpy.cli.complaint import complain
+from yarpy.cli import signals
+from yarpy.cli.stderr import complain
 from yarpy.errors import UnknownPlugin, YarpError
 
 VERBS: Final = {
@@ -108,7 +108,7 @@ def find_verb(name: str) -> click.Command | None:
 
     name = ALIASES.get(name, name)
     if name in VERBS:
-        command: Any = import_module(f"yarpy.cli.{name}").command
+        command: Any = import_module(f"yarpy.cli.verbs.{name}").command
     else:
         from yarpy.registry import commands
 
@@ -154,7 +154,7 @@ def run(arguments: Sequence[str]) -> int:
     """Run `yarpy ARGUMENTS` in this process; the exit code."""
     try:
         code = root.main([*arguments], "yarpy", standalone_mode=False)
-    except ending.Interrupted as signal:
+    except signals.Interrupted as signal:
         return 128 + signal.number
     except click.Abort:  # click's word for ^C and for the end of input at one of its prompts
         return 130
@@ -181,7 +181,7 @@ def main() -> NoReturn:
         # Port data is UTF-8 with whatever else a peer put there: bytes go through as they are.
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(encoding="utf-8", errors="surrogateescape")
-    ending.watch()
+    signals.watch()
     code = run(sys.argv[1:])
     try:
         sys.stdout.flush()

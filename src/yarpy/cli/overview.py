@@ -11,10 +11,10 @@ import time
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final
 
-from yarpy.cli.ending import Interrupted
-from yarpy.cli.spelling import print_json, print_line
+from yarpy.cli.output import print_json, print_line
+from yarpy.cli.signals import Interrupted
 from yarpy.contact import base_carrier
-from yarpy.traffic import End, Flow, flows
+from yarpy.network.traffic import End, Flow, flows
 
 if TYPE_CHECKING:
     from rich.table import Table

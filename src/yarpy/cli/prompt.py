@@ -40,8 +40,8 @@ def at_terminal() -> bool:
 
 def history_file(name: str) -> Path:
     """Where the lines typed at the prompt called `name` (a port) are remembered."""
-    from yarpy.names.configuration import safe_name
-    from yarpy.names.resource import data_home
+    from yarpy.config.configuration import safe_name
+    from yarpy.config.resource import data_home
 
     return data_home(os.environ) / "history" / safe_name(name).strip("_")
 

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 import yarpy
-from yarpy.cli.opening import hear_from
+from yarpy.cli.ports import hear_from
 
 if TYPE_CHECKING:
     from yarpy.port.base import BasePort

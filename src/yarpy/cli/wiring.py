@@ -18,12 +18,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import yarpy
+from yarpy.config.ini import read_ini
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.data.text import plain_text
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.link.handshake import find_carrier
-from yarpy.names.ini import read_ini
 from yarpy.qos import Qos
 
 KEYS = ("from", "to", "carrier", "sender", "receiver")
@@ -41,11 +41,11 @@ class Wire:
 
     def make(self) -> None:
         """Connect, and set the priorities. Raises YarpError."""
-        from yarpy import priority
+        from yarpy.network import qos
 
         yarpy.connect(self.source, self.target, self.carrier)
         if self.sender is not None or self.receiver is not None:
-            priority.grant(self.source, self.target, sender=self.sender, receiver=self.receiver)
+            qos.grant(self.source, self.target, sender=self.sender, receiver=self.receiver)
 
 
 def read(path: Path) -> list[Wire]:

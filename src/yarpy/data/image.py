@@ -13,9 +13,9 @@ from __future__ import annotations
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Self
 
+from yarpy.data.pickling import Wired
 from yarpy.data.pixel import NATURAL, Pixel, pixel, pixel_of
 from yarpy.data.value import Vocab
-from yarpy.data.wired import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from __future__ import annotations
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Self
 
+from yarpy.data.pickling import Wired
 from yarpy.data.value import BIG
-from yarpy.data.wired import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:

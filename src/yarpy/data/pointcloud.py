@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Self
 
-from yarpy.data.wired import Wired
+from yarpy.data.pickling import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:

@@ -19,8 +19,8 @@ from struct import Struct
 from typing import TYPE_CHECKING, Any, Self
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.pickling import Wired
 from yarpy.data.value import BIG, Vocab
-from yarpy.data.wired import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:

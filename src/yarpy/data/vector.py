@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from struct import Struct, error
 from typing import TYPE_CHECKING, Any, Final, Self
 
+from yarpy.data.pickling import Wired
 from yarpy.data.value import BIG, FLOAT32, FLOAT64, INT8, INT16, INT32, INT64, UNIT_MASK
-from yarpy.data.wired import Wired
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:

@@ -9,33 +9,33 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 _WHERE = {
-    "ControlBoard": "control_board_client",
-    "ControlBoardServer": "control_board_server",
-    "ControlMode": "control_board",
-    "FEATURES": "frame_grabber",
-    "FrameGrabber": "frame_grabber_client",
-    "FrameGrabberServer": "frame_grabber_server",
-    "Gains": "control_board",
-    "InteractionMode": "control_board",
-    "MotorTorqueParameters": "control_board",
-    "MultiSensor": "multi_sensor_client",
-    "MultiSensorServer": "multi_sensor_server",
+    "ControlBoard": "control_board.client",
+    "ControlBoardServer": "control_board.server",
+    "ControlMode": "control_board.interface",
+    "FEATURES": "frame_grabber.interface",
+    "FrameGrabber": "frame_grabber.client",
+    "FrameGrabberServer": "frame_grabber.server",
+    "Gains": "control_board.interface",
+    "InteractionMode": "control_board.interface",
+    "MotorTorqueParameters": "control_board.interface",
+    "MultiSensor": "multi_sensor.client",
+    "MultiSensorServer": "multi_sensor.server",
 }
 
 __all__ = [*_WHERE]
 
 if TYPE_CHECKING:
-    from yarpy.devices.control_board import ControlMode as ControlMode
-    from yarpy.devices.control_board import Gains as Gains
-    from yarpy.devices.control_board import InteractionMode as InteractionMode
-    from yarpy.devices.control_board import MotorTorqueParameters as MotorTorqueParameters
-    from yarpy.devices.control_board_client import ControlBoard as ControlBoard
-    from yarpy.devices.control_board_server import ControlBoardServer as ControlBoardServer
-    from yarpy.devices.frame_grabber import FEATURES as FEATURES
-    from yarpy.devices.frame_grabber_client import FrameGrabber as FrameGrabber
-    from yarpy.devices.frame_grabber_server import FrameGrabberServer as FrameGrabberServer
-    from yarpy.devices.multi_sensor_client import MultiSensor as MultiSensor
-    from yarpy.devices.multi_sensor_server import MultiSensorServer as MultiSensorServer
+    from yarpy.devices.control_board.client import ControlBoard as ControlBoard
+    from yarpy.devices.control_board.interface import ControlMode as ControlMode
+    from yarpy.devices.control_board.interface import Gains as Gains
+    from yarpy.devices.control_board.interface import InteractionMode as InteractionMode
+    from yarpy.devices.control_board.interface import MotorTorqueParameters as MotorTorqueParameters
+    from yarpy.devices.control_board.server import ControlBoardServer as ControlBoardServer
+    from yarpy.devices.frame_grabber.client import FrameGrabber as FrameGrabber
+    from yarpy.devices.frame_grabber.interface import FEATURES as FEATURES
+    from yarpy.devices.frame_grabber.server import FrameGrabberServer as FrameGrabberServer
+    from yarpy.devices.multi_sensor.client import MultiSensor as MultiSensor
+    from yarpy.devices.multi_sensor.server import MultiSensorServer as MultiSensorServer
 
 
 def __getattr__(name: str) -> Any:

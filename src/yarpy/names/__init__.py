@@ -1,5 +1,5 @@
-"""Names: who is called what and where: clients of name services, and what a server is made of.
+"""Names: who is called what and where, asked of name services.
 
-`base` is what ports are written against; `client`, `local` and `several` implement it.
-`store`, `topology`, `command` are the pure parts of a name server; `database` makes them last.
+`base` is what ports are written against; `client` and `fallback_client` implement it, and
+`yarpy.nameserver.local` does for programs that need no server.
 """

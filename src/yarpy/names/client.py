@@ -23,7 +23,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.errors import AddressError, LinkClosed, NoNameServer, RemoteProtocolError
 from yarpy.names.base import Contacts, Strings
-from yarpy.names.line import END, PREFIX, parse_registration
+from yarpy.names.registration_line import END, PREFIX, parse_registration
 
 IDLE = 10.0  # seconds after which an unused connection is not trusted any more
 SPARE = 2  # connections kept for the next command

@@ -12,14 +12,14 @@ import socket
 import threading
 
 from yarpy.carriers.auth import prove_initiator
+from yarpy.config.configuration import Server, configuration
+from yarpy.config.resource import find_file
 from yarpy.data.text import plain_text
 from yarpy.errors import AddressError, NoNameServer
 from yarpy.names.address import local_addresses
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
-from yarpy.names.configuration import Server, configuration
-from yarpy.names.resource import find_file
-from yarpy.names.several import SeveralNames
+from yarpy.names.fallback_client import SeveralNames
 from yarpy.wire.stream import ByteStream
 
 
@@ -88,7 +88,7 @@ def secret() -> bytes:
     path = find_file("auth.conf")
     if path is None:
         return b""
-    from yarpy.names.ini import read_ini  # late: few have such a file
+    from yarpy.config.ini import read_ini  # late: few have such a file
 
     group = read_ini(path).group("AUTH")
     key = None if group is None else group.find("key")

@@ -22,7 +22,7 @@ from collections.abc import Callable
 
 from yarpy.contact import Contact
 from yarpy.errors import DecodeError
-from yarpy.names.line import PREFIX, parse_registration
+from yarpy.names.registration_line import PREFIX, parse_registration
 
 GROUP = "224.2.1.1"
 LARGEST = 65_507  # bytes of payload in one UDP datagram over IPv4

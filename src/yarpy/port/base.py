@@ -7,7 +7,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
-from yarpy.carriers.guest import Pages
+from yarpy.carriers.http.page import Pages
 from yarpy.contact import Contact
 from yarpy.errors import PortClosed
 from yarpy.port import command, wiring

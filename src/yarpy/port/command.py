@@ -31,7 +31,7 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.monitors.chain import named
 from yarpy.names.address import is_loopback
-from yarpy.port import probe, repair
+from yarpy.port import probe, reconnect
 from yarpy.wire.message import Message
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
 
 def _connect(hub: Hub, text: str, contact: Contact, target: str, carrier: str) -> str:
     """The rest of `connect`, while nobody else dials the target."""
-    repair.give_up(hub, target)
+    reconnect.give_up(hub, target)
     if contact.name:
         for old in hub.outputs:
             if old.route.target == target:
@@ -306,7 +306,7 @@ def _receiver(hub: Hub, target: str) -> Contact | None:
 
 def disconnect_output(hub: Hub, target: str) -> tuple[bool, str]:
     """Remove the outputs to `target`; whether there were any, and the line that says so."""
-    tried = repair.give_up(hub, target, incoming=False)
+    tried = reconnect.give_up(hub, target, incoming=False)
     found = [link for link in hub.outputs if link.route.target == target]
     for link in found:
         close_output(hub, link)
@@ -320,7 +320,7 @@ def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bo
 
     `by_sender`: in the way in which senders of datagrams say goodbye, so they need not be told.
     """
-    tried = repair.give_up(hub, source, incoming=True)
+    tried = reconnect.give_up(hub, source, incoming=True)
     found = [link for link in hub.inputs if link.route.source == source]
     told = [link for link in found if link.asking or (by_sender and link.carrier.connectionless)]
     if len(told) < len(found):
@@ -346,7 +346,7 @@ def _tell_sender(hub: Hub, source: str) -> None:
     """Let a sender know that we end the connection on purpose, so that it does not dial again."""
     if source.startswith("/") and source != hub.name:
         try:
-            repair.ask_to_disconnect(hub, source)
+            reconnect.ask_to_disconnect(hub, source)
         except (YarpError, OSError):
             pass  # it will notice by itself
 

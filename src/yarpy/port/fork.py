@@ -14,7 +14,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from yarpy.names.default import DEFAULT
-from yarpy.port.repair import REPAIR
+from yarpy.port.reconnect import REPAIR
 
 if TYPE_CHECKING:
     from yarpy.link.inbound import Inbound

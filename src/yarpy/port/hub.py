@@ -17,7 +17,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from yarpy.carriers.base import PAGE, Carrier
-from yarpy.carriers.guest import Page, Pages
+from yarpy.carriers.http.page import Page, Pages
+from yarpy.config.configuration import port_number
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.errors import NoNameServer, PortClosed, YarpError
@@ -28,8 +29,7 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
-from yarpy.names.configuration import port_number
-from yarpy.port import admin, command, fork, repair
+from yarpy.port import admin, command, fork, reconnect
 from yarpy.port.dialling import Dialling
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Mailbox
@@ -95,7 +95,7 @@ class Hub(Registered):
             self._give_up()
             raise
         fork.prepare()
-        repair.watch(self)
+        reconnect.watch(self)
         log.info("Port %s active at %s", self.name, f"tcp://{self.contact.address}/")
 
     # -- opening ----------------------------------------------------------------------------------
@@ -259,7 +259,7 @@ class Hub(Registered):
             return
         self.report(link, created=False, reason=reason)
         if not (quit_ or link.closing or self.closing):
-            repair.input_lost(self, link.route)
+            reconnect.input_lost(self, link.route)
 
     def _forget_input(self, link: Inbound) -> bool:
         with self.lock:
@@ -294,7 +294,7 @@ class Hub(Registered):
                 link.chain.close()
             self.report(link, created=False, reason=reason)
             if lost and link.dialled and not self.closing:
-                repair.output_lost(self, link.route)
+                reconnect.output_lost(self, link.route)
         return known
 
     def _elect(self) -> None:
@@ -343,7 +343,7 @@ class Hub(Registered):
             if self.closing:
                 return
             self.closing = True
-        repair.forget(self)
+        reconnect.forget(self)
         self.mailbox.interrupt()
         soon = time.monotonic() + 0.3
         for thread in tuple(self._greeting):  # who is just arriving is told to leave as well
@@ -383,7 +383,7 @@ class Hub(Registered):
     def _ask_to_leave(self, source: str) -> None:
         if source.startswith("/") and source != self.name:
             try:
-                repair.ask_to_disconnect(self, source)
+                reconnect.ask_to_disconnect(self, source)
             except NoNameServer:
                 raise
             except (YarpError, OSError):

@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from yarpy.config.resource import Search
 from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
@@ -20,7 +21,6 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.monitors.base import Group, Place
 from yarpy.monitors.chain import Chain, from_carrier, make, named
-from yarpy.names.resource import Search
 
 if TYPE_CHECKING:
     from yarpy.port.hub import Hub

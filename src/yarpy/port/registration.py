@@ -11,13 +11,13 @@ import logging
 import os
 import threading
 
+from yarpy.config.configuration import port_name
 from yarpy.contact import Contact, check_name
 from yarpy.errors import AddressError, NoNameServer, YarpError
 from yarpy.names.address import local_addresses, outward_address
 from yarpy.names.base import NameClient
-from yarpy.names.configuration import port_name
 from yarpy.names.default import DEFAULT, secret
-from yarpy.names.several import SeveralNames
+from yarpy.names.fallback_client import SeveralNames
 from yarpy.port.probe import is_alive
 from yarpy.registry import carriers
 

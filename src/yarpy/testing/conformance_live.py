@@ -13,7 +13,7 @@ from typing import Any
 from unittest import SkipTest
 
 from yarpy import network, registry
-from yarpy.names.local import LocalNames
+from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.testing.conformance_case import ConformanceCase

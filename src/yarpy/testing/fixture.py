@@ -9,8 +9,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from yarpy.names.local import LocalNames
-from yarpy.services.name_server import NameServer
+from yarpy.nameserver.local import LocalNames
+from yarpy.nameserver.server import NameServer
 from yarpy.testing.names import private_names, private_server
 
 

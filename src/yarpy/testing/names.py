@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from yarpy.names.default import DEFAULT
-from yarpy.names.local import LocalNames
-from yarpy.services.name_server import NameServer
+from yarpy.nameserver.local import LocalNames
+from yarpy.nameserver.server import NameServer
 
 
 @contextmanager

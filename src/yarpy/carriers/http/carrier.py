@@ -1,0 +1,373 @@
+"""http: browsers, curl and other programs talk to a port in HTTP/1.1, on the port's own TCP port.
+
+    GET /?req=get+encs              a message; its reply as JSON
+    POST /form                      the same from a form, as JSON or as text
+    GET /                           the page of the port
+    GET /r                          every message that the port writes, as long as one reads
+    GET /r  Accept: text/event-stream          the same for JavaScript's EventSource
+
+Rules: what a request means is `http_request`, what is answered `http_response`, who may act is
+`origin`; here is the protocol alone, with an h11 for each request anew. Every request gets exactly
+one response, also if the port says nothing (204, or `[]` in JSON), or if it comes too slowly (408).
+Bad requests get their status and end the connection. Who reads slowly misses messages. Between
+ports each message is a POST and its response the acknowledgement (`http_client`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.carriers.http.client import ENVELOPE, HttpClient
+from yarpy.carriers.http.message import (
+    CONTINUE,
+    LAST_CHUNK,
+    MAX_BODY,
+    MAX_HEAD,
+    chunk,
+    next_event,
+)
+from yarpy.carriers.http.origin import origins_of
+from yarpy.carriers.http.response import (
+    CUT_OFF,
+    LATE,
+    MAY_NOT_ACT,
+    NO_SUCH_METHOD,
+    UNSPEAKABLE,
+    Responder,
+    Response,
+    bare,
+    complaint,
+    refused,
+)
+from yarpy.contact import Route
+from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
+from yarpy.wire.effects import Steps
+from yarpy.wire.message import CALL, QUIT, Lines, Message, Packet
+from yarpy.wire.stream import ByteStream
+
+if TYPE_CHECKING:
+    import h11
+
+    from yarpy.carriers.http.request import Form, Request, Wish
+
+DRAIN: Final = 1 << 20  # bytes of a refused body that are read, so that the refusal arrives
+PATIENCE: Final = 60.0  # seconds a connection may be idle, and a request may take to come
+
+_METHODS: Final = (b"GET /", b"POST /", b"HEAD /", b"OPTIONS ", b"PUT /", b"DELETE /", b"PATCH /")
+
+
+class Http(Carrier):
+    """One connection of a browser, with any number of requests; or ours to another port."""
+
+    name = "http"
+    magic = b"GET /"
+    spelling = "text"
+    acks = True
+    foreign = True
+    gathers = False
+    patience = PATIENCE
+    hurry = PATIENCE
+
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        self.origins = origins_of()
+        self._responder = Responder(route, self.origins)
+        # Of the request that is being read or answered:
+        self._headers: Mapping[str, str] = {}
+        self._head_only = False
+        self._modern = False  # HTTP/1.1, which knows chunks
+        self._stays = False  # the connection stays open for another one
+        self._wish: Wish | None = None  # what is being answered
+        self._taken = 0  # messages that were handed on, and those that are acknowledged
+        self._acked = 0
+        self._streaming = False
+        self._form: Form = "text"  # of what is streamed
+        self._pixels = False
+        self._client = HttpClient(route)
+        self._confirmed = False  # the response to our last call was read with its reply
+
+    @classmethod
+    def recognises(cls, first: bytes) -> int:
+        if first == b"POST /RP":
+            return 0  # XML-RPC
+        if first == b"POST /fo":
+            return MAGIC_SIZE
+        return next((len(method) for method in _METHODS if first.startswith(method)), 0)
+
+    # -- reading requests -------------------------------------------------------------------------
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        """Wait for the head of the first request, which a greeting has limited time for."""
+        self.route.source = "web"
+        stream.unread(len(first))
+        try:
+            while stream.waiting < MAX_HEAD and not _complete(stream):
+                yield from stream.more(stream.waiting + 1)
+        except Timeout:
+            self._respond(stream, LATE)
+            raise
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        while not self.finished:
+            if self._streaming:  # the reply to the last message has begun something endless
+                self.holding = False
+                return Message("r")
+            if self._wish is not None:
+                self._answer_nothing(stream)  # the next request waits already
+                continue
+            request = yield from self._read_request(stream)
+            wish = self._understood(stream, request) if request is not None else None
+            if self.successor is not None:
+                return Message("r")
+            if wish is None:
+                continue
+            self._taken += 1
+            if wish.key == "r":
+                self._begin_reading(stream, wish)
+                return Message("r")
+            self._wish = wish
+            self.structured = wish.form == "json"
+            return wish.message(_envelope(self._headers))
+        return Message(QUIT)
+
+    def _read_request(self, stream: ByteStream) -> Steps[Request | None]:
+        """The next request with its body; None if it was refused."""
+        import h11
+
+        from yarpy.carriers.http.request import Request
+
+        self._headers = {}
+        self._head_only = self._modern = self._stays = False
+        talk = h11.Connection(h11.SERVER, max_incomplete_event_size=MAX_HEAD)
+        yield from stream.more(1)
+        self.midway = True
+        body = bytearray()
+        refusal = 413, f"a body has at most {MAX_BODY} bytes"
+        try:
+            head = yield from next_event(stream, talk)
+            if not isinstance(head, h11.Request):
+                raise LinkClosed("the peer closed the connection")
+            self._take_head(head)
+            event = None
+            if sum(map(len, (head.target, *self._headers, *self._headers.values()))) > MAX_HEAD:
+                refusal = 431, f"the head of a request has at most {MAX_HEAD} bytes"
+            elif int(self._headers.get("content-length", "0")) <= MAX_BODY:
+                if talk.they_are_waiting_for_100_continue:
+                    stream.write(CONTINUE)
+                event = yield from next_event(stream, talk)
+                while isinstance(event, h11.Data) and len(body) <= MAX_BODY:
+                    body += event.data
+                    event = yield from next_event(stream, talk)
+        except h11.RemoteProtocolError as error:
+            event, refusal = None, (error.error_status_hint, str(error))
+        except Timeout:
+            self._stays = False
+            self._respond(stream, LATE)
+            raise
+        except LinkClosed:
+            if self._headers:
+                self._respond(stream, CUT_OFF)
+            raise
+        if not isinstance(event, h11.EndOfMessage):
+            yield from self._refuse(stream, *refusal)
+        self.midway = False
+        rest, _ = talk.trailing_data
+        stream.unread(len(rest))  # of the next request
+        target = head.target.decode("latin-1")
+        return Request(head.method.decode("ascii"), target, self._headers, bytes(body))
+
+    def _take_head(self, head: h11.Request) -> None:
+        self._headers = {
+            name.decode("ascii"): value.decode("latin-1") for name, value in head.headers
+        }
+        self._head_only = head.method == b"HEAD"
+        self._modern = head.http_version >= b"1.1"
+        self._stays = self._modern and "close" not in self._headers.get("connection", "").lower()
+
+    def _refuse(self, stream: ByteStream, status: int, text: str) -> Steps[None]:
+        """Answer a request that cannot be read to its end; the connection is over."""
+        self._stays = False
+        self._respond(stream, complaint(status, text))
+        if status in (413, 431):
+            # Hanging up on somebody who still sends would take the answer away from him.
+            left = DRAIN
+            while left > 0:
+                try:
+                    yield from stream.more(1)
+                except LinkClosed:
+                    break
+                left -= stream.waiting
+                stream.head = stream.tail
+        raise RemoteProtocolError(f"HTTP {status}: {text}")
+
+    def _understood(self, stream: ByteStream, request: Request) -> Wish | None:
+        """What is wanted of the port; None if the request is answered without it."""
+        from yarpy.carriers.http.request import Refusal, page_asked, read_wish
+
+        if request.method == "OPTIONS":
+            self._respond(stream, self._responder.preflight(self._headers))
+            return None
+        if request.method not in ("GET", "HEAD", "POST"):
+            self._respond(stream, NO_SUCH_METHOD)
+            return None
+        if request.method == "GET" and request.target.startswith("/?action="):
+            self._show_pictures(stream, request.target)
+            return None
+        asked = page_asked(request) if self.pages is not None else None
+        page = self.pages(*asked) if asked and self.pages is not None else None
+        if page is not None:
+            self._respond(stream, self._responder.shown(page))
+            return None
+        wish = read_wish(request)
+        if isinstance(wish, Refusal):
+            self._respond(stream, refused(wish))
+            return None
+        return self._screened(stream, wish)
+
+    def _screened(self, stream: ByteStream, wish: Wish) -> Wish | None:
+        """The wish, unless it must not come to the port."""
+        if wish.acts and not self.origins.admits(self._headers):
+            self._respond(stream, MAY_NOT_ACT)
+        elif self._head_only and (wish.acts or wish.key == "r"):
+            # Asking for a head must change nothing, so there is no reply to tell the length of.
+            self._respond(stream, bare(wish))
+        else:
+            return wish
+        return None
+
+    # -- answering --------------------------------------------------------------------------------
+
+    def encode_reply(self, stream: ByteStream, value: object) -> None:
+        wish = self._wish
+        if wish is None:
+            return  # nobody waits for it any more
+        try:
+            response = self._responder.reply(wish, value, self._host)
+            if response.endless:
+                self._wish = None
+                self._begin_stream(stream, "guest", response)
+                self.holding = True
+            else:
+                self._respond(stream, response)
+        except (TypeError, ValueError, YarpError):
+            if self._wish is not None:
+                self._respond(stream, UNSPEAKABLE)
+            raise
+
+    def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
+        if self._wish is not None:
+            said = self._responder.said(self._wish, Lines(lines), self._host)
+            self._respond(stream, said)
+
+    def encode_ack(self, stream: ByteStream) -> None:
+        """The response to a message that the port did not reply to."""
+        self._acked += 1
+        if self._wish is not None and self._acked >= self._taken:
+            self._answer_nothing(stream)
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        if self._streaming and self._modern:
+            stream.write(LAST_CHUNK)
+        self._streaming = False
+
+    def _answer_nothing(self, stream: ByteStream) -> None:
+        assert self._wish is not None
+        self._respond(stream, self._responder.nothing(self._wish, self._host))
+
+    @property
+    def _host(self) -> str:
+        return self._headers.get("host", "")
+
+    def _respond(self, stream: ByteStream, response: Response) -> None:
+        """Write a whole response."""
+        self._wish = None
+        last = []
+        if not self._stays:
+            last.append(("Connection", "close"))
+            self.finished = True
+        try:
+            head = response.head(*last)
+        except LocalProtocolError as error:
+            response = complaint(500, str(error))
+            head = response.head()
+        if response.body and not self._head_only:
+            stream.write(head, response.body)
+        else:
+            stream.write(head)
+
+    # -- a reader ---------------------------------------------------------------------------------
+
+    def _begin_reading(self, stream: ByteStream, wish: Wish) -> None:
+        """Answer `/r`: everything that the port writes, from now on."""
+        self._pixels = wish.pixels
+        self._begin_stream(stream, wish.form, self._responder.reading(wish))
+
+    def _begin_stream(self, stream: ByteStream, form: Form, response: Response) -> None:
+        """The beginning of a response that does not end; the connection becomes an output."""
+        self._streaming, self._form = True, form
+        self.acks, self.lossy, self.backlog = False, True, 16
+        way = ("Transfer-Encoding", "chunked") if self._modern else ("Connection", "close")
+        stream.write(response.head(way))
+        if response.body:
+            self._write_part(stream, response.body)
+
+    def _show_pictures(self, stream: ByteStream, target: str) -> None:
+        """A browser asks for MJPEG on a connection that it has used for a page before."""
+        from yarpy.carriers.mjpeg import Mjpeg
+
+        old = self.route
+        self.successor = mjpeg = Mjpeg(Route("", old.target, "mjpeg", old.port, old.host))
+        mjpeg.accepted = True
+        mjpeg.begin(stream, target, "origin" in self._headers)
+
+    def prepare(self, packet: Packet) -> bool:
+        if not self._streaming:
+            return super().prepare(packet)
+        self._part(packet)
+        return True
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        if self._streaming:
+            self._write_part(stream, self._part(packet))
+        else:
+            self._client.post(stream, packet)
+
+    def _part(self, packet: Packet) -> bytes:
+        from yarpy.carriers.http.stream import part
+
+        return part(packet, self._form, self._pixels)
+
+    def _write_part(self, stream: ByteStream, data: bytes) -> None:
+        stream.write(chunk(data) if self._modern else data)
+
+    # -- dialling ---------------------------------------------------------------------------------
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        return
+        yield
+
+    def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
+        status, body = yield from self._client.response(stream)
+        self._confirmed = True
+        if status == 204:
+            return None
+        return Message(CALL, body.rstrip(b"\r\n"), spelling="text")
+
+    def expect_ack(self, stream: ByteStream) -> Steps[None]:
+        if self._confirmed:
+            self._confirmed = False
+        else:
+            yield from self._client.response(stream)
+
+
+def _complete(stream: ByteStream) -> bool:
+    """Whether the head of a request has come."""
+    buffer, head, tail = stream.buffer, stream.head, stream.tail
+    return buffer.find(b"\n\r\n", head, tail) >= 0 or buffer.find(b"\n\n", head, tail) >= 0
+
+
+def _envelope(headers: Mapping[str, str]) -> str:
+    text = headers.get(ENVELOPE, "")
+    return text if text.isascii() and text.isprintable() else ""

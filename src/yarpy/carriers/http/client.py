@@ -1,0 +1,87 @@
+"""Our side of HTTP when we dial: each message is a POST, its response the acknowledgement.
+
+Rules: the carrier string says where to (`http+path.hook`); responses come in the order of the
+requests; one that is no success is the end of the connection, and its text is the reason.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Final
+
+from yarpy.carriers.http.message import MAX_BODY, MAX_HEAD, TEXT, next_event, request_head
+from yarpy.contact import Route, modifier
+from yarpy.errors import LinkClosed, RemoteProtocolError
+from yarpy.wire.effects import Steps
+from yarpy.wire.message import ADMIN, DATA, Packet
+from yarpy.wire.stream import ByteStream
+
+if TYPE_CHECKING:
+    import h11
+
+ENVELOPE: Final = "yarp-envelope"
+
+
+class HttpClient:
+    """The requests that we have sent to one server and that it has not answered."""
+
+    def __init__(self, route: Route) -> None:
+        self.route = route
+        self._asked: deque[h11.Connection] = deque()
+
+    def post(self, stream: ByteStream, packet: Packet) -> None:
+        """Send a message."""
+        import h11
+
+        route = self.route
+        host = f"[{route.host}]" if ":" in route.host else route.host or "yarp"
+        path = (modifier(route.carrier, "path") or "form").lstrip("/")
+        form = "none" if packet.key == DATA else "text"
+        admin = "&admin=1" if packet.key == ADMIN else ""
+        body = packet.line
+        headers = [
+            ("Host", f"{host}:{route.port}"),
+            ("Content-Type", TEXT),
+            ("Content-Length", str(len(body))),
+        ]
+        if packet.envelope:
+            envelope = packet.envelope.decode("latin-1")
+            if envelope.isascii() and envelope.isprintable():
+                headers.append((ENVELOPE, envelope))
+        stream.write(request_head("POST", f"/{path}?format={form}{admin}", headers) + body)
+        talk = h11.Connection(h11.CLIENT, max_incomplete_event_size=MAX_HEAD)
+        # It has to know what was asked to understand the answer, not the bytes.
+        talk.send(h11.Request(method="POST", target="/", headers=[("Host", "x")]))
+        talk.send(h11.EndOfMessage())
+        self._asked.append(talk)
+
+    def response(self, stream: ByteStream) -> Steps[tuple[int, bytes]]:
+        """Status and body of the response to the oldest of our requests.
+
+        Raises LinkClosed, RemoteProtocolError.
+        """
+        import h11
+
+        if not self._asked:
+            raise RemoteProtocolError("a response came that nobody asked for")
+        talk = self._asked.popleft()
+        body = bytearray()
+        limit = min(stream.limit, MAX_BODY)
+        try:
+            head = yield from next_event(stream, talk)
+            while isinstance(head, h11.InformationalResponse):
+                head = yield from next_event(stream, talk)
+            while isinstance(event := (yield from next_event(stream, talk)), h11.Data):
+                body += event.data
+                if len(body) > limit:
+                    raise RemoteProtocolError(f"a response of more than {limit} bytes")
+        except h11.RemoteProtocolError as error:
+            raise RemoteProtocolError(f"no HTTP response: {error}") from None
+        if not (isinstance(head, h11.Response) and isinstance(event, h11.EndOfMessage)):
+            raise LinkClosed("the peer closed the connection")
+        rest, _ = talk.trailing_data
+        stream.unread(len(rest))
+        if not 200 <= head.status_code < 300:
+            text = bytes(body[:200]).decode("utf-8", "replace").strip()
+            raise RemoteProtocolError(f"HTTP {head.status_code}: {text}")
+        return head.status_code, bytes(body)

@@ -1,0 +1,324 @@
+"""What a browser wants of a port: an HTTP request read as a message, a port command, or a mistake.
+
+    /?req=set+$joint+5&joint=2     a message, answered in JSON
+    /?data=help   /data=help       a message, answered with the page
+    /set/pos/0                     a message of the words of the path, answered as text
+    /  /?  /r  /?cmd=...           the port itself: its connections, its help, reading, any command
+
+Rules: pure functions of method, target, headers and body. `$name` in `req` and `data` is replaced
+by the argument of that name. Nothing is added to a message that its sender did not say, where C++
+adds all arguments once more. Source: core-4 7.2 and 7.3.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Literal, TypeAlias
+
+from yarpy.carriers.base import PAGE
+from yarpy.carriers.http.message import TEXT
+from yarpy.data import codec
+from yarpy.data.bottle import Bottle
+from yarpy.data.json import Outer, from_json
+from yarpy.errors import DecodeError
+from yarpy.wire import framing
+from yarpy.wire.message import ADMIN, CALL, DATA, Message, Spelling
+
+Form: TypeAlias = Literal["page", "json", "text", "none", "events", "guest"]
+
+MAX_FIELDS: Final = 1000
+FORM: Final = "application/x-www-form-urlencoded"
+READS: Final = ("*", "?", "h", "r")  # port commands that change nothing
+
+_VARIABLE = re.compile(r"\$([A-Za-z0-9_]*)")
+_ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*://[^/?#]*")
+# What browsers and crawlers ask for by themselves: no message to a robot.
+_HABITS: Final = ("apple-touch-icon", ".well-known/", "robots.txt", "sitemap")
+_SPELLINGS: Final[dict[str, Form]] = {
+    "json": "json",
+    "text": "text",
+    "none": "none",
+    "sse": "events",
+    "events": "events",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A request with its body; header names in small letters."""
+
+    method: str
+    target: str
+    headers: Mapping[str, str]
+    body: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class Wish:
+    """A message or port command (`key`, as in Message), and how to answer it.
+
+    shown: what the page's form shows again. pixels: who reads wants pictures whole. acts: it may
+    change something.
+    """
+
+    key: str
+    form: Form
+    payload: bytes = b""
+    spelling: Spelling = "text"
+    text: str = ""
+    outer: Outer = "auto"
+    shown: str = ""
+    pixels: bool = False
+
+    @property
+    def acts(self) -> bool:
+        return self.key not in READS
+
+    def message(self, envelope: str = "") -> Message:
+        """The message for the port."""
+        return Message(self.key, self.payload, envelope, self.spelling, self.text)
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """An answer that needs no port: `status` below 400 is no mistake."""
+
+    status: int
+    text: str = ""
+    kind: str = TEXT
+
+
+def read_wish(request: Request) -> Wish | Refusal:
+    """What a GET, HEAD or POST request is about."""
+    path, mark, query = _parts(request.target)
+    if not query and "=" in path:
+        path, query = "", path  # `/data=list`
+    try:
+        fields = read_fields(query)
+        if request.method == "POST":
+            if path not in ("", "form"):
+                return Refusal(404, "post to /form")
+            return _posted(request, fields)
+    except DecodeError as error:
+        return Refusal(400, str(error))
+    if path == "web/main.css":  # what the pages of C++ ports want of their name server
+        from yarpy.carriers.http.port_page import STYLE
+
+        return Refusal(200, STYLE, "text/css")
+    if path.startswith("favicon"):
+        return Refusal(204)
+    if path.startswith(_HABITS):
+        return Refusal(404, "a port has no such thing")
+    if path == "r":
+        asked = query.split("&")
+        return Wish("r", _reading_form(request, fields, asked), pixels="pixels" in asked)
+    if not fields.keys() & {"cmd", "req", "data"}:
+        if path in ("", "form", "data"):
+            key = "?" if mark and path == "" else "*"
+            return Wish(key, _form(request, fields, "page"), text=PAGE if key == "*" else "")
+        if len(path) == 1:
+            return Wish("*", _form(request, fields, "page"), text=PAGE) if path == "*" else _one()
+        words = _decoded(path).replace("/", " ").strip()
+        fields = {**fields, "data": words}
+        default: Form = "page" if _likes(request, "text/html") else "text"
+        return _asked(request, fields, words, default)
+    return _by_fields(request, fields)
+
+
+def page_asked(request: Request) -> tuple[str, dict[str, str]] | None:
+    """The path and the arguments of a request that a program may answer with a page of its own."""
+    path, mark, query = _parts(request.target)
+    whole = path + mark + query
+    if request.method not in ("GET", "HEAD") or whole == "?" or path == "r" or "=" in path:
+        return None
+    try:
+        fields = read_fields(query)
+    except DecodeError:
+        return None
+    return None if fields.keys() & {"cmd", "req", "data"} else ("/" + _decoded(path), fields)
+
+
+def read_fields(query: str) -> dict[str, str]:
+    """The arguments of a query or of a form; those without a name or a value do not count."""
+    pairs = query.split("&")
+    if len(pairs) > MAX_FIELDS:
+        raise DecodeError(f"more than {MAX_FIELDS} arguments")
+    found = {}
+    for pair in pairs:
+        key, _, value = pair.partition("=")
+        key, value = _decoded(key), _decoded(value)
+        if key and value:
+            found[key] = value
+    return found
+
+
+def substitute(text: str, fields: Mapping[str, str]) -> str:
+    """`text` with each `$name` replaced by the argument of that name; empty if there is none."""
+    return _VARIABLE.sub(lambda match: fields.get(match[1], ""), text)
+
+
+# ---------------------------------------------------------------------------------- inside
+
+
+def _parts(target: str) -> tuple[str, str, str]:
+    """The path without its first slash, the question mark if there is one, and the query."""
+    target = _ABSOLUTE.sub("", target, count=1)
+    return target.partition("#")[0].removeprefix("/").partition("?")
+
+
+def _posted(request: Request, fields: dict[str, str]) -> Wish | Refusal:
+    kind = request.headers.get("content-type", FORM).partition(";")[0].strip().lower()
+    body = request.body
+    if kind == FORM:
+        fields |= read_fields(body.decode("utf-8", "surrogateescape").strip("\r\n"))
+        if fields.keys() & {"cmd", "req", "data"}:
+            return _by_fields(request, fields)
+        if body.strip() and b"=" not in body:  # curl says so of whatever it is given
+            return Refusal(400, f"no form, as {FORM} says: JSON and text want a Content-Type too")
+        return Wish("*", _form(request, fields, "page"), text=PAGE)
+    if kind == "text/plain":
+        text = body.decode("utf-8", "surrogateescape")
+        return _asked(request, fields, text, "text", substituting=False)
+    if kind == "application/json":
+        return _json(request, fields, from_json(body))
+    return Refusal(415, f"send {FORM}, application/json or text/plain, not {kind[:80]}")
+
+
+def _json(request: Request, fields: dict[str, str], value: Any) -> Wish | Refusal:
+    """A JSON body: an array or object is the message; an object with `req` or `data` is as a
+    form."""
+    import json
+
+    form = _form(request, fields, "json")
+    if not isinstance(value, Bottle):
+        return _wish(fields, form, Bottle([value]))
+    body = json.loads(request.body)
+    if not isinstance(body, dict) or not body.keys() & {"cmd", "req", "data"}:
+        return _wish(fields, form, value)
+    asked: Any = None
+    for key, item in body.items():
+        if isinstance(item, str):
+            fields[key] = item
+        elif key in ("req", "data"):
+            asked = from_json(json.dumps(item))
+        elif isinstance(item, bool):
+            if item:
+                fields[key] = "1"
+        elif isinstance(item, (int, float)):
+            fields[key] = repr(item)
+    form = _form(request, fields, "json")
+    if asked is None:
+        fields.setdefault("format", "json")
+        return _by_fields(request, fields)
+    return _wish(fields, form, asked if isinstance(asked, Bottle) else Bottle([asked]))
+
+
+def _by_fields(request: Request, fields: dict[str, str]) -> Wish | Refusal:
+    if "cmd" in fields:
+        return _command(request, fields)
+    if "req" in fields:
+        return _asked(request, fields, fields["req"], "json", honest=True)
+    return _asked(request, fields, fields["data"], "page")
+
+
+def _asked(
+    request: Request,
+    fields: dict[str, str],
+    text: str,
+    default: Form,
+    *,
+    substituting: bool = True,
+    honest: bool = False,
+) -> Wish:
+    """A message that is spelled as text. `honest`: its form is what it says, whoever asks."""
+    if substituting:
+        text = substitute(text, fields)
+    if honest:
+        named = fields.get("format", default)
+        form = "text" if named == "html" else _SPELLINGS.get(named, default)
+    else:
+        form = _form(request, fields, default)
+    return Wish(
+        _key(fields, form),
+        form,
+        text.encode("utf-8", "surrogateescape"),
+        outer=_outer(fields),
+        shown=text,
+    )
+
+
+def _wish(fields: Mapping[str, str], form: Form, value: Bottle) -> Wish:
+    """A message that is a value; strings stay strings, whatever is in them."""
+    payload = b"".join(codec.encode(value))
+    shown = value.to_text() if form == "page" else ""
+    return Wish(_key(fields, form), form, payload, "binary", outer=_outer(fields), shown=shown)
+
+
+def _command(request: Request, fields: Mapping[str, str]) -> Wish | Refusal:
+    """`cmd`: what somebody would type who is connected in text mode."""
+    line, _, rest = fields["cmd"].lstrip("\r\n").partition("\n")
+    command = framing.parse_command(line.rstrip("\r"))
+    form = _form(request, fields, "page")
+    if command.key in (CALL, DATA, ADMIN):
+        payload = rest.encode("utf-8", "surrogateescape")
+        return Wish(command.key, form, payload, outer=_outer(fields), shown=rest)
+    if command.key == "r":
+        return Wish("r", _reading_form(request, fields, []))
+    if command.key == "q":
+        return _one()
+    text = PAGE if command.key == "*" else command.text
+    return Wish(command.key, form, text=text, outer=_outer(fields))
+
+
+def _one() -> Refusal:
+    return Refusal(404, "a message by path has words of more than one letter; try / or /?")
+
+
+def _key(fields: Mapping[str, str], form: Form) -> str:
+    if "admin" in fields:
+        return ADMIN
+    return DATA if form == "none" else CALL
+
+
+def _outer(fields: Mapping[str, str]) -> Outer:
+    named = fields.get("outer")
+    return "list" if named == "list" else "dict" if named == "dict" else "auto"
+
+
+def _form(request: Request, fields: Mapping[str, str], default: Form) -> Form:
+    """How to answer: what is asked for by name, then what the asker can read."""
+    named = _SPELLINGS.get(fields.get("format", ""))
+    if named is not None and named != "events":
+        return named
+    if fields.get("format") == "html":
+        return "page"
+    if default == "page" and _likes(request, "application/json"):
+        return "json" if not _likes(request, "text/html") else default
+    if default == "text" and _likes(request, "application/json"):
+        return "json"
+    return default
+
+
+def _reading_form(request: Request, fields: Mapping[str, str], asked: list[str]) -> Form:
+    named = fields.get("format")
+    if "sse" in asked or named in ("sse", "events"):
+        return "events"
+    if named == "html":
+        return "page"
+    if named in ("json", "text"):
+        return _SPELLINGS[named]
+    if _likes(request, "text/event-stream"):
+        return "events"
+    return "page" if _likes(request, "text/html") else "text"
+
+
+def _likes(request: Request, kind: str) -> bool:
+    return kind in request.headers.get("accept", "").lower()
+
+
+def _decoded(text: str) -> str:
+    from urllib.parse import unquote_plus
+
+    return unquote_plus(text, errors="surrogateescape")

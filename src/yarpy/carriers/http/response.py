@@ -1,0 +1,207 @@
+"""What a browser gets from a port: replies, lines, pages and refusals as responses of HTTP.
+
+    json     [1, 2] LF            nothing said: []
+    text     1 2 CR LF            nothing said: 204
+    none     204
+    page     the port's page with the reply on it (`http_page`)
+    web      a page that a program put into its reply (core-4 7.5), kept apart from the port's own
+
+Rules: what was said goes in, a Response comes out; `http` writes it. Each response says that it is
+not to be kept, nor to be taken for another type, and that any page may read it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from yarpy.carriers.http.client import ENVELOPE
+from yarpy.carriers.http.message import HTML, JSON, TEXT, Headers, response_head
+from yarpy.carriers.http.origin import Origins, hostname
+from yarpy.carriers.text import reply_text
+from yarpy.contact import Route
+from yarpy.data import codec
+from yarpy.data.bottle import Bottle
+from yarpy.wire.message import Lines
+
+if TYPE_CHECKING:
+    from yarpy.carriers.http.page import Page
+    from yarpy.carriers.http.request import Refusal, Wish
+
+PRELUDE: Final = 2048  # blanks with which an endless page begins, as in C++: browsers wait for some
+
+_COMMON: Final = [
+    ("Cache-Control", "no-store"),
+    ("X-Content-Type-Options", "nosniff"),
+    ("Access-Control-Allow-Origin", "*"),
+]
+_TYPES: Final = {"page": HTML, "json": JSON, "text": TEXT, "events": "text/event-stream"}
+_ALLOW: Final = ("Allow", "GET, HEAD, POST, OPTIONS")
+# Our own page needs neither scripts nor anything from elsewhere.
+_PAGE_POLICY: Final = (
+    "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; base-uri 'none'"
+)
+# A page that a program made: its scripts run, but not as those of the port's own pages.
+_GUEST_POLICY: Final = (
+    "Content-Security-Policy",
+    "sandbox allow-scripts allow-forms allow-popups",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """Status, type and bytes of a body, more headers.
+
+    body None: only the head was asked for, and nobody knows the rest. endless: the body is only the
+    beginning, messages follow.
+    """
+
+    status: int
+    kind: str = TEXT
+    body: bytes | None = b""
+    more: Headers = ()
+    endless: bool = False
+
+    def head(self, *last: tuple[str, str]) -> bytes:
+        """The head, with `last` behind its headers. Raises LocalProtocolError, as
+        `response_head`."""
+        headers = [*_COMMON, *self.more]
+        if self.status != 204:
+            headers.append(("Content-Type", self.kind))
+            if self.body is not None and not self.endless:
+                headers.append(("Content-Length", str(len(self.body))))
+        headers += last
+        return response_head(self.status, headers)
+
+
+LATE: Final = Response(408, body=b"the request takes too long to come\n")
+CUT_OFF: Final = Response(400, body=b"the body is shorter than its length\n")
+NO_SUCH_METHOD: Final = Response(405, more=[_ALLOW])
+MAY_NOT_ACT: Final = Response(
+    403, body=b"the owner of this port lets only some pages act here (YARPY_WEB_ORIGINS)\n"
+)
+UNSPEAKABLE: Final = Response(500, body=b"the port's answer cannot be sent\n")
+
+
+def complaint(status: int, text: str) -> Response:
+    """A line that says what is wrong."""
+    return Response(status, body=_encoded(text + "\n"))
+
+
+def refused(refusal: Refusal) -> Response:
+    """What is answered without the port."""
+    text = f"{refusal.text}\n" if refusal.text else ""
+    return Response(refusal.status, refusal.kind, _encoded(text))
+
+
+def bare(wish: Wish) -> Response:
+    """The head alone of what would be the answer."""
+    return Response(200, _TYPES.get(wish.form, TEXT), None)
+
+
+class Responder:
+    """What the port that `route` ends at answers, told which pages may act (`origins`).
+
+    host: how the browser calls this computer, its Host header.
+    """
+
+    def __init__(self, route: Route, origins: Origins) -> None:
+        self.route = route
+        self.origins = origins
+
+    def reply(self, wish: Wish, value: object, host: str) -> Response:
+        """The port's reply; an endless one if a program's page wants to go on."""
+        if wish.form == "none":
+            return Response(204)
+        return (_guest(value) if wish.form != "json" else None) or self.said(wish, value, host)
+
+    def said(self, wish: Wish, value: object, host: str) -> Response:
+        """A value or lines in the form that is wished."""
+        if wish.form == "json":
+            return Response(200, JSON, _json_body(value, wish))
+        if wish.form == "page":
+            return self._page(wish, _lines(value), host)
+        return Response(200, TEXT, reply_text(value))
+
+    def nothing(self, wish: Wish, host: str) -> Response:
+        """The answer to a message that the port did not reply to."""
+        if wish.form == "json":
+            return Response(200, JSON, b"[]\n")
+        return self._page(wish, ["(no reply)"], host) if wish.form == "page" else Response(204)
+
+    def reading(self, wish: Wish) -> Response:
+        """The beginning of everything that the port writes from now on."""
+        from yarpy.carriers.http.port_page import stream_head
+        from yarpy.carriers.http.stream import KINDS
+
+        kind = KINDS[wish.form]
+        if wish.form == "page":
+            body = stream_head(self.route.target)
+            return Response(200, kind, body, [self._policy()], endless=True)
+        return Response(200, kind, b": reading\n\n" if wish.form == "events" else b"", endless=True)
+
+    def shown(self, page: Page) -> Response:
+        """A page that the port's program shows beside those of the port."""
+        framing = self.origins.framing
+        policy = [("Content-Security-Policy", framing)] if framing else []
+        return Response(page.status, page.kind, page.to_bytes(), policy)
+
+    def preflight(self, headers: Mapping[str, str]) -> Response:
+        """What a page may do here, which its browser asks before it does it."""
+        acting = ", POST" if self.origins.admits(headers) else ""
+        allowed = [
+            _ALLOW,
+            ("Access-Control-Allow-Methods", f"GET, HEAD{acting}"),
+            ("Access-Control-Allow-Headers", f"Content-Type, {ENVELOPE.title()}"),
+            ("Access-Control-Max-Age", "600"),
+        ]
+        return Response(204, more=allowed)
+
+    def _page(self, wish: Wish, lines: list[str], host: str) -> Response:
+        from yarpy.carriers.http.port_page import page
+
+        body = page(self.route.target, lines, wish.shown, hostname(host))
+        return Response(200, HTML, body, [self._policy()])
+
+    def _policy(self) -> tuple[str, str]:
+        """What browsers are told to refuse to the page; its form is not for others to frame."""
+        framing = self.origins.framing
+        return "Content-Security-Policy", _PAGE_POLICY + (f"; {framing}" if framing else "")
+
+
+def _guest(value: object) -> Response | None:
+    """The page that a program put under the key `web`; None if there is none."""
+    from yarpy.carriers.http.stream import web_of
+
+    if not isinstance(value, (list, tuple)):
+        return None
+    body = web_of(value)
+    if body is None:
+        return None
+    mime = Bottle(value).group("mime")
+    kind = str(mime[1]) if mime is not None and len(mime) > 1 else HTML
+    if not (kind.isascii() and kind.isprintable()):
+        return None
+    if Bottle(value).group("stream") is None:
+        return Response(200, kind, body, [_GUEST_POLICY])
+    return Response(200, kind, b" " * PRELUDE + body, [_GUEST_POLICY], endless=True)
+
+
+def _json_body(value: object, wish: Wish) -> bytes:
+    from yarpy.data.json import to_json
+
+    if isinstance(value, Lines):
+        value = ["list", *value]
+    return (to_json(value, wish.outer) + "\n").encode()
+
+
+def _lines(value: object) -> list[str]:
+    """What a reply is on a page."""
+    if isinstance(value, Lines):
+        return list(value)
+    return [codec.encode_text(value).decode("utf-8", "surrogateescape")]
+
+
+def _encoded(text: str) -> bytes:
+    return text.encode("utf-8", "replace")

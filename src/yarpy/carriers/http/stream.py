@@ -1,0 +1,76 @@
+"""Messages one after another in an HTTP response that does not end.
+
+    events    id: 7 1.25 LF data: [1, 2] LF LF      for JavaScript's EventSource
+    json      [1, 2] LF
+    text      1 2 CR LF
+    page      1 2 CR LF, escaped                    below the head of a page
+    guest     what the program put under `web`      see core-4 7.5
+
+Rules: each form of a message is made once, however many read it. Of a picture only size and kind
+are told, unless whoever reads JSON asks for pixels; who wants to see it takes mjpeg.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from yarpy.carriers.http.message import HTML, TEXT
+from yarpy.carriers.http.request import Form
+from yarpy.data.bottle import Bottle
+from yarpy.wire.message import Packet
+
+KINDS: Final[dict[str, str]] = {
+    "page": HTML,
+    "text": TEXT,
+    "json": "application/x-ndjson",
+    "events": "text/event-stream",
+}
+
+
+def part(packet: Packet, form: Form, pixels: bool) -> bytes:
+    """A message as it appears in such a response."""
+    key = ("http", form, pixels)
+    found = packet.forms.get(key)
+    if found is None:
+        found = packet.forms[key] = (_made(packet, form, pixels),)
+    return bytes(found[0])
+
+
+def _made(packet: Packet, form: Form, pixels: bool) -> bytes:
+    if form in ("events", "json"):
+        from yarpy.data.json import to_json
+
+        text = to_json(packet.value, pixels=pixels).encode()
+        if form == "json":
+            return text + b"\n"
+        # Nothing in it may end the line, and browsers ignore what contains a NUL.
+        envelope = packet.envelope.translate(None, b"\r\n\0")
+        mark = b"id: " + envelope + b"\n" if envelope else b""
+        return mark + b"data: " + text + b"\n\n"
+    if form == "page":
+        from yarpy.carriers.http.port_page import stream_line
+
+        return stream_line(_readable(packet))
+    if form == "guest":
+        value = packet.value
+        guest = web_of(value) if isinstance(value, (list, tuple)) else None
+        if guest is not None:
+            return guest
+    return packet.line + b"\r\n"
+
+
+def _readable(packet: Packet) -> str:
+    from yarpy.data.image import Image
+
+    value = packet.value
+    if isinstance(value, Image):
+        return f"image {value.width} x {value.height} {value.code} (see /?action=stream)"
+    return packet.line.decode("utf-8", "surrogateescape")
+
+
+def web_of(value: list[object] | tuple[object, ...]) -> bytes | None:
+    """What a program put under the key `web`; None if there is nothing."""
+    guest = Bottle(value).group("web")
+    if guest is None or len(guest) < 2:
+        return None
+    return guest[1] if isinstance(guest[1], bytes) else str(guest[1]).encode("utf-8", "replace")

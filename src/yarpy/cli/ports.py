@@ -1,0 +1,73 @@
+"""Ports that a command opens, and what it connects them to.
+
+Rules: a name that lives is never taken away. `...` without a name server is a port without a name:
+it can still be connected to addresses (`/host:port`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+import yarpy
+from yarpy.cli import log, signals
+from yarpy.cli.stderr import warn
+
+if TYPE_CHECKING:
+    from yarpy.port.base import BasePort
+
+P = TypeVar("P", bound="BasePort")
+
+ANY = "..."
+
+
+def open_port(kind: Callable[..., P], name: str, **options: Any) -> P:
+    """`kind(name, **options)`, with the library's log shown. Raises AddressError, NoNameServer.
+
+    The port closes with the command, at the latest: also when a signal comes while it opens.
+    """
+    log.show()
+    with signals.held():
+        try:
+            port = kind(name, **options)
+        except yarpy.NoNameServer:
+            if name != ANY:
+                raise
+            port = kind("", **options)
+            warn(f"no name server: this port has no name, others reach it at /{port.address}")
+        click.get_current_context().call_on_close(port.close)
+    return port
+
+
+def send_to(port: BasePort, target: str, carrier: str | None = None) -> None:
+    """Send what `port` writes to `target`, which may be decorated (`udp://x`, `topic://t`)."""
+
+    if _registered(port):
+        yarpy.connect(port.name, target, carrier)
+    else:
+        port.connect(target, carrier or _carrier(target))
+
+
+def hear_from(port: BasePort, source: str, carrier: str | None = None) -> None:
+    """Have `source`, which may be decorated, send to `port`."""
+
+    if _registered(port):
+        yarpy.connect(source, port.name, carrier)
+    else:
+        port.listen_to(source, carrier or _carrier(source))
+
+
+def _registered(port: BasePort) -> bool:
+
+    try:
+        return yarpy.query(port.name) is not None
+    except yarpy.NoNameServer:
+        return False
+
+
+def _carrier(text: str) -> str:
+    from yarpy.contact import parse_contact
+
+    return parse_contact(text).carrier or "tcp"

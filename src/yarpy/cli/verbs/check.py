@@ -1,0 +1,73 @@
+"""`yarpy check`: try whether ports can be opened, found, connected, written and read here.
+
+Without a name server it tries the same within this process. Exit codes: 0 all went well; 1 not.
+"""
+
+from __future__ import annotations
+
+import click
+
+import yarpy
+from yarpy.cli import log
+from yarpy.cli.output import print_line
+
+LINE = "=" * 66
+NUMBER = 42
+
+
+@click.command()
+def command() -> int:
+    """Try whether ports work here."""
+    from yarpy.cli.service import server
+
+    _step("This is `yarpy check`", "It is a very simple sanity check for your installation")
+    log.show()
+    names: yarpy.YarpNameClient | yarpy.LocalNames
+    try:
+        names = server()
+        alive = names.alive()
+    except yarpy.YarpError:
+        alive = False
+    if not alive:
+        _step("NO NAME SERVER!  Switching to local, fake mode")
+        names = yarpy.LocalNames()
+    try:
+        _try(names)
+    except yarpy.YarpError as error:
+        print_line(f"*** {error}")
+        print_line("*** YARP seems broken.")
+        return 1
+    if alive:
+        print_line("*** YARP seems okay!")
+    else:
+        print_line("*** YARP seems okay, but there is no name server available.")
+        print_line("    Start one: yarpy server    or find one: yarpy detect --write")
+    return 0
+
+
+def _try(names: object) -> None:
+    """Raises YarpError, saying what does not work."""
+
+    local = isinstance(names, yarpy.LocalNames)
+    ends = ("/check/in", "/check/out") if local else ("...", "...")
+    _step("Trying to register some ports")
+    with (
+        yarpy.BufferedPort(ends[0], strict=True, names=names) as reader,  # type: ignore[arg-type]
+        yarpy.Port(ends[1], names=names) as writer,  # type: ignore[arg-type]
+    ):
+        _step("Trying to connect some ports")
+        yarpy.connect(writer.name, reader.name, names=names)  # type: ignore[arg-type]
+        _step("Trying to write some data")
+        writer.write([NUMBER])
+        _step("Trying to read some data")
+        value = reader.read(timeout=5.0).value
+        if value != [NUMBER]:
+            raise yarpy.RemoteProtocolError(f"{NUMBER} was sent, {value} arrived")
+        print_line(f"*** Read number {value[0]}")
+        _step("Trying to close some ports")
+
+
+def _step(*texts: str) -> None:
+    print_line(LINE)
+    for text in texts:
+        print_line(f"=== {text}")

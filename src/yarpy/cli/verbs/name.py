@@ -1,0 +1,87 @@
+"""`yarpy name COMMAND ARGS...`: any command of the name server, as typed.
+
+    list [PREFIX]   query NAME   register NAME [CARRIER [HOST [PORT]]]   unregister NAME
+    set NAME KEY VALUE...   get NAME KEY   check NAME KEY VALUE   route A B   runners   gc   help
+    bot ...   topic ...   subscribe ...   and whatever else a server understands
+
+Arguments are values of Bottle text. `register` takes any address, a camera's for example; the word
+`...` leaves a part to the server.
+
+Differs from C++: commands that are answered with a Bottle (`bot`, `topic`, `subscribe` ...) print
+it instead of waiting for ever; no empty line behind a registration; `register` claims nothing more
+about the port than its address; no command is `help`.
+Exit codes: 0 answered; 1 `query` finds nothing, or no server.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+import yarpy
+from yarpy.cli.output import print_json, print_line
+
+END = "*** end of message"
+_BOTTLES = frozenset({"bot", "announce", "subscribe", "unsubscribe", "topic", "untopic", "type"})
+
+
+@click.command(context_settings={"ignore_unknown_options": True})
+@click.argument("words", nargs=-1, metavar="COMMAND [ARGS]...")
+@click.option("--json", "as_json", is_flag=True, help="Print list, query, get ... as JSON.")
+def command(words: tuple[str, ...], as_json: bool) -> int:
+    """Send a command to the name server: `name list`, `name query /port`, `name help` ..."""
+    from yarpy.cli.service import server
+    from yarpy.config.command_line import parse_value
+    from yarpy.network.connection import find
+
+    client = server()
+    verb, arguments = (words[0], words[1:]) if words else ("help", ())
+    if verb == "query" and len(arguments) == 1:
+        _print_contact(client.query(arguments[0]) or find(arguments[0], client), as_json)
+    elif verb == "list" and as_json:
+        print_json([as_dict(contact) for contact in client.list(*arguments[:1])])
+    elif verb == "register" and arguments:
+        _print_contact(client.register(*parse_address(arguments)), as_json)
+    elif verb == "unregister" and len(arguments) == 1:
+        client.unregister(arguments[0])
+        print_line("Unregistered name.")
+    elif verb in _BOTTLES:
+        reply = client.request([verb, *map(parse_value, arguments)])
+        print_json(reply) if as_json else print_line(reply.to_text())
+    elif verb == "get" and as_json and len(arguments) == 2:
+        print_json(client.get(*arguments))
+    else:
+        lines = client.command(verb, *map(parse_value, arguments))
+        if as_json:
+            print_json(lines)
+        else:
+            for line in (*lines, END):
+                print_line(line)
+    return 0
+
+
+def parse_address(words: tuple[str, ...]) -> list[Any]:
+    """`NAME [CARRIER [HOST [PORT]]]` as arguments of `register`; `...` is None."""
+    values: list[Any] = [None if word == "..." else word for word in words[1:4]]
+    if len(values) == 3 and values[2] is not None:
+        if not values[2].isdigit() or not 0 < int(values[2]) < 65536:
+            raise click.UsageError(f'"{values[2]}" is no port number: give 1 to 65535, or ...')
+        values[2] = int(values[2])
+    return [words[0], *values]
+
+
+def as_dict(contact: yarpy.Contact) -> dict[str, Any]:
+    """A registration for JSON."""
+    return {
+        "name": contact.name,
+        "host": contact.host,
+        "port": contact.port,
+        "carrier": contact.carrier,
+    }
+
+
+def _print_contact(contact: yarpy.Contact, as_json: bool) -> None:
+    from yarpy.names.registration_line import registration_line
+
+    print_json(as_dict(contact)) if as_json else print_line(registration_line(contact))

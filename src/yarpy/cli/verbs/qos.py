@@ -1,0 +1,111 @@
+"""`yarpy qos ...`: show or set the priority of a connection's packets, at either end.
+
+    qos get SOURCE TARGET [--src | --des] [--tos | --dscp | --level]
+    qos set SOURCE TARGET [--src VALUE] [--des VALUE]
+    qos describe [VALUE]                         the classes, or what VALUE means
+
+A VALUE is a level (LOW, NORM, HIGH, CRIT), a DSCP class (AF42) or a TOS byte (144); with a prefix
+as in C++ also `LEVEL:HIGH`, `DSCP:36`, `TOS:144`. `yarpy sched` does the same for threads.
+
+Differs from C++: LEVEL is labelled as such also for both ends, and TOS:n works.
+Exit codes: 0; 1 no such port or connection, refused, or a wrong value.
+"""
+
+from __future__ import annotations
+
+import click
+
+from yarpy.cli.output import print_line
+from yarpy.network import qos
+from yarpy.qos import DSCP, LEVELS, Qos, packets_name, tos_of
+
+FORMS = ("tos", "dscp", "level")
+
+
+@click.group()
+def command() -> None:
+    """Show or set the priority of a connection's packets."""
+
+
+@command.command()
+@click.argument("source")
+@click.argument("target")
+@click.option("--src", "side", flag_value="src", help="Only the end of SOURCE.")
+@click.option("--des", "side", flag_value="des", help="Only the end of TARGET.")
+@click.option("--tos", "form", flag_value="tos", help="As a TOS byte (what is printed anyway).")
+@click.option("--dscp", "form", flag_value="dscp", help="As a DSCP class.")
+@click.option("--level", "form", flag_value="level", help="As LOW, NORMAL, HIGH or CRITICAL.")
+def get(source: str, target: str, side: str | None, form: str | None) -> int:
+    """Print the priority that the system gives the packets of both ends."""
+    print_line(both(source, target, side, lambda qos: f"(qos ({spelled(qos, form or 'tos')}))"))
+    return 0
+
+
+def both(source: str, target: str, side: str | None, spell: object) -> str:
+    """`(src (...)) (des (...))`, or one of them alone."""
+    assert callable(spell)
+    sender, receiver = qos.granted(source, target)
+    parts = {"src": f"(src {spell(sender)})", "des": f"(des {spell(receiver)})"}
+    return parts[side] if side else " ".join(parts.values())
+
+
+def spelled(qos: Qos, form: str) -> str:
+    """`(tos 144)`, `(dscp AF42)` or `(level HIGH)`."""
+    tos = max(qos.tos, 0)
+    if form == "dscp":
+        return f"(dscp {packets_name(tos)})"
+    if form == "level":
+        names = {dscp: name for name, dscp in LEVELS.items()}
+        long = {"NORM": "NORMAL", "CRIT": "CRITICAL"}
+        name = names.get(tos >> 2, "UNDEFINED")
+        return f"(level {long.get(name, name)})"
+    return f"(tos {tos})"
+
+
+@command.command("set")
+@click.argument("source")
+@click.argument("target")
+@click.option("--src", "sender", metavar="VALUE", help="For what SOURCE sends.")
+@click.option("--des", "receiver", metavar="VALUE", help="For what TARGET answers.")
+def set_(source: str, target: str, sender: str | None, receiver: str | None) -> int:
+    """Mark the packets of a connection."""
+    if sender is None and receiver is None:
+        raise click.UsageError("say at which end: --src VALUE, --des VALUE, or both")
+    ends = [None if text is None else Qos(packets=parse(text)) for text in (sender, receiver)]
+    qos.grant(source, target, sender=ends[0], receiver=ends[1])
+    return 0
+
+
+def parse(text: str) -> str | int:
+    """A value of the command line as Qos takes it. Raises click.BadParameter."""
+    kind, colon, value = text.rpartition(":")
+    kind = kind.upper() if colon else ("TOS" if text.isdigit() else "")
+    try:
+        if kind == "TOS":
+            tos = int(value)
+            if not 0 <= tos < 256:
+                raise ValueError(f"a TOS byte lies between 0 and 255, not {tos}")
+            return tos >> 2
+        if kind == "LEVEL" and value.isdigit():
+            return [*LEVELS][int(value)]
+        if kind in ("", "LEVEL", "DSCP"):
+            found = int(value) if value.isdigit() else value
+            tos_of(found)
+            return found
+    except (ValueError, IndexError) as error:
+        raise click.BadParameter(str(error)) from error
+    raise click.BadParameter(f'"{kind}:" is none of LEVEL:, DSCP:, TOS:')
+
+
+@command.command()
+@click.argument("value", required=False)
+def describe(value: str | None) -> int:
+    """List the levels and classes, or say what VALUE is."""
+    if value is not None:
+        tos = tos_of(parse(value))
+        qos = Qos(packets=tos >> 2)
+        print_line(" ".join(spelled(qos, form) for form in FORMS))
+        return 0
+    for name, dscp in (*LEVELS.items(), *DSCP.items()):
+        print_line(f"{name:5} DSCP {dscp:2} TOS {dscp << 2:3}")
+    return 0

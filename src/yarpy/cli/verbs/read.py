@@ -1,0 +1,147 @@
+"""`yarpy read PORT [REMOTE...] [envelope] [trim [N]] [once]`: print what arrives at a port.
+
+Prints each message as a line of Bottle text. An integer and a string are a line that somebody sent
+verbatim: only the string is printed, and the integer 1 ends the reader.
+
+Differs from C++: a port that cannot be opened is exit code 1, not 0; standard output holds the
+messages and nothing else, log lines go to standard error.
+Exit codes: 0 also after ^C; 1 the port cannot be opened.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import click
+
+import yarpy
+from yarpy.cli.output import print_json, print_line
+from yarpy.cli.ports import ANY, hear_from, open_port
+from yarpy.cli.signals import Interrupted
+from yarpy.cli.stderr import complain
+
+TRIM = 80
+
+
+@dataclass(frozen=True)
+class Wish:
+    """The words behind the port's name, in any order."""
+
+    remotes: list[str] = field(default_factory=list)
+    envelope: bool = False
+    trim: int = 0
+    once: bool = False
+
+
+def parse_words(words: Sequence[str]) -> Wish:
+    """Read `[REMOTE...] [envelope] [trim [N]] [once]`."""
+    remotes: list[str] = []
+    found: dict[str, Any] = {}
+    rest = list(words)
+    while rest:
+        word = rest.pop(0)
+        if word in ("envelope", "once"):
+            found[word] = True
+        elif word == "trim":
+            found["trim"] = int(rest.pop(0)) if rest and rest[0].isdigit() else TRIM
+        else:
+            remotes.append(word)
+    return Wish(remotes, **found)
+
+
+class Printer:
+    """Prints messages the way the user wishes."""
+
+    def __init__(self, envelope: bool = False, trim: int = 0, as_json: bool = False) -> None:
+        self._envelope = envelope
+        self._trim = trim
+        self._json = as_json
+
+    def show(self, message: yarpy.Message) -> bool:
+        """Print `message`; False when it says that there will be no more."""
+
+        bottle = message.as_(yarpy.Bottle)
+        verbatim = len(bottle) == 2 and type(bottle[0]) is int and type(bottle[1]) is str
+        if verbatim and bottle[0] == 1:
+            return False
+        if self._json:
+            print_json(
+                {
+                    "source": message.source,
+                    "envelope": message.envelope,
+                    "value": bottle[1] if verbatim else bottle,
+                }
+            )
+            return True
+        if self._envelope and message.envelope:
+            print_line(f"{message.envelope} ")
+        line = bottle[1] if verbatim else bottle.to_text()
+        print_line(line[: self._trim] if self._trim else line)
+        return True
+
+    def follow(self, port: yarpy.BufferedPort, once: bool = False) -> None:
+        """Print what arrives until the port closes or the messages say that they end."""
+
+        for message in port:
+            try:
+                if not self.show(message):
+                    return
+            except yarpy.DecodeError as error:
+                complain(f"a message from {message.source} cannot be printed: {error}")
+            if once:
+                return
+
+
+@click.command()
+@click.argument("port")
+@click.argument("words", nargs=-1, metavar="[REMOTE]... [envelope] [trim [N]] [once]")
+@click.option("--envelope", is_flag=True, help="Print envelopes, each on a line of its own.")
+@click.option("--trim", type=int, metavar="N", help="Print only the first N characters.")
+@click.option("--once", is_flag=True, help="End after one message.")
+@click.option("--json", "as_json", is_flag=True, help="Print each message as a JSON object.")
+@click.option("--type", "type_", default="", help="The type that the port says it takes.")
+def command(
+    port: str,
+    words: tuple[str, ...],
+    envelope: bool,
+    trim: int | None,
+    once: bool,
+    as_json: bool,
+    type_: str,
+) -> int:
+    """Open PORT and print what arrives. Each REMOTE is asked to send to it.
+
+    PORT may be `...`, any name that is free.
+    """
+
+    wish = parse_words(words)
+    printer = Printer(envelope or wish.envelope, trim or wish.trim, as_json)
+    try:
+        with open_reader(port, type_) as reader:
+            for remote in wish.remotes:
+                try:
+                    hear_from(reader, remote)
+                except yarpy.YarpError as error:
+                    complain(str(error))
+            try:
+                printer.follow(reader, once or wish.once)
+            except Interrupted:
+                click.echo("Interrupting...", err=True)
+    except Interrupted:
+        pass  # while it opened or closed
+    return 0
+
+
+def open_reader(name: str, type_: str = "") -> yarpy.BufferedPort:
+    """A port that keeps every message. Raises AddressError with the hint that C++ gives."""
+
+    try:
+        return open_port(yarpy.BufferedPort, name, strict=True, type_=type_)
+    except yarpy.AddressError as error:
+        if name == ANY or not name.startswith("/") or not yarpy.exists(name):
+            raise
+        raise yarpy.AddressError(
+            f"{error}; to print what it sends: `yarpy read {ANY} {name}`"
+        ) from error

@@ -1,0 +1,173 @@
+"""`yarpy rpc PORT [NAME]`: send lines to a port, print its replies.
+
+Each line of standard input is Bottle text; its reply is printed as `Response: ...`, a reply that
+begins with `[many]` as `Responses:` and one line for each of its elements. No port is opened: the
+one that is asked sees the name `anon_rpc`, or NAME. With `--client LOCALPORT` there is one, waiting
+for somebody to connect it to a server, and replies are printed bare.
+
+When the target goes away it is asked again, up to three times, a moment apart. At a terminal Tab
+offers the commands that the target's `help` lists.
+Exit codes: 0 at the end of input; 1 the target cannot be reached.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+import yarpy
+from yarpy.cli import prompt
+from yarpy.cli.output import print_line
+from yarpy.cli.stderr import complain
+from yarpy.errors import LinkClosed, UnknownName, YarpError
+
+if TYPE_CHECKING:
+    from yarpy.port.caller import Caller
+
+PAUSES: Final = (0.2, 0.6, 1.2)  # seconds before each attempt to reach a target that went away
+COMMANDS: Final = "*** Available commands:"
+
+Ask = Callable[[Any], Any]
+
+
+class Target:
+    """The port that is asked; its connection is made again when it breaks."""
+
+    def __init__(self, port: str, name: str = "", admin: bool = False) -> None:
+        """Dial `port`. Raises UnknownName, LinkClosed, NoNameServer."""
+        self._port = port
+        self._name = name
+        self._admin = admin
+        self._caller: Caller | None = self._dial()
+
+    def ask(self, question: Any) -> Any:
+        """The reply as a Bottle. Raises LinkClosed when the target stays away."""
+        pauses = iter(PAUSES)
+        while True:
+            try:
+                if self._caller is None:
+                    self._caller = self._dial()
+                return _bottle(self._caller.ask(question))
+            except (LinkClosed, UnknownName) as error:
+                self._caller = None
+                pause = next(pauses, None)
+                if pause is None:
+                    raise LinkClosed(f'"{self._port}" went away: {error}') from error
+                click.echo("Target disappeared, reconnecting...", err=True)
+                time.sleep(pause)
+
+    def close(self) -> None:
+        """Hang up."""
+        if self._caller is not None:
+            self._caller.close()
+
+    def _dial(self) -> Caller:
+        from yarpy.contact import parse_contact
+        from yarpy.network.connection import find
+        from yarpy.port.caller import ANONYMOUS, Caller
+
+        carrier = parse_contact(self._port).carrier or "tcp"
+        name = self._name or ANONYMOUS
+        return Caller(find(self._port), name, carrier=carrier, admin=self._admin)
+
+
+def converse(ask: Ask, history: str, label: str = "Response: ") -> None:
+    """Ask line by line and print the replies."""
+
+    for line in prompt.lines(history=history, complete=lambda: commands_of(ask)):
+        try:
+            question = yarpy.Bottle.from_text(line)
+        except yarpy.DecodeError as error:
+            complain(str(error))
+            continue
+        print_reply(ask(question), label)
+
+
+def print_reply(reply: Any, label: str = "Response: ") -> None:
+    """Print a reply; what begins with `[many]` is a list of lines."""
+    from yarpy.data.text import plain_text
+
+    items = many(reply)
+    if items is None:
+        print_line(label + reply.to_text())
+        return
+    if label:
+        print_line("Responses:")
+    for item in items:
+        print_line("  " + plain_text(item))
+
+
+def many(reply: Any) -> list[Any] | None:
+    """The elements behind `[many]`, None for any other reply."""
+
+    if not reply or not isinstance(reply[0], yarpy.Vocab) or reply[0] != "many":
+        return None
+    items = list(reply[1:])
+    return list(items[0]) if len(items) == 1 and isinstance(items[0], list) else items
+
+
+def commands_of(ask: Ask) -> list[str]:
+    """The words that the target's `help` lists, [] when it has no such list."""
+    from yarpy.data.text import plain_text
+
+    try:
+        reply = ask(yarpy.Bottle(["help"]))
+    except YarpError:
+        return []
+    items = many(reply)
+    if items is None:
+        items = reply[0] if reply and isinstance(reply[0], list) else reply
+    words = [plain_text(item) for item in items]
+    return words[1:] if words[:1] == [COMMANDS] else []
+
+
+def talk(port: str, name: str = "", admin: bool = False) -> int:
+    """`yarpy rpc PORT [NAME]` and `yarpy admin rpc PORT [NAME]`."""
+
+    try:
+        target = Target(port, name, admin)
+    except YarpError as error:
+        complain(f"Cannot make connection: {error}")
+        click.echo("Alternative method: precede port name with --client", err=True)
+        return 1
+    try:
+        converse(target.ask, f"rpc_{port}")
+    finally:
+        target.close()
+    return 0
+
+
+def be_client(name: str, server: str) -> int:
+    """`yarpy rpc --client NAME [SERVER]`."""
+    from yarpy.cli.ports import open_port, send_to
+
+    with open_port(lambda name: yarpy.RpcClient(name=name), name) as client:
+        if server:
+            send_to(client, server)
+
+        def ask(question: Any) -> Any:
+            client.wait_for_outputs()
+            return _bottle(client.ask(question))
+
+        converse(ask, f"rpc_{name}", label="")
+    return 0
+
+
+def _bottle(message: Any) -> Any:
+
+    return yarpy.Bottle() if message is None else message.as_(yarpy.Bottle)
+
+
+@click.command()
+@click.argument("port")
+@click.argument("name", default="")
+@click.option(
+    "--client", is_flag=True,
+    help="Open PORT as a client, and wait until it is connected to a server (NAME, if given).",
+)  # fmt: skip
+def command(port: str, name: str, client: bool) -> int:
+    """Send lines of standard input to PORT and print the replies. PORT sees us as NAME."""
+    return be_client(port, name) if client else talk(port, name)

@@ -1,0 +1,280 @@
+"""`yarpy server`: run a name server.
+
+    --ip HOST --socket N     the address to tell others; it listens on all of this computer's
+    --portdb F --subdb F     files (SQLite) that remember registrations, and persistent connections
+    --write                  replace the address that is stored in the address file
+    --read                   use the stored address even if it is not one of this computer
+    --web DIR                show the files of a directory to browsers, at /web/
+
+Where it listens: what the options say; else the address that is stored for the namespace (or that
+YARPY_SERVER says), because that is where programs look; else an address of this computer and port
+10000 (YARP_PORT_RANGE). The address is stored when none was. When it differs from what is stored,
+the server does not start unless `--write` says that this is meant.
+
+Differs from C++: `--ip 127.0.0.1` and a stored loopback address are obeyed; the stored port number
+is used when `--socket` does not say another; SIGINT and SIGTERM end it in good order, with 0.
+Exit codes: 0 ended by a signal; 1 the address is in use, or in dispute, or a file is no database.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import click
+
+import yarpy
+from yarpy.cli import log
+from yarpy.cli.output import print_line
+from yarpy.cli.signals import Interrupted
+from yarpy.cli.stderr import warn
+from yarpy.errors import AddressError
+
+if TYPE_CHECKING:
+    from yarpy.config.configuration import Configuration, Server
+
+HAPPY: Final = 600.0  # seconds between signs of life
+BACKLOG: Final = 10_000  # lines that may wait for a slow terminal before some are left out
+MEMORY: Final = ":memory:"
+ANY_NAME: Final = '"..."'  # as it is printed: the server chooses
+
+
+# --- where to listen
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where to serve, and whether to store that."""
+
+    server: Server
+    store: bool
+    note: str = ""
+
+
+def decide(
+    found: Configuration,
+    *,
+    ip: str = "",
+    socket: int = 0,
+    read: bool = False,
+    write: bool = False,
+    environment: Mapping[str, str] = os.environ,
+) -> Place:
+    """Where to serve, from the options and what is stored. Raises AddressError when they differ."""
+    from yarpy.config.configuration import Server, default_port, server_file
+    from yarpy.names.address import is_local, outward_address
+
+    stored = next((server for server in found.servers if server.mode == "yarp"), None)
+    path = server_file(found.directory, found.namespace)
+    if stored is None and read:
+        raise AddressError(f"Could not read configuration file {path}; without --read one is made")
+    host, port, note = ip, socket, ""
+    if stored is not None:
+        port = port or stored.port
+        if not host and (read or is_local(stored.host)):
+            host = stored.host
+    host = host or outward_address()
+    wanted = Server(host, port or default_port(environment), "yarp", found.namespace)
+    if not is_local(host):
+        note = f"{host} is no address of this computer; others will look for the server there"
+    if stored is None:
+        return Place(wanted, True, note)
+    if (stored.host, stored.port) == (wanted.host, wanted.port):
+        return Place(wanted, False, note)
+    if stored.path is None:
+        says = f"YARPY_SERVER says {stored.host}:{stored.port}"
+        return Place(wanted, False, f"{says}: programs started from here will look there")
+    if write:
+        return Place(wanted, True, note)
+    raise AddressError(
+        f"need to change settings in {path}: it says {stored.host} {stored.port}, wanted is "
+        f"{wanted.host} {wanted.port}; give --write to overwrite it, --read to use what it says, "
+        f"or delete {path}"
+    )
+
+
+# --- what it says
+
+
+class Scribe:
+    """Prints a line for each command, in a thread of its own: no client waits for a terminal."""
+
+    def __init__(self) -> None:
+        self._lines: deque[str] = deque()
+        self._skipped = 0
+        self._registered = ""
+        self._closed = False
+        self._changed = threading.Condition()  # commands come from threads of connections
+        self._thread = threading.Thread(target=self._run, name="yarpy server log", daemon=True)
+        self._thread.start()
+
+    def command(self, text: str, peer: str) -> None:
+        """A client at `peer` sent this command."""
+        with self._changed:
+            if len(self._lines) >= BACKLOG:
+                self._skipped += 1
+                return
+            self._lines.append(self._mark(text) + text)
+            self._changed.notify()
+
+    def _mark(self, text: str) -> str:
+        """` * `, or deeper for what is set on the port that was just registered."""
+        verb, name = (*text.removeprefix("bot ").split(" ", 2), "", "")[:2]
+        if verb == "register":
+            self._registered = name
+        elif verb == "set" and self._registered in (name, ANY_NAME):
+            return "   + "
+        return " * "
+
+    def close(self) -> None:
+        """Print what is left."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify()
+        self._thread.join(1.0)
+
+    def _run(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._lines or self._closed)
+                lines, skipped = list(self._lines), self._skipped
+                self._lines.clear()
+                self._skipped = 0
+                if not lines and self._closed:
+                    return
+            if skipped:
+                lines.append(f"({skipped} commands not shown)")
+            try:
+                print_line("\n".join(lines))
+            except (OSError, ValueError):
+                return  # nobody reads any more; the server goes on
+
+
+@click.command()
+@click.option("--ip", default="", metavar="HOST", help="The address to tell others.")
+@click.option(
+    "--socket", type=click.IntRange(0, 65535), default=0, metavar="N", help="The port number."
+)
+@click.option("--portdb", default=MEMORY, metavar="F", help="File that remembers registrations.")
+@click.option("--subdb", default=MEMORY, metavar="F", help="File that remembers connections.")
+@click.option("--cautious", is_flag=True, help="Have every change wait for the disk.")
+@click.option("--write", is_flag=True, help="Replace the stored address.")
+@click.option("--read", is_flag=True, help="Use the stored address as it is.")
+@click.option(
+    "--web",
+    type=click.Path(exists=True, file_okay=False),
+    metavar="DIR",
+    help="Show the files of a directory at /web/.",
+)
+@click.option("--silent", is_flag=True, help="Print warnings and errors only.")
+@click.option("--verbose", is_flag=True, help="Print all that is logged.")
+def command(
+    ip: str,
+    socket: int,
+    portdb: str,
+    subdb: str,
+    cautious: bool,
+    write: bool,
+    read: bool,
+    web: str | None,
+    silent: bool,
+    verbose: bool,
+) -> int:
+    """Run a name server."""
+    import logging
+
+    from yarpy.config.configuration import configuration
+
+    level = logging.WARNING if silent else logging.DEBUG if verbose else logging.INFO
+    log.show(level)
+    found = configuration(os.environ)
+    place = decide(found, ip=ip, socket=socket, read=read, write=write)
+    if place.note:
+        warn(place.note)
+    say = _nothing if silent else print_line
+    try:
+        _serve(found, place, portdb, subdb, cautious, web, say)
+    except Interrupted:
+        say("Name server ends.")
+    return 0
+
+
+def _serve(
+    found: Configuration,
+    place: Place,
+    portdb: str,
+    subdb: str,
+    cautious: bool,
+    web: str | None,
+    say: object,
+) -> None:
+    """Serve until a signal comes."""
+    from yarpy.config.configuration import write_server
+
+    assert callable(say)
+    say(f"yarpy name server {yarpy.__version__}")
+    say(f"Using port database: {portdb}")
+    say(f"Using subscription database: {subdb}")
+    if {portdb, subdb} != {MEMORY}:
+        say("[If you ever need to clear the name server's state, just delete those files.]")
+    server = place.server
+    try:
+        service = yarpy.NameServer(
+            server.port,
+            server.host,
+            name=server.namespace,
+            portdb=None if portdb == MEMORY else Path(portdb),
+            subdb=None if subdb == MEMORY else Path(subdb),
+            cautious=cautious,
+            discoverable=True,
+            web=web,
+        )
+    except AddressError as error:
+        raise _explained(server, error) from error
+    scribe = None
+    try:
+        say(f"IP address: {server.host}")
+        say(f"Port number: {server.port}")
+        if place.store:
+            try:
+                say(f"Address stored in {write_server(found.directory, server)}")
+            except OSError as error:
+                warn(f"the address cannot be stored: {error}")
+        if say is not _nothing:
+            scribe = Scribe()
+            service.on_command = scribe.command
+        say(f"Name server can be browsed at http://{server.host}:{server.port}/")
+        if web is not None:
+            say(f"Files of {web} are shown at http://{server.host}:{server.port}/web/")
+        say("Ok. Ready!")
+        while not threading.Event().wait(HAPPY):
+            say("Name server running happily")
+    finally:
+        service.close()
+        if scribe is not None:
+            scribe.close()
+
+
+def _nothing(text: str) -> None:
+    """What `--silent` says."""
+
+
+def _explained(server: Server, error: AddressError) -> AddressError:
+    """Who has the port number, if it is a name server."""
+
+    try:
+        with yarpy.YarpNameClient("127.0.0.1", server.port, timeout=1.0) as client:
+            known = client.query(server.namespace)
+    except (yarpy.NoNameServer, OSError):
+        known = None
+    if known is None:
+        return error
+    return AddressError(
+        f"a name server for {known.name} is running here already, at {known.address}; use it, end "
+        "it, or give this one another number with --socket"
+    )

@@ -1,0 +1,39 @@
+"""`yarpy wait PORT | SOURCE TARGET`: wait for a port, or for a connection.
+
+A name server that is not there yet is waited for as well.
+
+Differs from C++: 0 on success; `--timeout`. Exit codes: 0 it is there; 1 the time was over.
+"""
+
+from __future__ import annotations
+
+import time
+
+import click
+
+import yarpy
+from yarpy.cli.output import print_line
+from yarpy.cli.stderr import complain
+
+REMIND = 3.0  # seconds between reminders that it still waits
+
+
+@click.command()
+@click.argument("port")
+@click.argument("target", required=False)
+@click.option("--timeout", type=float, metavar="S", help="Give up after S seconds.")
+def command(port: str, target: str | None, timeout: float | None) -> int:
+    """Wait until PORT is alive, or until PORT sends to TARGET."""
+
+    deadline = None if timeout is None else time.monotonic() + timeout
+    while True:
+        print_line(f"Waiting for {port}->{target}..." if target else f"Waiting for {port}...")
+        left = REMIND if deadline is None else min(REMIND, deadline - time.monotonic())
+        try:
+            if yarpy.wait_for(port, target, left):
+                return 0
+        except yarpy.NoNameServer as error:
+            complain(f"{error}; waiting for one")
+            time.sleep(max(0.0, left))
+        if deadline is not None and time.monotonic() >= deadline:
+            return 1

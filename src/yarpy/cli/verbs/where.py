@@ -1,0 +1,79 @@
+"""`yarpy where`: tell where the name server is, and whether it answers.
+
+Exit codes: 0 it answers; 1 it does not, or none is configured.
+"""
+
+from __future__ import annotations
+
+import os
+
+import click
+
+from yarpy.cli.output import print_json, print_line
+
+FRAME = "=" * 57
+
+
+def framed(*lines: str) -> str:
+    """A notice as C++ frames it."""
+    return "\n".join([FRAME, "==", *(f"== {line}" for line in lines), "==", FRAME])
+
+
+@click.command()
+@click.option("--json", "as_json", is_flag=True, help="Print the answer as a JSON object.")
+def command(as_json: bool) -> int:
+    """Tell where the name server is, and whether it answers."""
+    from yarpy.config.configuration import configuration, server_file
+    from yarpy.names.default import client_of
+
+    found = configuration(os.environ)
+    path = server_file(found.directory, found.namespace)
+    if not found.servers:
+        if as_json:
+            print_json({"namespace": found.namespace, "available": False})
+            return 1
+        print_line(
+            framed(
+                "PROBLEM",
+                "No address for a YARP name server is available.",
+                f"Configuration file: {path}",
+                "Start a server: yarpy server",
+                "or find one:    yarpy detect --write",
+            )
+        )
+        return 1
+    code = 1
+    for server in found.servers:
+        if not as_json:
+            print_line(f"Looking for name server on {server.host}, port number {server.port}")
+            print_line("If there is a long delay, try:\n  yarpy conf --clean")
+        alive = client_of(server).alive()
+        code = 0 if alive else code
+        if as_json:
+            print_json(
+                {
+                    "namespace": server.namespace,
+                    "host": server.host,
+                    "port": server.port,
+                    "configuration": str(server.path or "YARPY_SERVER"),
+                    "available": alive,
+                }
+            )
+        elif alive:
+            print_line(
+                f"Name server {server.namespace} is available at ip {server.host} "
+                f"port {server.port}"
+            )
+        else:
+            print_line(
+                framed(
+                    "PROBLEM",
+                    "No valid YARP name server is available.",
+                    f"{server.path or 'YARPY_SERVER'} expects it at ip {server.host} "
+                    f"port {server.port}",
+                    "Start it:          yarpy server",
+                    "or find another:   yarpy detect --write",
+                    "or correct this:   yarpy conf HOST PORT",
+                )
+            )
+    return code

@@ -1,0 +1,161 @@
+"""Finding configuration and data files where YARP looks for them.
+
+Rules (nameserver spec 6.6): a file is the first that exists of
+
+    1. ./NAME
+    2. beside the program's configuration file, if that one was found in the current directory
+    3. robots/ROBOT/NAME           in every base directory
+    4. contexts/CONTEXT/NAME       in every base directory, unless 2 applies
+    5. NAME                        in every base directory
+
+The base directories are, in order: the user's configuration, the user's data, the system's
+configuration, the system's data, and what `*.ini` files under `config/path.d` of the last add.
+Nothing is cached and nothing is printed. An absolute name is taken as it is.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from yarpy.config.configuration import conf_directory
+from yarpy.data.text import plain_text
+
+
+@dataclass(frozen=True)
+class Search:
+    """Where to look. The defaults are those of this process without a context.
+
+    contexts: in order of preference. robot: "" means `YARP_ROBOT_NAME`, or `default`.
+    near: directory of the main configuration file, if it was found in `directory` (case 2).
+    values: options; one that is called like the file says what to look for instead.
+    """
+
+    environment: Mapping[str, str] = field(default_factory=lambda: os.environ)
+    directory: Path = field(default_factory=Path)
+    contexts: Sequence[str] = ()
+    robot: str = ""
+    near: Path | None = None
+    values: Mapping[str, object] = field(default_factory=dict)
+
+    def find(self, name: str) -> Path | None:
+        """The file called `name`, or None."""
+        return next((path for path in self.candidates(name) if path.is_file()), None)
+
+    def find_directory(self, name: str) -> Path | None:
+        """The directory called `name`, or None."""
+        return next((path for path in self.candidates(name) if path.is_dir()), None)
+
+    def find_all(self, name: str) -> list[Path]:
+        """Every file of that name, the one to be used first."""
+        return [path for path in self.candidates(name) if path.is_file()]
+
+    def candidates(self, name: str) -> Iterator[Path]:
+        """Where `name` may be, in order, whether it exists or not."""
+        value = self.values.get(name)
+        if value is not None:
+            name = plain_text(value)
+        if not name:
+            return
+        if Path(name).is_absolute():
+            yield Path(name)
+            return
+        yield self.directory / name
+        if self.near is not None:
+            yield self.near / name
+        bases = base_directories(self.environment)
+        robot = self.robot or self.environment.get("YARP_ROBOT_NAME") or "default"
+        yield from (base / "robots" / robot / name for base in bases)
+        if self.near is None:
+            for context in self.contexts:
+                yield from (base / "contexts" / context / name for base in bases)
+        yield from (base / name for base in bases)
+
+
+def find_file(
+    name: str,
+    environment: Mapping[str, str] | None = None,
+    directory: Path | None = None,
+    *,
+    contexts: Sequence[str] = (),
+) -> Path | None:
+    """The file called `name` as this process (or the given environment) finds it, or None."""
+    search = Search(
+        os.environ if environment is None else environment,
+        Path() if directory is None else directory,
+        contexts,
+    )
+    return search.find(name)
+
+
+# --- base directories
+
+
+def base_directories(environment: Mapping[str, str]) -> list[Path]:
+    """Every directory that may hold `robots/`, `contexts/` and plain files, in order."""
+    own = [conf_directory(environment), data_home(environment)]
+    system = data_directories(environment)
+    return [*own, *configuration_directories(environment), *system, *_listed(system)]
+
+
+def data_home(environment: Mapping[str, str]) -> Path:
+    """The data of this user: `YARP_DATA_HOME`, `XDG_DATA_HOME`/yarp, ~/.local/share/yarp."""
+    if "YARP_DATA_HOME" in environment:
+        return Path(environment["YARP_DATA_HOME"])
+    if environment.get("XDG_DATA_HOME"):
+        return Path(environment["XDG_DATA_HOME"], "yarp")
+    return Path(environment.get("HOME") or os.path.curdir, ".local", "share", "yarp")
+
+
+def configuration_directories(environment: Mapping[str, str]) -> list[Path]:
+    """The configuration of the system: `YARP_CONFIG_DIRS`, `XDG_CONFIG_DIRS`, /etc/xdg/yarp."""
+    return _directories(environment, "CONFIG_DIRS", ["/etc/xdg/yarp"])
+
+
+def data_directories(environment: Mapping[str, str]) -> list[Path]:
+    """The data of the system: `YARP_DATA_DIRS`, `XDG_DATA_DIRS`, /usr/local and /usr/share."""
+    return _directories(environment, "DATA_DIRS", ["/usr/local/share/yarp", "/usr/share/yarp"])
+
+
+def context_home(environment: Mapping[str, str], context: str) -> Path:
+    """Where this user's files of a context are kept; not made here."""
+    return data_home(environment) / "contexts" / context
+
+
+def robot_home(environment: Mapping[str, str], robot: str = "") -> Path:
+    """Where this user's files of a robot are kept; not made here."""
+    robot = robot or environment.get("YARP_ROBOT_NAME") or "default"
+    return data_home(environment) / "robots" / robot
+
+
+def _directories(environment: Mapping[str, str], name: str, default: list[str]) -> list[Path]:
+    if f"YARP_{name}" in environment:
+        return [Path(part) for part in environment[f"YARP_{name}"].split(os.pathsep) if part]
+    parts = [part for part in environment.get(f"XDG_{name}", "").split(os.pathsep) if part]
+    return [Path(part, "yarp") for part in parts] or [Path(part) for part in default]
+
+
+def _listed(directories: Sequence[Path]) -> list[Path]:
+    """What `[search NAME]` sections of `config/path.d/*.ini` add as `path DIR DIR`."""
+    files = [
+        file
+        for directory in directories
+        for file in sorted((directory / "config" / "path.d").glob("*.ini"))
+    ]
+    if not files:
+        return []
+    from yarpy.config.ini import read_ini
+
+    found = []
+    for file in files:
+        try:
+            values = read_ini(file)
+        except OSError:
+            continue
+        for section in (values.group("search") or ())[1:]:
+            group = values.group(plain_text(section))
+            paths = group.group("path") if group is not None else None
+            found += [Path(plain_text(path)) for path in (paths or ())[1:]]
+    return found

@@ -1,0 +1,333 @@
+"""What a control board answers on its RPC port: requests of `grammar` carried out on a device.
+
+    get encs          [is] encs (0.0 3.5) [tsta] 5 1795217570.38 [ok]
+    set pos 1 45      [ok]
+    get bogus         [fail]
+    help              [nak]         (everything has at least two words)
+
+Rules: one reply for every request, also for nonsense, and then the device was not touched. Element
+1 decides first, which is why `[set] [icmd] ...` and `[set] [vel] ...` never meet. Numbers of [tsta]
+count the questions, also those that failed. Extra elements are passed over, as in C++.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Sequence
+from itertools import count
+from reprlib import repr as shown
+from typing import Any, Final
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.value import Vocab
+from yarpy.devices.control_board import grammar
+from yarpy.devices.control_board.access import TARGETS, Board, Part
+from yarpy.devices.control_board.grammar import INTERFACES, PID, PLAIN, Form, Interface, Row
+from yarpy.devices.kind import FLAG, NOTHING, items, number, whole, word
+from yarpy.devices.refusal import Refused
+
+log = logging.getLogger("yarpy.devices")
+
+OK: Final = Vocab("ok")
+IS: Final = Vocab("is")
+FAIL: Final = Vocab("fail")
+NAK: Final = Vocab("nak")
+MANY: Final = Vocab("many")
+
+# Modes that the old form of [set] [icmd] may name.
+_LEGACY_MODES: Final = frozenset(("pos", "posd", "vel", "torq", "ipwm", "icur", "mix", "fidl"))
+
+_GET: Final = {i.word: grammar.lookup(i.get) for i in (*INTERFACES.values(), PID)}
+_SET: Final = {i.word: grammar.lookup(i.set) for i in (*INTERFACES.values(), PID)}
+
+Request = Sequence[Any]
+
+
+class Responder:
+    """Answers requests for one board. Any thread may call `answer`."""
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self._count = count()
+        # Element 1 -> who answers; what is not listed is an item without an interface.
+        self._special: dict[str, Callable[[str, Request], list[Any]]] = {
+            "prot": self._version,
+            "icmd": self._control_mode,
+            "ivar": self._variables,
+            "reca": self._calibrator,
+            "pid": self._pid,
+        }
+        self._calls: dict[str, Callable[[Request], None]] = {
+            "calj": lambda request: self._calibrate_joint(request, 3),
+            "cljp": lambda request: self._calibrate_joint(request, 4),
+            "cald": self._calibration_done,
+            "cal": lambda request: board.apply("calibrate", self._all, None),
+            "park": self._park,
+        }
+
+    def answer(self, request: Request) -> Bottle:
+        """The reply to a request; `[fail]` for what cannot be done."""
+        if len(request) < 2:
+            return Bottle([NAK])
+        try:
+            return Bottle([*self._reply(word(request[0]), word(request[1]), request), OK])
+        except Refused as refusal:
+            log.info("%s: %s: %s", self._board.name, shown([*request]), refusal)
+            return Bottle([FAIL])
+        except Exception:
+            log.exception("%s: %s", self._board.name, shown([*request]))
+            return Bottle([FAIL])
+
+    def _reply(self, verb: str, what: str, request: Request) -> list[Any]:
+        special = self._special.get(what)
+        if special is not None:
+            return special(verb, request)
+        interface = INTERFACES.get(what)
+        if interface is not None and interface is not PLAIN:
+            return self._interface(interface, verb, request)
+        if verb == "get":
+            return self._stamped(lambda: self._plain(what, request))
+        if verb == "set":
+            self._change(self._board, _SET[""], what, request[2:])
+            return []
+        if verb == "help":
+            return _usage(details=request[1] == "more")
+        call = self._calls.get(verb)
+        if call is None:
+            raise Refused(f"{verb!r} is neither get nor set")
+        call(request)
+        return []
+
+    # -- rows of the table --------------------------------------------------------------------
+
+    def _plain(self, what: str, request: Request) -> list[Any]:
+        lead = [IS, request[1]]
+        if what == "axes":
+            return [*lead, self._board.count]
+        if what in ("mnum", "mtnm"):
+            return [*lead, self._motors(what)]
+        form, row = _row(_GET[""], what)
+        return [*lead, *self._values(self._board, form, row, request[2:])]
+
+    def _motors(self, what: str) -> int:
+        """How many motors there are: one for each joint, if the device knows of motors at all."""
+        members = {
+            "mnum": ("motor_encoders", "motor_speeds", "counts_per_revolution"),
+            "mtnm": ("motor_temperatures", "temperature_limits", "gearbox_ratios"),
+        }
+        if not self._board.offers(members[what]):
+            raise Refused("the device says nothing of its motors")
+        return self._board.count
+
+    def _interface(self, interface: Interface, verb: str, request: Request) -> list[Any]:
+        board, name = self._board, interface.word
+        if not board.offers(_members(interface)):
+            raise Refused(f"the device has nothing of {name}")
+        what, rest = _word_at(request, 2), request[3:]
+        if verb == "set":
+            self._change(board, _SET[name], what, rest)
+            return []
+        if verb != "get":
+            raise Refused(f"{verb!r} is neither get nor set")
+
+        def reply() -> list[Any]:
+            form, row = _row(_GET[name], what)
+            values = self._values(board, form, row, rest)
+            if interface is grammar.FAULTS:
+                return [IS, *values]
+            return [IS, request[1], *values] if interface.echo else values
+
+        return self._stamped(reply) if interface.stamped else reply()
+
+    def _values(self, part: Part, form: Form, row: Row, rest: Request) -> list[Any]:
+        kind = row.kind
+        values = part.values(row.member, kind)
+        if form is Form.ALL:
+            return kind.write_all(values)
+        if form is Form.ONE:
+            return kind.write(values[_joint(rest, part.count)])
+        joints = _joints(rest, part.count)
+        return kind.write_all([values[joint] for joint in joints])
+
+    def _change(
+        self, part: Part, rows: dict[str, tuple[Form, Row]], what: str, rest: Request
+    ) -> None:
+        form, row = _row(rows, what)
+        kind, joints, values = row.kind, self._all, None
+        if form is Form.ONE:
+            joints = [_joint(rest, part.count)]
+            if len(rest) < 1 + kind.count:
+                raise Refused(f"{kind.count} values are needed")
+            values = [kind.read(rest[1 : 1 + kind.count])]
+        elif form is Form.ALL:
+            if kind.count == 0:
+                values = [kind.read(())] * part.count
+            else:
+                values = kind.read_all(_at(rest, 0), part.count)
+        else:
+            joints = _joints(rest, part.count)
+            if kind.count:
+                values = kind.read_all(_at(rest, 2), len(joints))
+        part.apply(row.member, joints, None if kind is NOTHING else values)
+
+    @property
+    def _all(self) -> list[int]:
+        return [*range(self._board.count)]
+
+    def _stamped(self, reply: Callable[[], list[Any]]) -> list[Any]:
+        number = next(self._count) & 0x7FFFFFFF  # counted also if there is no answer
+        return [*reply(), Vocab("tsta"), number, time.time()]
+
+    # -- interfaces with manners of their own -------------------------------------------------
+
+    def _version(self, verb: str, request: Request) -> list[Any]:
+        if verb != "get":
+            raise Refused("the version can only be asked for")
+        return [Vocab("prot"), *grammar.VERSION]
+
+    def _control_mode(self, verb: str, request: Request) -> list[Any]:
+        """As other interfaces, but that replies say the joint, or the item, where others repeat
+        the request."""
+        board, interface = self._board, grammar.CONTROL_MODE
+        if not board.offers(interface.members):
+            raise Refused("the device has no control modes")
+        what, rest = _word_at(request, 2), request[3:]
+        if verb == "set" and what not in _SET["icmd"]:
+            mode = _word_at(rest, 1)
+            if mode not in _LEGACY_MODES:
+                raise Refused(f"{mode!r} is no control mode")
+            board.apply("switch_control_modes", [_joint(rest, board.count)], [mode])
+            return []
+        if verb == "set":
+            self._change(board, _SET["icmd"], what, rest)
+            return []
+        if verb != "get":
+            raise Refused(f"{verb!r} is neither get nor set")
+
+        def reply() -> list[Any]:
+            if what not in _GET["icmd"]:
+                return []  # C++ finds this fine
+            form, row = _GET["icmd"][what]
+            values = self._values(board, form, row, rest)
+            return [IS, _joint(rest, board.count) if form is Form.ONE else Vocab(what), *values]
+
+        return self._stamped(reply)
+
+    def _pid(self, verb: str, request: Request) -> list[Any]:
+        if verb not in ("get", "set"):
+            raise Refused(f"{verb!r} is neither get nor set")
+        what, rest = _word_at(request, 2), request[4:]
+        part = self._board.pid(_word_at(request, 3))
+        if verb == "set":
+            self._change(part, _SET["pid"], what, rest)
+            return []
+        form, row = _row(_GET["pid"], what)
+        return [IS, request[1], *self._values(part, form, row, rest)]
+
+    def _variables(self, verb: str, request: Request) -> list[Any]:
+        what, board = _word_at(request, 2), self._board
+        if not board.has("variables"):
+            raise Refused("the device has no variables")
+        if (verb, what) == ("get", "lvar"):
+            return [IS, request[1], board.use("variables", lambda found: Bottle(map(str, found)))]
+        key = _at(request, 3)
+        if what != "mvar" or verb not in ("get", "set") or not isinstance(key, str):
+            raise Refused("variables are listed by [get] [ivar] [lvar], others need [mvar] name")
+        name = str.__str__(key)
+
+        def known(found: Any) -> Any:
+            if name not in found:
+                raise Refused(f"no variable is called {shown(name)}")
+            return found
+
+        def fetch(found: Any) -> Bottle:
+            value = known(found)[name]
+            return Bottle(value if isinstance(value, (list, tuple)) else [value])
+
+        if verb == "set":
+            values = [*request[4:]]
+            board.use("variables", lambda found: known(found).__setitem__(name, values))
+            return []
+        return [IS, request[1], board.use("variables", fetch)]
+
+    def _calibrator(self, verb: str, request: Request) -> list[Any]:
+        what, board = _word_at(request, 2), self._board
+        if not board.offers(("calibrate", "home", "park")):
+            raise Refused("the device has no calibrator")
+        if (verb, what) == ("get", "isca"):
+            return [IS, request[1], *FLAG.write(board.has("calibrate"))]
+        if verb == "set" and what in grammar.QUITTING:
+            board.ask(grammar.QUITTING[what])
+            return []
+        if verb != "set" or what not in grammar.CALIBRATOR:
+            raise Refused(f"{what!r} is nothing that a calibrator does")
+        member, form = grammar.CALIBRATOR[what]
+        joints = self._all if form is Form.ALL else [_joint(request[3:], board.count)]
+        board.apply(member, joints, None)
+        return []
+
+    # -- calibration without an interface -----------------------------------------------------
+
+    def _calibrate_joint(self, request: Request, parameters: int) -> None:
+        joint = _joint(request[1:], self._board.count)
+        values = [number(_at(request, 3 + index)) for index in range(parameters)]
+        self._board.ask("calibrate_joint", joint, whole(_at(request, 2)), values)
+
+    def _calibration_done(self, request: Request) -> None:
+        joint = _joint(request[1:], self._board.count)
+        if not self._board.ask("calibration_done", joint):
+            raise Refused(f"joint {joint} is not calibrated yet")
+
+    def _park(self, request: Request) -> None:
+        if not self._board.has("park"):
+            raise Refused("the device has no park")
+        try:
+            self._board.apply("park", self._all, None)
+        except Refused:
+            pass  # C++ clients wait for this for ever, so the answer is always [ok]
+
+
+def _members(interface: Interface) -> set[str]:
+    """What makes a device have an interface: any of its members, or the command behind a target."""
+    return {*interface.members, *(TARGETS[name] for name in interface.members if name in TARGETS)}
+
+
+def _usage(details: bool) -> list[Any]:
+    lines: list[Any] = [MANY]
+    for request, comment in grammar.usage():
+        if details:
+            lines += (Bottle.from_text(request), f"   {comment}")
+        else:
+            lines.append(request)
+    return lines
+
+
+def _row(rows: dict[str, tuple[Form, Row]], what: str) -> tuple[Form, Row]:
+    found = rows.get(what)
+    if found is None:
+        raise Refused(f"{what!r} is no item")
+    return found
+
+
+def _at(elements: Request, index: int) -> Any:
+    if index >= len(elements):
+        raise Refused("the request ends too early")
+    return elements[index]
+
+
+def _word_at(request: Request, index: int) -> str:
+    return word(request[index]) if index < len(request) else ""
+
+
+def _joint(rest: Request, count: int) -> int:
+    joint = whole(_at(rest, 0))
+    if not 0 <= joint < count:
+        raise Refused(f"no joint {joint} (there are 0 to {count - 1})")
+    return joint
+
+
+def _joints(rest: Request, count: int) -> list[int]:
+    """The joints of the form `count (joints)`."""
+    listed = items(_at(rest, 1), whole(_at(rest, 0)))
+    return [_joint([joint], count) for joint in listed]

@@ -1,0 +1,108 @@
+"""FrameGrabberServer: a camera of yours on the ports of a YARP frame grabber.
+
+    <name>          its images; whoever connects for replies is answered here as well
+    <name>/rpc      requests and replies (`frame_grabber_responder`)
+
+Rules: no image is grabbed while nobody looks. A receiver that is slow misses images.
+
+Source: frameGrabber_nws_yarp of YARP 3.x.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from contextlib import ExitStack
+from typing import Any
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.image import Image
+from yarpy.data.stamp import Stamp
+from yarpy.data.value import Vocab
+from yarpy.devices.control_board.access import Part
+from yarpy.devices.frame_grabber.interface import Camera
+from yarpy.devices.frame_grabber.responder import FrameGrabberResponder
+from yarpy.devices.opened import Opened, prefix
+from yarpy.devices.publisher import Publisher
+from yarpy.devices.refusal import Complaints, Refused
+from yarpy.errors import DecodeError
+from yarpy.names.base import NameClient
+from yarpy.port.buffered import BufferedPort
+from yarpy.port.rpc import RpcServer
+from yarpy.wire.message import Message
+
+
+class FrameGrabberServer(Opened):
+    """Serves `device` (see `yarpy.devices.frame_grabber.interface`) to viewers and other programs.
+
+    name: the port of the images, for example `/robot/cam/left`.
+    period: seconds between two images.
+    names: a name client, None for the default.
+    Raises AddressError (a name is in use), NoNameServer; ValueError if the device has no image().
+    """
+
+    def __init__(
+        self,
+        name: str,
+        device: Camera,
+        period: float = 0.033,
+        *,
+        names: NameClient | None = None,
+    ) -> None:
+        self.name = name = prefix(name)
+        self.device = device
+        self._camera = Part(device, 0, Complaints(name), threading.Lock())
+        if not self._camera.has("image"):
+            raise ValueError(f"{name}: the device needs image(), which gives the next picture")
+        self._responder = FrameGrabberResponder(self._camera, self._grab, name)
+        self._stamp = Stamp()
+        with ExitStack() as opened:
+            self._rpc = opened.enter_context(RpcServer(f"{name}/rpc", self._answer, names=names))
+            self._images = opened.enter_context(
+                BufferedPort(name, callback=self._reply, names=names)
+            )
+            self._publisher = Publisher(name, period, self._publish)
+            opened.callback(self._publisher.close)
+            self._opened = opened.pop_all()
+
+    def __repr__(self) -> str:
+        return f"<FrameGrabberServer {self.name}>"
+
+    def _grab(self) -> Image:
+        """The next image, in memory of its own. Raises Refused."""
+
+        def take(image: Any) -> Image | None:
+            import numpy as np
+
+            found = image()
+            if found is None or isinstance(found, Image):
+                return found
+            # It is sent while the camera fills its array again.
+            return Image(np.array(found, copy=True, order="C"))
+
+        image = self._camera.use("image", take)
+        if image is None or not image.width or not image.height:
+            raise Refused("the camera gave no image")
+        return image
+
+    def _answer(self, message: Message) -> object:
+        try:
+            return self._responder.answer(message.as_(Bottle))
+        except DecodeError:
+            return Bottle([Vocab("fail")])
+
+    def _reply(self, message: Message) -> None:
+        if message.wants_reply:
+            message.reply(self._answer(message))
+
+    def _publish(self) -> None:
+        if not self._images.outputs:
+            return
+        try:
+            image = self._grab()
+        except Refused:
+            return  # it was logged, or there was none
+        when = self._camera.ask("timestamp") if self._camera.has("timestamp") else time.time()
+        self._responder.size = image.width, image.height
+        self._stamp = self._stamp.next(float(when))
+        self._images.write(image, self._stamp)

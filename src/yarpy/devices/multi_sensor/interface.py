@@ -1,0 +1,79 @@
+"""What a set of sensors is, for example an inertial unit: a method for each kind of sensor.
+
+    class Imu:
+        def gyroscopes(self):
+            return {"imu": (0.0, 0.1, 0.0)}           # sensor name -> values
+
+        def accelerometers(self):
+            return {"imu": (0.0, 0.0, 9.81)}
+
+    MultiSensorServer("/robot/imu", Imu(), period=0.01)
+
+Rules: as for control boards (`yarpy.devices.control_board.interface`): your class inherits nothing
+and has at least one of the methods. Each gives a dict with the values of every sensor of its kind;
+the names and their order must not change while the server runs. A kind whose method raises is
+logged and repeats its last values with their old time.
+
+Source: interfaces of YARP 3.x behind multipleanalogsensorsserver.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol, TypeAlias
+
+#: Sensor name -> its values; one number may stand by itself.
+Readings: TypeAlias = Mapping[str, Sequence[float] | float]
+
+#: The kinds of sensors in the order of the protocol, and how many values one has (0: any number).
+KINDS = {
+    "gyroscopes": 3,
+    "accelerometers": 3,
+    "magnetometers": 3,
+    "orientations": 3,
+    "thermometers": 1,
+    "force_torques": 6,
+    "contact_loads": 0,
+    "encoder_arrays": 0,
+    "skin_patches": 0,
+    "position_sensors": 3,
+}
+
+
+class MultiSensorLike(Protocol):
+    """Everything a set of sensors can have. For reading; classes need not inherit it."""
+
+    frames: Mapping[str, str]  # sensor name -> name of its frame; without it, the sensor's name
+
+    def timestamps(self) -> Mapping[str, float]:
+        """When sensors were read, in seconds, by name; without it, when they are asked."""
+
+    def gyroscopes(self) -> Readings:
+        """Angular speeds around x, y, z, deg/s."""
+
+    def accelerometers(self) -> Readings:
+        """Linear accelerations along x, y, z, m/s^2; at rest they show gravity."""
+
+    def magnetometers(self) -> Readings:
+        """Magnetic field along x, y, z, tesla."""
+
+    def orientations(self) -> Readings:
+        """Roll, pitch and yaw, degrees."""
+
+    def thermometers(self) -> Readings:
+        """Degrees Celsius."""
+
+    def force_torques(self) -> Readings:
+        """Three forces in N and three torques in Nm, of x, y, z."""
+
+    def contact_loads(self) -> Readings:
+        """Loads, N or Nm."""
+
+    def encoder_arrays(self) -> Readings:
+        """Angles, degrees."""
+
+    def skin_patches(self) -> Readings:
+        """A value for each taxel."""
+
+    def position_sensors(self) -> Readings:
+        """Positions x, y, z, m."""

@@ -1,0 +1,177 @@
+"""MultiSensorServer: sensors of yours, such as an inertial unit, on the ports of YARP.
+
+    <name>/measures:o   all values of all sensors, every period, with count and time
+    <name>/rpc:o        the names of the sensors, for clients that ask `getMetadata`
+
+Both have the ten kinds of `KINDS` in their order; kinds without sensors are empty lists.
+
+Rules: nothing is read while nobody listens. Names and numbers of values are fixed when the server
+starts. A value list is never empty, and all numbers are float64: C++ drops everything else.
+
+Source: multipleanalogsensorsserver of YARP 3.x.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from typing import Any, Final
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.stamp import Stamp
+from yarpy.data.value import Vocab
+from yarpy.devices.control_board.access import Part
+from yarpy.devices.multi_sensor.interface import KINDS
+from yarpy.devices.opened import Opened, prefix
+from yarpy.devices.publisher import Publisher
+from yarpy.devices.refusal import Complaints, Refused
+from yarpy.errors import DecodeError
+from yarpy.names.base import NameClient
+from yarpy.port.buffered import BufferedPort
+from yarpy.port.rpc import RpcServer
+from yarpy.wire.message import Message
+
+#: Kinds that have no frame of their own in C++.
+_FRAMELESS: Final = frozenset(("contact_loads", "encoder_arrays", "skin_patches"))
+
+_Measurement = tuple[list[float], float]
+
+
+class MultiSensorServer(Opened):
+    """Serves `device` (see `yarpy.devices.multi_sensor.interface`) to C++ and Python clients.
+
+    name: prefix of the ports, for example `/robot/imu`.
+    period: seconds between two messages (in C++ it is milliseconds).
+    names: a name client, None for the default.
+    Raises AddressError (a name is in use), NoNameServer; ValueError if the device has no sensors.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        device: object,
+        period: float = 0.01,
+        *,
+        names: NameClient | None = None,
+    ) -> None:
+        self.name = name = prefix(name)
+        self.device = device
+        self._sensors = Part(device, 0, Complaints(name), threading.Lock())
+        self._last: dict[str, dict[str, _Measurement]] = {}
+        self._read_first()
+        self._metadata = self._describe()
+        self._stamp = Stamp()
+        with ExitStack() as opened:
+            self._rpc = opened.enter_context(RpcServer(f"{name}/rpc:o", self._answer, names=names))
+            self._measures = opened.enter_context(BufferedPort(f"{name}/measures:o", names=names))
+            self._publisher = Publisher(name, period, self._publish)
+            opened.callback(self._publisher.close)
+            self._opened = opened.pop_all()
+
+    def __repr__(self) -> str:
+        listed = ", ".join(f"{len(names)} {kind}" for kind, names in self._last.items())
+        return f"<MultiSensorServer {self.name}, {listed}>"
+
+    # -- reading the device -------------------------------------------------------------------
+
+    def _read_first(self) -> None:
+        now = time.time()
+        for kind in KINDS:
+            if not self._sensors.has(kind):
+                continue
+
+            def check(read: Any, kind: str = kind) -> dict[str, list[float]]:
+                return _readings(kind, read())
+
+            try:
+                found = self._sensors.use(kind, check)
+            except Refused as error:
+                raise ValueError(
+                    f"{self.name}: {error.__cause__ or error}; {kind}() has to give its sensors "
+                    "already when the server starts"
+                ) from error
+            self._last[kind] = {name: (values, now) for name, values in found.items()}
+        if not any(self._last.values()):
+            raise ValueError(f"{self.name}: the device needs one of {', '.join(KINDS)}")
+
+    def _describe(self) -> Bottle:
+        frames: Mapping[str, str] = {}
+        if self._sensors.has("frames"):
+            frames = self._sensors.ask("frames")
+        listed = Bottle()
+        for kind in KINDS:
+            names = [*self._last.get(kind, ())]
+            usual = {name: "" if kind in _FRAMELESS else name for name in names}
+            listed.append(
+                Bottle(Bottle([name, str(frames.get(name, usual[name])), ""]) for name in names)
+            )
+        return listed
+
+    def _times(self) -> Mapping[str, float]:
+        """When the device says that its sensors were read, as far as it does."""
+        try:
+            found = self._sensors.ask("timestamps")
+        except Refused:
+            return {}
+        return found if isinstance(found, Mapping) else {}
+
+    def _read(self, times: Mapping[str, float]) -> None:
+        for kind, last in self._last.items():
+
+            def check(read: Any, kind: str = kind, last: Any = last) -> dict[str, list[float]]:
+                found = _readings(kind, read())
+                before = {name: len(values) for name, (values, _) in last.items()}
+                if {name: len(values) for name, values in found.items()} != before:
+                    raise ValueError("other sensors, or numbers of values, than at the start")
+                return found
+
+            try:
+                found = self._sensors.use(kind, check)
+            except Refused:
+                continue  # it was logged; its last values stand, with their time
+            now = time.time()
+            for name in last:
+                last[name] = found[name], float(times.get(name, now))
+
+    # -- ports --------------------------------------------------------------------------------
+
+    def _publish(self) -> None:
+        if not self._measures.outputs:
+            return
+        self._read(self._times())
+        message = Bottle()
+        for kind in KINDS:
+            sensors = self._last.get(kind, {}).values()
+            message.append(Bottle(Bottle([Bottle(values), at]) for values, at in sensors))
+        self._stamp = self._stamp.next(time.time())
+        self._measures.write(message, self._stamp)
+
+    def _answer(self, message: Message) -> object:
+        try:
+            request = message.as_(Bottle)
+        except DecodeError:
+            return Bottle([Vocab("fail")])
+        if request == ["getMetadata"]:
+            return self._metadata
+        if request[:1] == ["help"]:
+            return Bottle([Vocab("many"), Bottle(["getMetadata", "help"])])
+        return Bottle([Vocab("fail")])
+
+
+def _readings(kind: str, found: Any) -> dict[str, list[float]]:
+    """What a method gave, checked. Raises TypeError, ValueError."""
+    if not isinstance(found, Mapping):
+        raise TypeError(
+            f"{kind}() gives a dict (sensor name -> values), not {type(found).__name__}"
+        )
+    checked = {}
+    for name, values in found.items():
+        numbers = [float(value) for value in (values if hasattr(values, "__len__") else [values])]
+        if not numbers or (KINDS[kind] and len(numbers) != KINDS[kind]):
+            raise ValueError(
+                f"{kind}: {name} has {len(numbers)} values, not {KINDS[kind] or 'any'}"
+            )
+        checked[str(name)] = numbers
+    return checked

@@ -1,0 +1,219 @@
+"""portmonitor: a script rides on a connection, or on a port.
+
+    yarpy connect /out /in tcp+recv.portmonitor+type.python+file.gate+context.demo
+
+    type        lua (what is meant without it), python, or dll: a monitor that is installed
+    file        the script, with or without its ending, or the monitor (modifier)
+    context     where scripts are looked for besides the usual places
+    constraint  events that let messages pass (`not e_ball`): see constraint.py
+
+Rules: as in C++ YARP, per message: `accept`; the other monitors of the port hear of it; at the
+receiving end of a connection the constraint; `update`. If `accept` fails the message is dropped, if
+`update` fails it passes as it is; either way there is a log line, once for each complaint. A script
+that has changed on disk is loaded again; if it then does not start, the one before goes on.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from yarpy.data.property import Property
+from yarpy.data.text import parse_text
+from yarpy.errors import LocalProtocolError, YarpError
+from yarpy.monitors import chain
+from yarpy.monitors.base import DROP, Place, read_token
+from yarpy.monitors.monitor_list import Series, places
+from yarpy.monitors.script.control import Control
+from yarpy.monitors.script.script import Load, Script, ScriptError, Watch, find_script, read_script
+from yarpy.wire.message import Message
+
+log = logging.getLogger("yarpy.monitors")
+
+_MOST_TOLD: Final = 16  # different complaints that are logged
+_NATIVE: Final = "dll"
+_OWN: Final = ("type", "script", "file", "context", "constraint")
+
+
+def portmonitor(place: Place) -> object:
+    """The monitor that a connection asks for. Raises UnknownPlugin, LocalProtocolError."""
+    where = places(place)
+    if len(where) == 1:
+        return _one(place)
+    made: list[object] = []
+    try:
+        made += map(_one, where)
+    except YarpError:
+        Series(made, place).close()
+        raise
+    return Series(made, place)
+
+
+def _one(place: Place) -> object:
+    # The oldest C++ says `script` for `type`.
+    kind = place.text("type") or place.text("script") or "lua"
+    file = place.text("file") or "modifier"
+    if kind == _NATIVE:
+        if file == "portmonitor":
+            raise LocalProtocolError("a portmonitor does not run portmonitors: name a monitor")
+        return chain.make(file, place)
+    language = _LANGUAGES.get(kind)
+    if language is None:
+        known = ", ".join((*_LANGUAGES, _NATIVE))
+        raise LocalProtocolError(f'portmonitor knows no type "{kind}"; there are {known}')
+    load, endings = language
+    return PortMonitor(place, load(place), find_script(place, file, place.text("context"), endings))
+
+
+class PortMonitor:
+    """A script at its place. Raises LocalProtocolError if it does not start."""
+
+    def __init__(self, place: Place, load: Load, path: Path) -> None:
+        self._place = place
+        self._load = load
+        self._path = path
+        self._lock = threading.RLock()  # messages, triggers and settings come from several threads
+        self._told: set[str] = set()
+        self._closed = False
+        self._constrained = not place.sending and place.source != place.target
+        self._watch = Watch(path)
+        self._script, self.control = self._start(place.text("constraint"))
+
+    def _start(self, constraint: str) -> tuple[Script, Control]:
+        control = Control(constraint, self._on_timer, str(self._place))
+        try:
+            script = self._load(self._path, read_script(self._path), control)
+            if not script.create(self._options()):
+                script.close()
+                raise ScriptError(f"{self._path}: create does not return true")
+        except BaseException:
+            control.close()
+            raise
+        return script, control
+
+    def _options(self) -> Property:
+        """What `create` is told: as in C++, and the parameters that are not ours."""
+        place = self._place
+        found = Property()
+        for token in place.tokens or place.shared:
+            name, value = read_token(token)
+            if name not in _OWN and name not in ("send", "recv"):
+                words = parse_text(value) if isinstance(value, str) else [value]
+                found[name] = words[0] if len(words) == 1 else value
+        found.update(
+            filename=str(self._path),
+            source=place.source,
+            destination=place.target,
+            sender_side=int(place.sending),
+            receiver_side=int(not place.sending),
+            carrier=place.carrier,
+        )
+        return found
+
+    def _current(self) -> Script:
+        """The script, loaded again if its file has changed. Call it with the lock held."""
+        if self._watch.changed():
+            try:
+                script, control = self._start(self._place.text("constraint"))
+            except LocalProtocolError as error:
+                self._complain(error, "the one before goes on")
+            else:
+                log.info("%s: %s was loaded again", self._place, self._path)
+                self._told.clear()
+                self._end()
+                self._script, self.control = script, control
+        return self._script
+
+    def _complain(self, error: Exception, consequence: str) -> None:
+        text = f"{error}"
+        if text not in self._told and len(self._told) < _MOST_TOLD:
+            self._told.add(text)
+            log.warning("%s: %s; %s", self._place, text, consequence)
+
+    # -- what a chain calls -----------------------------------------------------------------------
+
+    def accept(self, message: Message) -> bool:
+        with self._lock:
+            try:
+                return self._current().accept(message)
+            except ScriptError as error:
+                self._complain(error, "messages are dropped")
+                return False
+
+    def update(self, message: Message) -> object:
+        with self._lock:
+            if self._constrained and not self.control.allows():
+                return DROP
+            try:
+                return self._script.update(message)
+            except ScriptError as error:
+                self._complain(error, "messages pass as they are")
+                return None
+
+    def update_reply(self, message: Message) -> object:
+        with self._lock:
+            try:
+                return self._current().update_reply(message)
+            except ScriptError as error:
+                self._complain(error, "replies pass as they are")
+                return None
+
+    def trigger(self) -> None:
+        with self._lock:
+            if self._closed:
+                return
+            try:
+                self._current().trigger()
+            except ScriptError as error:
+                self._complain(error, "the next trigger comes all the same")
+
+    _on_timer = trigger
+
+    def configure(self, parameters: Property) -> None:
+        with self._lock:
+            self._current().configure(parameters)
+
+    def parameters(self) -> Mapping[str, Any]:
+        with self._lock:
+            return self._current().parameters()
+
+    def state(self) -> dict[str, Any]:
+        """Which script runs, and under which constraint."""
+        constraint = self.control.get_constraint()
+        return {"script": str(self._path), **({"constraint": constraint} if constraint else {})}
+
+    def close(self) -> None:
+        with self._lock:
+            if not self._closed:
+                self._closed = True
+                self._end()
+
+    def _end(self) -> None:
+        """Let go of the script that has run."""
+        try:
+            self._script.close()
+        except ScriptError as error:
+            self._complain(error, "it has ended all the same")
+        self.control.close()
+
+
+def _python(place: Place) -> Load:
+    from yarpy.monitors.script.python import PythonScript
+
+    return PythonScript
+
+
+def _lua(place: Place) -> Load:
+    from yarpy.monitors.script.lua import LuaScript, lupa
+
+    lupa()  # before the file is looked for: it is the first thing to be had
+    return LuaScript
+
+
+_LANGUAGES: Final = {
+    "lua": (_lua, ("", ".lua")),
+    "python": (_python, ("", ".py")),
+}

@@ -1,0 +1,118 @@
+"""Scripts: the files that a portmonitor runs - where they are, when they change, what they offer.
+
+Rules: whatever the language, a script is an object with the methods of `Script`. It raises
+ScriptError, which names file and line, and nothing else.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Final, Protocol
+
+from yarpy.data.property import Property
+from yarpy.errors import LocalProtocolError
+from yarpy.monitors.base import Place
+from yarpy.monitors.script.control import Control
+from yarpy.wire.message import Message
+
+PATIENCE: Final = 0.5  # seconds between two looks at a file
+LARGEST: Final = 4 << 20  # bytes of a script
+
+
+class ScriptError(LocalProtocolError):
+    """A script that cannot be loaded, or whose callback failed."""
+
+
+class Script(Protocol):
+    """A loaded script. A callback that it lacks does nothing."""
+
+    def create(self, options: Property) -> bool:
+        """The first call; False: the script wants no such connection."""
+
+    def accept(self, message: Message) -> bool:
+        """Whether the message may pass."""
+
+    def update(self, message: Message) -> object:
+        """What goes on instead: a value, a Message, DROP; None: the message as it is."""
+
+    def update_reply(self, message: Message) -> object:
+        """The same for the reply to a call."""
+
+    def trigger(self) -> None:
+        """Another connection of the port has let a message pass, or the timer says so."""
+
+    def configure(self, parameters: Property) -> None:
+        """New parameters."""
+
+    def parameters(self) -> Property:
+        """What they are now."""
+
+    def close(self) -> None:
+        """The last call."""
+
+
+Load = Callable[[Path, bytes, Control], Script]
+
+
+def find_script(place: Place, name: str, context: str, endings: Sequence[str]) -> Path:
+    """The file of a script, found as configuration files are.
+
+    Raises LocalProtocolError, which tells where it may be put.
+    """
+    contexts = [context] if context else []
+    looked: list[Path] = []
+    for ending in endings:
+        for path in place.look(name + ending, contexts):
+            if path.is_file():
+                return path.absolute()
+            looked.append(path)
+    where = list(dict.fromkeys(str(path.absolute().parent) for path in looked))
+    kinds = " or ".join(f'"{name}{ending}"' for ending in endings)
+    raise LocalProtocolError(
+        f"portmonitor finds no script {kinds}; it looked in {', '.join(where)}"
+        + ("" if context else ', and in no context: give one with "+context.NAME"')
+    )
+
+
+def read_script(path: Path) -> bytes:
+    """The text of a script. Raises LocalProtocolError."""
+    try:
+        with path.open("rb") as file:
+            found = file.read(LARGEST + 1)
+    except OSError as error:
+        raise LocalProtocolError(f'"{path}" cannot be read: {error.strerror}') from error
+    if len(found) > LARGEST:
+        raise LocalProtocolError(f'"{path}" is no script: it has more than {LARGEST} bytes')
+    return found
+
+
+class Watch:
+    """Whether a file has changed since the last question; the disk is asked now and then only."""
+
+    def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:
+        self._path = path
+        self._clock = clock
+        self._state = self._look()
+        self._again = clock() + PATIENCE
+
+    def changed(self) -> bool:
+        """Whether it has changed. A file that is away just now has not."""
+        now = self._clock()
+        if now < self._again:
+            return False
+        self._again = now + PATIENCE
+        state = self._look()
+        if state is None or state == self._state:
+            return False
+        self._state = state
+        return True
+
+    def _look(self) -> tuple[int, int, int] | None:
+        try:
+            found = os.stat(self._path)
+        except OSError:
+            return None
+        return found.st_mtime_ns, found.st_size, found.st_ino

@@ -1,0 +1,130 @@
+"""Collector: takes names out of the name service whose ports are dead.
+
+Rules: a name goes only if its address actively refuses connections, seen `STRIKES` times in a row;
+a silent host may come back, and what never was a YARP port (no `process` property: a camera, a
+robot of another make) is not ours to judge. Ports of this host whose process lives are not
+bothered at all; others are asked a few at a time.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import threading
+import time
+from collections.abc import Callable
+from typing import Final
+
+from yarpy.contact import Contact
+from yarpy.data.bottle import Bottle
+from yarpy.names.address import local_addresses
+from yarpy.nameserver.command import NameService
+
+INTERVAL: Final = 2.0  # seconds between rounds
+STRIKES: Final = 2
+PER_SECOND: Final = 25  # connections tried to ports elsewhere
+TIMEOUT: Final = 0.5  # seconds for one try
+
+
+class Collector:
+    """Watches the names of `service`; `unregister` takes a command that removes one."""
+
+    def __init__(
+        self,
+        service: NameService,
+        unregister: Callable[[Bottle], None],
+        own_name: str,
+        interval: float = INTERVAL,
+    ) -> None:
+        self._service = service
+        self._unregister = unregister
+        self._own_name = own_name
+        self._interval = interval
+        self._strikes: dict[str, int] = {}
+        self._suspects: set[str] = set()  # somebody could not reach them
+        self._wake = threading.Event()
+        self._closed = False
+        self._thread = threading.Thread(target=self._run, name="yarpy collector", daemon=True)
+        self._thread.start()
+
+    def suspect(self, name: str) -> None:
+        """Somebody says that `name` does not answer: look at it soon."""
+        self._suspects.add(name)
+        self._wake.set()
+
+    def close(self) -> None:
+        """Stop watching."""
+        self._closed = True
+        self._wake.set()
+        self._thread.join(2.0)
+
+    def _run(self) -> None:
+        while not self._closed:
+            self._wake.wait(self._interval)
+            self._wake.clear()
+            if not self._closed:
+                self.look()
+
+    def look(self) -> None:
+        """One round over all names."""
+        suspects, self._suspects = self._suspects, set()
+        here = set(local_addresses())
+        for contact, process in self._ports():
+            if self._closed:
+                return
+            local = contact.host in here
+            if contact.name not in suspects:
+                if local and process and _lives(process):
+                    continue
+                if not local:
+                    time.sleep(1 / PER_SECOND)
+            self._judge(contact)
+
+    def _ports(self) -> list[tuple[Contact, int]]:
+        """Registered YARP ports with their process ids."""
+        found = []
+        with self._service.lock:
+            for contact in self._service.store.contacts():
+                if contact.name == self._own_name or contact.carrier != "tcp":
+                    continue
+                process = self._service.store.values(contact.name, "process")
+                if process:
+                    found.append((contact, int(process[0]) if process[0].isdigit() else 0))
+        return found
+
+    def _judge(self, contact: Contact) -> None:
+        if not _refuses(contact):
+            self._strikes.pop(contact.name, None)
+            return
+        strikes = self._strikes.get(contact.name, 0) + 1
+        self._strikes[contact.name] = strikes
+        if strikes < STRIKES:
+            self._suspects.add(contact.name)
+            return
+        del self._strikes[contact.name]
+        with self._service.lock:
+            if self._service.store.query(contact.name) != contact:
+                return  # registered anew meanwhile
+        self._unregister(Bottle(["unregister", contact.name]))
+
+
+def _lives(process: int) -> bool:
+    """Whether there is a process with that number on this host."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True  # somebody else's
+    return True
+
+
+def _refuses(contact: Contact) -> bool:
+    """Whether nobody listens there, as the host itself says. Silence is no answer."""
+    try:
+        socket.create_connection((contact.host, contact.port), TIMEOUT).close()
+    except ConnectionRefusedError:
+        return True
+    except OSError:
+        return False
+    return False

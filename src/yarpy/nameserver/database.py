@@ -1,0 +1,158 @@
+"""What makes a name service last: everything that changes is written to SQLite a moment later.
+
+Rules: commands never wait for a disk: what changed is noted, and one transaction for each file
+writes all of it, from a thread of its own. `save` does it at once. What stands in the files is
+`table`'s business.
+"""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+
+from yarpy.errors import AddressError
+from yarpy.nameserver.command import NameService
+from yarpy.nameserver.sqlite_tables import PortChanges, PortTable, RuleChanges, RuleTables
+
+DELAY = 0.05  # seconds that changes may gather before they are written
+RETRY = 5.0  # seconds until a write that failed is tried again
+
+
+class Database:
+    """Makes a `NameService` last. An empty path or `:memory:` keeps that half in memory only.
+
+    `load` fills the service and watches it from then on; `start` writes in the background;
+    `close` writes what is left. `cautious`: every transaction waits for the disk.
+    """
+
+    def __init__(
+        self,
+        ports: str | Path = "",
+        rules: str | Path = "",
+        *,
+        cautious: bool = False,
+    ) -> None:
+        """Open or create the files. Raises AddressError for a file that is no such database."""
+        self._ports = PortTable(ports, cautious) if _lasts(ports) else None
+        self._rules = RuleTables(rules, cautious) if _lasts(rules) else None
+        self._service: NameService | None = None
+        # kind -> keys in the order of their changes; guarded by the service's lock
+        self._pending: dict[str, dict[str, None]] = {}
+        self._writing = threading.Lock()  # one transaction at a time, whoever asks for it
+        self._something = threading.Event()
+        self._closing = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    @property
+    def persistent(self) -> bool:
+        """Whether anything is written at all."""
+        return self._ports is not None or self._rules is not None
+
+    def load(self, service: NameService) -> None:
+        """Fill an empty service with what the files remember, and note what changes from now on."""
+        with service.lock:
+            if self._ports is not None:
+                self._ports.load(service.store)
+            if self._rules is not None:
+                self._rules.load(service.topology)
+            self._service = service
+            if self._ports is not None:
+                service.store.watch(self._note)
+            if self._rules is not None:
+                service.topology.on_change = self._note
+
+    def start(self) -> None:
+        """Write in the background, a moment after each change."""
+        if self.persistent and self._thread is None:
+            self._thread = threading.Thread(target=self._run, name="name database", daemon=True)
+            self._thread.start()
+
+    def save(self) -> None:
+        """Write all that changed since the last time, in one transaction per file.
+
+        Raises AddressError when the file cannot be written; nothing is forgotten then.
+        """
+        if self._service is None:
+            return
+        with self._writing:
+            with self._service.lock:
+                pending, self._pending = self._pending, {}
+                self._something.clear()
+                ports = _changed_ports(self._service, pending)
+                rules = _changed_rules(self._service, pending)
+            try:
+                if self._ports is not None and ports:
+                    self._ports.save(ports)
+                if self._rules is not None and rules:
+                    self._rules.save(rules)
+            except AddressError:
+                with self._service.lock:
+                    for kind, keys in pending.items():
+                        self._pending.setdefault(kind, {}).update(keys)
+                raise
+
+    def close(self) -> None:
+        """Write what is left and let go of the files."""
+        self._closing.set()
+        self._something.set()
+        if self._thread is not None:
+            self._thread.join(10.0)
+            self._thread = None
+        try:
+            self.save()
+        finally:
+            if self._service is not None:
+                self._service.store.watch(None)
+                self._service.topology.on_change = None
+                self._service = None
+            for tables in (self._ports, self._rules):
+                if tables is not None:
+                    tables.connection.close()
+            self._ports = self._rules = None
+
+    # --- inside
+
+    def _note(self, kind: str, key: str) -> None:
+        self._pending.setdefault(kind, {})[key] = None
+        self._something.set()
+
+    def _run(self) -> None:
+        while not self._closing.is_set():
+            self._something.wait()
+            if self._closing.wait(DELAY):
+                return
+            try:
+                self.save()
+            except AddressError as error:
+                import logging
+
+                logging.getLogger("yarpy.names").error("%s", error)
+                self._closing.wait(RETRY)
+
+
+def _lasts(path: str | Path) -> bool:
+    return str(path) not in ("", ":memory:")
+
+
+def _changed_ports(service: NameService, pending: dict[str, dict[str, None]]) -> PortChanges:
+    """Copy what the noted keys stand for. Runs under the service's lock."""
+    changes, store = PortChanges(), service.store
+    for name in pending.get("port", ()):
+        port = store.registration(name)
+        changes.ports[name] = None if port is None else dict(port.fields)
+    for kind, pool in store.pools.items():
+        if kind in pending:
+            changes.pools[kind] = (pool.counter, list(pool.rows(pending[kind])))
+    return changes
+
+
+def _changed_rules(service: NameService, pending: dict[str, dict[str, None]]) -> RuleChanges:
+    """The same for what is kept beside registrations."""
+    changes, topology = RuleChanges(), service.topology
+    for key in pending.get("subscription", ()):
+        source, _, destination = key.partition("\0")
+        changes.rules[source, destination] = topology.rule(source, destination)
+    changes.topics = {key: topology.topics.get(key) for key in pending.get("topic", ())}
+    changes.structures = {key: topology.structures.get(key) for key in pending.get("structure", ())}
+    changes.live = {key: topology.live.get(key) for key in pending.get("live", ())}
+    return changes

@@ -1,0 +1,29 @@
+"""The network as a whole: connections of any two ports, their priorities, what goes over them."""
+
+from yarpy.network.connection import (
+    Pairing,
+    admin,
+    ask_server,
+    connect,
+    disconnect,
+    exists,
+    find,
+    is_connected,
+    ping,
+    query,
+    wait_for,
+)
+
+__all__ = [
+    "Pairing",
+    "admin",
+    "ask_server",
+    "connect",
+    "disconnect",
+    "exists",
+    "find",
+    "is_connected",
+    "ping",
+    "query",
+    "wait_for",
+]

@@ -1,0 +1,90 @@
+"""The priority of any connection of the network, asked of and told to the ports at its two ends.
+
+Rules: the messages are those of C++ tools (core-3 section 8.3), so ports of any YARP answer; each
+end has its own settings. What a side is not to change is left out.
+"""
+
+from __future__ import annotations
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+from yarpy.errors import LocalProtocolError, UnknownName
+from yarpy.names.base import NameClient
+from yarpy.network.connection import admin
+from yarpy.qos import Qos, Sched, policy_of
+
+
+def granted(source: str, target: str, names: NameClient | None = None) -> tuple[Qos, Qos]:
+    """What the sender's and the receiver's system do for the connection `source` -> `target`.
+
+    Raises UnknownName when there is no such port or connection, LinkClosed, Timeout.
+    """
+    return _granted(source, target, names), _granted(target, source, names)
+
+
+def grant(
+    source: str,
+    target: str,
+    *,
+    sender: Qos | None = None,
+    receiver: Qos | None = None,
+    names: NameClient | None = None,
+) -> None:
+    """Ask for a priority at one end or both.
+
+    Raises UnknownName when there is no such port or connection, LocalProtocolError when a port or
+    its system refuses.
+    """
+    for qos, port, peer in ((sender, source, target), (receiver, target, source)):
+        if qos is not None:
+            _granted(port, peer, names)  # there is such a connection
+            reply = admin(port, "prop", "set", peer, *_groups(qos), names=names)
+            if not (reply and plain_text(reply[0]) == "ok"):
+                reason = plain_text(reply[1]) if len(reply) > 1 else "the system refuses it"
+                raise LocalProtocolError(f'"{port}" does not set this for "{peer}": {reason}')
+
+
+def _granted(port: str, peer: str, names: NameClient | None) -> Qos:
+    reply = admin(port, "prop", "get", peer, names=names)
+    if not reply or reply[0] == Vocab("fail"):
+        raise UnknownName(
+            f'"{port}" has no connection with "{peer}"; `yarpy ping {port}` lists those it has'
+        )
+    return read(reply)
+
+
+def read(reply: Bottle) -> Qos:
+    """The answer of a port to `prop get PEER`."""
+    sched, packets = _group(reply, "sched"), _group(reply, "qos")
+    return Qos.of(
+        Sched(_number(sched.get("policy")), _number(sched.get("priority"))),
+        _number(packets.get("tos")),
+    )
+
+
+def _group(reply: Bottle, key: str) -> dict[str, object]:
+    """A group of a reply; over text a dict has become a list of pairs."""
+    value = reply.find(key)
+    pairs = value.items() if isinstance(value, dict) else value or ()
+    return {plain_text(key): value for key, value in pairs}
+
+
+def _number(value: object) -> int:
+    return value if isinstance(value, int) else -1
+
+
+def _groups(qos: Qos) -> list[object]:
+    groups: list[object] = []
+    if qos.policy is not None or qos.priority is not None:
+        sched: list[object] = []
+        if qos.priority is not None:
+            sched.append(["priority", qos.priority])
+        if qos.policy is not None:
+            sched.append(["policy", policy_of(qos.policy)])
+            if qos.priority is None and policy_of(qos.policy) == 0:
+                sched.append(["priority", 0])
+        groups.append(["sched", sched])
+    if qos.packets is not None:
+        groups.append(["qos", [["tos", qos.tos]]])
+    return groups

@@ -1,0 +1,154 @@
+"""Traffic: every connection of the network and how it is doing, asked of all registered ports.
+
+Rules: ports are asked side by side, each once, with a time limit; one that does not answer has no
+connections. C++ ports tell who they send to, over what, and with which priority; what they do not
+count is None.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from yarpy.contact import Contact
+from yarpy.data.bottle import Bottle
+from yarpy.data.property import Property
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+from yarpy.errors import YarpError
+from yarpy.names.base import NameClient
+from yarpy.names.default import DEFAULT
+from yarpy.network import qos
+from yarpy.port import probe
+from yarpy.qos import Qos
+
+AT_ONCE: Final = 16  # ports that are asked at one time
+PATIENCE: Final = 1.0  # seconds for an answer
+
+
+@dataclass(slots=True)
+class End:
+    """A connection as one of its ports sees it; None: that port does not count.
+
+    `rate` is in messages per second, `jitter` and `latency` (until a reply) in seconds.
+    """
+
+    carrier: str = ""
+    messages: int | None = None
+    bytes: int | None = None
+    drops: int | None = None
+    rate: float | None = None
+    jitter: float | None = None
+    latency: float | None = None
+    qos: Qos = field(default_factory=Qos)
+    monitors: list[str] = field(default_factory=list)
+    parameters: dict[str, Any] = field(default_factory=dict)
+    state: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class Flow:
+    """A connection of two ports, as the sender and the receiver see it."""
+
+    source: str
+    target: str
+    sender: End | None = None
+    receiver: End | None = None
+
+    @property
+    def carrier(self) -> str:
+        """Its protocol with all modifiers."""
+        ends = [end.carrier for end in (self.sender, self.receiver) if end is not None]
+        return max(ends, key=len, default="")
+
+    @property
+    def drops(self) -> int | None:
+        """Messages that either side dropped."""
+        counted = [e.drops for e in (self.sender, self.receiver) if e and e.drops is not None]
+        return sum(counted) if counted else None
+
+    def measured(self, key: str) -> Any:
+        """`messages`, `bytes`, `rate`, `jitter` or `latency`, from whichever side knows it."""
+        for end in (self.sender, self.receiver):
+            value = getattr(end, key, None)
+            if value:
+                return value
+        return getattr(self.sender or self.receiver, key, None)
+
+
+def flows(names: NameClient | None = None) -> list[Flow]:
+    """Every connection between registered ports, by source and target.
+
+    Raises NoNameServer.
+    """
+    known = [one for one in (names or DEFAULT.current()).list() if _answers(one)]
+    found: dict[tuple[str, str], Flow] = {}
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        for port, ends in zip(known, pool.map(_ask, known), strict=True):
+            for source, target, end in ends:
+                flow = found.setdefault((source, target), Flow(source, target))
+                if source == port.name:
+                    flow.sender = end
+                else:
+                    flow.receiver = end
+    return [found[key] for key in sorted(found)]
+
+
+def _answers(contact: Contact) -> bool:
+    return contact.carrier == "tcp" and contact.name.startswith("/") and bool(contact.port)
+
+
+def _ask(contact: Contact) -> list[tuple[str, str, End]]:
+    try:
+        reply = probe.ask(contact, ["stat"], timeout=PATIENCE)
+        if reply and reply[0] == Vocab("fail"):
+            return list(_ask_cpp(contact))
+        return [read(Property.from_bottle(_pairs(item))) for item in reply]
+    except (YarpError, OSError):
+        return []
+
+
+def _pairs(item: Any) -> Bottle:
+    """The `(key value)` lists of a connection; a dict by now, or still a list."""
+    return Bottle([key, value] for key, value in item.items()) if isinstance(item, dict) else item
+
+
+def read(told: Property) -> tuple[str, str, End]:
+    """One connection in the answer to [stat]: source, target, and how it is doing."""
+    monitors = told.get("monitors")
+    end = End(
+        plain_text(told.get("carrier", "")),
+        **{key: told.get(key) for key in ("messages", "bytes", "drops")},
+        **{key: told.get(key) for key in ("rate", "jitter", "latency")},
+        qos=Qos(told.get("policy"), told.get("priority"), _packets(told.get("packets"))),
+        monitors=[plain_text(one) for one in monitors] if isinstance(monitors, list) else [],
+        parameters=_dict(told.get("parameters")),
+        state=_dict(told.get("state")),
+    )
+    return plain_text(told.get("source", "")), plain_text(told.get("target", "")), end
+
+
+def _dict(told: Any) -> dict[str, Any]:
+    return dict(Property.from_bottle(_pairs(told))) if told else {}
+
+
+def _packets(value: Any) -> str | int | None:
+    text = str(value) if value is not None else "None"
+    return None if text == "None" else int(text) if text.isdigit() else text
+
+
+def _ask_cpp(contact: Contact) -> Iterable[tuple[str, str, End]]:
+    """What ports that do not count can tell."""
+    for side in ("out", "in"):
+        for name in map(plain_text, probe.ask(contact, ["list", side], timeout=PATIENCE)):
+            if not name.startswith("/"):
+                continue
+            listed = probe.ask(contact, ["list", side, name], timeout=PATIENCE)
+            qos_ = qos.read(probe.ask(contact, ["prop", "get", name], timeout=PATIENCE))
+            ends = (contact.name, name) if side == "out" else (name, contact.name)
+            yield *ends, End(plain_text(listed.find("carrier", "")), qos=qos_)
+
+
+__all__ = ["End", "Flow", "flows", "read"]

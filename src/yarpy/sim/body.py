@@ -1,0 +1,55 @@
+"""Body: joints and the time that passes for them.
+
+    with body.present() as joints:      # the joints as they are now; nothing moves in here
+        print(joints[0].position)
+
+Rules: a body has no thread. Time passes when somebody looks: `present` lets the joints catch up
+with the clock first. The clock is given, so a test decides what time it is. Any thread may look,
+one at a time.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Final, Generic, TypeVar
+
+from yarpy.sim.joint import Joint
+
+J = TypeVar("J", bound=Joint)
+
+STEP: Final = 0.005  # seconds that pass at once, at most
+MEMORY: Final = 5.0  # what happened in a longer time that nobody looked is not worked out
+
+Clock = Callable[[], float]
+
+
+class Body(Generic[J]):
+    """These joints, in the time that `clock` tells in seconds."""
+
+    def __init__(self, joints: Sequence[J], clock: Clock = time.time) -> None:
+        self.joints = tuple(joints)
+        self._clock = clock
+        self.time = clock()  # until which the joints have come
+        self._lock = threading.RLock()  # board, cameras and sensors look from threads of their own
+
+    @contextmanager
+    def present(self) -> Iterator[tuple[J, ...]]:
+        """Hold the body at the present moment."""
+        with self._lock:
+            now = self._clock()
+            ahead = now - self.time
+            if ahead >= 1e-4:
+                self.elapse(min(ahead, MEMORY))
+            if ahead >= 1e-4 or ahead < 0:  # the clock may be set back
+                self.time = now
+            yield self.joints
+
+    def elapse(self, seconds: float) -> None:
+        """Let time pass. Inside `present` only."""
+        count = -int(-seconds // STEP)
+        for _ in range(count):
+            for joint in self.joints:
+                joint.step(seconds / count)

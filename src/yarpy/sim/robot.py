@@ -1,0 +1,85 @@
+"""Robot: devices under their names, served on YARP ports.
+
+    with Robot("/icubSim", icub_head()):             # /icubSim/head/rpc:i, /icubSim/cam/left ...
+        ...
+
+Rules: a robot is what it is made of: control boards, cameras, sensors. How their ports speak to
+browsers, C++ programs or people is the business of ports.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from yarpy.devices.control_board.interface import Joints
+from yarpy.devices.frame_grabber.interface import Camera
+from yarpy.devices.opened import Opened, prefix
+from yarpy.sim.axis import ICUB_HEAD
+from yarpy.sim.board import Board
+from yarpy.sim.body import Body, Clock
+from yarpy.sim.head import SIDES
+from yarpy.sim.joint import Joint
+
+if TYPE_CHECKING:
+    from yarpy.names.base import NameClient
+
+NAME: Final = "/icubSim"
+FPS: Final = 30.0
+SIZE: Final = (320, 240)
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The devices of a robot, by the names of their ports without the robot's."""
+
+    boards: Mapping[str, Joints] = field(default_factory=dict)
+    cameras: Mapping[str, Camera] = field(default_factory=dict)
+    sensors: Mapping[str, object] = field(default_factory=dict)
+
+
+def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
+    """A head like an iCub's in a room: six joints, two eyes, an inertial unit.
+
+    size: width and height of the pictures. clock: what time it is, in seconds.
+    """
+    from yarpy.sim.eye import Eye, Shutter
+    from yarpy.sim.inertial import Inertial
+    from yarpy.sim.scene import room
+
+    body = Body([Joint(axis) for axis in ICUB_HEAD], clock)
+    shutter, scene = Shutter(body), room()
+    left, right = (Eye(shutter, scene, side, *size) for side in SIDES)
+    return Parts(
+        {"head": Board(body)}, {"cam/left": left, "cam/right": right}, {"inertial": Inertial(body)}
+    )
+
+
+class Robot(Opened):
+    """Serves `parts` while it is open; a context manager.
+
+    name: prefix of all ports. fps: pictures per second. names: a name client, None for the default.
+    Raises AddressError (a name is in use), NoNameServer.
+    """
+
+    def __init__(
+        self, name: str, parts: Parts, fps: float = FPS, *, names: NameClient | None = None
+    ) -> None:
+        from yarpy.devices import ControlBoardServer, FrameGrabberServer, MultiSensorServer
+
+        self.name = name = prefix(name)
+        self.ports: list[str] = []  # prefixes
+        with ExitStack() as opened:
+            for part, board in parts.boards.items():
+                server = ControlBoardServer(f"{name}/{part}", board, names=names)
+                self.ports.append(opened.enter_context(server).name)
+            for part, camera in parts.cameras.items():
+                grabber = FrameGrabberServer(f"{name}/{part}", camera, 1 / fps, names=names)
+                self.ports.append(opened.enter_context(grabber).name)
+            for part, sensors in parts.sensors.items():
+                measures = MultiSensorServer(f"{name}/{part}", sensors, names=names)
+                self.ports.append(opened.enter_context(measures).name)
+            self._opened = opened.pop_all()

@@ -1,0 +1,96 @@
+"""Panel: a page that shows a robot and moves it, whatever the robot is made of.
+
+GET /         the page
+GET /robot    which ports of control boards, cameras and sensors there are, as JSON
+
+Rules: the page talks to the ports of the robot itself, as any page could: questions and commands
+to `rpc:i`, events from `state:o` and `measures:o`, MJPEG from cameras. The robot knows nothing of
+it and may be a C++ one, of which it shows joints and, if it has that carrier, pictures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import yarpy
+from yarpy.contact import Contact
+from yarpy.names.address import is_loopback
+from yarpy.names.client import YarpNameClient
+from yarpy.views.asset import asset, jsonpage
+
+if TYPE_CHECKING:
+    from yarpy.names.base import NameClient
+    from yarpy.port.base import BasePort
+
+_FILES = (
+    *("panel.css", "style.css", "panel.js", "panel_camera.js", "panel_curve.js", "panel_joint.js"),
+    *("panel_port.js", "panel_sensor.js", "common.js", "plot.js", "horizon.js"),
+)
+
+
+class Panel:
+    """Serves the page of the robot whose ports begin with `robot` on `port`.
+
+    names: the name service that knows the robot.
+    """
+
+    def __init__(self, port: BasePort, robot: str, names: NameClient) -> None:
+        self._robot = "/" + robot.strip("/")
+        self._names = names
+        port.on_page(self._page)
+
+    def _page(self, path: str, fields: Mapping[str, str]) -> yarpy.Page | None:
+        if path == "/":
+            return asset("panel.html")
+        if path == "/robot":
+            try:
+                return jsonpage(self.robot())
+            except yarpy.NoNameServer as error:
+                return yarpy.Page(str(error), "text/plain; charset=utf-8", 503)
+        name = path.removeprefix("/")
+        return asset(name) if name in _FILES else None
+
+    def robot(self) -> dict[str, Any]:
+        """The ports of the robot by what they are for. Raises NoNameServer.
+
+        An address is a host and a number; a host of "" is the one that the page came from.
+        """
+        found = {contact.name: contact for contact in self._names.list(self._robot)}
+
+        def named(end: str) -> list[str]:
+            return sorted(name.removesuffix(end) for name in found if name.endswith(end))
+
+        return {
+            "robot": self._robot,
+            "server": self._server(),
+            "boards": [
+                {
+                    "name": name,
+                    "rpc": _address(found[f"{name}/rpc:i"]),
+                    "state": _address(found[f"{name}/state:o"]),
+                }
+                for name in named("/rpc:i")
+                if f"{name}/state:o" in found
+            ],
+            "cameras": [
+                {"name": name, "images": _address(found[name])}
+                for name in named("/rpc")
+                if name in found
+            ],
+            "sensors": [
+                {"name": name, "measures": _address(found[f"{name}/measures:o"])}
+                for name in named("/measures:o")
+            ],
+        }
+
+    def _server(self) -> tuple[str, int] | None:
+        """Where all ports are listed, if that is a port."""
+        names = self._names
+        if not isinstance(names, YarpNameClient):
+            return None
+        return _address(Contact("tcp", "", names.host, names.port))
+
+
+def _address(contact: Contact) -> tuple[str, int]:
+    return "" if is_loopback(contact.host) else contact.host, contact.port

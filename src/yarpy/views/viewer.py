@@ -1,0 +1,64 @@
+"""Viewer: pictures side by side in a page that their ports serve themselves.
+
+GET /         the page
+GET /status   what there is to tell of each picture, as JSON
+POST /form    {"admin": 1, "req": ["click", 0, x, y]}: somebody clicked on the first picture
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+import yarpy
+from yarpy.views.asset import jsonpage, page_of
+from yarpy.views.picture import Picture
+
+
+class Sink(Protocol):
+    """Who hears of clicks: a port."""
+
+    def write(self, value: object) -> object:
+        """Take `[x, y]`, or `[x0, y0, x1, y1]` for a drag; pixels from the top left."""
+
+
+class Viewer:
+    """The page of several pictures; each of their ports serves it.
+
+    quality: of the JPEG files, 1 to 100. rate: pictures per second that a browser gets at most.
+    clicks: for each picture in turn, who hears of clicks on it.
+    """
+
+    def __init__(
+        self,
+        pictures: Sequence[Picture],
+        quality: int = 75,
+        rate: float = 30.0,
+        clicks: Sequence[Sink] = (),
+    ) -> None:
+        self._pictures = pictures
+        self._wish = f"quality={quality}&rate={rate:g}"
+        self._clicks = clicks
+        for picture in pictures:
+            picture.port.on_page(self._page)
+            picture.port.on_admin(self._clicked)
+
+    def _page(self, path: str, fields: Mapping[str, str]) -> yarpy.Page | None:
+        if path == "/status":
+            return jsonpage(self.status())
+        return page_of("view", path)
+
+    def status(self) -> dict[str, Any]:
+        """What the page is told."""
+        found = [picture.status() for picture in self._pictures]
+        for index, one in enumerate(found):
+            one["clicks"] = index < len(self._clicks)
+        return {"wish": self._wish, "pictures": found}
+
+    def _clicked(self, message: yarpy.Message) -> object:
+        match message.value:
+            case ["click", int(index), *places] if 0 <= index < len(self._clicks):
+                if len(places) in (2, 4) and all(isinstance(place, int) for place in places):
+                    self._clicks[index].write(places)
+                    return [yarpy.Vocab("ok")]
+        return None

@@ -1,0 +1,94 @@
+"""Ports that commands open."""
+
+import os
+import signal
+import time
+
+import click
+import pytest
+
+import yarpy
+from yarpy.cli import signals
+from yarpy.cli.ports import hear_from, open_port, send_to
+
+
+@pytest.fixture(autouse=True)
+def context(here):
+    """Those of a command: with the environment of this file's server, and its own log."""
+    with click.Context(click.Command("test")) as context:
+        yield context
+
+
+def test_with_a_name_server(names):
+    with (
+        open_port(yarpy.Port, "/opening/a") as a,
+        open_port(yarpy.Port, "/opening/b") as b,
+        open_port(yarpy.Port, "/opening/c") as c,
+    ):
+        send_to(a, "/opening/b")
+        hear_from(a, "fast_tcp://opening/c")
+        assert [(link.name, link.carrier) for link in a.outputs] == [("/opening/b", "tcp")]
+        assert [(link.name, link.carrier) for link in c.outputs] == [("/opening/a", "fast_tcp")]
+        assert b.wait_for_inputs(timeout=5)
+
+
+def test_topics(server):
+    with open_port(yarpy.Port, "/opening/d") as d, open_port(yarpy.Port, "/opening/e") as e:
+        send_to(d, "topic://opening/t")
+        hear_from(e, "topic://opening/t")
+        assert e.wait_for_inputs(timeout=5)
+        assert d.wait_for_outputs(timeout=5)
+        assert [link.name for link in d.outputs] == ["/opening/e"]
+
+
+def test_a_living_name_is_not_taken():
+    with (
+        open_port(yarpy.Port, "/opening/f"),
+        pytest.raises(yarpy.AddressError, match="in use"),
+    ):
+        open_port(yarpy.Port, "/opening/f")
+
+
+def test_without_a_name_server(monkeypatch, capsys):
+    """Ports without a name talk by address."""
+    monkeypatch.delenv("YARPY_SERVER")
+    with pytest.raises(yarpy.NoNameServer):
+        open_port(yarpy.Port, "/opening/g")
+    with open_port(yarpy.Port, "...") as reader, open_port(yarpy.Port, "...") as writer:
+        assert f"others reach it at /{reader.address}" in capsys.readouterr().err
+        send_to(writer, f"/{reader.address}")
+        writer.write(["by address"])
+        assert reader.read(timeout=5).value == ["by address"]
+        writer.outputs[0].close()
+        hear_from(reader, f"tcp://{writer.address}/")
+        writer.wait_for_outputs(timeout=5)
+        writer.write(["again"])
+        assert reader.read(timeout=5).value == ["again"]
+
+
+def test_ports_close_with_the_command(names):
+    with click.Context(click.Command("other")):
+        port = open_port(yarpy.Port, "/opening/h")
+        assert names.query("/opening/h") is not None
+    assert port.closed
+    assert names.query("/opening/h") is None
+
+
+def test_a_signal_while_a_port_opens(names, monkeypatch):
+    """It is heard when the port is open, and closes it."""
+    before = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)
+    hangup = signal.getsignal(signal.SIGHUP)
+    signals.watch()
+
+    def slow(name, **options):
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0.01)
+        return yarpy.Port(name, **options)
+
+    try:
+        with pytest.raises(signals.Interrupted), click.Context(click.Command("other")):
+            open_port(slow, "/opening/i")
+    finally:
+        for number, handler in zip(("TERM", "INT", "HUP"), (*before, hangup), strict=True):
+            signal.signal(getattr(signal, f"SIG{number}"), handler)
+    assert names.query("/opening/i") is None

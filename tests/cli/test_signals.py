@@ -1,0 +1,90 @@
+"""Signals end commands in good order."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from yarpy.cli.signals import Interrupted, held
+
+ENDINGS = [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+
+
+@pytest.mark.parametrize(("number", "code"), ENDINGS)
+def test_a_signal_ends_quietly(cli, number, code):
+    with cli.start("time") as process:
+        process.wait_line(r"\d")
+        process.signal(number)
+        assert process.wait() == code
+        assert process.stderr == ""
+
+
+def test_names_are_given_back(cli, names):
+    with cli.start("repeat", "/ending/repeat") as process:
+        process.wait_line("active")
+        assert names.query("/ending/repeat") is not None
+        process.signal(signal.SIGTERM)
+        assert process.wait() == 143
+    assert names.query("/ending/repeat") is None
+
+
+def test_a_shell_that_ignores_sigint_for_background_jobs(cli):
+    start = "import os, signal, sys; signal.signal({}, signal.SIG_IGN); os.execv(*{!r})"
+    command = [sys.executable, "-m", "yarpy", "time"]
+    for number, code in ((signal.SIGINT, 130), (signal.SIGHUP, None)):
+        with subprocess.Popen(
+            [sys.executable, "-c", start.format(int(number), (sys.executable, command))],
+            env=cli.environment,
+            stdout=subprocess.PIPE,
+        ) as process:
+            assert process.stdout is not None
+            process.stdout.readline()
+            process.send_signal(number)
+            if code is None:
+                time.sleep(0.3)
+                assert process.poll() is None  # nohup
+                process.kill()
+            else:
+                assert process.wait(10) == code
+
+
+STUCK = """
+import time
+from yarpy.cli import signals
+signals.watch()
+try:
+    print("waiting", flush=True)
+    time.sleep(30)
+except signals.Interrupted:
+    print("closing", flush=True)
+    time.sleep(30)
+"""
+
+
+def test_a_second_signal_ends_what_is_stuck_in_closing(cli):
+    with yarpy_process(STUCK) as process:
+        assert process.stdout.readline() == "waiting\n"
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == "closing\n"
+        process.send_signal(signal.SIGINT)  # the same person, pressing twice
+        time.sleep(0.2)
+        assert process.poll() is None
+        time.sleep(2.0)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(10) == 130
+
+
+def yarpy_process(code):
+    return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+
+
+def test_is_no_exception_that_code_swallows():
+    assert not issubclass(Interrupted, Exception)
+    assert Interrupted(15).number == 15
+
+
+def test_held_without_a_watch_holds_nothing():
+    with pytest.raises(ZeroDivisionError), held():
+        raise ZeroDivisionError

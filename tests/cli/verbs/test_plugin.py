@@ -1,0 +1,46 @@
+"""`yarpy plugin`."""
+
+import json
+from importlib.metadata import EntryPoint
+
+from yarpy import registry
+
+
+def test_list(cli):
+    said = cli.run("plugin")
+    assert said.returncode == 0
+    lines = said.stdout.splitlines()
+    assert lines[0] == "carrier   tcp"
+    assert "command   read" in lines
+    assert "tcp" in cli.run("plugin", "--list").stdout.splitlines()
+
+
+def test_one(here):
+    said = here("plugin", "fast_tcp")
+    assert said.code == 0
+    assert said.out.startswith(
+        "Yes, fast_tcp is a carrier\n"
+        "  * module: yarpy.carriers.tcp\n"
+        "  * object: FastTcp\n"
+        "  * about:  Messages follow one another"
+    )
+    assert "module: yarpy.cli.verbs.read" in here("plugin", "read").out
+
+
+def test_nobody(here):
+    said = here("plugin", "nonsense")
+    assert (said.code, said.out) == (1, "")
+    assert 'no plug-in "nonsense"' in said.err
+
+
+def test_one_that_does_not_load(here, monkeypatch):
+    entry = EntryPoint("broken", "yarpy_no_such_package:X", "yarpy.monitors")
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda group: [entry])
+    monkeypatch.setattr(registry, "monitors", registry.Registry("monitors", {}))
+    said = here("plugin", "broken")
+    assert said.code == 1
+    assert said.err.startswith('error: "broken" of an installed package is installed but cannot')
+
+
+def test_json(here):
+    assert {"kind": "carrier", "name": "udp"} in json.loads(here("plugin", "--json").out)

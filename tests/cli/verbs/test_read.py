@@ -1,0 +1,177 @@
+"""`yarpy read`."""
+
+import json
+import signal
+
+import pytest
+
+import yarpy
+from yarpy.cli.verbs.read import Printer, Wish, parse_words
+
+
+@pytest.fixture(scope="module")
+def writer(names):
+    with yarpy.Port("/read/writer", names=names) as port:
+        yield port
+
+
+def test_prints_what_arrives(cli, writer):
+    """The messages of the recorded `yarp read`, and its lines."""
+    with cli.start("read", "/read/a", "/read/writer") as process:
+        assert writer.wait_for_outputs(timeout=10)
+        for text in ("1 ping 3.14", "hello", "(a (1 2)) [set]", '"two words" ""', "", "x"):
+            writer.write(yarpy.Bottle.from_text(text))
+        writer.write(yarpy.Stamp(7, 1.25))
+        writer.write(yarpy.Vector([0.5, 1.5]))
+        writer.write([0, "plain text"])
+        writer.write([7, "hello"])
+        writer.write([0, 5])
+        writer.write([-1, ""])
+        writer.write([2, "caf\udce9"])
+        writer.write(yarpy.Bottle.from_text("last"))
+        process.wait_line("^last$", stream="out")
+        process.signal(signal.SIGINT)
+        assert process.wait() == 0
+    assert process.stdout == (
+        "1 ping 3.14000000000000012434\n"
+        "hello\n"
+        "(a (1 2)) [set]\n"
+        '"two words" ""\n'
+        "\n"
+        "x\n"
+        "7 1.25\n"
+        "0.5 1.5\n"
+        "plain text\n"
+        "hello\n"
+        "0 5\n"
+        "\n"
+        "caf\udce9\n"
+        "last\n"
+    )
+    lines = process.stderr.splitlines()
+    assert lines[0].startswith("[INFO] Port /read/a active at tcp://127.0.0.1:")
+    assert lines[1] == "[INFO] Receiving input from /read/writer to /read/a using tcp"
+    assert "Interrupting..." in lines
+
+
+def test_images_are_what_cpp_prints(cli, writer):
+    numpy = pytest.importorskip("numpy")
+    pixels = numpy.array([[[0, 0, 0], [10, 0, 1]]], dtype=numpy.uint8)
+    with cli.start("read", "/read/b", "/read/writer", "once") as process:
+        assert writer.wait_for_outputs(timeout=10)
+        writer.write(yarpy.Image(pixels))
+        assert process.wait() == 0
+    assert process.stdout == "[mat] [rgb] (3 8 8 2 1) {0 0 0 10 0 1 0 0}\n"
+
+
+def test_the_end_of_verbatim_lines_ends_it(cli, writer):
+    with cli.start("read", "/read/c", "/read/writer") as process:
+        assert writer.wait_for_outputs(timeout=10)
+        writer.write([0, "line"])
+        writer.write([1, "<EOF>"])
+        assert process.wait() == 0
+    assert process.stdout == "line\n"
+
+
+def test_envelope_trim_and_once(cli, writer):
+    words = ("read", "/read/d", "envelope", "trim", "10", "/read/writer", "once")
+    with cli.start(*words) as process:
+        assert writer.wait_for_outputs(timeout=10)
+        writer.write(yarpy.Bottle.from_text("1 ping 3.14"), yarpy.Stamp(3, 4.5))
+        assert process.wait() == 0
+    assert process.stdout == "3 4.5 \n1 ping 3.1\n"
+
+
+def test_json(cli, writer):
+    with cli.start("read", "--json", "/read/e", "/read/writer") as process:
+        assert writer.wait_for_outputs(timeout=10)
+        writer.write(yarpy.Bottle(["x", 1, [2.5]]), yarpy.Stamp(3, 4.5))
+        writer.write([0, "a line"])
+        process.wait_line("line", stream="out")
+    assert [json.loads(line) for line in process.stdout.splitlines()] == [
+        {"source": "/read/writer", "envelope": "3 4.5", "value": ["x", 1, [2.5]]},
+        {"source": "/read/writer", "envelope": "", "value": "a line"},
+    ]
+
+
+def test_keeps_every_message(cli, writer):
+    with cli.start("read", "/read/f", "/read/writer") as process:
+        assert writer.wait_for_outputs(timeout=10)
+        for number in range(2000):
+            writer.write([number])
+        process.wait_line("^1999$", stream="out")
+    assert process.stdout == "".join(f"{number}\n" for number in range(2000))
+
+
+def test_what_is_no_bottle_does_not_end_it(cli, writer):
+    class Odd:
+        def to_wire(self):
+            return (b"\xff" * 20,)
+
+    with cli.start("read", "/read/g", "/read/writer") as process:
+        assert writer.wait_for_outputs(timeout=10)
+        writer.write(Odd())
+        writer.write(["x"])
+        process.wait_line("^x$", stream="out")
+    assert "error: a message from /read/writer cannot be printed: " in process.stderr
+
+
+def test_a_living_name_is_refused_with_the_hint(here, writer):
+    said = here("read", "/read/writer")
+    assert (said.code, said.out) == (1, "")
+    assert "is in use" in said.err and "`yarpy read ... /read/writer`" in said.err
+
+
+def test_a_name_that_cannot_be_one(here):
+    said = here("read", "noslash")
+    assert said.code == 1 and 'must start with "/"' in said.err
+
+
+def test_a_remote_that_is_not_there_is_only_told(cli, names):
+    with cli.start("read", "/read/h", "/nobody", "once") as process:
+        process.wait_line('error: no port "/nobody"', stream="err")
+        with yarpy.Port("/read/late", names=names) as late:
+            late.connect("/read/h")
+            late.write(["x"])
+            assert process.wait() == 0
+    assert process.stdout == "x\n"
+
+
+def test_without_a_name_server(lone):
+    """Ports talk by address."""
+    with (
+        yarpy.Port("", names=None) as writer,
+        lone.start("read", "...", f"/{writer.address}") as process,
+    ):
+        assert writer.wait_for_outputs(timeout=10)
+        writer.write(["x"])
+        process.wait_line("^x$", stream="out")
+
+
+@pytest.mark.parametrize(
+    ("words", "wish"),
+    [
+        ([], Wish()),
+        (["/a", "envelope", "/b"], Wish(["/a", "/b"], envelope=True)),
+        (["trim"], Wish(trim=80)),
+        (["trim", "once"], Wish(trim=80, once=True)),
+        (["once", "trim", "5", "/a"], Wish(["/a"], trim=5, once=True)),
+    ],
+)
+def test_words(words, wish):
+    assert parse_words(words) == wish
+
+
+@pytest.mark.parametrize(
+    ("value", "line"),
+    [
+        (yarpy.Bottle([True, "x"]), "true x\n"),
+        (yarpy.Bottle([1, yarpy.Vocab("x")]), "1 [x]\n"),
+        (yarpy.Bottle([1.0, "x"]), "1.0 x\n"),
+        (yarpy.Bottle([2, "x", 3]), "2 x 3\n"),
+    ],
+)
+def test_only_an_integer_and_a_string_are_verbatim(capsys, value, line):
+    message = yarpy.Message("D", value, spelling="object")
+    assert Printer().show(message) is True
+    assert capsys.readouterr().out == line

@@ -1,0 +1,140 @@
+"""`yarpy rpc`."""
+
+import pytest
+
+import yarpy
+from yarpy.cli.verbs.rpc import Target, commands_of, many, print_reply
+
+
+@pytest.fixture(scope="module")
+def server_port(names):
+    sources = []
+
+    def answer(message):
+        sources.append(message.source)
+        question = yarpy.Bottle(message.value)
+        if question == ["help"]:
+            return [yarpy.Vocab("many"), "*** Available commands:", "home", "help", "stop"]
+        if question == ["list"]:
+            return [yarpy.Vocab("many"), ["a", 1], "two words"]
+        return [yarpy.Vocab("ok"), "echo", question]
+
+    with yarpy.RpcServer("/rpc/server", answer, names=names) as port:
+        port.sources = sources
+        yield port
+
+
+def test_asks_line_by_line(cli, server_port):
+    said = cli.run("rpc", "/rpc/server", input="1 ping 3.14\nhello (a b)\n\nlist\nlast")
+    assert (said.returncode, said.stderr) == (0, "")
+    assert said.stdout == (
+        "Response: [ok] echo (1 ping 3.14000000000000012434)\n"
+        "Response: [ok] echo (hello (a b))\n"
+        "Response: [ok] echo ()\n"
+        "Responses:\n  a 1\n  two words\n"
+        "Response: [ok] echo (last)\n"
+    )
+    assert set(server_port.sources) == {"anon_rpc"}
+
+
+def test_under_a_name_of_our_own(cli, server_port):
+    assert cli.run("rpc", "text_ack://rpc/server", "/me", input="x\n").returncode == 0
+    assert server_port.sources[-1] == "/me"
+
+
+def test_by_address(here, server_port, monkeypatch):
+    import io
+
+    monkeypatch.setattr("sys.stdin", io.StringIO("x\n"))
+    said = here("rpc", f"/{server_port.address}")
+    assert said[:2] == (0, "Response: [ok] echo (x)\n")
+
+
+def test_a_target_that_is_not_there(here, names):
+    said = here("rpc", "/nobody")
+    assert (said.code, said.out) == (1, "")
+    assert said.err.startswith('error: Cannot make connection: no port "/nobody"')
+    assert "--client" in said.err
+    names.register("/rpc/dead", "tcp", "127.0.0.1", 1)
+    assert here("rpc", "/rpc/dead").code == 1
+
+
+def test_a_target_that_comes_back(cli, names):
+    def port():
+        return yarpy.RpcServer("/rpc/moody", lambda message: ["ok"], names=names)
+
+    first = port()
+    with cli.start("rpc", "/rpc/moody") as process:
+        process.write_line("one")
+        process.wait_line("Response: ok", stream="out")
+        first.close()
+        process.write_line("two")
+        process.wait_line("Target disappeared, reconnecting", stream="err")
+        with port():
+            process.wait_line("Response: ok", count=2, stream="out")
+        process.write_line("three")
+        assert process.wait() == 1
+    assert 'error: "/rpc/moody" went away' in process.stderr
+
+
+def test_as_a_client_with_a_port(cli, server_port, names):
+    with cli.start("rpc", "--client", "/rpc/client") as process:
+        process.write_line("x")
+        process.wait_line("active", stream="err")
+        assert cli.run("connect", "/rpc/client", "/rpc/server").returncode == 0
+        process.wait_line(r"^\[ok\] echo \(x\)$", stream="out")
+        process.write_line("list")
+        process.wait_line("^  two words$", stream="out")
+        process.end_input()
+        assert process.wait() == 0
+    assert process.stdout == "[ok] echo (x)\n  a 1\n  two words\n"
+    assert server_port.sources[-1] == "/rpc/client"
+    assert names.query("/rpc/client") is None
+
+
+def test_as_a_client_connected_at_once(cli, server_port):
+    said = cli.run("rpc", "--client", "/rpc/client", "/rpc/server", input="x\n")
+    assert (said.returncode, said.stdout) == (0, "[ok] echo (x)\n")
+
+
+def test_completion_knows_the_commands_of_the_target(here, server_port):
+    target = Target("/rpc/server")
+    assert commands_of(target.ask) == ["home", "help", "stop"]
+    target.close()
+
+
+@pytest.mark.parametrize(
+    "reply",
+    ['"no idea"', "", "[fail]", "[many] a b", '[many] "Commands:" a', "(x y)"],
+)
+def test_no_completion_from_other_replies(reply):
+    assert commands_of(lambda question: yarpy.Bottle.from_text(reply)) == []
+
+
+@pytest.mark.parametrize(
+    "reply",
+    ['[many] "*** Available commands:" a b', '("*** Available commands:" a b)',
+     '"*** Available commands:" a b', '[many] ("*** Available commands:" a b)'],
+)  # fmt: skip
+def test_spellings_of_a_list_of_commands(reply):
+    assert commands_of(lambda question: yarpy.Bottle.from_text(reply)) == ["a", "b"]
+
+
+@pytest.mark.parametrize(
+    ("reply", "items"),
+    [
+        ("[many]", []),
+        ("[many] a (b c)", ["a", ["b", "c"]]),
+        ("[many] (b c)", ["b", "c"]),
+        ("many a", None),
+        ("", None),
+        ("[ok] x", None),
+    ],
+)
+def test_many(reply, items):
+    assert many(yarpy.Bottle.from_text(reply)) == items
+
+
+def test_empty_reply(capsys):
+    print_reply(yarpy.Bottle())
+    assert capsys.readouterr().out == "Response: \n"

@@ -1,0 +1,102 @@
+"""`yarpy sim`."""
+
+import signal
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from support.wait import wait_until
+
+import yarpy
+
+PATIENCE = 30.0
+ARM = Path(__file__).parents[2] / "support" / "arm.xml"
+
+
+def test_robot_of_a_name(cli, names):
+    words = ("--robot", "robbie", "--size", "64x48", "--fps", "50")
+    with (
+        cli.start("sim", *words) as process,
+        yarpy.BufferedPort("/sim/eye", strict=True, names=names) as eye,
+    ):
+        ready = process.wait_line(r"^/robbie is ready: (.*)$", stream="out", timeout=PATIENCE)[1]
+        assert ready == "/robbie/head /robbie/cam/left /robbie/cam/right /robbie/inertial"
+        with yarpy.RpcClient("/robbie/head/rpc:i", names=names) as head:
+            assert head.call("set", "pos", 1, 20) == ["ok"]
+            wait_until(lambda: abs(head.call("get", "enc", 1)[2] - 20) < 0.01, PATIENCE)
+        eye.listen_to("/robbie/cam/left")
+        image = eye.read(timeout=PATIENCE).as_(yarpy.Image)
+        assert (image.width, image.height) == (64, 48)
+        process.signal(signal.SIGINT)
+        assert process.wait() == 0, process.stderr
+        assert "Traceback" not in process.stderr
+    assert names.list("/robbie") == []
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (("--size", "big"), "'big' is no size; say 640x480"),
+        (("--size", "5x5"), "from 16 to 2048 pixels"),
+        (("--fps", "0"), "0.1<=x<=1000"),
+        (("--mujoco", "/no/such/model.xml"), "does not exist"),
+    ],
+)
+def test_wrong_options(here, words, reason):
+    said = here("sim", *words)
+    assert said.code == 1
+    assert reason in said.err
+
+
+def test_name_that_is_taken(here, names):
+    with yarpy.Port("/taken/head/rpc:i", names=names):
+        said = here("sim", "--robot", "/taken")
+    assert said.code == 1
+    assert "is in use" in said.err
+    assert names.list("/taken") == []
+
+
+def needs_mujoco():
+    """Not by importing it: how it draws is decided when it is imported, and not here."""
+    if find_spec("mujoco") is None:
+        pytest.skip("no MuJoCo: pip install 'yarpy[sim]'")
+
+
+def test_mujoco_model(cli, names):
+    needs_mujoco()
+    with (
+        cli.start("sim", "--mujoco", str(ARM), "--size", "64x48") as process,
+        yarpy.BufferedPort("/sim/watching", strict=True, names=names) as watching,
+    ):
+        ready = process.wait_line(r"^/little_arm is ready: (.*)$", stream="out", timeout=PATIENCE)
+        assert {"/little_arm/joints", "/little_arm/inertial"} <= {*ready[1].split()}
+        with yarpy.RpcClient("/little_arm/joints/rpc:i", names=names) as joints:
+            assert joints.call("get", "name", 0)[2] == "shoulder"
+            assert joints.call("set", "pos", 0, 30) == ["ok"]
+            wait_until(lambda: abs(joints.call("get", "enc", 0)[2] - 30) < 0.5, PATIENCE)
+        if "no cameras" not in process.stderr:
+            watching.listen_to("/little_arm/cam/watching")
+            assert watching.read(timeout=PATIENCE).as_(yarpy.Image).width == 64
+        process.signal(signal.SIGINT)
+        assert process.wait(PATIENCE) == 0, process.stderr
+        assert "Traceback" not in process.stderr
+
+
+def test_file_that_is_no_model(here, tmp_path):
+    needs_mujoco()
+    file = tmp_path / "model.xml"
+    file.write_text("<mujoco><worldbody><nonsense/></worldbody></mujoco>")
+    said = here("sim", "--mujoco", str(file))
+    assert said.code == 1
+    assert "nonsense" in said.err
+    assert len(said.err.splitlines()) == 1
+
+
+def test_without_mujoco(here, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    file = tmp_path / "model.xml"
+    file.write_text("<mujoco/>")
+    said = here("sim", "--mujoco", str(file))
+    assert said.code == 1
+    assert "pip install 'yarpy[sim]'" in said.err

@@ -1,0 +1,87 @@
+"""`yarpy stats`."""
+
+import json
+import re
+import signal
+import threading
+import time
+
+import pytest
+
+import yarpy
+from yarpy.cli.verbs.stats import Tally, size_of
+
+LINE = r"^[\d.e-]+ Mb/s, [\d.]+ btl/s, [\d.]+ mean period \(s\)$"
+
+
+@pytest.fixture
+def source(names):
+    stop = threading.Event()
+    with yarpy.Port("/stats/source", names=names) as port:
+
+        def send():
+            while not stop.wait(0.02):
+                port.write([0, "x" * 100])
+
+        sender = threading.Thread(target=send)
+        sender.start()
+        yield port
+        stop.set()
+        sender.join()
+
+
+def test_each_second_and_the_total(cli, source):
+    said = cli.run("stats", "/stats/source", "--duration", "1.5")
+    assert said.returncode == 0
+    lines = said.stdout.splitlines()
+    assert len(lines) == 3
+    for line in lines[:2]:
+        assert re.match(LINE, line)
+    match = re.fullmatch(
+        r"([\d.]+) total MB received,  (\d+) total bottles received, ([\d.]+) mean period \(s\)",
+        lines[2],
+    )
+    assert match is not None
+    assert 20 < int(match[2]) < 90
+    assert abs(float(match[1]) - int(match[2]) * 128e-6) / float(match[1]) < 0.15
+    assert 0.015 < float(match[3]) < 0.08
+
+
+@pytest.mark.parametrize("words", [(), ("--port_type", "Port", "--protocol", "fast_tcp")])
+def test_until_interrupted(cli, source, words):
+    with cli.start("stats", "/stats/source", *words) as process:
+        process.wait_line(LINE, stream="out")
+        process.signal(signal.SIGINT)
+        assert process.wait() == 0
+    assert "total bottles received" in process.stdout.splitlines()[-1]
+
+
+def test_json(cli, source):
+    said = cli.run("stats", "/stats/source", "--duration", "0.5", "--json")
+    seconds, total = map(json.loads, said.stdout.splitlines())
+    assert seconds["messages"] == total["total"]["messages"] > 5
+    assert total["total"]["bytes"] > 500
+
+
+def test_nobody(here):
+    said = here("stats", "/nobody")
+    assert said.code == 255 and said.err.count("error: Connection failed: ") == 1
+
+
+def test_tally(monkeypatch):
+    now = time.perf_counter()
+    monkeypatch.setattr(time, "perf_counter", lambda: now)
+    tally = Tally(started=now - 2.0)
+    for _ in range(20):
+        tally.count(47)
+    assert tally.line() == "0.00376 Mb/s, 10 btl/s, 0.1 mean period (s)"
+    assert (
+        tally.total()
+        == "0.00094 total MB received,  20 total bottles received, 0.1 mean period (s)"
+    )
+    assert Tally().period == 0.0
+
+
+def test_size_of():
+    assert size_of(yarpy.Message("D", b"12345")) == 5
+    assert size_of(yarpy.Message("D", ["x"], spelling="object")) == 0

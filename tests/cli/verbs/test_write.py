@@ -1,0 +1,118 @@
+"""`yarpy write`."""
+
+import signal
+
+import pytest
+
+import yarpy
+from yarpy.cli.verbs.write import value_of
+
+
+@pytest.fixture
+def reader(names):
+    with yarpy.BufferedPort("/write/reader", strict=True, names=names) as port:
+        yield port
+
+
+def values(reader, count):
+    return [reader.read(timeout=10).value for _ in range(count)]
+
+
+def test_sends_lines(cli, reader):
+    text = '1 ping 3.14\nhello\r\n(a (1 2)) [set]\n\n  blanks  \n"two words"\nno end'
+    said = cli.run("write", "/write/a", "/write/reader", input=text)
+    assert (said.returncode, said.stdout) == (0, "")
+    assert values(reader, 7) == [
+        [1, "ping", 3.14],
+        ["hello"],
+        [["a", [1, 2]], "set"],
+        [],
+        ["blanks"],
+        ["two words"],
+        ["no", "end"],
+    ]
+    assert reader.waiting == 0
+
+
+def test_verbatim(cli, reader):
+    said = cli.run("write", "/write/a", "verbatim", "/write/reader", input='1 ping\nhello "q')
+    assert said.returncode == 0
+    assert values(reader, 3) == [[0, "1 ping"], [0, 'hello "q'], [1, "<EOF>"]]
+
+
+def test_a_control_character_ends_the_input(cli, reader):
+    said = cli.run("write", "/write/a", "/write/reader", input="x\n\ty\n\x04\nz\n")
+    assert said.returncode == 0
+    assert values(reader, 2) == [["x"], ["y"]]
+    assert reader.waiting == 0
+
+
+def test_several_readers_and_carriers(cli, names, reader):
+    with yarpy.BufferedPort("/write/other", names=names) as other:
+        words = ("write", "/write/a", "/write/reader", "fast_tcp://write/other")
+        assert cli.run(*words, input="x\n").returncode == 0
+        assert values(reader, 1) == values(other, 1) == [["x"]]
+
+
+def test_waits_for_a_connection(cli, reader):
+    with cli.start("write", "/write/a", "--wait-connect") as process:
+        process.write_line("first")
+        process.end_input()
+        process.wait_line("active", stream="err")
+        reader.listen_to("/write/a")
+        assert process.wait() == 0
+    assert values(reader, 1) == [["first"]]
+
+
+def test_period(cli, reader):
+    with cli.start("write", "/write/a", "/write/reader", "--period", "0.05") as process:
+        process.wait_line("published with a period of 0.050000 s", stream="err")
+        process.write_line("x")
+        assert values(reader, 4) == [["x"]] * 4
+        process.write_line("y")
+        while reader.read(timeout=10).value != ["y"]:
+            pass
+        assert values(reader, 2) == [["y"]] * 2
+        process.end_input()
+        assert process.wait() == 0
+
+
+@pytest.mark.parametrize("period", ["0", "-1", "x"])
+def test_wrong_period(here, period):
+    assert here("write", "/write/a", "--period", period).code == 1
+
+
+def test_a_remote_that_is_not_there(cli, names):
+    said = cli.run("write", "/write/a", "/nobody", input="x\n")
+    assert said.returncode == 1
+    assert 'error: no port "/nobody" is registered' in said.stderr
+    assert names.query("/write/a") is None
+
+
+def test_a_living_name_is_refused(here, reader):
+    said = here("write", "/write/reader")
+    assert said.code == 1 and "is in use" in said.err
+
+
+def test_a_signal_closes_it_in_good_order(cli, reader, names):
+    with cli.start("write", "/write/a", "/write/reader") as process:
+        process.write_line("x")
+        assert values(reader, 1) == [["x"]]
+        process.signal(signal.SIGTERM)
+        assert process.wait() == 1
+    assert "Interrupting..." in process.stderr
+    assert names.query("/write/a") is None
+    assert reader.inputs == []
+
+
+def test_type_of_the_port(cli, reader, names):
+    with cli.start("write", "/write/a", "--type", "yarp/image") as process:
+        process.wait_line("active", stream="err")
+        assert names.get("/write/a", "type") == ["yarp/image"]
+
+
+def test_value_of():
+    assert value_of("1 x", verbatim=False) == [1, "x"]
+    assert value_of("1 x", verbatim=True) == [0, "1 x"]
+    with pytest.raises(yarpy.DecodeError):
+        value_of("(" * 500 + ")" * 500, verbatim=False)

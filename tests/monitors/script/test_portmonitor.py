@@ -1,0 +1,530 @@
+"""portmonitor: scripts on connections - found, run, loaded again, arbitrating with events."""
+
+from __future__ import annotations
+
+import logging
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from support.wait import wait_until
+
+import yarpy
+from yarpy import network, registry
+from yarpy.data.bottle import Bottle
+from yarpy.data.property import Property
+from yarpy.data.value import Vocab
+from yarpy.errors import LocalProtocolError, UnknownPlugin, YarpError
+from yarpy.monitors.base import DROP, Place, split_tokens
+from yarpy.monitors.script import script
+from yarpy.monitors.script.portmonitor import PortMonitor, portmonitor
+from yarpy.port import monitoring
+from yarpy.wire.message import DATA, Message
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where this process looks for scripts, and where no other file is."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path / "config"))
+    monkeypatch.setenv("YARP_DATA_HOME", str(tmp_path / "data"))
+    return tmp_path
+
+
+@pytest.fixture
+def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Look at files with every message."""
+    monkeypatch.setattr(script, "PATIENCE", 0.0)
+
+
+def message(*values: object) -> Message:
+    return Message(DATA, Bottle(values).to_bytes(), "3 0.5")
+
+
+def make(tokens: str, sending: bool = False, target: str = "/in") -> Any:
+    parts = tuple(split_tokens(f"tcp+{tokens}"))
+    where = "/out", target, f"tcp+{tokens}", sending, parts, parts
+    return portmonitor(Place(*where, look=monitoring._look))
+
+
+def python(folder: Path, text: str, name: str = "gate.py") -> None:
+    (folder / name).write_text(text)
+
+
+# -- making one -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("tokens", "name"),
+    [
+        ("type.python+file.gate", "gate.py"),
+        ("type.python+file.gate.py", "gate.py"),
+        ("type.python+file.other+file.gate", "gate.py"),
+        ("script.python+file.gate", "gate.py"),
+        ("type.python", "modifier.py"),
+        ("type.python+file.gate+context.app", "data/contexts/app/gate.py"),
+        ("type.python+file.gate", "data/gate"),
+        ("type.python+file.gate", "config/robots/default/gate.py"),
+    ],
+)
+def test_script_is_found(folder: Path, tokens: str, name: str) -> None:
+    (folder / name).parent.mkdir(parents=True, exist_ok=True)
+    python(folder, "def accept(message): return False", name)
+    assert not make(tokens).accept(message())
+
+
+def test_missing_script_says_where_it_was_looked_for(folder: Path) -> None:
+    with pytest.raises(LocalProtocolError, match=r'no script "gate" or "gate\.py"; it looked in'):
+        make("type.python+file.gate")
+
+
+@pytest.mark.parametrize(
+    ("tokens", "kind", "text"),
+    [
+        ("type.perl+file.x", LocalProtocolError, 'no type "perl"; there are lua, python, dll'),
+        ("type.dll+file.nosuch", UnknownPlugin, 'no monitor "nosuch"'),
+        ("type.dll+file.portmonitor", LocalProtocolError, "does not run portmonitors"),
+        ("type.dll", UnknownPlugin, 'no monitor "modifier"'),
+        ("type.python+file.gate+constraint.not", LocalProtocolError, "constraint"),
+    ],
+)
+def test_wrong_parameters_refuse(
+    folder: Path, tokens: str, kind: type[Exception], text: str
+) -> None:
+    python(folder, "x = 1")
+    with pytest.raises(kind, match=text):
+        make(tokens)
+
+
+def test_installed_monitors_are_those_of_type_dll() -> None:
+    class Stock:
+        def __init__(self, place: Place) -> None:
+            self.level = place.text("level")
+
+    registry.monitors.add("stock", Stock)
+    try:
+        assert make("type.dll+file.stock+level.3").level == "3"
+    finally:
+        registry.monitors.remove("stock")
+
+
+def test_several_at_once_as_cpp_4_asks_for_them(folder: Path) -> None:
+    python(folder, "def update(m): return [*m.value, 'a']", "a.py")
+    python(folder, "def update(m): return [*m.value, 'b']\ndef destroy(): print('b ends')", "b.py")
+    both = make("type.python+file.a+type1.python+file1.b")
+    assert both.update(message("hi")).value == ["hi", "a", "b"]
+    with pytest.raises(LocalProtocolError, match='no script "c"'):
+        make("type.python+file.a+type1.python+file1.b+type2.python+file2.c")
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("def create(options): return False", "create does not return true"),
+        ("def create(options):\n    options.nosuch", r"gate\.py:2: AttributeError"),
+        ("1 / 0", r"gate\.py:1: ZeroDivisionError"),
+    ],
+)
+def test_script_that_does_not_start_refuses(folder: Path, text: str, what: str) -> None:
+    python(folder, text)
+    with pytest.raises(LocalProtocolError, match=what):
+        make("type.python+file.gate")
+
+
+def test_what_create_is_told(folder: Path) -> None:
+    python(folder, "def create(options):\n    global told; told = options\n"
+                   "def getparam(): return told")  # fmt: skip
+    tokens = "recv.portmonitor+type.python+file.gate+period_ms.30+name.a.b+flag+(list 1 2)"
+    assert make(tokens).parameters() == {
+        "filename": str(folder / "gate.py"),
+        "source": "/out",
+        "destination": "/in",
+        "sender_side": 0,
+        "receiver_side": 1,
+        "carrier": f"tcp+{tokens}",
+        "period_ms": 30,
+        "name": "a.b",
+        "flag": "",
+        "list": [1, 2],
+    }
+    assert make(tokens, sending=True).parameters()["sender_side"] == 1
+
+
+# -- messages -------------------------------------------------------------------------------------
+
+
+def test_failing_accept_drops_and_failing_update_passes(
+    folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level(logging.WARNING)
+    python(folder, "def accept(message):\n    return message.value[0] / 2 > 0\n"
+                   "def update(message):\n    return message.nosuch\n"
+                   "def update_reply(message): raise OSError('x')\n"
+                   "def trig(): raise OSError('y')\n")  # fmt: skip
+    monitor = make("type.python+file.gate")
+    for _ in range(3):
+        assert not monitor.accept(message("text"))
+        assert monitor.accept(message(1))
+        assert monitor.update(message(1)) is None
+        assert monitor.update_reply(message(1)) is None
+        monitor.trigger()
+    assert [r.getMessage().split("; ")[1] for r in caplog.records] == [
+        "messages are dropped",
+        "messages pass as they are",
+        "replies pass as they are",
+        "the next trigger comes all the same",
+    ]
+    assert "/out -> /in: " in caplog.text
+    assert "gate.py:2: TypeError" in caplog.text
+    assert "gate.py:4: AttributeError" in caplog.text
+
+
+def test_complaints_are_bounded(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.WARNING)
+    python(folder, "def accept(message): raise ValueError(message.value[0])")
+    monitor = make("type.python+file.gate")
+    for number in range(100):
+        monitor.accept(message(number))
+    assert len(caplog.records) == 16
+
+
+@pytest.mark.parametrize(
+    ("sending", "target", "counts"),
+    [(False, "/in", True), (True, "/in", False), (False, "/out", False)],
+    ids=["receiver", "sender", "port"],
+)
+def test_constraint_counts_at_the_receiving_end(
+    folder: Path, sending: bool, target: str, counts: bool
+) -> None:
+    python(folder, "x = 1")
+    monitor = make("type.python+file.gate+constraint.e_test_go", sending, target)
+    assert monitor.accept(message())
+    assert (monitor.update(message()) is DROP) is counts
+    assert monitor.state()["constraint"] == "e_test_go"
+    monitor.control.set_event("e_test_go")
+    assert monitor.update(message()) is None
+    monitor.close()
+
+
+def test_constraint_of_several_words(folder: Path) -> None:
+    python(folder, "x = 1")
+    monitor = make("type.python+file.gate+(constraint not e_test_a and (true or e_test_b))")
+    assert monitor.state()["constraint"] == "not e_test_a and (true or e_test_b)"
+    assert monitor.update(message()) is None
+    monitor.control.set_event("e_test_a")
+    assert monitor.update(message()) is DROP
+    monitor.close()
+
+
+def test_settings_that_a_script_does_not_like_are_an_error(folder: Path) -> None:
+    python(folder, "def setparam(p): p['nosuch']\ndef getparam(): 1 / 0\n")
+    monitor = make("type.python+file.gate")
+    with pytest.raises(LocalProtocolError, match=r"gate\.py:1: KeyError"):
+        monitor.configure(Property(level=1))
+    with pytest.raises(LocalProtocolError, match=r"gate\.py:2: ZeroDivisionError"):
+        monitor.parameters()
+
+
+# -- loading again --------------------------------------------------------------------------------
+
+
+def renew(path: Path, text: str) -> None:
+    """Write a file so that it certainly looks changed."""
+    path.write_text(text)
+    os.utime(path, (time.time() + 5, os.stat(path).st_mtime + 5))
+
+
+@pytest.mark.usefixtures("hasty")
+def test_changed_script_is_loaded_again(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.INFO)
+    path = folder / "gate.py"
+    path.write_text("def accept(m): return True\ndef destroy(): print('old one ends')\n"
+                    "def create(options): portmonitor.set_event('e_test_old')\n")  # fmt: skip
+    monitor = make("type.python+file.gate+constraint.true")
+    assert monitor.accept(message())
+    renew(path, "def accept(m):\n    return m.value == ['new']\n"
+                "def create(options): portmonitor.set_constraint('e_test_old')\n")  # fmt: skip
+    assert not monitor.accept(message("old"))
+    assert monitor.accept(message("new"))
+    assert monitor.update(message("new")) is DROP  # the event went with the old script
+    assert "was loaded again" in caplog.text
+    monitor.close()
+
+
+@pytest.mark.usefixtures("hasty")
+def test_changed_script_that_does_not_start_leaves_the_one_before(
+    folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level(logging.WARNING)
+    path = folder / "gate.py"
+    path.write_text("def accept(m): return True")
+    monitor = make("type.python+file.gate")
+    for text, what in (
+        ("def accept(m: return", "SyntaxError"),
+        ("def create(options): return False", "create does not return true"),
+    ):
+        caplog.clear()
+        renew(path, text)
+        assert all(monitor.accept(message()) for _ in range(3))
+        assert len(caplog.records) == 1
+        assert what in caplog.text
+        assert "the one before goes on" in caplog.text
+    path.unlink()
+    assert monitor.accept(message())
+    renew(path, "def accept(m): return False")
+    assert not monitor.accept(message())
+
+
+# -- whatever comes -------------------------------------------------------------------------------
+
+
+@given(st.text(max_size=30), st.text(max_size=30), st.text(max_size=30))
+def test_any_parameters_make_a_monitor_or_a_clear_error(kind: str, file: str, rest: str) -> None:
+    for tokens in (
+        (f"type.{kind}", f"file.{file}", rest),
+        ("type.python", f"file.{file}", f"context.{rest}"),
+        ("type.python", "file./dev/null", f"(constraint {file})", f"({rest})"),
+        ("type.python", "file./dev/null", f"constraint.{file}", rest),
+    ):
+        try:
+            made = portmonitor(Place("/out", "/in", "", False, tokens, tokens))
+        except YarpError:
+            continue
+        assert isinstance(made, PortMonitor)
+        made.close()
+
+
+# -- ports ----------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def names() -> yarpy.LocalNames:
+    return yarpy.LocalNames()
+
+
+GATE = {
+    "python": """
+level = 1
+def accept(message):
+    return message.value[0] != "drop"
+def update(message):
+    return [*message.value, level]
+def update_reply(message):
+    return [*message.value, "replied"]
+def setparam(parameters):
+    global level
+    level = parameters["level"]
+def getparam():
+    return {"level": level}
+""",
+    "lua": """
+require("yarp")
+local level = 1
+PortMonitor.accept = function(thing)
+    return thing:asBottle():get(0):asString() ~= "drop"
+end
+PortMonitor.update = function(thing)
+    thing:asBottle():addInt32(level)
+    return thing
+end
+PortMonitor.update_reply = function(thing)
+    thing:asBottle():addString("replied")
+    return thing
+end
+PortMonitor.setparam = function(property)
+    level = property:find("level"):asInt32()
+end
+PortMonitor.getparam = function()
+    local p = yarp.Property()
+    p:put("level", level)
+    return p
+end
+""",
+}
+ENDINGS = {"python": "py", "lua": "lua"}
+
+
+@pytest.fixture(params=["python", "lua"])
+def kind(request: pytest.FixtureRequest, folder: Path) -> str:
+    """The language of the scripts `gate` in this folder."""
+    if request.param == "lua":
+        pytest.importorskip("lupa.lua54", reason='Lua is missing: pip install "yarpy[lua]"')
+    (folder / f"gate.{ENDINGS[request.param]}").write_text(GATE[request.param])
+    return str(request.param)
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "udp", "unix_stream", "local", "text_ack"])
+def test_both_ends(names: yarpy.LocalNames, kind: str, carrier: str) -> None:
+    with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
+        one = f"portmonitor+type.{kind}+file.gate"
+        out.connect("/in", f"{carrier}+send.{one}+recv.{one}")
+        mine = ("hi",)
+        for value, passes in ((mine, True), (["drop"], False), (["ho", [2.5]], True)):
+            wait_until(lambda value=value, passes=passes: out.write(value, "5 0.5") == passes)
+            if passes:
+                got = in_.read(timeout=5)
+                assert got.value == [*value, 1, 1]
+                assert (got.source, got.envelope) == ("/out", "5 0.5")
+        assert mine == ("hi",)  # what the program wrote is its own
+
+
+def test_calls_and_settings(names: yarpy.LocalNames, kind: str) -> None:
+    with (
+        yarpy.RpcServer("/server", lambda m: m.value, names=names),
+        yarpy.RpcClient(names=names) as client,
+    ):
+        client.connect("/server", f"tcp+send.portmonitor+type.{kind}+file.gate")
+        assert client.call("hi") == ["hi", 1, "replied"]
+    with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
+        out.connect("/in", f"tcp+recv.portmonitor+type.{kind}+file.gate")
+
+        def admin(*words: object) -> object:
+            return network.admin("/in", *words, names=names)
+
+        wait_until(lambda: in_.inputs)
+        assert admin("get", "in", "/out") == [[["level", 1]]]
+        done = admin("set", "in", "/out", ["level", 5])
+        assert done == [0, "Configured connection from /out\r\n"]
+        out.write(["hi"])
+        assert in_.read(timeout=5).value == ["hi", 5]
+        wrong = admin("set", "in", "/out", ["other", 5])
+        assert kind == "lua" or (isinstance(wrong, list) and "gate.py" in wrong[1])
+
+
+def test_attached_to_a_port(names: yarpy.LocalNames, kind: str) -> None:
+    with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
+        out.connect("/in")
+        text = f"(type {kind}) (file gate)"
+        assert network.admin("/in", "atch", "in", text, names=names) == [Vocab("ok")]
+        assert network.admin("/out", "atch", "out", text, names=names) == [Vocab("ok")]
+        assert out.write(["drop"]) == 0
+        assert out.write(["hi"]) == 1
+        assert in_.read(timeout=5).value == ["hi", 1, 1]
+        assert network.admin("/in", "get", "in", "/in", names=names) == [[["level", 1]]]
+        reply = network.admin("/in", "atch", "in", f"(type {kind}) (file nosuch)", names=names)
+        assert reply[0] == Vocab("fail")
+        assert '"nosuch"' in reply[1]
+        out.write(["ho"])  # the one before stays
+        assert in_.read(timeout=5).value == ["ho", 1, 1]
+        assert network.admin("/in", "dtch", "in", names=names) == [Vocab("ok")]
+        out.write(["ha"])
+        assert in_.read(timeout=5).value == ["ha", 1]
+
+
+def test_without_a_script_there_is_no_connection(
+    names: yarpy.LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level(logging.WARNING)
+    with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
+        for carrier in ("tcp+recv.portmonitor+type.python+file.gone",
+                        "tcp+send.portmonitor+type.python+file.gone"):  # fmt: skip
+            with pytest.raises(yarpy.LinkClosed):
+                out.connect("/in", carrier)
+        assert (out.outputs, in_.inputs) == ([], [])
+    assert caplog.text.count('no script "gone" or "gone.py"') >= 1
+
+
+ARBITRATION = {
+    "ball": {
+        "python": "def create(options): portmonitor.set_constraint('true')\n"
+        "def accept(message):\n    portmonitor.set_event('e_test_ball', 0.5)\n    return True\n",
+        "lua": "PortMonitor.create = function(options)\n"
+        "    PortMonitor.setConstraint('true') return true\nend\n"
+        "PortMonitor.accept = function(thing)\n"
+        "    PortMonitor.setEvent('e_test_ball', 0.5) return true\nend\n",
+    },
+    "line": {
+        "python": "def create(options): portmonitor.set_constraint('not e_test_ball')\n",
+        "lua": "PortMonitor.create = function(options)\n"
+        "    PortMonitor.setConstraint('not e_test_ball') return true\nend\n",
+    },
+}
+
+
+def until(step: Callable[[], object], condition: Callable[[], bool]) -> None:
+    """Repeat a step until something holds."""
+
+    def attempt() -> bool:
+        step()
+        time.sleep(0.01)
+        return condition()
+
+    wait_until(attempt, 10)
+
+
+@pytest.mark.parametrize(("ball_kind", "line_kind"), [("python", "lua"), ("lua", "python")])
+def test_arbitration_by_events(
+    names: yarpy.LocalNames, folder: Path, ball_kind: str, line_kind: str
+) -> None:
+    """The ball inhibits the line for half a second, whatever language either speaks."""
+    pytest.importorskip("lupa.lua54", reason='Lua is missing: pip install "yarpy[lua]"')
+    for name, kind in (("ball", ball_kind), ("line", line_kind)):
+        (folder / f"{name}.{ENDINGS[kind]}").write_text(ARBITRATION[name][kind])
+    heard: list[Message] = []
+    with (
+        yarpy.Port("/in", callback=heard.append, names=names) as in_,
+        yarpy.Port("/ball", names=names) as ball,
+        yarpy.Port("/line", names=names) as line,
+    ):
+        ball.connect("/in", f"tcp+recv.portmonitor+type.{ball_kind}+file.ball")
+        line.connect("/in", f"tcp+recv.portmonitor+type.{line_kind}+file.line")
+        wait_until(lambda: len(in_.inputs) == 2)
+        of_line = next(link for link in in_.inputs if link.source == "/line")
+        line.write(["line"])
+        wait_until(lambda: heard and heard[-1].value == ["line"])
+        ball.write(["ball"])
+        wait_until(lambda: heard[-1].value == ["ball"])
+        until(lambda: (ball.write([1]), line.write([2])), lambda: of_line.stats["drops"] > 5)
+        until(lambda: line.write(["late"]), lambda: bool(heard[-1].value == ["late"]))
+
+
+def test_others_of_the_port_are_triggered(names: yarpy.LocalNames, folder: Path) -> None:
+    """Recorded with C++: A waits for e_go, which its `trig` sets when B sends."""
+    python(folder, "def trig(): portmonitor.set_event('e_test_go', 60)\n", "a.py")
+    python(folder, "x = 1\n", "b.py")
+    with (
+        yarpy.BufferedPort("/in", strict=True, names=names) as in_,
+        yarpy.Port("/a", names=names) as a,
+        yarpy.Port("/b", names=names) as b,
+    ):
+        a.connect("/in", "tcp+recv.portmonitor+type.python+file.a+constraint.e_test_go")
+        b.connect("/in", "tcp+recv.portmonitor+type.python+file.b")
+        a.write(["a1"])
+        wait_until(lambda: any(link.stats["drops"] for link in in_.inputs))
+        b.write(["b1"])
+        assert in_.read(timeout=5).value == ["b1"]
+        a.write(["a2"])
+        assert in_.read(timeout=5).value == ["a2"]
+
+
+def test_timer_of_a_script_ends_with_its_connection(names: yarpy.LocalNames, folder: Path) -> None:
+    text = "def create(options): portmonitor.setTrigInterval(0.01)\ncount = 0\n"
+    python(folder, f"{text}def trig():\n    global count; count += 1\n"
+                   "def getparam(): return {'count': count}\n")  # fmt: skip
+    with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
+        out.connect("/in", "tcp+recv.portmonitor+type.python+file.gate")
+
+        def count() -> int:
+            reply = network.admin("/in", "get", "in", "/out", names=names)
+            return int(reply[0][0][1])
+
+        wait_until(lambda: in_.inputs and count() >= 5)
+        assert timers()
+        out.disconnect("/in")
+        wait_until(lambda: not timers(), what="the timer has ended")
+
+
+def timers() -> list[str]:
+    return [one.name for one in threading.enumerate() if one.name.startswith("yarpy trig")]
+
+
+@pytest.fixture(autouse=True)
+def no_timers() -> Iterator[None]:
+    yield
+    wait_until(lambda: not timers(), what="no timer is left")

@@ -1,0 +1,85 @@
+"""Names of dead ports go away; names of living, silent and foreign things stay."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+from support.port import free_port
+
+import yarpy
+from yarpy.nameserver import collector
+
+CRASHER = """
+import os, yarpy
+port = yarpy.Port("/dead/port")
+print("ready", flush=True)
+os.kill(os.getpid(), 9)
+"""
+
+
+@pytest.fixture
+def server(monkeypatch):
+    monkeypatch.setattr(collector.Collector.__init__, "__defaults__", (0.1,))
+    with yarpy.NameServer() as server:
+        yield server
+
+
+def gone(name, seconds=5.0):
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        if yarpy.query(name) is None:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_a_killed_port_loses_its_name(server):
+    environment = {**os.environ, **server.environment}
+    process = subprocess.run(
+        [sys.executable, "-c", CRASHER], env=environment, timeout=30, capture_output=True
+    )
+    assert process.returncode == -signal.SIGKILL
+    assert gone("/dead/port")
+
+
+def test_living_ports_keep_their_names(server):
+    with yarpy.Port("/living"):
+        time.sleep(1)
+        assert yarpy.query("/living") is not None
+
+
+def test_a_foreign_endpoint_keeps_its_name_though_nothing_listens(server):
+    server.client.register("/camera", "mjpeg", "127.0.0.1", free_port())
+    server.client.register("/other", "tcp", "127.0.0.1", free_port())
+    time.sleep(1)
+    assert yarpy.query("/camera") is not None
+    assert yarpy.query("/other") is not None
+
+
+def test_a_port_that_listens_keeps_its_name_though_its_process_is_not_seen(server):
+    """As in a container: the process number means nothing here, the address does."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        client = server.client
+        client.register("/boxed", "tcp", "127.0.0.1", listener.getsockname()[1])
+        client.set("/boxed", "process", 2**22 + 1)
+        time.sleep(1)
+        assert yarpy.query("/boxed") is not None
+    assert gone("/boxed")
+
+
+def test_a_complaint_has_the_name_looked_at(server, monkeypatch):
+    """A process that lives may have lost its port; who cannot reach it says so."""
+    client = server.client
+    client.register("/lost", "tcp", "127.0.0.1", free_port())
+    client.set("/lost", "process", os.getpid())
+    time.sleep(0.6)
+    assert yarpy.query("/lost") is not None
+    with yarpy.Port("/asker") as asker:
+        for _ in range(2):
+            with pytest.raises(yarpy.LinkClosed):
+                asker.connect("/lost")
+        assert gone("/lost")

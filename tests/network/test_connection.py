@@ -1,0 +1,266 @@
+"""The network as a whole: any two ports, from a program that has none."""
+
+from __future__ import annotations
+
+import logging
+import socket
+import threading
+import time
+
+import pytest
+from support.port import free_port
+from support.wait import wait_until
+
+import yarpy
+from yarpy import network
+from yarpy.contact import Contact
+from yarpy.errors import (
+    AddressError,
+    LinkClosed,
+    LocalProtocolError,
+    NoNameServer,
+    UnknownName,
+    UnknownPlugin,
+)
+from yarpy.nameserver.local import LocalNames
+from yarpy.port.port import Port
+
+
+@pytest.fixture
+def names() -> LocalNames:
+    return LocalNames()
+
+
+# ---------------------------------------------------------------------------------- asking
+
+
+def test_where_a_port_is(names: LocalNames) -> None:
+    with Port("/in", names=names) as port:
+        assert network.query("/in", names) == port.contact
+        assert network.query("/none", names) is None
+        assert network.query("/127.0.0.1:5", names) == Contact("tcp", "", "127.0.0.1", 5)
+        assert network.find("/in", names) == port.contact
+        with pytest.raises(UnknownName, match='did you mean "/in"'):
+            network.find("/inn", names)
+
+
+def test_whether_a_port_lives(names: LocalNames) -> None:
+    with Port("/in", names=names) as port:
+        assert network.exists("/in", names=names)
+        assert network.exists(f"/{port.address}", names=names)
+        assert not network.exists("/none", names=names)
+    names.register("/dead", "tcp", "127.0.0.1", free_port())
+    assert not network.exists("/dead", names=names)
+    with socket.create_server(("127.0.0.1", 0)) as web:
+        names.register("/silent", "tcp", *web.getsockname())
+        threading.Thread(target=_refuse, args=(web,), daemon=True).start()
+        assert not network.exists("/silent", names=names)
+
+
+def _refuse(web: socket.socket) -> None:
+    sock, _ = web.accept()
+    sock.recv(100)
+    sock.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+    sock.close()
+
+
+def test_description_of_a_port(names: LocalNames) -> None:
+    with Port("/in", names=names) as port:
+        assert network.ping("/in", names=names) == [
+            f"This is /in at tcp://{port.address}/",
+            "There are no outgoing connections",
+            "There is an input connection from <ping> to /in using text_ack",
+        ]
+    with pytest.raises(UnknownName):
+        network.ping("/in", names=names)
+
+
+def test_administration_from_outside(names: LocalNames) -> None:
+    with Port("/in", names=names):
+        assert network.admin("/in", "ver", names=names)[1:] == [1, 2, 3]
+        assert network.admin("/in", "prop", "set", "color", "red", names=names) == ["ok"]
+        assert network.admin("/in", "prop", "get", "color", names=names) == ["red"]
+    names.register("/dead", "tcp", "127.0.0.1", free_port())
+    with pytest.raises(LinkClosed, match=r"yarpy clean"):
+        network.admin("/dead", "ver", names=names)
+
+
+def test_nobody_to_ask(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("YARPY_SERVER", f"127.0.0.1:{free_port()}")
+    for ask in (network.query, network.exists, network.ping):
+        with pytest.raises(NoNameServer):
+            ask("/in")
+
+
+# ---------------------------------------------------------------------------------- connecting
+
+SPELLINGS = [
+    # source, target, carrier, what the port says
+    ("/out", "/in", None, "Added connection from /out to tcp://in"),
+    ("/out", "/in", "fast_tcp", "Added connection from /out to fast_tcp://in"),
+    ("/out", "udp://in", None, "Added connection from /out to udp://in"),
+    ("udp://out", "/in", None, "Added connection from /out to udp://in"),
+    ("/out", "/in", "tcp+key.x", "Added connection from /out to tcp+key.x://in"),
+    ("/out", "udp://in", "fast_tcp", "Added connection from /out to fast_tcp://in"),
+]
+
+
+@pytest.mark.parametrize(("source", "target", "carrier", "line"), SPELLINGS)
+def test_connect_and_disconnect(
+    source: str, target: str, carrier: str | None, line: str, names: LocalNames
+) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        assert network.connect(source, target, carrier, names=names) == line
+        assert len(out.outputs) == 1
+        assert network.is_connected("/out", "/in", names=names)
+        assert network.exists("/out", "/in", names=names)
+        kind = out.outputs[0].carrier
+        assert network.is_connected("/out", "/in", kind, names=names)
+        assert not network.is_connected("/out", "/in", "mcast", names=names)
+        assert in_.wait_for_inputs(timeout=5)
+        out.write([1])
+        assert in_.read(timeout=5).value == [1]
+        assert network.disconnect("/out", "/in", names=names)
+        assert not network.is_connected("/out", "/in", names=names)
+        assert not network.disconnect("/out", "/in", names=names)
+
+
+def test_connect_by_addresses(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        source, target = f"/{out.address}", f"/{in_.address}"
+        network.connect(source, target, names=LocalNames())
+        assert [o.target for o in out.outputs] == [f"/{in_.address}/"]
+        assert network.is_connected(source, target, names=LocalNames())
+        assert network.disconnect(source, target, names=LocalNames())
+        assert out.outputs == []
+
+
+def test_existing_connection_is_remade(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names) as in_:
+        network.connect("/out", "/in", names=names)
+        network.connect("/out", "/in", "fast_tcp", names=names)
+        assert [o.carrier for o in out.outputs] == ["fast_tcp"]
+        wait_until(lambda: [i.carrier for i in in_.inputs] == ["fast_tcp"])
+
+
+def test_what_cannot_be_connected(names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names):
+        with pytest.raises(UnknownName, match='"/none"'):
+            network.connect("/none", "/in", names=names)
+        with pytest.raises(UnknownName, match='"/none"'):
+            network.connect("/out", "/none", names=names)
+        with pytest.raises(UnknownPlugin, match='did you mean "tcp"'):
+            network.connect("/out", "/in", "tpc", names=names)
+        with pytest.raises(AddressError, match="blanks"):
+            network.connect("/out put", "/in", names=names)
+        with pytest.raises(AddressError, match="invalid destination"):
+            network.connect("/out", "in", names=names)
+        with pytest.raises(AddressError, match="invalid source"):
+            network.connect("out", "/in", names=names)
+        names.register("/dead", "tcp", "127.0.0.1", free_port())
+        with pytest.raises(LinkClosed, match="Cannot connect to port /dead"):
+            network.connect("/dead", "/in", names=names)
+        with pytest.raises(LinkClosed, match="was refused: Cannot connect to"):
+            network.connect("/out", "/dead", names=names)
+        with pytest.raises(LocalProtocolError, match="need a name server"):
+            network.connect("/out", "topic://news", names=names)
+        assert out.outputs == []
+        assert not network.is_connected("/none", "/in", names=names)
+
+
+def test_waiting_for_both_ports(names: LocalNames) -> None:
+    ports: list[Port] = []
+
+    def open_later() -> None:
+        for name in ("/out", "/in"):
+            time.sleep(0.1)
+            ports.append(Port(name, names=names))
+
+    threading.Thread(target=open_later, daemon=True).start()
+    network.connect("/out", "/in", names=names, timeout=5)
+    assert network.is_connected("/out", "/in", names=names)
+    for port in ports:
+        port.close()
+    started = time.monotonic()
+    with pytest.raises(UnknownName):
+        network.connect("/out", "/in", names=names, timeout=0.1)
+    assert time.monotonic() - started < 2
+
+
+# ---------------------------------------------------------------------------------- waiting
+
+
+def test_waiting_for_a_port_and_a_connection(names: LocalNames) -> None:
+    assert not network.wait_for("/in", timeout=0.05, names=names)
+    with Port("/out", names=names) as out:
+        ports: list[Port] = []
+        threading.Timer(0.1, lambda: ports.append(Port("/in", names=names))).start()
+        assert network.wait_for("/in", timeout=5, names=names)
+        assert not network.wait_for("/out", "/in", timeout=0.05, names=names)
+        threading.Timer(0.1, out.connect, ("/in",)).start()
+        assert network.wait_for("/out", "/in", timeout=5, names=names)
+        ports[0].close()
+
+
+# --------------------------------------------------------------------------- registered cameras
+
+
+def test_endpoint_that_takes_no_commands_constrains_the_carrier(names: LocalNames) -> None:
+    """A camera's web server, registered by hand, has a carrier of its own; nobody asks it."""
+    names.register("/cam", "mjpeg", "127.0.0.1", free_port())
+    with Port("/viewer", names=names):
+        with pytest.raises(LocalProtocolError, match="conflict between tcp and mjpeg"):
+            network.connect("/cam", "/viewer", "tcp", names=names)
+        with pytest.raises((LocalProtocolError, UnknownPlugin)):
+            network.connect("/viewer", "/cam", names=names)
+
+
+# ---------------------------------------------------------------------------------- with a server
+
+
+def test_default_name_server_is_used() -> None:
+    with yarpy.NameServer(), yarpy.Port("/out") as out, yarpy.Port("/in") as in_:
+        assert yarpy.connect("/out", "/in") == "Added connection from /out to tcp://in"
+        assert yarpy.exists("/in")
+        assert yarpy.is_connected("/out", "/in")
+        assert yarpy.wait_for("/in", timeout=1)
+        out.write([1])
+        assert in_.read(timeout=5).value == [1]
+        assert yarpy.query("/in") == in_.contact
+        assert yarpy.ping("/in")
+        assert yarpy.admin("/in", "ver")
+        assert yarpy.disconnect("/out", "/in")
+
+
+def test_topics_are_asked_of_the_server() -> None:
+    with yarpy.NameServer() as server, yarpy.Port("/out") as out, yarpy.Port("/in"):
+        assert network.connect("/out", "topic://news") == "connection to topic added."
+        network.connect("topic://news", "/in", "fast_tcp")
+        assert out.wait_for_outputs(timeout=5)
+        assert network.disconnect("/out", "topic://news")
+        assert "news" not in network.ask_server(server.client, ["subscribe"]).to_text().replace(
+            "topic://news", ""
+        )
+        assert len(out.outputs) == 1  # as in C++, what exists stays
+
+
+def test_questions_leave_no_trace(names: LocalNames, caplog: pytest.LogCaptureFixture) -> None:
+    """Tools are no connections that anybody wants to hear of."""
+    caplog.set_level(logging.INFO, "yarpy")
+    with Port("/in", names=names) as port:
+        caplog.clear()
+        network.exists("/in", names=names)
+        network.ping("/in", names=names)
+        network.admin("/in", "ver", names=names)
+        wait_until(lambda: not port._hub.inputs)
+        assert caplog.records == []
+
+
+def test_connection_to_an_address_with_a_name_can_be_ended_by_it(names: LocalNames) -> None:
+    with yarpy.Port("/out", names=names) as out, yarpy.Port("/in", names=names) as in_:
+        target = f"tcp://{in_.address}/in"
+        yarpy.connect("/out", target, names=names)
+        assert [link.target for link in out.outputs] == ["/in"]
+        assert yarpy.is_connected("/out", target, names=names)
+        assert yarpy.disconnect("/out", target, names=names)
+        assert not out.outputs

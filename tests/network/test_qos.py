@@ -1,0 +1,63 @@
+"""The priority of connections between any two ports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from support.wait import wait_until
+
+import yarpy
+from yarpy.data.bottle import Bottle
+from yarpy.network import qos
+from yarpy.qos import Qos
+
+
+@pytest.fixture
+def names() -> Iterator[yarpy.LocalNames]:
+    found = yarpy.LocalNames()
+    with yarpy.Port("/in", names=found) as in_, yarpy.Port("/out", names=found) as out:
+        out.connect("/in")
+        wait_until(lambda: in_.inputs)
+        yield found
+
+
+def test_both_ends(names: yarpy.LocalNames) -> None:
+    assert qos.granted("/out", "/in", names) == (
+        Qos(packets="CS0"),
+        Qos("SCHED_OTHER", 0, "CS0"),
+    )
+    qos.grant(
+        "/out", "/in", sender=Qos(packets="HIGH"), receiver=Qos("SCHED_OTHER", 0, 3), names=names
+    )
+    assert qos.granted("/out", "/in", names) == (
+        Qos(packets="AF42"),
+        Qos("SCHED_OTHER", 0, 3),
+    )
+    qos.grant("/out", "/in", receiver=Qos("SCHED_OTHER", packets="LOW"), names=names)
+    assert qos.granted("/out", "/in", names)[1] == Qos("SCHED_OTHER", 0, "LOW")
+
+
+def test_no_such_port_or_connection(names: yarpy.LocalNames) -> None:
+    for source, target in (("/out", "/other"), ("/nobody", "/in")):
+        with pytest.raises(yarpy.UnknownName):
+            qos.granted(source, target, names)
+        with pytest.raises(yarpy.UnknownName):
+            qos.grant(source, target, sender=Qos(packets="HIGH"), names=names)
+
+
+def test_refusal_names_its_reason(names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError
+
+    monkeypatch.setattr("os.sched_setscheduler", refuse)
+    with pytest.raises(yarpy.LocalProtocolError, match=r'"/in" does not set.*CAP_SYS_NICE'):
+        qos.grant("/out", "/in", receiver=Qos("SCHED_FIFO", 10), names=names)
+
+
+def test_answers_of_cpp() -> None:
+    text = "(sched ((policy 1) (priority 30) (tid -1))) (qos ((tos 144)))"
+    assert qos.read(Bottle.from_text(text)) == Qos("SCHED_FIFO", 30, "AF42")
+    text = "(sched ((policy -1) (priority -1) (tid -1))) (qos ((tos 0)))"
+    assert qos.read(Bottle.from_text(text)) == Qos(packets="CS0")
+    assert qos.read(Bottle()) == Qos()

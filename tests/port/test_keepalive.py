@@ -1,0 +1,138 @@
+"""Pulse: datagram connections whose other end has died are found, living ones are let alone."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+
+import pytest
+from support.process import Process
+from support.wait import wait_until
+
+import yarpy
+from yarpy.nameserver.local import LocalNames
+from yarpy.port import keepalive
+from yarpy.port.buffered import BufferedPort
+from yarpy.port.keepalive import Link, Pulse
+from yarpy.port.port import Port
+from yarpy.wire.message import Packet
+
+OTHER = """
+import time, yarpy
+def show(message):
+    print("got", message.value[0], flush=True)
+with yarpy.BufferedPort("/pulse/other", callback=show) as port:
+    print("ready", flush=True)
+    for count in range(10**9):
+        port.write([count])
+        time.sleep(0.02)
+"""
+
+
+def start(server: yarpy.NameServer) -> Process:
+    """A program with a port that writes and prints what it reads."""
+    process = Process([sys.executable, "-c", OTHER], env={**os.environ, **server.environment})
+    process.wait_line("ready", timeout=20)
+    return process
+
+
+@pytest.mark.parametrize("carrier", ["udp", "mcast"])
+def test_a_killed_sender_is_asked_again_when_it_is_back(carrier: str) -> None:
+    with yarpy.NameServer() as server, yarpy.BufferedPort("/pulse/in") as reader:
+        other = start(server)
+        reader.listen_to("/pulse/other", carrier)
+        for _ in range(2):
+            assert reader.read(timeout=10).value[0] >= 0
+            other.kill()
+            other = start(server)
+            while reader.poll() is not None:  # from before
+                pass
+        assert reader.read(timeout=10).value[0] >= 0
+        assert [link.carrier for link in reader.inputs] == [carrier]
+        other.stop()
+
+
+def test_a_killed_member_of_a_group_is_connected_again() -> None:
+    with yarpy.NameServer() as server, yarpy.Port("/pulse/out") as writer:
+        other = start(server)
+        writer.connect("/pulse/other", "mcast")
+        for turn in range(2):
+            deadline = time.monotonic() + 10
+            while f"got {turn}\n" not in other.stdout:
+                assert time.monotonic() < deadline, f"turn {turn}"
+                writer.write([turn])
+                time.sleep(0.02)
+            other.kill()
+            other = start(server)
+        other.stop()
+
+
+class Judge:
+    """Looks as often as a test wants, without waiting in between."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr(keepalive, "SOON", 0.0)
+        self.dead: list[Link] = []
+        self.pulse = Pulse(lambda hub, link: self.dead.append(link))
+
+    def __call__(self, *ports: Port | BufferedPort) -> int:
+        """How many connections are found dead in four looks."""
+        self.dead.clear()
+        for _ in range(4):
+            self.pulse.look([port._hub for port in ports])
+        return len(set(self.dead))
+
+
+@pytest.fixture
+def judge(monkeypatch: pytest.MonkeyPatch) -> Judge:
+    return Judge(monkeypatch)
+
+
+@pytest.mark.parametrize("carrier", ["udp", "mcast", "tcp"])
+def test_silence_is_no_death(carrier: str, names: LocalNames, judge: Judge) -> None:
+    with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
+        out.connect("/in", carrier)
+        assert in_.wait_for_inputs(timeout=5)
+        assert judge(out, in_) == 0
+
+
+def test_connected_by_address_is_connected(names: LocalNames, judge: Judge) -> None:
+    with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
+        out.connect(f"/{in_.address}", "mcast")
+        assert in_.wait_for_inputs(timeout=5)
+        assert judge(out, in_) == 0
+
+
+def test_a_nameless_sender_is_not_judged(names: LocalNames, judge: Judge) -> None:
+    with Port("", names=names) as out, BufferedPort("/in", names=names) as in_:
+        out.connect("/in", "udp")
+        assert in_.wait_for_inputs(timeout=5)
+        assert judge(in_) == 0
+
+
+@pytest.mark.parametrize("carrier", ["udp", "mcast"])
+def test_who_does_not_know_us_any_more_is_dead(
+    carrier: str, names: LocalNames, judge: Judge
+) -> None:
+    with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
+        out.connect("/in", carrier)
+        assert in_.wait_for_inputs(timeout=5)
+        outputs, out._hub.outputs = out._hub.outputs, ()  # as if it had been started afresh
+        assert judge(in_) == 1
+        out._hub.outputs = outputs
+        assert judge(in_) == 0, "one good answer, and it counts from the beginning"
+
+
+def test_who_sends_needs_no_question(names: LocalNames, judge: Judge) -> None:
+    with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
+        out.connect("/in", "udp")
+        assert in_.wait_for_inputs(timeout=5)
+        outputs, out._hub.outputs = out._hub.outputs, ()
+        [link] = outputs
+        for count in range(5):
+            link.send(Packet([count]))
+            wait_until(lambda: in_.inputs[0].stats["messages"] == count + 1)  # noqa: B023
+            judge.pulse.look([in_._hub])
+        assert not judge.dead
+        out._hub.outputs = outputs

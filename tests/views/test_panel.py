@@ -1,0 +1,252 @@
+"""The page of a robot, in a real browser, with the simulated head behind it."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import urllib.request
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from support.wait import wait_until
+
+import yarpy
+from yarpy.sim.axis import Axis
+from yarpy.sim.board import Board
+from yarpy.sim.body import Body
+from yarpy.sim.joint import Joint
+from yarpy.sim.robot import Parts, Robot, icub_head
+from yarpy.views.panel import Panel
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+    from support.browser import Browser
+
+PATIENCE = 30.0
+JOINTS = ["neck_pitch", "neck_roll", "neck_yaw", "eyes_tilt", "eyes_version", "eyes_vergence"]
+
+
+@pytest.fixture(scope="module")
+def names() -> Iterator[yarpy.YarpNameClient]:
+    server = yarpy.NameServer()
+    yield server.client
+    server.close()
+
+
+@pytest.fixture(scope="module")
+def robot(names: yarpy.YarpNameClient) -> Iterator[Robot]:
+    with Robot("/icubSim", icub_head(), names=names) as robot:
+        yield robot
+
+
+@pytest.fixture(scope="module")
+def url(names: yarpy.YarpNameClient) -> Iterator[str]:
+    with yarpy.Port("/panel", names=names) as port:
+        Panel(port, "/icubSim", names)
+        yield f"http://{port.address}/"
+
+
+@pytest.fixture
+def head(robot: Robot, names: yarpy.YarpNameClient) -> Iterator[yarpy.RpcClient]:
+    """Asks the head; all joints are at zero when a test begins."""
+    with yarpy.RpcClient("/icubSim/head/rpc:i", names=names) as client:
+        client.call("set", "poss", [0.0] * 6)
+        wait_until(lambda: max(map(abs, encoders(client))) < 0.01, PATIENCE)
+        yield client
+
+
+def encoders(head: yarpy.RpcClient) -> list[float]:
+    return list(head.call("get", "encs")[2])
+
+
+def get(url: str) -> Any:
+    with urllib.request.urlopen(url, timeout=PATIENCE) as answer:
+        return json.load(answer)
+
+
+def opened(browser: Browser, url: str, **wishes: bool) -> Page:
+    """The page, as soon as it shows the joints; the pictures never end."""
+    page = browser.open(**wishes)
+    page.goto(url, wait_until="commit")
+    page.get_by_text("live: drag the sliders").wait_for()
+    return page
+
+
+def seen(page: Page, number: int = 0) -> list[int]:
+    """The green in a camera's picture, in 8 times 6 fields."""
+    shot = base64.b64encode(page.locator("#cameras img").nth(number).screenshot()).decode()
+    script = """async shot => {
+        const bytes = Uint8Array.from(atob(shot), letter => letter.charCodeAt(0));
+        const image = await createImageBitmap(new Blob([bytes], {type: "image/png"}));
+        const canvas = document.createElement("canvas");
+        [canvas.width, canvas.height] = [8, 6];
+        const context = canvas.getContext("2d");
+        context.drawImage(image, 0, 0, 8, 6);
+        return [...context.getImageData(0, 0, 8, 6).data].filter((_, place) => place % 4 === 1);
+    }"""
+    found: list[int] = page.evaluate(script, shot)
+    return found
+
+
+def loaded(page: Page) -> bool:
+    """Whether both pictures have come."""
+    script = "[...document.images].every(image => image.naturalWidth)"
+    return bool(page.evaluate(script)) and page.locator("#cameras img").count() == 2
+
+
+def test_ports_of_the_robot(robot: Robot, url: str, names: yarpy.YarpNameClient) -> None:
+    told = get(f"{url}robot")
+    assert told["robot"] == "/icubSim"
+    assert told["server"] == ["", names.port]
+    [board] = told["boards"]
+    assert board["name"] == "/icubSim/head"
+    for name, port in (("rpc:i", board["rpc"]), ("state:o", board["state"])):
+        found = names.query(f"/icubSim/head/{name}")
+        assert found is not None
+        assert port == ["", found.port]
+    assert [one["name"] for one in told["cameras"]] == ["/icubSim/cam/left", "/icubSim/cam/right"]
+    assert [one["name"] for one in told["sensors"]] == ["/icubSim/inertial"]
+
+
+def test_robot_that_is_not_there(names: yarpy.YarpNameClient) -> None:
+    with yarpy.Port("/panel/of/nobody", names=names) as port:
+        Panel(port, "nobody", names)
+        told = get(f"http://{port.address}/robot")
+        assert told["robot"] == "/nobody"
+        assert told["boards"] == told["cameras"] == told["sensors"] == []
+
+
+def test_names_that_nobody_keeps() -> None:
+    names = yarpy.LocalNames()
+    with yarpy.Port("/panel", names=names) as port, yarpy.Port("/r/eye", names=names) as eye:
+        panel = Panel(port, "/r", names)
+        assert panel.robot()["server"] is None
+        with yarpy.Port("/r/eye/rpc", names=names):
+            [camera] = panel.robot()["cameras"]
+            assert camera == {"name": "/r/eye", "images": ("", eye.contact.port)}
+
+
+def test_what_the_page_loads(url: str) -> None:
+    with urllib.request.urlopen(url, timeout=PATIENCE) as answer:
+        page = answer.read().decode()
+    files = re.findall(r'(?:src|href)="/([\w.]+)"', page)
+    assert {"panel.js", "panel.css", "style.css"} <= {*files}
+    for name in files:
+        with urllib.request.urlopen(url + name, timeout=PATIENCE) as answer:
+            assert answer.status == 200
+            files += {*re.findall(r'from "./([\w.]+)"', answer.read().decode())} - {*files}
+    assert {"common.js", "panel_camera.js", "horizon.js"} <= {*files}
+    policy = re.search(r'Content-Security-Policy" content="([^"]+)"', page)
+    assert policy is not None and "unsafe" not in policy[1]
+
+
+def test_sliders_move_the_head_and_the_pictures(
+    browser: Browser, head: yarpy.RpcClient, url: str
+) -> None:
+    page = opened(browser, url)
+    assert page.locator(".joint .name").all_inner_texts() == JOINTS
+    wait_until(lambda: loaded(page), PATIENCE)
+    before = seen(page)
+    page.get_by_label("neck_roll").fill("45")
+    page.get_by_label("neck_pitch").fill("-18")
+    wait_until(lambda: abs(encoders(head)[1] - 45) < 0.1, PATIENCE)
+    wait_until(lambda: abs(encoders(head)[0] + 18) < 0.1, PATIENCE)
+    page.locator(".joint .value", has_text="45.0°").wait_for()
+    change = [abs(a - b) for a, b in zip(before, seen(page), strict=True)]
+    assert sum(change) / len(change) > 20
+    page.locator(".said", has_text='["ok"]').wait_for()
+    assert "/?req=set+pos+$axis+$angle&axis=0&angle=-18'" in page.locator(".said").inner_text()
+    page.locator(".attitude .facts", has_text="pitch").wait_for()
+    browser.picture(page, "panel")
+
+
+def test_curves(browser: Browser, head: yarpy.RpcClient, url: str) -> None:
+    page = opened(browser, url)
+    page.locator("#curves article").nth(2).wait_for()
+    assert page.locator("#curves h2").all_inner_texts() == [
+        *("head position", "inertial °/s, gyroscope", "inertial m/s², accelerometer")
+    ]
+    assert page.locator("#curves .joints .legend li").all_inner_texts() == JOINTS
+    script = """canvas => {
+        const {width, height} = canvas;
+        const data = canvas.getContext("2d").getImageData(0, 0, width, height).data;
+        return data.some((value, place) => place % 4 === 3 && value > 0);
+    }"""
+    for number in range(3):
+        plot = page.locator(".plot").nth(number)
+        wait_until(lambda plot=plot: plot.evaluate(script), PATIENCE)
+    wait_until(lambda: page.locator(".horizon").evaluate(script), PATIENCE)
+
+
+def test_click_looks_there(browser: Browser, head: yarpy.RpcClient, url: str) -> None:
+    page = opened(browser, url)
+    left = page.locator("#cameras img.looks").first
+    left.wait_for()
+    size = left.bounding_box()
+    assert size is not None
+    # A quarter of the picture to the left of its middle: atan(tan(32) / 2) to the left.
+    left.click(position={"x": size["width"] / 4, "y": size["height"] / 2})
+    wait_until(lambda: abs(encoders(head)[2] - 17.4) < 0.7, PATIENCE)
+    assert abs(encoders(head)[0]) < 0.7
+
+
+def test_buttons(browser: Browser, head: yarpy.RpcClient, url: str) -> None:
+    page = opened(browser, url)
+    page.get_by_role("button", name="Try each joint").click()
+    wait_until(lambda: encoders(head)[0] > 5, PATIENCE)
+    wait_until(lambda: encoders(head)[0] < -5, PATIENCE)
+    page.get_by_role("button", name="All to zero").click()
+    wait_until(lambda: abs(encoders(head)[0]) < 0.01, PATIENCE)
+    page.locator("#try[aria-pressed=false]").wait_for()
+
+
+def test_others_move_it_too(browser: Browser, head: yarpy.RpcClient, url: str) -> None:
+    page = opened(browser, url)
+    head.call("set", "pos", 2, -30)
+    page.locator(".joint .value", has_text="-30.0°").wait_for()
+    wait_until(lambda: page.get_by_label("neck_yaw").input_value() == "-30", PATIENCE)
+
+
+@pytest.mark.parametrize(("dark", "phone"), [(True, False), (False, True), (True, True)])
+def test_dark_and_on_a_phone(
+    browser: Browser, head: yarpy.RpcClient, url: str, dark: bool, phone: bool
+) -> None:
+    page = opened(browser, url, dark=dark, phone=phone)
+    wait_until(lambda: loaded(page), PATIENCE)
+    page.get_by_label("neck_pitch").fill("-18")
+    page.locator(".joint .value", has_text="-18.0°").wait_for()
+    wide = page.evaluate("document.documentElement.scrollWidth - innerWidth")
+    assert wide <= 0, "nothing sticks out to the right"
+    name = "panel" + ("-dark" if dark else "") + ("-phone" if phone else "")
+    browser.picture(page, name, whole=phone)
+
+
+def test_joints_that_slide_or_have_no_limits(browser: Browser, names: yarpy.YarpNameClient) -> None:
+    axes = [Axis("rail", -400.0, 400.0, kind="prismatic"), Axis("wheel", -1e6, 1e6)]
+    parts = Parts({"base": Board(Body([Joint(axis) for axis in axes]))})
+    with (
+        Robot("/cart", parts, names=names),
+        yarpy.Port("/panel/of/cart", names=names) as port,
+    ):
+        Panel(port, "/cart", names)
+        page = opened(browser, f"http://{port.address}/")
+        page.get_by_label("wheel").fill("30")
+        page.locator(".joint .value", has_text="30.0°").wait_for()
+        assert page.locator(".joint .value").first.inner_text() == "0.0"
+        assert page.get_by_label("rail").get_attribute("max") == "400"
+        assert page.get_by_label("wheel").get_attribute("max") == "360"
+        assert page.locator("#cameras figure").count() == 0
+
+
+def test_robot_that_falls_silent(browser: Browser, names: yarpy.YarpNameClient) -> None:
+    browser.excuse("ERR_CONNECTION_REFUSED|Failed to load|ERR_INCOMPLETE|ERR_EMPTY")
+    with yarpy.Port("/panel/late", names=names) as port:
+        Panel(port, "/late", names)
+        page = browser.open()
+        page.goto(f"http://{port.address}/", wait_until="commit")
+        page.get_by_text("waiting for the robot").wait_for()
+        with Robot("/late", icub_head((32, 24)), names=names):
+            page.get_by_text("live: drag the sliders").wait_for()
+        page.get_by_text("the robot is silent").wait_for()
