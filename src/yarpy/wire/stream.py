@@ -9,7 +9,6 @@ with what was announced, and is used again once nobody holds it.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable
 from typing import Final, TypeAlias, TypeVar
 
@@ -25,8 +24,35 @@ FIRST_GRANT: Final = 1 << 24  # memory taken on the peer's word alone; beyond it
 DEFAULT_LIMIT: Final = 1 << 30  # bytes per message, whatever the peer announces
 CUT_OFF: Final = "the peer closed the connection in the middle of a message"
 
-# References to a spare buffer while nobody else uses it: the list, the loop variable, the argument.
-_UNUSED: Final = 3
+
+def _parts_hold() -> bool:
+    """Whether a part of a view alone keeps its bytearray from being resized, as in CPython.
+
+    PyPy asks the whole view only, or nobody: there no buffer is used a second time.
+    """
+    buffer = bytearray(2)
+    whole = memoryview(buffer)
+    part = whole[:1]
+    whole.release()
+    free = _is_free(buffer)
+    part.release()
+    return not free
+
+
+def _is_free(buffer: bytearray) -> bool:
+    """Whether nobody looks at it: a bytearray refuses another size while a view of it lives.
+
+    One byte less and one more moves no memory. References would tell less: a view holds one
+    however many hold the view, and each version of Python counts its own differently.
+    """
+    try:
+        buffer.append(buffer.pop())
+    except BufferError:
+        return False
+    return True
+
+
+_REUSES: Final = _parts_hold()
 
 
 class ByteStream:
@@ -242,12 +268,13 @@ class ByteStream:
         return view
 
     def _spare_buffer(self, size: int) -> bytearray:
-        """A buffer for `size` bytes: one of the last two if its message is gone, else a new one."""
+        """A buffer for `size` bytes: one whose message is gone, else a new one."""
         for buffer in self._spare:
-            if len(buffer) == size and sys.getrefcount(buffer) == _UNUSED:
+            if len(buffer) == size and _is_free(buffer):
                 return buffer
         fresh = bytearray(min(size, FIRST_GRANT))
-        self._spare = [*self._spare[-2:], fresh]
+        if _REUSES:
+            self._spare = [*self._spare[-2:], fresh]
         return fresh
 
 
