@@ -7,8 +7,8 @@ from typing import Any
 
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
+from yarpy.link.qos import effective, grant
 from yarpy.port.monitoring import monitored
-from yarpy.port.quality import effective, grant
 from yarpy.qos import Qos
 
 

@@ -16,8 +16,8 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
+from yarpy.link.qos import grant_sched, grant_tos, thread_of
 from yarpy.monitors.chain import Chain
-from yarpy.port.quality import grant_sched, grant_tos, thread_of
 from yarpy.qos import Sched, policy_of, schedule, scheduled, tos_of
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
+from yarpy.link.qos import effective
 from yarpy.port.monitoring import monitored
-from yarpy.port.quality import effective
 
 if TYPE_CHECKING:
     from yarpy.port.hub import Hub

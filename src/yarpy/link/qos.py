@@ -1,4 +1,4 @@
-"""Quality: give a connection of ours its priority, and read back what the system granted.
+"""A connection's priority: give its thread and packets what was asked, read back what was granted.
 
 Rules: everything is checked before anything is changed; what the system refuses changes nothing. An
 output that is scheduled gets a thread of its own, which sends from then on.

@@ -10,7 +10,7 @@ import pytest
 from support.wait import wait_until
 
 import yarpy
-from yarpy.port import quality
+from yarpy.link import qos
 from yarpy.qos import Qos, Sched
 
 
@@ -103,9 +103,9 @@ def test_wrong_values_are_refused_before_anything_is_changed(ports) -> None:
     link = ports[0]._hub.outputs[0]
     for sched in (Sched(1, 100), Sched(1, 0), Sched(0, 5), Sched(9, 5)):
         with pytest.raises(ValueError, match=r"priority|policy"):
-            quality.grant_sched(link, sched)
+            qos.grant_sched(link, sched)
     with pytest.raises(ValueError, match="TOS"):
-        quality.grant_tos(link, 256)
+        qos.grant_tos(link, 256)
     assert (link.thread, link.sched, link.tos) == (None, Sched(), 0)
 
 
