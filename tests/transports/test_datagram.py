@@ -47,6 +47,25 @@ def test_sender_keeps_the_number_of_its_tcp_port() -> None:
     second.close()
 
 
+def test_large_message_does_not_overrun_a_receiver_with_the_usual_buffer() -> None:
+    near, far = pair()
+    far.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 212_992 // 2)  # Linux doubles it
+    got: list[int] = []
+
+    def read() -> None:
+        room = memoryview(bytearray(65536))
+        while len(got) < 30:
+            got.append(far.recv_into(room))
+
+    reader = threading.Thread(target=read, daemon=True)
+    reader.start()
+    near.send([bytes(60_000)] * 30)
+    reader.join(5)
+    assert len(got) == 30
+    near.close()
+    far.close()
+
+
 def test_receiver_cannot_send() -> None:
     near, far = pair()
     with pytest.raises(OSError, match="only receives"):

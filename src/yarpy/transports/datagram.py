@@ -1,7 +1,8 @@
 """UDP and multicast sockets: each send is one datagram, each receive is one datagram.
 
 Rules: receive buffers are asked for generously, since what the kernel drops is lost. What it had to
-drop it counts (SO_RXQ_OVFL on Linux), and `dropped` tells. A UDP sender is connected, so that a
+drop it counts (SO_RXQ_OVFL on Linux), and `dropped` tells. What is sent is paced, since receivers
+of other programs have less room. A UDP sender is connected, so that a
 host where nobody receives any more can say so.
 """
 
@@ -13,6 +14,7 @@ import sys
 from collections.abc import Sequence
 
 from yarpy.transports.base import MSG_DONTWAIT, Address, SocketTransport
+from yarpy.transports.pace import Pace
 from yarpy.wire.stream import Buffer
 
 RECEIVE_BUFFER = 1 << 23
@@ -27,6 +29,7 @@ class DatagramTransport(SocketTransport):
         self._target = target
         self._connected = False
         self._woken = False
+        self._pace = Pace()
         self._room = RECEIVE_BUFFER  # bytes that may still be read once woken
         self.dropped = 0  # datagrams the kernel threw away for want of room
         for size in (RECEIVE_BUFFER, RECEIVE_BUFFER // 8):
@@ -82,6 +85,9 @@ class DatagramTransport(SocketTransport):
         for datagram in buffers:
             if self._target is None:
                 raise OSError("this datagram socket only receives")
+            self._pace.wait(len(datagram))
+            if self._woken:
+                raise OSError("closed while it was sending")
             if self._connected:
                 self.sock.send(datagram)
             else:
