@@ -25,9 +25,9 @@ from yarpy.link.inbound import Inbound
 from yarpy.names.base import NameClient
 from yarpy.port import port as plain
 from yarpy.port import rpc
+from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
 from yarpy.port.connection import Connection
-from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.reader import ReadingPort
 from yarpy.wire.message import UNSENDABLE, Message
@@ -257,7 +257,7 @@ class _Port(plain.Port):
         spin: bool = False,
         **options: Any,
     ) -> None:
-        ReadingPort.__init__(self, Hub(name, mailbox, names, **options), spin)
+        ReadingPort.__init__(self, open_hub(name, mailbox, names, **options), spin)
 
 
 class _Arrival:

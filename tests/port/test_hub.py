@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from support.port import free_port
@@ -18,6 +19,7 @@ from support.wait import wait_until
 
 from yarpy import network
 from yarpy.contact import Contact
+from yarpy.data.bottle import Bottle
 from yarpy.errors import (
     LinkClosed,
     NoNameServer,
@@ -27,6 +29,9 @@ from yarpy.errors import (
 )
 from yarpy.nameserver.local import LocalNames
 from yarpy.nameserver.server import NameServer
+from yarpy.port import probe
+from yarpy.port.hub import Crew, Hub
+from yarpy.port.mailbox import Latest
 from yarpy.port.port import Port
 from yarpy.wire import framing
 
@@ -42,6 +47,31 @@ def test_open_port_is_registered_and_says_what_it_is(names: LocalNames) -> None:
         assert names.get("/here", "process") == [str(os.getpid())]
         assert names.get("/here", "ips")
     assert names.query("/here") is None
+
+
+def test_hub_knows_nobody_who_acts_on_it() -> None:
+    """What commands, administration and repair do is handed in."""
+    told: list[str] = []
+    repair = SimpleNamespace(
+        watch=lambda hub: told.append(f"watch {hub.name}"),
+        forget=lambda hub: told.append(f"forget {hub.name}"),
+        input_lost=lambda hub, route: None,
+    )
+    crew = Crew(
+        administer=lambda hub, message: Bottle(["as", "you", "like"]),
+        obey=lambda hub, link, message: [f"{hub.name} heard {message.key}"],
+        close_output=lambda hub, link: None,
+        repair=repair,  # type: ignore[arg-type]
+    )
+    hub = Hub("/here", Latest(), None, crew, register=False)
+    hub.open(0, "")
+    try:
+        contact = Contact("tcp", "/here", "127.0.0.1", hub.port)
+        assert probe.ask(contact, ["whatever"]) == ["as", "you", "like"]
+        assert probe.describe(contact)[0] == "/here heard *"
+    finally:
+        hub.close()
+    assert told == ["watch /here", "forget /here"]
 
 
 # ---------------------------------------------------------------------------------- closing

@@ -30,6 +30,7 @@ from yarpy.nameserver.reply import Reply
 from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.topology import Action, Topology
 from yarpy.port import probe
+from yarpy.port.assembly import open_hub
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
@@ -96,7 +97,7 @@ class NameServer:
     ) -> None:
         pages = Folder(web) if web is not None else None
         desk = _Desk()
-        self._hub = Hub(name, desk, None, port=port, host=host, register=False)
+        self._hub = open_hub(name, desk, None, port=port, host=host, register=False)
         self.host = host
         self.port = self._hub.port
         self.client = client_of(Server(host, self.port))

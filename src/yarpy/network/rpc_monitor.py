@@ -21,7 +21,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.errors import DecodeError, LocalProtocolError, YarpError
 from yarpy.monitors.base import Place
-from yarpy.port.hub import Hub
+from yarpy.port.assembly import open_hub
 from yarpy.port.mailbox import Latest
 from yarpy.port.writer import Writer
 from yarpy.wire.message import Message
@@ -38,7 +38,7 @@ class RpcMonitor:
         self._place = place
         self._sent = self._drops = 0
         self._copies: queue.Queue[Bottle | None] = queue.Queue(_BEHIND)
-        hub = Hub(f"{place.source}/monitor", Latest(), place.names, register=False)
+        hub = open_hub(f"{place.source}/monitor", Latest(), place.names, register=False)
         self._port = Writer(hub)
         try:
             self._port.connect(place.text("monitor", "/monitor"))

@@ -11,7 +11,7 @@ import logging
 import os
 import random
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from yarpy.contact import masked
 from yarpy.data.bottle import Bottle
@@ -20,12 +20,10 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
 from yarpy.port import command
+from yarpy.port.hub import Hub
 from yarpy.port.prop import get_peer, get_self, set_peer, set_self
 from yarpy.port.report import report
 from yarpy.wire.message import Message
-
-if TYPE_CHECKING:
-    from yarpy.port.hub import Hub
 
 log = logging.getLogger("yarpy.port")
 
@@ -79,7 +77,14 @@ def word(value: Any) -> str:
 
 
 def answer(hub: Hub, message: Message) -> Bottle:
-    """The reply to an administrative message. Decoding problems are YarpErrors."""
+    """The reply to an administrative message; what goes wrong is `[fail]` and the reason."""
+    try:
+        return _answer(hub, message)
+    except YarpError as error:
+        return failure(str(error))
+
+
+def _answer(hub: Hub, message: Message) -> Bottle:
     request = message.as_(Bottle)
     name = plain_text(request[0]) if request and isinstance(request[0], str) else ""
     if name in _ROS or word(name) in _ROS_SHORT:

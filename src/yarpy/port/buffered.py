@@ -7,8 +7,8 @@ from collections.abc import Callable
 from yarpy.errors import LinkClosed, YarpError
 from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
+from yarpy.port.assembly import open_hub
 from yarpy.port.event import ConnectionEvent
-from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox
 from yarpy.port.reader import ReadingPort
 from yarpy.port.writer import is_log
@@ -43,7 +43,7 @@ class BufferedPort(ReadingPort):
         mailbox: Mailbox
         mailbox = Callback(callback) if callback is not None else Fifo() if strict else Latest()
         self.strict = strict
-        hub = Hub(
+        hub = open_hub(
             name,
             mailbox,
             names,

@@ -10,7 +10,7 @@ from __future__ import annotations
 import threading
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from yarpy.contact import Contact, Route, base_carrier, masked, modifier, parse_contact
 from yarpy.data.text import plain_text
@@ -20,6 +20,7 @@ from yarpy.errors import (
     LinkClosed,
     LocalProtocolError,
     LoginRefused,
+    NoNameServer,
     PortClosed,
     RemoteProtocolError,
     Timeout,
@@ -31,11 +32,9 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.monitors.chain import named
 from yarpy.names.address import is_loopback
-from yarpy.port import probe, reconnect
+from yarpy.port import probe
+from yarpy.port.hub import Hub
 from yarpy.wire.message import Message
-
-if TYPE_CHECKING:
-    from yarpy.port.hub import Hub
 
 NOT_ADMITTED: Final = "Not admitted to"  # how a line begins that tells of a password
 JOINING: Final = 0.5  # seconds for a receiver to join a multicast group
@@ -125,7 +124,7 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
 
 def _connect(hub: Hub, text: str, contact: Contact, target: str, carrier: str) -> str:
     """The rest of `connect`, while nobody else dials the target."""
-    reconnect.give_up(hub, target)
+    hub.repair.give_up(hub, target)
     if contact.name:
         for old in hub.outputs:
             if old.route.target == target:
@@ -142,8 +141,6 @@ def _connect(hub: Hub, text: str, contact: Contact, target: str, carrier: str) -
             raise Refused("Outputs not allowed")
         if hub.rpc and any(map(_asks, hub.outputs)):
             raise Refused("RPC output already connected")
-    if not kind.push and not hub.admits_inputs:
-        raise Refused("Inputs not allowed")
     unheard = named(carrier, "recv" if kind.push else "send")
     if unheard and (kind.foreign or not kind.introduces):
         raise Refused(
@@ -306,7 +303,7 @@ def _receiver(hub: Hub, target: str) -> Contact | None:
 
 def disconnect_output(hub: Hub, target: str) -> tuple[bool, str]:
     """Remove the outputs to `target`; whether there were any, and the line that says so."""
-    tried = reconnect.give_up(hub, target, incoming=False)
+    tried = hub.repair.give_up(hub, target, incoming=False)
     found = [link for link in hub.outputs if link.route.target == target]
     for link in found:
         close_output(hub, link)
@@ -320,7 +317,7 @@ def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bo
 
     `by_sender`: in the way in which senders of datagrams say goodbye, so they need not be told.
     """
-    tried = reconnect.give_up(hub, source, incoming=True)
+    tried = hub.repair.give_up(hub, source, incoming=True)
     found = [link for link in hub.inputs if link.route.source == source]
     told = [link for link in found if link.asking or (by_sender and link.carrier.connectionless)]
     if len(told) < len(found):
@@ -344,11 +341,10 @@ def close_input(hub: Hub, link: Inbound) -> None:
 
 def _tell_sender(hub: Hub, source: str) -> None:
     """Let a sender know that we end the connection on purpose, so that it does not dial again."""
-    if source.startswith("/") and source != hub.name:
-        try:
-            reconnect.ask_to_disconnect(hub, source)
-        except (YarpError, OSError):
-            pass  # it will notice by itself
+    try:
+        hub.ask_to_leave(source)
+    except NoNameServer:
+        pass  # it will notice by itself
 
 
 def joined(dest: str, carrier: str) -> str:

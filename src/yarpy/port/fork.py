@@ -11,15 +11,12 @@ from __future__ import annotations
 
 import os
 from functools import cache
-from typing import TYPE_CHECKING
 
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
 from yarpy.names.default import DEFAULT
+from yarpy.port.hub import Hub
 from yarpy.port.reconnect import REPAIR
-
-if TYPE_CHECKING:
-    from yarpy.link.inbound import Inbound
-    from yarpy.link.outbound import Outbound
-    from yarpy.port.hub import Hub
 
 
 @cache

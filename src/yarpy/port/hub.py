@@ -2,23 +2,24 @@
 
 Rules: the tuples of links are replaced under `lock`, never changed, so who walks them needs no
 lock; no lock is held while user code runs or bytes move. Every end of a connection comes through
-`closed` or `drop_output`, once.
+`closed` or `drop_output`, once. What acts on hubs (commands, administration, repair) imports this
+file and is handed in, as `Crew`: a hub knows none of them. `assembly` puts them together.
 """
 
 from __future__ import annotations
 
 import contextlib
 import logging
-import os
 import socket
 import threading
 import time
 from collections.abc import Callable, Mapping
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 from yarpy.carriers.base import PAGE, Carrier
 from yarpy.carriers.http.page import Page, Pages
-from yarpy.config.configuration import port_number
+from yarpy.contact import Contact, Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.errors import NoNameServer, PortClosed, YarpError
@@ -29,7 +30,7 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
-from yarpy.port import admin, command, fork, reconnect
+from yarpy.port import probe
 from yarpy.port.dialling import Dialling
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Mailbox
@@ -43,23 +44,50 @@ from yarpy.wire.stream import DEFAULT_LIMIT
 log = logging.getLogger("yarpy.port")
 
 
+class Repair(Protocol):
+    """Who brings back the connections that broke."""
+
+    def watch(self, hub: Hub, /) -> None:
+        """Look after a port."""
+
+    def forget(self, hub: Hub, /) -> None:
+        """The port closes."""
+
+    def output_lost(self, hub: Hub, route: Route, /) -> None:
+        """An output broke without anybody asking for it."""
+
+    def input_lost(self, hub: Hub, route: Route, /) -> None:
+        """An input ended without a goodbye."""
+
+    def give_up(self, hub: Hub, name: str, incoming: bool | None = None) -> bool:
+        """Somebody takes the connection to or from `name` in hand; whether it was tried again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crew:
+    """Who acts on hubs."""
+
+    administer: Callable[[Hub, Message], Bottle]  # answers an administrative message
+    obey: Callable[[Hub, Inbound, Message], list[str]]  # carries out a port command
+    close_output: Callable[[Hub, Outbound], None]
+    repair: Repair
+
+
 class Hub(Registered):
     """A port's connections. `names` None: the default service; `register` False: no name service.
 
-    `admits_outputs` and `rpc` are what admin requests for outputs are checked against. `limit` is
-    the largest message in bytes. Raises AddressError (name unusable or in use), NoNameServer.
+    `admits_outputs` and `rpc` are what requests for outputs are checked against. `limit` is the
+    largest message in bytes. Raises AddressError (name unusable), NoNameServer.
     """
 
     def __init__(
         self,
         name: str,
         mailbox: Mailbox,
-        names: NameClient | None = None,
+        names: NameClient | None,
+        crew: Crew,
         *,
-        port: int = 0,
-        host: str = "",
         type_: str = "",
-        admits_inputs: bool = True,
         admits_outputs: bool = True,
         rpc: bool = False,
         limit: int = DEFAULT_LIMIT,
@@ -68,7 +96,8 @@ class Hub(Registered):
     ) -> None:
         super().__init__(name, names, type_, register)
         self.mailbox = mailbox
-        self.admits_inputs = admits_inputs
+        self._crew = crew
+        self.repair = crew.repair
         self.admits_outputs = admits_outputs
         self.rpc = rpc
         self.limit = limit
@@ -89,16 +118,18 @@ class Hub(Registered):
         self.dialling = Dialling()
         self.monitoring = Monitoring(self)
         self.acceptor: Acceptor | None = None
+
+    # -- opening ----------------------------------------------------------------------------------
+
+    def open(self, port: int, host: str) -> None:
+        """Listen on `port` (0: any free one) and register. Raises AddressError, NoNameServer."""
         try:
-            self._open(port or port_number(self.name, os.environ), host)
+            self._open(port, host)
         except BaseException:
             self._give_up()
             raise
-        fork.prepare()
-        reconnect.watch(self)
+        self.repair.watch(self)
         log.info("Port %s active at %s", self.name, f"tcp://{self.contact.address}/")
-
-    # -- opening ----------------------------------------------------------------------------------
 
     def _give_up(self) -> None:
         """Opening failed: leave nothing behind."""
@@ -174,7 +205,7 @@ class Hub(Registered):
                 self.inputs = (*self.inputs, link)
         if late:
             with contextlib.suppress(NoNameServer):
-                self._ask_to_leave(link.route.source)
+                self.ask_to_leave(link.route.source)
             link.driver.transport.close()
             if link.own_chain is not None:
                 link.own_chain.close()
@@ -202,13 +233,10 @@ class Hub(Registered):
         self.mailbox.put(link, message)
 
     def administer(self, link: Inbound, message: Message) -> Bottle:
-        try:
-            return admin.answer(self, message)
-        except YarpError as error:
-            return admin.failure(str(error))
+        return self._crew.administer(self, message)
 
     def command(self, link: Inbound, message: Message) -> list[str]:
-        lines = command.obey(self, link, message)
+        lines = self._crew.obey(self, link, message)
         if (message.key, message.text) == ("*", PAGE):
             lines += self._whereabouts() + self.lines_for_people()
         return lines
@@ -259,7 +287,7 @@ class Hub(Registered):
             return
         self.report(link, created=False, reason=reason)
         if not (quit_ or link.closing or self.closing):
-            reconnect.input_lost(self, link.route)
+            self.repair.input_lost(self, link.route)
 
     def _forget_input(self, link: Inbound) -> bool:
         with self.lock:
@@ -294,7 +322,7 @@ class Hub(Registered):
                 link.chain.close()
             self.report(link, created=False, reason=reason)
             if lost and link.dialled and not self.closing:
-                reconnect.output_lost(self, link.route)
+                self.repair.output_lost(self, link.route)
         return known
 
     def _elect(self) -> None:
@@ -343,14 +371,14 @@ class Hub(Registered):
             if self.closing:
                 return
             self.closing = True
-        reconnect.forget(self)
+        self.repair.forget(self)
         self.mailbox.interrupt()
         soon = time.monotonic() + 0.3
         for thread in tuple(self._greeting):  # who is just arriving is told to leave as well
             thread.join(max(0.0, soon - time.monotonic()))
         answers = self._ask_senders_to_leave()
         for output in self.outputs:
-            command.close_output(self, output)
+            self._crew.close_output(self, output)
         for link in self.inputs:
             link.close()
         deadline = time.monotonic() + 3.0
@@ -375,19 +403,26 @@ class Hub(Registered):
         """
         for link in self.inputs:
             try:
-                self._ask_to_leave(link.route.source)
+                self.ask_to_leave(link.route.source)
             except NoNameServer:
                 return False
         return True
 
-    def _ask_to_leave(self, source: str) -> None:
-        if source.startswith("/") and source != self.name:
-            try:
-                reconnect.ask_to_disconnect(self, source)
-            except NoNameServer:
-                raise
-            except (YarpError, OSError):
-                pass  # it will notice by itself
+    def ask_to_leave(self, source: str) -> None:
+        """Ask the port `source` to drop its connection to us: it would take the end for a failure.
+
+        Raises NoNameServer if nobody tells where that port is.
+        """
+        if not source.startswith("/") or source == self.name or self.names is None:
+            return
+        try:
+            contact: Contact | None = self.names.query(source)
+            if contact is not None and contact.carrier == "tcp":
+                probe.drop_output(contact, self.name, timeout=1.0, secret_=self.key)
+        except NoNameServer:
+            raise
+        except (YarpError, OSError):
+            pass  # it will notice by itself
 
     def snapshot(self) -> dict[str, Any]:
         """Counters of every connection, and of the mailbox."""

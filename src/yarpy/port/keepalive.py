@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Final
+from typing import Final
 from weakref import WeakKeyDictionary
 
 from yarpy.contact import Contact, parse_contact
@@ -21,9 +21,7 @@ from yarpy.errors import LinkClosed, YarpError
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.port import probe
-
-if TYPE_CHECKING:
-    from yarpy.port.hub import Hub
+from yarpy.port.hub import Hub
 
 SOON: Final = 0.4  # seconds from a sign of life, or a bad one, to the next question
 LATER: Final = 1.6  # ... while all that is heard are good answers

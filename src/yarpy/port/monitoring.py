@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal, Protocol
 
 from yarpy.config.resource import Search
 from yarpy.contact import Route
@@ -21,18 +21,28 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.monitors.base import Group, Place
 from yarpy.monitors.chain import Chain, from_carrier, make, named
-
-if TYPE_CHECKING:
-    from yarpy.port.hub import Hub
+from yarpy.names.base import NameClient
 
 DEFAULT = "portmonitor"  # the monitor that is attached when none is named
+
+
+class Monitored(Protocol):
+    """What monitors need of their port."""
+
+    name: str
+    limit: int
+    inputs: tuple[Inbound, ...]
+    outputs: tuple[Outbound, ...]
+
+    def service(self) -> NameClient | None:
+        """The name service to look others up with."""
 
 
 class Monitoring:
     """The monitors of one port."""
 
-    def __init__(self, hub: Hub) -> None:
-        self._hub = hub
+    def __init__(self, port: Monitored) -> None:
+        self._port = port
         self.group = Group()
         self.input: Chain | None = None  # the port's own, behind the chain of each input
         self.output: Chain | None = None  # the port's own, in front of the chain of each output
@@ -61,8 +71,8 @@ class Monitoring:
     def _place(self, route: Route, sending: bool) -> Place:
         group = Group() if sending else self.group
         end = route.source, route.target, route.carrier, sending
-        names = self._hub.service()
-        return Place(*end, group=group, limit=self._hub.limit, names=names, look=_look)
+        names = self._port.service()
+        return Place(*end, group=group, limit=self._port.limit, names=names, look=_look)
 
     def _joined(self, own: Chain | None) -> Chain | None:
         if own is None or self.input is None:
@@ -77,7 +87,7 @@ class Monitoring:
         `(monitor NAME)` among the parameters says which, else it is a portmonitor; the others are
         its own.
         """
-        name = self._hub.name
+        name = self._port.name
         tokens = tuple(_token(parameters, key) for key in parameters if key != "monitor")
         place = replace(
             self._place(Route(name, name, ""), sending=side == "out"),
@@ -101,18 +111,18 @@ class Monitoring:
             self.output = chain
             return
         self.input = chain
-        for link in self._hub.inputs:
+        for link in self._port.inputs:
             link.chain = self._joined(link.own_chain)
 
     # -- parameters -------------------------------------------------------------------------------
 
     def chain(self, side: Literal["in", "out"], name: str) -> Chain | None:
         """The chain of the connection from or to `name`, or the port's own if that is its name."""
-        if name == self._hub.name:
+        if name == self._port.name:
             return self.input if side == "in" else self.output
         if side == "in":
-            return next((x.own_chain for x in self._hub.inputs if x.route.source == name), None)
-        return next((x.chain for x in self._hub.outputs if x.route.target == name), None)
+            return next((x.own_chain for x in self._port.inputs if x.route.source == name), None)
+        return next((x.chain for x in self._port.outputs if x.route.target == name), None)
 
     def close(self) -> None:
         """The port closes."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from yarpy.names.base import NameClient
+from yarpy.port.assembly import open_hub
 from yarpy.port.event import ConnectionEvent
-from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Rendezvous
 from yarpy.port.reader import ReadingPort
 from yarpy.wire.message import Message
@@ -45,7 +45,7 @@ class Port(ReadingPort):
     ) -> None:
         mailbox = Rendezvous() if callback is None else Callback(callback)
         super().__init__(
-            Hub(
+            open_hub(
                 name,
                 mailbox,
                 names,

@@ -10,7 +10,7 @@ import os
 import platform
 import sys
 import threading
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
@@ -18,10 +18,8 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.link.qos import grant_sched, grant_tos, thread_of
 from yarpy.monitors.chain import Chain
+from yarpy.port.hub import Hub
 from yarpy.qos import Sched, policy_of, schedule, scheduled, tos_of
-
-if TYPE_CHECKING:
-    from yarpy.port.hub import Hub
 
 
 def get_self(hub: Hub) -> Bottle:
@@ -49,7 +47,7 @@ def get_self(hub: Hub) -> Bottle:
                 [
                     "port",
                     _dict(
-                        is_input=int(hub.admits_inputs),
+                        is_input=1,
                         is_output=int(hub.admits_outputs),
                         is_rpc=int(hub.rpc),
                         type=hub.type,

@@ -14,9 +14,9 @@ import socket
 import threading
 import time
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from yarpy.contact import Contact, Route, modifier, parse_contact
+from yarpy.contact import Route, modifier, parse_contact
 from yarpy.data.value import Vocab
 from yarpy.errors import LoginRefused, YarpError
 from yarpy.link.handshake import find_carrier
@@ -25,10 +25,8 @@ from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.port import command, probe
+from yarpy.port.hub import Hub
 from yarpy.port.keepalive import Link, Pulse
-
-if TYPE_CHECKING:
-    from yarpy.port.hub import Hub
 
 log = logging.getLogger("yarpy.port")
 
@@ -331,10 +329,3 @@ def _is_address(name: str) -> bool:
         return parse_contact(name).reachable
     except YarpError:
         return True
-
-
-def ask_to_disconnect(hub: Hub, source: str) -> None:
-    """Ask the port `source` to drop its connection to us: it would take the end for a failure."""
-    contact: Contact | None = hub.names.query(source) if hub.names is not None else None
-    if contact is not None and contact.carrier == "tcp":
-        probe.drop_output(contact, hub.name, timeout=1.0, secret_=hub.key)

@@ -7,17 +7,13 @@ nobody measured is missing.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.link.qos import effective
+from yarpy.port.hub import Hub
 from yarpy.port.monitoring import monitored
-
-if TYPE_CHECKING:
-    from yarpy.port.hub import Hub
 
 COUNTED = ("messages", "bytes", "drops")
 MEASURED = ("rate", "jitter", "latency")  # of these a zero says: not known

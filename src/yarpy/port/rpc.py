@@ -13,8 +13,8 @@ from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, YarpError
 from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
+from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
-from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Mailbox
 from yarpy.wire.message import CALL, UNSENDABLE, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
@@ -48,7 +48,7 @@ class RpcServer(BasePort):
         self._opened = threading.Event()  # a client may be there before this constructor is done
         try:
             super().__init__(
-                Hub(
+                open_hub(
                     name,
                     Callback(self._answer, lock),
                     names,
@@ -122,7 +122,7 @@ class RpcClient(BasePort):
         limit: int = DEFAULT_LIMIT,
     ) -> None:
         mailbox: Mailbox = Callback(lambda message: None)
-        super().__init__(Hub(name, mailbox, names, port=port, rpc=True, limit=limit))
+        super().__init__(open_hub(name, mailbox, names, port=port, rpc=True, limit=limit))
         self._target = ""
         self._carrier = carrier
         if target:

@@ -4,7 +4,6 @@ people."""
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
 
 from yarpy.contact import masked, parse_contact
 from yarpy.data.text import plain_text
@@ -18,9 +17,7 @@ from yarpy.errors import (
 )
 from yarpy.link.handshake import find_carrier
 from yarpy.port import command, probe
-
-if TYPE_CHECKING:
-    from yarpy.port.hub import Hub
+from yarpy.port.hub import Hub
 
 _POLL = 0.05
 

@@ -1,0 +1,55 @@
+"""Assembly: opens a port - a hub, and everybody who acts on it.
+
+Rules: the only file that knows both. Hubs are opened here and nowhere else.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Final
+
+from yarpy.config.configuration import port_number
+from yarpy.names.base import NameClient
+from yarpy.port import admin, command, fork, reconnect
+from yarpy.port.event import ConnectionEvent
+from yarpy.port.hub import Crew, Hub
+from yarpy.port.mailbox import Mailbox
+from yarpy.wire.stream import DEFAULT_LIMIT
+
+CREW: Final = Crew(admin.answer, command.obey, command.close_output, reconnect)
+
+
+def open_hub(
+    name: str,
+    mailbox: Mailbox,
+    names: NameClient | None = None,
+    *,
+    port: int = 0,
+    host: str = "",
+    type_: str = "",
+    admits_outputs: bool = True,
+    rpc: bool = False,
+    limit: int = DEFAULT_LIMIT,
+    on_connection: Callable[[ConnectionEvent], None] | None = None,
+    register: bool = True,
+) -> Hub:
+    """A hub that listens and is registered. Parameters as `Hub`; `port` 0 is any free TCP port.
+
+    Raises AddressError (name unusable, name or port in use), NoNameServer.
+    """
+    fork.prepare()
+    hub = Hub(
+        name,
+        mailbox,
+        names,
+        CREW,
+        type_=type_,
+        admits_outputs=admits_outputs,
+        rpc=rpc,
+        limit=limit,
+        on_connection=on_connection,
+        register=register,
+    )
+    hub.open(port or port_number(hub.name, os.environ), host)
+    return hub
