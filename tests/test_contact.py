@@ -1,4 +1,4 @@
-"""Addresses and carrier strings: the forms of C++ YARP, both ways."""
+"""Addresses: the forms of C++ YARP, both ways."""
 
 from __future__ import annotations
 
@@ -9,22 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yarpy import contact
-from yarpy.contact import (
-    Contact,
-    Route,
-    base_carrier,
-    check_name,
-    modifier,
-    parse_contact,
-    read_specifier,
-    specifier,
-)
+from yarpy.contact import Contact, check_name, parse_contact
 from yarpy.errors import AddressError
 
 
 def test_examples_in_the_docstrings() -> None:
     found = doctest.testmod(contact)
-    assert found.attempted >= 10
+    assert found.attempted >= 5
     assert found.failed == 0
 
 
@@ -105,53 +96,3 @@ def test_long_name_is_not_repeated_in_full() -> None:
     with pytest.raises(AddressError) as caught:
         check_name("/" + "x" * 100_000)
     assert len(str(caught.value)) < 200
-
-
-SPECIFIERS = [
-    # source, carrier, what travels, what arrives
-    ("/w", "tcp", "/w", "tcp"),
-    ("/w", "tcp+log", "/w (log)", "tcp+log"),
-    ("/w", "tcp+a.1+b.2", "/w (a 1) (b 2)", "tcp+a.1+b.2"),
-    ("/w", "tcp+recv.priority+tc.0.5", "/w (recv priority) (tc 0 5)", "tcp+recv.priority+tc.0"),
-    ("/w", "udp+file.my.lua", "/w (file my lua)", "udp+file.my"),
-    ("", "tcp", "", "tcp"),
-]
-
-
-@pytest.mark.parametrize(("source", "carrier", "text", "arrives"), SPECIFIERS)
-def test_specifiers(source: str, carrier: str, text: str, arrives: str) -> None:
-    assert specifier(source, carrier) == text
-    assert read_specifier(text, base_carrier(carrier)) == (source, arrives)
-
-
-@pytest.mark.parametrize(
-    ("text", "found"),
-    [
-        ("/my port (recv x)", ("/my", "text+port+recv.x")),
-        ("/w (open", ("/w", "text")),
-        ("/w () x", ("/w", "text+x")),
-        ("/w  (a  b)", ("/w", "text+a.b")),
-    ],
-)
-def test_odd_specifiers(text: str, found: tuple[str, str]) -> None:
-    assert read_specifier(text, "text") == found
-
-
-@given(st.text(max_size=60))
-def test_any_specifier_is_read(text: str) -> None:
-    name, carrier = read_specifier(text, "tcp")
-    assert carrier.startswith("tcp")
-    assert " " not in name
-
-
-def test_modifiers_of_a_carrier() -> None:
-    assert modifier("tcp+log.in", "log") == "in"
-    assert modifier("tcp+logger.in", "log") is None
-    assert modifier("tcp", "log") is None
-    assert modifier("tcp+a.b.c+d.e", "a") == "b.c"
-    assert base_carrier("tcp+a.b") == "tcp"
-    assert base_carrier("") == ""
-
-
-def test_route_says_who_talks_to_whom() -> None:
-    assert str(Route("/a", "/b", "udp")) == "/a -> /b (udp)"

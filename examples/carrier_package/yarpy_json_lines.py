@@ -12,7 +12,6 @@ import json
 from typing import Any
 
 from yarpy.carriers.base import CALL, QUIT, Carrier, Message, Packet, Steps
-from yarpy.contact import specifier
 from yarpy.errors import RemoteProtocolError
 from yarpy.wire.stream import ByteStream
 
@@ -25,7 +24,7 @@ class JsonLines(Carrier):
     spelling = "object"
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        stream.write(f"JSONLINE {specifier(self.route.source, self.route.carrier)}\n".encode())
+        stream.write(f"JSONLINE {self.route.specifier}\n".encode())
         yield from ()
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:

@@ -1,4 +1,4 @@
-"""Addresses: `Contact` (where a port is and how to speak to it) and carrier strings.
+"""Addresses: `Contact`, where a port is and how to speak to it.
 
 Rules: pure, no sockets. The text forms are those of C++ YARP (spec core-3 section 6.1):
 
@@ -12,25 +12,16 @@ Rules: pure, no sockets. The text forms are those of C++ YARP (spec core-3 secti
     Contact(carrier='tcp', name='', host='10.0.0.1', port=10002)
     >>> parse_contact("mjpeg+path.a/b.c?x=1://cam").carrier
     'mjpeg+path.a/b.c?x=1'
-
-A carrier string is `base+key.value+flag...`; it travels to the other side as a *specifier*, the
-sender's name followed by ` (key value)` groups, where every dot has become a space:
-
-    >>> specifier("/w", "tcp+recv.priority+tc.0.5")
-    '/w (recv priority) (tc 0 5)'
-    >>> read_specifier("/w (recv priority) (tc 0 5)", "tcp")
-    ('/w', 'tcp+recv.priority+tc.0')
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from yarpy.errors import AddressError
 
 _HOST_PORT = re.compile(r"^[^:/]+:\d+$")
-_PASSWORD = re.compile(r"\+password\.[^+\s]*?(?=\+|:/|\s|$)")
 _IPV6_PORT = re.compile(r"^\[[0-9A-Fa-f:.%]+\]:\d+$")
 
 
@@ -59,23 +50,6 @@ class Contact:
         if self.name:
             return f"{carrier}:/{self.name}"
         return f"{carrier}://{self.address}/"
-
-
-@dataclass(slots=True)
-class Route:
-    """Who talks to whom over what: one connection. `port` is the accepting side's TCP port,
-    `host` its address, where we dialled it. `secret` is the carrier string with its password,
-    where `carrier`, which everybody may see, has none."""
-
-    source: str
-    target: str
-    carrier: str = "tcp"
-    port: int = 0
-    host: str = ""
-    secret: str = field(default="", repr=False)
-
-    def __str__(self) -> str:
-        return f"{self.source} -> {self.target} ({self.carrier})"
 
 
 def parse_contact(text: str) -> Contact:
@@ -134,75 +108,3 @@ def check_name(name: str) -> str:
     if problem:
         raise AddressError(f'a port name {problem} (name given: "{name[:80]}")')
     return name
-
-
-def base_carrier(carrier: str) -> str:
-    """The protocol of a carrier string: the part before the first `+`.
-
-    >>> base_carrier("tcp+recv.priority")
-    'tcp'
-    """
-    return carrier.partition("+")[0]
-
-
-def modifier(carrier: str, key: str) -> str | None:
-    """The value of `+key.value` in a carrier string, or None. The value may contain dots.
-
-    >>> modifier("mjpeg+path.mjpg/video.mjpg?camera=1", "path")
-    'mjpg/video.mjpg?camera=1'
-    >>> modifier("tcp+log", "log") is None
-    True
-    """
-    for token in carrier.split("+")[1:]:
-        name, dot, value = token.partition(".")
-        if dot and name == key:
-            return value
-    return None
-
-
-def masked(text: str) -> str:
-    """A carrier string, or a text with one in it, without the password.
-
-    >>> masked("mjpeg+path.video+user.me+password.a.b://cam")
-    'mjpeg+path.video+user.me+password.***://cam'
-    """
-    return _PASSWORD.sub("+password.***", text)
-
-
-def specifier(name: str, carrier: str) -> str:
-    """What the sender says of itself on the wire: its name and its carrier's modifiers."""
-    _, plus, modifiers = carrier.partition("+")
-    if not plus:
-        return name
-    return f"{name} ({modifiers.replace('+', ') (').replace('.', ' ')})"
-
-
-def read_specifier(text: str, carrier: str) -> tuple[str, str]:
-    """The sender's name and full carrier string out of a specifier received over `carrier`.
-
-    Of each group only the first two words survive, as in C++.
-    """
-    if " " not in text:
-        return text, carrier
-    name, _, rest = text.partition(" ")
-    for token in _split_tokens(rest):
-        words = _split_tokens(token[1:-1]) if token.startswith("(") else [token]
-        if words:
-            carrier += "+" + ".".join(words[:2])
-    return name, carrier
-
-
-def _split_tokens(text: str) -> list[str]:
-    """Split at blanks outside parentheses; an unbalanced rest is dropped."""
-    tokens, depth, current = [], 0, ""
-    for c in text:
-        if c in " \t" and depth == 0:
-            if current:
-                tokens.append(current)
-            current = ""
-            continue
-        depth += (c == "(") - (c == ")")
-        current += c
-    if current and depth == 0:
-        tokens.append(current)
-    return tokens

@@ -7,8 +7,8 @@ import pytest
 from yarpy import registry
 from yarpy.carriers.base import Carrier, Indexed
 from yarpy.carriers.tcp import Tcp
-from yarpy.contact import Route
 from yarpy.link.handshake import recognise
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance
 from yarpy.wire import framing
 from yarpy.wire.stream import ByteStream

@@ -30,6 +30,7 @@ from yarpy.carriers.tcp import Tcp
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.link.handshake import find_carrier
+from yarpy.route import parse_carrier
 from yarpy.testing import End
 from yarpy.testing.drive import GROUP
 from yarpy.wire.message import Message, Packet
@@ -165,7 +166,7 @@ def test_as_initiator(name: str, piece: int) -> None:
     replies: list[Message | None] = []
     carrier = initiator_of(capture)
     if name == "unix_stream_receiver_ack":
-        carrier.route.carrier = "unix_stream+ack"
+        carrier.route.spec = parse_carrier("unix_stream+ack")
     waits = name != "conn_name_ser_stream"  # of which nobody wanted answers
     end.begin(dial(end, carrier, messages, replies if waits else None))
     said = b""
@@ -349,7 +350,7 @@ def test_datagrams_are_written(name: str) -> None:
 
 
 def initiator_of_datagrams(kind: str) -> Any:
-    from yarpy.contact import Route
+    from yarpy.route import Route
 
     return find_carrier(kind)(Route("/cap/out", "/cap/in", kind))
 

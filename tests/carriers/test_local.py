@@ -6,10 +6,10 @@ import pytest
 from support.capture import load_capture
 
 from yarpy.carriers.local import Local
-from yarpy.contact import Route
 from yarpy.errors import RemoteProtocolError
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance, Dialogue, End
 from yarpy.transports.tcp import dial
 

@@ -7,8 +7,8 @@ from support.capture import load_capture
 from support.steps import chop
 
 from yarpy.carriers.mcast import Mcast
-from yarpy.contact import Route
 from yarpy.errors import RemoteProtocolError
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance, Dialogue, End
 from yarpy.testing.drive import GROUP
 

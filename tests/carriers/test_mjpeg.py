@@ -13,11 +13,11 @@ from support.capture import load_capture
 from support.steps import chop, measured
 
 from yarpy.carriers.mjpeg import MAX_FRAME, Mjpeg
-from yarpy.contact import Route
 from yarpy.data import jpeg
 from yarpy.data.image import Image
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, YarpError
 from yarpy.link.handshake import recognise
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance, Dialogue, End, said
 from yarpy.wire.effects import Open, Steps
 from yarpy.wire.message import Message, Packet
@@ -127,7 +127,7 @@ def test_name_and_password() -> None:
         assert asked[1].endswith(b"\r\n\r\n")
         assert (asked[2:], why) == ([b""], "")
         assert watcher.route.carrier == "mjpeg+path.video+user.me%2Byou+password.***"
-        assert watcher.route.secret == SECRET
+        assert watcher.route.spec.whole == SECRET
         assert "p.a" not in repr(watcher.route) + str(watcher.route) + why
 
 

@@ -9,9 +9,9 @@ from support.capture import load_capture
 from support.steps import chop
 
 from yarpy.carriers.name_ser import NameSer
-from yarpy.contact import Route
 from yarpy.data.value import Vocab
 from yarpy.errors import RemoteProtocolError
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance
 from yarpy.wire.message import Lines, Packet
 from yarpy.wire.stream import ByteStream, run

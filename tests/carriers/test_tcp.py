@@ -7,9 +7,9 @@ from support.capture import load_capture
 from support.steps import chop
 
 from yarpy.carriers.tcp import FastTcp, Tcp
-from yarpy.contact import Route
 from yarpy.data.value import Vocab
 from yarpy.errors import RemoteProtocolError
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance, Dialogue, End, said
 from yarpy.wire import framing
 

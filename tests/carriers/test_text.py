@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from support.steps import chop
 
 from yarpy.carriers.text import Text, TextAck, read_text
-from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import RemoteProtocolError, YarpError
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance, Dialogue, End, said
 from yarpy.wire.message import Lines, Packet
 from yarpy.wire.stream import ByteStream, run

@@ -7,8 +7,8 @@ from support.capture import load_capture
 from support.steps import chop
 
 from yarpy.carriers.unix_stream import UnixStream
-from yarpy.contact import Route
 from yarpy.errors import RemoteProtocolError
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance, Dialogue, End
 from yarpy.wire.message import Packet
 from yarpy.wire.stream import ByteStream, run

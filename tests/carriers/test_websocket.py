@@ -26,10 +26,10 @@ from wsproto.events import (
 )
 
 from yarpy.carriers.websocket import WebSocket
-from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed, RemoteProtocolError, YarpError
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance, End
 from yarpy.wire.message import Message, Packet
 

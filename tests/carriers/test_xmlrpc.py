@@ -13,11 +13,11 @@ from support.steps import chop, measured
 
 from yarpy.carriers.http.carrier import Http
 from yarpy.carriers.xmlrpc import XmlRpc
-from yarpy.contact import Route
 from yarpy.data import xmlrpc
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, YarpError
 from yarpy.link.handshake import recognise
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance, End
 from yarpy.wire.message import Message, Packet
 

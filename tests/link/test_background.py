@@ -10,10 +10,10 @@ from support.transport import scripted
 from support.wait import wait_until
 
 from yarpy.carriers.tcp import FastTcp
-from yarpy.contact import Route
 from yarpy.errors import LinkClosed
 from yarpy.link.background import GATHER_SECONDS, Background, Sweeper
 from yarpy.link.outbound import Outbound
+from yarpy.route import Route
 from yarpy.wire.message import Packet
 
 

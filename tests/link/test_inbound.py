@@ -17,7 +17,6 @@ from support.wait import wait_until
 
 from yarpy.carriers.tcp import Tcp
 from yarpy.carriers.text import TextAck
-from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
@@ -25,6 +24,7 @@ from yarpy.link import inbound
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import recognise
 from yarpy.link.inbound import Inbound
+from yarpy.route import Route
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
 from yarpy.wire.message import Message

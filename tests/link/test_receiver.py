@@ -11,12 +11,12 @@ from support.transport import scripted
 
 from yarpy.carriers.tcp import FastTcp, Tcp
 from yarpy.carriers.text import TextAck
-from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.errors import LinkClosed
 from yarpy.link.driver import Driver
 from yarpy.link.inbound import Inbound
 from yarpy.link.receiver import MAX_UNSENT_ACKS
+from yarpy.route import Route
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
 from yarpy.wire.effects import Steps

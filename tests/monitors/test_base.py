@@ -6,24 +6,12 @@ import pytest
 
 from yarpy.data.bottle import Bottle
 from yarpy.errors import LocalProtocolError
-from yarpy.monitors.base import Group, Place, read_token, split_tokens
-
-CARRIER = "tcp+recv.x+tc.2+virtual+(ex (/a -10) (/b +10))+file.my.lua"
+from yarpy.monitors.base import Group, Place, read_token
+from yarpy.route import parse_carrier
 
 
 def place(own: str = "", shared: str = "") -> Place:
-    return Place("/a", "/b", "", False, tuple(split_tokens(own)), tuple(split_tokens(shared)))
-
-
-def test_tokens_stand_between_plus_signs_outside_parentheses() -> None:
-    assert [*split_tokens(CARRIER)] == [
-        "recv.x",
-        "tc.2",
-        "virtual",
-        "(ex (/a -10) (/b +10))",
-        "file.my.lua",
-    ]
-    assert [*split_tokens("tcp")] == []
+    return Place("/a", "/b", "", False, parse_carrier(own).tokens, parse_carrier(shared).tokens)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,8 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.errors import DecodeError, LocalProtocolError, UnknownPlugin
 from yarpy.monitors.base import DROP, Group, Place
-from yarpy.monitors.chain import Chain, from_carrier, named
+from yarpy.monitors.chain import Chain, from_carrier
+from yarpy.route import parse_carrier
 from yarpy.wire.message import DATA, Message, Packet
 
 
@@ -32,20 +33,6 @@ def message(*values: object) -> Message:
     found = Message(DATA, Bottle(values).to_bytes(), "3 0.5")
     found.source = "/out"
     return found
-
-
-@pytest.mark.parametrize(
-    ("carrier", "side", "expected"),
-    [
-        ("tcp", "send", []),
-        ("tcp+recv.a", "send", []),
-        ("tcp+send.a+x.1+recv.b+y", "send", [("a", ("x.1",))]),
-        ("tcp+send.a+x.1+recv.b+y", "recv", [("b", ("y",))]),
-        ("udp+z+recv.a+recv.b+k.v", "recv", [("a", ()), ("b", ("k.v",))]),
-    ],
-)
-def test_names_in_a_carrier_string(carrier, side, expected) -> None:
-    assert named(carrier, side) == expected
 
 
 def test_monitors_act_in_order() -> None:
@@ -258,19 +245,20 @@ def test_made_from_a_carrier_string() -> None:
         places.append(place)
         return object()
 
-    def there(carrier: str) -> Place:
-        return Place("/out", "/in", carrier, sending=True, limit=1000)
+    def made(carrier: str) -> list[object]:
+        place = Place("/out", "/in", carrier, sending=True, limit=1000)
+        return from_carrier(parse_carrier(carrier), place)
 
     registry.monitors.add("made", make)
     try:
-        from_carrier(there("tcp+send.made+a.1+recv.made+b.2"))
+        made("tcp+send.made+a.1+recv.made+b.2")
         [place] = places
         assert (place.source, place.target, place.sending) == ("/out", "/in", True)
         assert place.limit == 1000
         assert (place.text("a"), place.text("b")) == ("1", "2")
         with pytest.raises(LocalProtocolError, match=r'"made" cannot start at /out -> /in.*odd'):
-            from_carrier(there("tcp+send.made+send.made+bad"))
+            made("tcp+send.made+send.made+bad")
         with pytest.raises(UnknownPlugin, match='did you mean "made"'):
-            from_carrier(there("tcp+send.mdae"))
+            made("tcp+send.mdae")
     finally:
         registry.monitors.remove("made")

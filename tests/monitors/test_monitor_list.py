@@ -6,13 +6,14 @@ import pytest
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
-from yarpy.monitors.base import DROP, Place, split_tokens
+from yarpy.monitors.base import DROP, Place
 from yarpy.monitors.monitor_list import Series, places
+from yarpy.route import parse_carrier
 from yarpy.wire.message import DATA, Message
 
 
 def place(tokens: str) -> Place:
-    parts = tuple(split_tokens(f"x+{tokens}"))
+    parts = parse_carrier(f"x+{tokens}").tokens
     return Place("/a", "/b", "", False, parts, parts)
 
 

@@ -99,6 +99,15 @@ def test_monitor_that_the_other_end_would_not_hear_of(
         assert not out.outputs and not out.inputs
 
 
+def test_what_stands_in_parentheses_is_the_parameter_of_a_monitor(names: LocalNames) -> None:
+    carrier = "tcp+send.throttleDown+period_ms.1+(note a+log.in b)"
+    with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
+        out.connect("/in", carrier)
+        assert [link.carrier for link in out.outputs] == [carrier]
+        assert out.write([1]) == 1
+        assert in_.read(timeout=5).value == [1]
+
+
 def test_what_is_fetched_is_an_input_at_once_or_refused(names: LocalNames) -> None:
     """Who dials a camera is the receiver, and hears what is wrong with its own monitors."""
     with Port("/camera", names=names) as camera, Port("/view", names=names) as view:

@@ -12,8 +12,8 @@ from support.process import Process
 from support.wait import wait_until
 
 import yarpy
-from yarpy.contact import Route
 from yarpy.port import probe, reconnect
+from yarpy.route import Route
 
 RECOVERY = 20.0  # generous on a busy machine; the goal is 2 s, and the benchmark tells
 

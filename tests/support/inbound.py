@@ -11,11 +11,11 @@ from support.transport import ScriptTransport, scripted
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.tcp import Tcp
-from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.link.driver import Driver
 from yarpy.link.inbound import Inbound
+from yarpy.route import Route
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
 from yarpy.wire.message import Message, Packet

@@ -7,7 +7,8 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from yarpy.monitors.base import Place, split_tokens
+from yarpy.monitors.base import Place
+from yarpy.route import parse_carrier
 from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
 
@@ -16,7 +17,7 @@ Kind = Callable[[Place], Any]
 
 def place(tokens: str = "", sending: bool = False, limit: int = DEFAULT_LIMIT) -> Place:
     """A place with the parameters `tokens`, such as "size.half+order.rggb"."""
-    own = tuple(split_tokens(f"x+{tokens}")) if tokens else ()
+    own = parse_carrier(f"x+{tokens}").tokens if tokens else ()
     return Place("/out", "/in", f"tcp+{tokens}", sending, own, own, limit=limit)
 
 

@@ -10,9 +10,9 @@ from support.transport import ScriptTransport, scripted
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.tcp import Tcp
-from yarpy.contact import Route
 from yarpy.link.driver import Driver
 from yarpy.link.outbound import Outbound
+from yarpy.route import Route
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
 from yarpy.wire.message import Packet

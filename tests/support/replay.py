@@ -13,11 +13,11 @@ from typing import Any
 from support.capture import Capture
 
 from yarpy.carriers.base import Carrier
-from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.link.handshake import UNKNOWN_PROTOCOL, find_carrier, recognise
+from yarpy.route import Route
 from yarpy.testing import End
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import Lines, Message, Packet
@@ -131,7 +131,7 @@ def initiator_of(capture: Capture) -> Carrier:
     """A carrier that dials as the one in the capture did."""
     accepting, _ = messages_of(capture)
     route = accepting.route
-    return find_carrier(route.carrier)(Route(route.source, route.target, route.carrier))
+    return find_carrier(route.spec.base)(Route(route.source, route.target, route.spec))
 
 
 def answers_of(capture: Capture) -> list[Any]:

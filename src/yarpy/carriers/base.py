@@ -18,8 +18,8 @@ from collections.abc import Callable, Mapping
 from typing import ClassVar, TypeAlias
 
 from yarpy.carriers.http.page import Page
-from yarpy.contact import Route, read_specifier, specifier
 from yarpy.data import codec
+from yarpy.route import Route
 from yarpy.wire import framing
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
@@ -38,7 +38,7 @@ class Carrier:
     """One connection's protocol. Subclass it, set the facts, override what differs.
 
     `route` says who talks to whom: `route.source` and `route.target` are port names,
-    `route.carrier` the carrier string with its modifiers. The acceptor fills in the source.
+    `route.spec` the carrier string with what is added to it. The acceptor fills in the source.
     `lost` counts messages that the protocol itself had to drop; the link adds it to its drops.
     """
 
@@ -95,11 +95,11 @@ class Carrier:
 
     def sender(self) -> bytes:
         """Our name and modifiers as the binary carriers write them."""
-        return framing.encode_name(specifier(self.route.source, self.route.carrier))
+        return framing.encode_name(self.route.specifier)
 
     def introduce(self, text: str) -> None:
         """Take the name and modifiers that the peer gave itself."""
-        self.route.source, self.route.carrier = read_specifier(text, self.route.carrier)
+        self.route.introduce(text)
 
     # -- messages ---------------------------------------------------------------------------------
 

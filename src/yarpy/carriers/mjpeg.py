@@ -23,10 +23,10 @@ from yarpy.carriers.base import Carrier
 from yarpy.carriers.http.chunk import Chunks
 from yarpy.carriers.http.header import CHALLENGES, MAX_LINE, read_headers
 from yarpy.carriers.http.login import refusal, take_login
-from yarpy.contact import Route, modifier
 from yarpy.data import jpeg
 from yarpy.data.image import Image, is_image
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
+from yarpy.route import Route
 from yarpy.wire.effects import Open, Steps, Switch
 from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.stream import Buffer, ByteStream
@@ -89,10 +89,10 @@ class Mjpeg(Carrier):
         rate = _number(wishes.get("rate", [""])[-1])
         if quality:
             self.quality = max(1, min(100, int(quality)))
-            self.route.carrier += f"+quality.{self.quality}"
+            self.route.spec = self.route.spec.plus(f"quality.{self.quality}")
         if rate:
             self.interval = 1 / rate
-            self.route.carrier += f"+rate.{rate:g}"
+            self.route.spec = self.route.spec.plus(f"rate.{rate:g}")
 
     def prepare(self, packet: Packet) -> bool:
         return bool(self._frame(packet))
@@ -170,12 +170,12 @@ class Mjpeg(Carrier):
         return head + (b"\r\nAuthorization: " + login if login else b"") + b"\r\n\r\n"
 
     def _path(self) -> str:
-        carrier = self.route.carrier
-        path = modifier(carrier, "path")
+        spec = self.route.spec
+        path = spec.value("path")
         if path is None:
             path = "?action=stream"
             for wish in ("quality", "rate"):
-                value = modifier(carrier, wish)
+                value = spec.value(wish)
                 if value is not None:
                     path += f"&{wish}={value}"
         if not path.isprintable() or " " in path:

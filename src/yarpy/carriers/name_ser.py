@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.text import reply_text
-from yarpy.contact import Route
+from yarpy.route import Route
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import CALL, Message, Packet
 from yarpy.wire.stream import ByteStream

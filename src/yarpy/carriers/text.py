@@ -8,7 +8,6 @@ each command with a line `<ACK>`.
 from __future__ import annotations
 
 from yarpy.carriers.base import ASKS_FOR_KEY, Carrier
-from yarpy.contact import specifier
 from yarpy.data import codec
 from yarpy.data.text import Balance
 from yarpy.errors import RemoteProtocolError
@@ -30,8 +29,7 @@ class Text(Carrier):
     _welcomed = True  # whether the welcome that answers our greeting was read
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        name = specifier(self.route.source, self.route.carrier)
-        stream.write(self.magic + name.encode() + _END)
+        stream.write(self.magic + self.route.specifier.encode() + _END)
         self._welcomed = False
         return
         yield

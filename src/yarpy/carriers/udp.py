@@ -8,8 +8,8 @@ counted.
 from __future__ import annotations
 
 from yarpy.carriers.base import Indexed
-from yarpy.contact import Route
 from yarpy.errors import RemoteProtocolError
+from yarpy.route import Route
 from yarpy.wire import framing
 from yarpy.wire.datagram import MAX_DATAGRAM, Assembler, split
 from yarpy.wire.effects import Open, Steps, Switch

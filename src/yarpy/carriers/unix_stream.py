@@ -28,7 +28,7 @@ class UnixStream(Carrier):
         return MAGIC_SIZE if first in (b"UNIX_STR", b"UNIX_ACK") else 0
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        self.acks = "ack" in self.route.carrier.split("+")[1:]
+        self.acks = "ack" in self.route.spec.tokens
         stream.write((b"UNIX_ACK" if self.acks else b"UNIX_STR") + self.sender())
         handle = yield Open("unix", listen=False)
         yield Switch(handle, ByteStream(stream.limit))

@@ -21,11 +21,11 @@ from typing import TYPE_CHECKING, Final, TypeVar
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.http.header import MAX_LINE, read_headers
 from yarpy.carriers.http.origin import origins_of
-from yarpy.contact import Route
 from yarpy.data import codec
 from yarpy.data.json import from_json, to_json
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError
+from yarpy.route import Route
 from yarpy.wire import framing
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import ADMIN, CALL, QUIT, Message, Packet

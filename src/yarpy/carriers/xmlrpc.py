@@ -16,10 +16,10 @@ from typing import Final
 
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
 from yarpy.carriers.http.header import MAX_LINE, read_headers
-from yarpy.contact import Route, modifier
 from yarpy.data import codec, xmlrpc
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
+from yarpy.route import Route
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import ADMIN, CALL, Message, Packet
 from yarpy.wire.stream import ByteStream
@@ -151,7 +151,7 @@ class XmlRpc(Carrier):
 
     def _request(self, size: int) -> bytes:
         route = self.route
-        path = modifier(route.carrier, "path")
+        path = route.spec.value("path")
         path = "/RPC2" if path is None else "/" + path.removeprefix("/")
         if not path.isprintable() or " " in path:
             raise LocalProtocolError(f"a path without blanks, please, not {path!r}")

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.cli.output import print_json, print_line
 from yarpy.cli.signals import Interrupted
-from yarpy.contact import base_carrier
 from yarpy.network.traffic import End, Flow, flows
+from yarpy.route import parse_carrier
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -73,7 +73,7 @@ class Overview:
         return (
             flow.source,
             flow.target,
-            base_carrier(flow.carrier),
+            parse_carrier(flow.carrier).base,
             _number(flow.measured("messages"), 0),
             _number(rate, 1),
             _number(None if speed is None else speed / 1e6, 2),

@@ -35,7 +35,8 @@ class Source:
         carrier: str | None = None,
         tell: Callable[[str], object] = lambda line: None,
     ) -> None:
-        from yarpy.contact import masked, parse_contact
+        from yarpy.contact import parse_contact
+        from yarpy.route import masked
 
         self._port = port
         self._name = name

@@ -25,6 +25,7 @@ from yarpy.data.text import plain_text
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.link.handshake import find_carrier
 from yarpy.qos import Qos
+from yarpy.route import parse_carrier
 
 KEYS = ("from", "to", "carrier", "sender", "receiver")
 
@@ -72,7 +73,7 @@ def _wire(group: Property) -> Wire:
     if "from" not in group or "to" not in group:
         raise LocalProtocolError("a connection needs from and to")
     source, target, carrier = (_text(group, key) for key in ("from", "to", "carrier"))
-    find_carrier(carrier or "tcp")
+    find_carrier(parse_carrier(carrier or "").base)
     return Wire(source, target, carrier or "tcp", _qos(group, "sender"), _qos(group, "receiver"))
 
 

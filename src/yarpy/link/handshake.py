@@ -15,9 +15,10 @@ from typing import Final
 from yarpy import registry
 from yarpy.carriers.auth import prove_acceptor, prove_initiator
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
-from yarpy.contact import Contact, Route, base_carrier
+from yarpy.contact import Contact
 from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout, UnknownPlugin
 from yarpy.link.driver import Driver
+from yarpy.route import Route
 from yarpy.transports.tcp import TcpTransport, dial
 from yarpy.wire.stream import DEFAULT_LIMIT
 
@@ -50,9 +51,8 @@ def recognise(
     return best
 
 
-def find_carrier(name: str) -> type[Carrier]:
-    """The carrier class of a carrier string. Raises UnknownPlugin with the nearest match."""
-    base = base_carrier(name) or "tcp"
+def find_carrier(base: str) -> type[Carrier]:
+    """The class of the carrier `base`. Raises UnknownPlugin with the nearest match."""
     try:
         carrier: type[Carrier] = registry.carriers.load(base)
     except UnknownPlugin:
@@ -63,7 +63,7 @@ def find_carrier(name: str) -> type[Carrier]:
             f"tcp+send.{base} at the sender's end"
         ) from None
     if not (isinstance(carrier, type) and issubclass(carrier, Carrier)):
-        raise UnknownPlugin(f'"{base_carrier(name)}" is installed, but is not a Carrier class')
+        raise UnknownPlugin(f'"{base}" is installed, but is not a Carrier class')
     return carrier
 
 
@@ -81,7 +81,7 @@ def greet(
     Raises UnknownPlugin, LinkClosed (nobody there, hung up), Timeout, RemoteProtocolError.
     """
     route.host, route.port = contact.host, contact.port
-    carrier = find_carrier(route.carrier)(route)
+    carrier = find_carrier(route.spec.base)(route)
     deadline = time.monotonic() + timeout
     try:
         transport = dial(contact.host, contact.port, timeout)

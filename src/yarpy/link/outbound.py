@@ -38,6 +38,7 @@ class Outbound(Sender):
         self.sched = Sched()  # what somebody asked for; -1: nothing
         self.tos = 0
         self.chain: Chain | None = None  # the monitors that ride on it
+        self.log = carrier.route.spec.log is not None  # it hears what the port is told, not writes
         self.active = True  # of the multicast links of a port only one sends
         self.thread: threading.Thread | None = None
         self._due = 0.0  # when the carrier's interval is over

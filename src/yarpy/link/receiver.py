@@ -19,7 +19,7 @@ from yarpy.wire.stream import LARGE
 
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
-    from yarpy.contact import Route
+    from yarpy.route import Route
     from yarpy.wire.effects import Steps
 
 PATIENCE = 0.02  # seconds a reader with the turn waits before it looks around

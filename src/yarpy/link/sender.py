@@ -19,8 +19,8 @@ from yarpy.wire.message import UNSENDABLE, Packet
 
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
-    from yarpy.contact import Route
     from yarpy.link.driver import Driver
+    from yarpy.route import Route
     from yarpy.wire.effects import Steps
 
 # How far a sender may be ahead of acknowledgements: so many messages, bytes, seconds. A slow reader

@@ -25,7 +25,7 @@ log line.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -172,17 +172,3 @@ def read_token(token: str) -> tuple[str, str | Bottle]:
         return (str(inner[0]) if inner else ""), Bottle(inner[1:])
     name, _, value = token.partition(".")
     return name, value
-
-
-def split_tokens(carrier: str) -> Iterator[str]:
-    """The parameters of a carrier string: what stands between `+` outside parentheses."""
-    depth, start = 0, carrier.find("+") + 1
-    if not start:
-        return
-    for index in range(start, len(carrier)):
-        c = carrier[index]
-        if c == "+" and depth == 0:
-            yield carrier[start:index]
-            start = index + 1
-        depth += (c == "(") - (c == ")")
-    yield carrier[start:]

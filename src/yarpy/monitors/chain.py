@@ -11,38 +11,20 @@ import logging
 import threading
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 from yarpy import registry
 from yarpy.data import codec
 from yarpy.data.property import Property
 from yarpy.errors import LocalProtocolError, YarpError
-from yarpy.monitors.base import DROP, FAILURES, Group, Place, split_tokens
+from yarpy.monitors.base import DROP, FAILURES, Group, Place
+from yarpy.route import CarrierSpec
 from yarpy.wire.message import Message, Packet
 
 log = logging.getLogger("yarpy.monitors")
 
 _MOST_TOLD: Final = 16  # different complaints of one chain that are logged
 _PLAIN: Final = frozenset((list, tuple, dict))  # what Python has for Bottles and Properties
-
-
-def named(carrier: str, side: Literal["send", "recv"]) -> list[tuple[str, tuple[str, ...]]]:
-    """The monitors of one side in a carrier string, each with the parameters that follow it.
-
-    >>> named("tcp+send.throttle+period_ms.10+recv.portmonitor+file.x", "send")
-    [('throttle', ('period_ms.10',))]
-    """
-    found: list[tuple[str, list[str]]] = []
-    own: list[str] | None = None
-    for token in split_tokens(carrier):
-        way, dot, name = token.partition(".")
-        if dot and way in ("send", "recv"):
-            own = []
-            if way == side:
-                found.append((name, own))
-        elif own is not None:
-            own.append(token)
-    return [(name, tuple(tokens)) for name, tokens in found]
 
 
 def make(name: str, place: Place) -> object:
@@ -58,17 +40,15 @@ def make(name: str, place: Place) -> object:
         ) from error
 
 
-def from_carrier(place: Place) -> list[object]:
-    """The monitors that a carrier string asks for at its sender's or receiver's end.
+def from_carrier(spec: CarrierSpec, place: Place) -> list[object]:
+    """The monitors that a carrier asks for at its sender's or receiver's end.
 
     They sit at `place`, each with its own parameters. Raises as `make`.
     """
-    found = named(place.carrier, "send" if place.sending else "recv")
-    shared = tuple(split_tokens(place.carrier)) if found else ()
     made: list[object] = []
     try:
-        for name, tokens in found:
-            made.append(make(name, replace(place, tokens=tokens, shared=shared)))
+        for name, tokens in spec.send if place.sending else spec.recv:
+            made.append(make(name, replace(place, tokens=tokens, shared=spec.tokens)))
     except YarpError:
         Chain(made, "").close()
         raise

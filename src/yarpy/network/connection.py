@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from yarpy.contact import Contact, base_carrier, check_name, masked, parse_contact
+from yarpy.contact import Contact, check_name, parse_contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -30,6 +30,7 @@ from yarpy.names.default import DEFAULT
 from yarpy.port import probe
 from yarpy.port.command import NOT_ADMITTED
 from yarpy.port.wiring import unknown
+from yarpy.route import masked, parse_carrier
 
 _POLL = 0.05  # seconds between looks while waiting
 
@@ -82,7 +83,7 @@ class Pairing:
         self.topical = "topic" in (from_.carrier, to.carrier)
         self.source, self.target = from_, to
         if self.topical:
-            self.carrier = carrier or "tcp"
+            self.spec = parse_carrier(carrier or "tcp")
             self.ask, self.peer, self.pull = "", "", False
             return
         here = from_ if from_.reachable else find(from_.name, names)
@@ -91,13 +92,14 @@ class Pairing:
         for contact in (here, there):
             if not _competent(contact):
                 constraint = contact.carrier
-        explicit = carrier or _written(target) or _written(source)
-        if explicit and constraint and base_carrier(explicit) != base_carrier(constraint):
-            raise LocalProtocolError(f"conflict between {explicit} and {constraint}")
-        if explicit and constraint:
-            explicit = constraint + explicit[len(base_carrier(explicit)) :]
-        self.carrier = explicit or constraint or "tcp"
-        self.pull = not find_carrier(self.carrier).push
+        given = carrier or _written(target) or _written(source)
+        self.spec = parse_carrier(given or constraint or "tcp")
+        if given and constraint:
+            fixed = parse_carrier(constraint)
+            if self.spec.base != fixed.base:
+                raise LocalProtocolError(f"conflict between {self.spec} and {fixed}")
+            self.spec = fixed.plus(*self.spec.tokens)
+        self.pull = not find_carrier(self.spec.base).push
         self.here, self.there = here, there
         asked = there if self.pull else here
         if not _competent(asked):
@@ -178,7 +180,7 @@ def _peer_name(contact: Contact) -> str:
 
 def _competent(contact: Contact) -> bool:
     """Whether a port takes YARP commands; a camera's web server, registered by name, does not."""
-    return base_carrier(contact.carrier or "tcp") not in _FOREIGN
+    return parse_carrier(contact.carrier).base not in _FOREIGN
 
 
 _FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http"})
@@ -198,7 +200,7 @@ def connect(
     yet. Raises UnknownName, UnknownPlugin, LinkClosed, LoginRefused, LocalProtocolError (refused).
     """
     if carrier:
-        find_carrier(carrier)
+        find_carrier(parse_carrier(carrier).base)
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
         try:
@@ -216,7 +218,7 @@ def _connect(source: str, target: str, carrier: str | None, names: NameClient | 
         return "connection to topic added."
     active = pairing.source if pairing.pull else pairing.target
     address = f"/{active.address}{active.name}" if active.reachable else active.name
-    reply = pairing.admin(Vocab("add"), f"{pairing.carrier}:/{address}")
+    reply = pairing.admin(Vocab("add"), f"{pairing.spec.whole}:/{address}")
     text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
     if reply and reply[0] == 0:
         return text
@@ -224,7 +226,7 @@ def _connect(source: str, target: str, carrier: str | None, names: NameClient | 
         raise LoginRefused(text)
     # The other end may not be there yet: a camera that still starts, a program that died.
     kind = LinkClosed if text.startswith("Cannot connect") else LocalProtocolError
-    way = masked(f'"{source}" -> "{target}" over {pairing.carrier}')
+    way = f'"{masked(source)}" -> "{masked(target)}" over {pairing.spec}'
     raise kind(f"{way} was refused: {text or 'no answer'}")
 
 

@@ -13,7 +13,6 @@ import random
 from collections.abc import Sequence
 from typing import Any, Literal
 
-from yarpy.contact import masked
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.data.text import plain_text
@@ -23,6 +22,7 @@ from yarpy.port import command
 from yarpy.port.hub import Hub
 from yarpy.port.prop import get_peer, get_self, set_peer, set_self
 from yarpy.port.report import report
+from yarpy.route import masked
 from yarpy.wire.message import Message
 
 log = logging.getLogger("yarpy.port")

@@ -11,7 +11,6 @@ from yarpy.port.assembly import open_hub
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox
 from yarpy.port.reader import ReadingPort
-from yarpy.port.writer import is_log
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
 
@@ -59,7 +58,7 @@ class BufferedPort(ReadingPort):
             return super()._send_all(packet, outputs, wait)
         sent = 0
         for link in outputs:
-            if not link.active or is_log(link):
+            if not link.active or link.log:
                 continue
             if link.broken:
                 self._hub.drop_output(link, "the connection broke", lost=True)

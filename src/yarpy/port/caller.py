@@ -9,11 +9,12 @@ from __future__ import annotations
 from types import TracebackType
 from typing import Final, Self
 
-from yarpy.contact import Contact, Route
+from yarpy.contact import Contact
 from yarpy.errors import LocalProtocolError
 from yarpy.link.handshake import find_carrier, greet
 from yarpy.link.outbound import Outbound
 from yarpy.names.default import secret
+from yarpy.route import Route, parse_carrier
 from yarpy.wire.message import ADMIN, CALL, Message, Packet
 
 ANONYMOUS: Final = "anon_rpc"  # the name C++ tools give themselves
@@ -35,7 +36,7 @@ class Caller:
         admin: bool = False,
         timeout: float = 10.0,
     ) -> None:
-        if not find_carrier(carrier).replies:
+        if not find_carrier(parse_carrier(carrier).base).replies:
             raise LocalProtocolError(f'"{carrier}" carries no replies; call over tcp')
         route = Route(name, contact.name or f"/{contact.address}", carrier, contact.port)
         driver, speaker = greet(contact, route, key=secret(), timeout=timeout)

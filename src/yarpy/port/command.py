@@ -12,7 +12,7 @@ import time
 from dataclasses import replace
 from typing import Final
 
-from yarpy.contact import Contact, Route, base_carrier, masked, modifier, parse_contact
+from yarpy.contact import Contact, parse_contact
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import (
@@ -30,10 +30,10 @@ from yarpy.errors import (
 from yarpy.link.handshake import find_carrier, greet
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
-from yarpy.monitors.chain import named
 from yarpy.names.address import is_loopback
 from yarpy.port import probe
 from yarpy.port.hub import Hub
+from yarpy.route import CarrierSpec, Route, masked, parse_carrier
 from yarpy.wire.message import Message
 
 NOT_ADMITTED: Final = "Not admitted to"  # how a line begins that tells of a password
@@ -113,16 +113,16 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
         wanted = parse_contact(text)
     except AddressError as error:
         raise Refused(f"Do not know how to connect to {shown}") from error
-    carrier = wanted.carrier or "tcp"
+    spec = parse_carrier(wanted.carrier or "tcp")
     contact = locate(hub, wanted)
     if contact is None:
         raise Refused(f"Do not know how to connect to {shown}")
     target = wanted.name or f"/{wanted.address}/"
     with hub.dialling.alone(target):
-        return _connect(hub, shown, contact, target, carrier)
+        return _connect(hub, shown, contact, target, spec)
 
 
-def _connect(hub: Hub, text: str, contact: Contact, target: str, carrier: str) -> str:
+def _connect(hub: Hub, text: str, contact: Contact, target: str, spec: CarrierSpec) -> str:
     """The rest of `connect`, while nobody else dials the target."""
     hub.repair.give_up(hub, target)
     if contact.name:
@@ -130,39 +130,38 @@ def _connect(hub: Hub, text: str, contact: Contact, target: str, carrier: str) -
             if old.route.target == target:
                 close_output(hub, old)
     try:
-        kind = find_carrier(carrier)
+        kind = find_carrier(spec.base)
     except UnknownPlugin as error:
         raise Refused(f"Cannot connect to {text}") from error
-    log_taps = modifier(carrier, "log")
-    if log_taps not in (None, "in"):
-        raise Refused(f"Logger configured as log.{log_taps}, but only log.in is supported")
-    if kind.push and log_taps is None:
+    if spec.log not in (None, "in"):
+        raise Refused(f"Logger configured as log.{spec.log}, but only log.in is supported")
+    if kind.push and spec.log is None:
         if not hub.admits_outputs:
             raise Refused("Outputs not allowed")
         if hub.rpc and any(map(_asks, hub.outputs)):
             raise Refused("RPC output already connected")
-    unheard = named(carrier, "recv" if kind.push else "send")
+    unheard = spec.recv if kind.push else spec.send
     if unheard and (kind.foreign or not kind.introduces):
         raise Refused(
             f"{kind.name} does not tell the {'receiver' if kind.push else 'sender'} of "
             f"{', '.join(name for name, _ in unheard)}: take another carrier, or attach it to "
             "that port by the administrative message atch"
         )
-    open_output(hub, contact, target, carrier, text)
+    open_output(hub, contact, target, spec, text)
     line = f"Added connection from {hub.name} to {text}"
-    if log_taps == "in":
+    if spec.log == "in":
         line += f"; {hub.name} will forward messages and replies (if any) to {target}"
     return line
 
 
 def _asks(link: Outbound) -> bool:
     """Whether an output is one that questions go to; not those of loggers and onlookers."""
-    return modifier(link.route.carrier, "log") is None and not link.carrier.lossy
+    return not link.log and not link.carrier.lossy
 
 
-def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str = "") -> None:
+def open_output(hub: Hub, contact: Contact, target: str, spec: CarrierSpec, text: str = "") -> None:
     """Dial `contact` and take the connection in. Raises Refused."""
-    route = Route(hub.name, target, carrier, contact.port)
+    route = Route(hub.name, target, spec, contact.port)
     try:
         chain = hub.monitoring.outgoing(route)
     except YarpError as error:
@@ -191,12 +190,12 @@ def open_output(hub: Hub, contact: Contact, target: str, carrier: str, text: str
             _wait_for_member(hub, contact, speaker.name)
         link = Outbound(driver, speaker)
         link.chain = chain
-        if "+recv." in carrier:
+        if spec.recv:
             _wait_for_member(hub, contact, speaker.name)
             if link.ended():
                 if chain is not None:
                     chain.close()
-                monitors = ", ".join(name for name, _ in named(carrier, "recv"))
+                monitors = ", ".join(name for name, _ in spec.recv)
                 reason = f'"{target}" hung up: its log tells what is wrong with {monitors} there'
                 raise Refused(f"Cannot connect to {text or target}: {reason}") from LinkClosed(
                     reason
@@ -229,7 +228,7 @@ def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:
     try:
         while time.monotonic() < deadline:
             input_ = probe.ask(contact, question, timeout=JOINING, secret_=hub.key)
-            if base_carrier(plain_text(input_.find("carrier", ""))) == carrier:
+            if parse_carrier(plain_text(input_.find("carrier", ""))).base == carrier:
                 return
             time.sleep(0.002)
     except (YarpError, OSError):
@@ -359,4 +358,4 @@ def joined(dest: str, carrier: str) -> str:
     return f"{carrier}:/{dest}"
 
 
-__all__ = ["NOT_ADMITTED", "Refused", "base_carrier", "connect", "describe", "joined", "obey"]
+__all__ = ["NOT_ADMITTED", "Refused", "connect", "describe", "joined", "obey"]

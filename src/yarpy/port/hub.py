@@ -19,7 +19,7 @@ from typing import Any, Protocol
 
 from yarpy.carriers.base import PAGE, Carrier
 from yarpy.carriers.http.page import Page, Pages
-from yarpy.contact import Contact, Route
+from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.errors import NoNameServer, PortClosed, YarpError
@@ -37,6 +37,7 @@ from yarpy.port.mailbox import Mailbox
 from yarpy.port.monitoring import Monitoring
 from yarpy.port.past import Past
 from yarpy.port.registration import Registered
+from yarpy.route import Route
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import Message
 from yarpy.wire.stream import DEFAULT_LIMIT

@@ -13,15 +13,15 @@ from pathlib import Path
 from typing import Literal, Protocol
 
 from yarpy.config.resource import Search
-from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.data.text import plain_text
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.monitors.base import Group, Place
-from yarpy.monitors.chain import Chain, from_carrier, make, named
+from yarpy.monitors.chain import Chain, from_carrier, make
 from yarpy.names.base import NameClient
+from yarpy.route import Route
 
 DEFAULT = "portmonitor"  # the monitor that is attached when none is named
 
@@ -51,18 +51,18 @@ class Monitoring:
 
     def outgoing(self, route: Route) -> Chain | None:
         """The sender's chain of a connection that is about to be made. Raises as `make`."""
-        if "+send." not in route.carrier:
+        if not route.spec.send:
             return None
-        monitors = from_carrier(self._place(route, sending=True))
+        monitors = from_carrier(route.spec, self._place(route, sending=True))
         return Chain(monitors, str(route))
 
     def incoming(self, link: Inbound) -> None:
         """Give a new input its chain. Raises as `make`."""
         route = link.route
-        if "+recv." not in route.carrier:
+        if not route.spec.recv:
             link.chain = self.input
             return
-        monitors = from_carrier(self._place(route, sending=False))
+        monitors = from_carrier(route.spec, self._place(route, sending=False))
         for monitor in monitors:
             self.group.add(monitor)
         link.own_chain = Chain(monitors, str(route), self.group)
@@ -147,5 +147,5 @@ def _token(parameters: Property, key: str) -> str:
 
 def monitored(link: Inbound | Outbound) -> list[str]:
     """The names of the monitors that ride on our end of a connection."""
-    side: Literal["send", "recv"] = "recv" if isinstance(link, Inbound) else "send"
-    return [name for name, _ in named(link.route.carrier, side)]
+    spec = link.route.spec
+    return [name for name, _ in (spec.recv if isinstance(link, Inbound) else spec.send)]

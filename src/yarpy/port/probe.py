@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from yarpy.contact import Contact, Route
+from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -18,6 +18,7 @@ from yarpy.link.driver import Driver
 from yarpy.link.handshake import greet
 from yarpy.link.outbound import Outbound
 from yarpy.names.default import secret
+from yarpy.route import Route
 from yarpy.wire.message import Packet
 
 TIMEOUT = 3.0  # seconds; a port that lives answers in milliseconds

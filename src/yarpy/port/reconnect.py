@@ -16,7 +16,7 @@ import time
 from dataclasses import dataclass, field
 from typing import Final
 
-from yarpy.contact import Route, modifier, parse_contact
+from yarpy.contact import parse_contact
 from yarpy.data.value import Vocab
 from yarpy.errors import LoginRefused, YarpError
 from yarpy.link.handshake import find_carrier
@@ -27,6 +27,7 @@ from yarpy.names.fallback_client import SeveralNames
 from yarpy.port import command, probe
 from yarpy.port.hub import Hub
 from yarpy.port.keepalive import Link, Pulse
+from yarpy.route import Route
 
 log = logging.getLogger("yarpy.port")
 
@@ -240,10 +241,9 @@ class Repairer:
         listed = probe.ask(contact, [Vocab("list"), Vocab("out")], secret_=hub.key)
         if hub.name in listed:
             return True
-        carrier = route.carrier
-        if modifier(carrier, "log") is not None:
+        if route.spec.log is not None:
             return True
-        probe.ask(contact, [Vocab("add"), f"{carrier}:/{hub.name}"], secret_=hub.key)
+        probe.ask(contact, [Vocab("add"), f"{route.spec.whole}:/{hub.name}"], secret_=hub.key)
         return True
 
     def _dial_again(self, item: _Lost, peer: str) -> bool:
@@ -257,7 +257,7 @@ class Repairer:
             contact = command.locate(hub, parse_contact(peer))
             if contact is None:
                 return False
-            command.open_output(hub, contact, peer, route.secret or route.carrier)
+            command.open_output(hub, contact, peer, route.spec)
             if item in self._lost:
                 way = "from" if item.incoming else "to"
                 log.info("%s: the connection %s %s is back", hub.name, way, peer)
@@ -278,7 +278,7 @@ def _is_there(item: _Lost) -> bool:
 
 def _is_pulled(route: Route) -> bool:
     """Whether the receiver of such a connection is the one that dials."""
-    return not find_carrier(route.carrier).push
+    return not find_carrier(route.spec.base).push
 
 
 def _servers(names: NameClient | None) -> list[YarpNameClient]:
@@ -313,7 +313,7 @@ pending = REPAIR.pending
 
 def output_lost(hub: Hub, route: Route) -> None:
     """An output broke without anybody asking for it."""
-    if modifier(route.carrier, "log") is None:
+    if route.spec.log is None:
         REPAIR.add(hub, route, incoming=False)
 
 

@@ -7,7 +7,6 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from yarpy.contact import modifier
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, YarpError
@@ -85,7 +84,7 @@ class RpcServer(BasePort):
     def _forward(self, message: Message, answer: object) -> None:
         """Tell connected loggers (`+log.in`) what was asked and answered."""
         for link in self._hub.outputs:
-            if modifier(link.route.carrier, "log") != "in":
+            if not link.log:
                 continue
             request = message.value
             if message.wants_reply:

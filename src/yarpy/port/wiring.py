@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 
-from yarpy.contact import masked, parse_contact
+from yarpy.contact import parse_contact
 from yarpy.data.text import plain_text
 from yarpy.errors import (
     LinkClosed,
@@ -18,6 +18,7 @@ from yarpy.errors import (
 from yarpy.link.handshake import find_carrier
 from yarpy.port import command, probe
 from yarpy.port.hub import Hub
+from yarpy.route import masked, parse_carrier
 
 _POLL = 0.05
 
@@ -27,7 +28,7 @@ def connect(hub: Hub, target: str, carrier: str, timeout: float | None) -> None:
     wanted = parse_contact(target)
     if wanted.reachable and ":/" in target:
         carrier = wanted.carrier  # as with names, what is written in front of it counts
-    kind = find_carrier(carrier)
+    kind = find_carrier(parse_carrier(carrier).base)
     text = target if wanted.carrier and not wanted.reachable else command.joined(target, carrier)
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
@@ -93,7 +94,7 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
         if found is None:
             raise unknown(source, names)
         contact = found
-    if not find_carrier(carrier).push:
+    if not find_carrier(parse_carrier(carrier).base).push:
         connect(hub, source, carrier, None)
         return
     target = hub.name if hub.registered else f"/{hub.contact.address}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from yarpy.contact import modifier
 from yarpy.data.stamp import Stamp
 from yarpy.errors import LinkClosed, YarpError
 from yarpy.link.outbound import Outbound
@@ -42,7 +41,7 @@ class Writer(BasePort):
     def _send_all(self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool) -> int:
         sent = 0
         for link in outputs:
-            if not link.active or is_log(link):
+            if not link.active or link.log:
                 continue
             try:
                 sent += link.send(packet)
@@ -75,9 +74,3 @@ def envelope_of(stamp: Stamp | str | bytes) -> bytes:
         if byte < 0x20 or byte >= 0x80:
             return data[:index]
     return data
-
-
-def is_log(link: Outbound) -> bool:
-    """Whether a connection only hears what the port is told (`+log.in`), not what it writes."""
-    carrier = link.route.carrier
-    return "+" in carrier and modifier(carrier, "log") is not None

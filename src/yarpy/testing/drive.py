@@ -16,8 +16,8 @@ from typing import Any
 
 from yarpy import registry
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
-from yarpy.contact import Route
 from yarpy.link.handshake import recognise
+from yarpy.route import Route
 from yarpy.wire.effects import Effect, Group, Open, Steps, Switch
 from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT, Buffer, ByteStream, DatagramStream, ObjectStream

@@ -25,13 +25,13 @@ from yarpy import registry
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.http.carrier import Http
 from yarpy.carriers.http.message import MAX_BODY, MAX_HEAD
-from yarpy.contact import Route
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import recognise
 from yarpy.link.inbound import Inbound
+from yarpy.route import Route
 from yarpy.testing import CarrierConformance
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import Lines, Message, Packet

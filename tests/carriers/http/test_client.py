@@ -11,8 +11,8 @@ from support.steps import chop
 from yarpy.carriers.http.carrier import Http
 from yarpy.carriers.http.client import HttpClient
 from yarpy.carriers.http.message import MAX_HEAD
-from yarpy.contact import Route
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, YarpError
+from yarpy.route import Route
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.stream import ByteStream, run
 

@@ -19,8 +19,8 @@ from yarpy.carriers.http.login import (
     refusal,
     take_login,
 )
-from yarpy.contact import Route
 from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError, YarpError
+from yarpy.route import Route
 
 NEW = (
     'Digest realm="http-auth@example.org", qop="auth, auth-int", algorithm=%s, '
@@ -170,7 +170,7 @@ def test_login_of_a_carrier_string() -> None:
     assert login == Login(b"me+you", "p.a:%sü".encode())
     assert "p.a" not in repr(login)
     assert route.carrier == "mjpeg+path.video+user.me%2Byou+password.***"
-    assert route.secret == carrier
+    assert route.spec.whole == carrier
     assert take_login(route) == login  # the second address of a host is tried with it too
 
 

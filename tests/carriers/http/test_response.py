@@ -17,8 +17,8 @@ from yarpy.carriers.http.response import (
     complaint,
     refused,
 )
-from yarpy.contact import Route
 from yarpy.errors import LocalProtocolError
+from yarpy.route import Route
 from yarpy.wire.message import Lines
 
 PORT = Responder(Route("", "/cap/srv", "http"), origins_of("*"))

@@ -21,10 +21,11 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, UnknownPlugin, YarpError
-from yarpy.monitors.base import DROP, Place, split_tokens
+from yarpy.monitors.base import DROP, Place
 from yarpy.monitors.script import script
 from yarpy.monitors.script.portmonitor import PortMonitor, portmonitor
 from yarpy.port import monitoring
+from yarpy.route import parse_carrier
 from yarpy.wire.message import DATA, Message
 
 
@@ -48,7 +49,7 @@ def message(*values: object) -> Message:
 
 
 def make(tokens: str, sending: bool = False, target: str = "/in") -> Any:
-    parts = tuple(split_tokens(f"tcp+{tokens}"))
+    parts = parse_carrier(f"tcp+{tokens}").tokens
     where = "/out", target, f"tcp+{tokens}", sending, parts, parts
     return portmonitor(Place(*where, look=monitoring._look))
 

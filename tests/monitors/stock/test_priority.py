@@ -17,8 +17,9 @@ from yarpy import network
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.errors import LocalProtocolError, YarpError
-from yarpy.monitors.base import Group, Place, split_tokens
+from yarpy.monitors.base import Group, Place
 from yarpy.monitors.stock.priority import Priority
+from yarpy.route import parse_carrier
 from yarpy.wire.message import DATA, Message
 
 MESSAGE = Message(DATA, Bottle([1]).to_bytes())
@@ -32,7 +33,7 @@ class Contest:
         self.group = Group()
 
     def join(self, source: str, tokens: str = "") -> Priority:
-        parts = tuple(split_tokens(f"tcp+recv.priority{tokens}"))
+        parts = parse_carrier(f"tcp+recv.priority{tokens}").tokens
         place = Place(source, "/in", "", False, parts, parts, self.group)
         one = Priority(place, clock=lambda: self.now)
         self.group.add(one)

@@ -41,8 +41,8 @@ from yarpy.carriers.http.response import (
     complaint,
     refused,
 )
-from yarpy.contact import Route
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
+from yarpy.route import Route
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import CALL, QUIT, Lines, Message, Packet
 from yarpy.wire.stream import ByteStream

@@ -10,8 +10,8 @@ from collections import deque
 from typing import TYPE_CHECKING, Final
 
 from yarpy.carriers.http.message import MAX_BODY, MAX_HEAD, TEXT, next_event, request_head
-from yarpy.contact import Route, modifier
 from yarpy.errors import LinkClosed, RemoteProtocolError
+from yarpy.route import Route
 from yarpy.wire.effects import Steps
 from yarpy.wire.message import ADMIN, DATA, Packet
 from yarpy.wire.stream import ByteStream
@@ -35,7 +35,7 @@ class HttpClient:
 
         route = self.route
         host = f"[{route.host}]" if ":" in route.host else route.host or "yarp"
-        path = (modifier(route.carrier, "path") or "form").lstrip("/")
+        path = (route.spec.value("path") or "form").lstrip("/")
         form = "none" if packet.key == DATA else "text"
         admin = "&admin=1" if packet.key == ADMIN else ""
         body = packet.line

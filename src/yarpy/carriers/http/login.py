@@ -19,8 +19,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
-from yarpy.contact import Route, masked, modifier
 from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
+from yarpy.route import Route
 
 MAX_CHALLENGES: Final = 8192  # characters of all that a camera offers
 MAX_VALUE: Final = 1024  # characters of what goes back to it, its nonce above all
@@ -136,18 +136,13 @@ class Login:
 
 
 def take_login(route: Route) -> Login | None:
-    """The login in a route's carrier string, if there is one; from then on the route, which
-    everybody may see who asks a port for its connections, shows no password.
+    """The login in a route's carrier string, if there is one.
 
     Raises LocalProtocolError for a name that HTTP cannot spell.
     """
     from urllib.parse import unquote_to_bytes
 
-    carrier = route.secret or route.carrier
-    shown = masked(carrier)
-    if shown != carrier:
-        route.carrier, route.secret = shown, carrier
-    words = [modifier(carrier, key) for key in ("user", "password")]
+    words = [route.spec.value(key) for key in ("user", "password")]
     if words == [None, None]:
         return None
     user, password = (unquote_to_bytes((w or "").encode("utf-8", "surrogateescape")) for w in words)

@@ -20,9 +20,9 @@ from yarpy.carriers.http.client import ENVELOPE
 from yarpy.carriers.http.message import HTML, JSON, TEXT, Headers, response_head
 from yarpy.carriers.http.origin import Origins, hostname
 from yarpy.carriers.text import reply_text
-from yarpy.contact import Route
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
+from yarpy.route import Route
 from yarpy.wire.message import Lines
 
 if TYPE_CHECKING:

@@ -69,7 +69,7 @@ def _wire(path: str) -> int:
 
     from yarpy.cli.stderr import complain
     from yarpy.cli.wiring import read
-    from yarpy.contact import masked
+    from yarpy.route import masked
 
     failed = 0
     for wire in read(Path(path)):
@@ -100,10 +100,11 @@ def _persist(source: str, target: str, carrier: str, mode: str) -> int:
     from yarpy.network.connection import ask_server
 
     if carrier:
-        from yarpy.contact import base_carrier, parse_contact
+        from yarpy.contact import parse_contact
         from yarpy.registry import carriers
+        from yarpy.route import parse_carrier
 
-        carriers.load(base_carrier(carrier))  # a wrong one shall not be stored
+        carriers.load(parse_carrier(carrier).base)  # a wrong one shall not be stored
         target = f"{carrier}:/{parse_contact(target).name}"
     ask_server(None, ["subscribe", source, target, *([mode] if mode else [])])
     return 0
