@@ -5,14 +5,19 @@ from __future__ import annotations
 import base64
 import json
 import re
+import threading
+import time
 import urllib.request
 from collections.abc import Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 from support.wait import wait_until
 
 import yarpy
+from yarpy.data import jpeg
 from yarpy.sim.axis import Axis
 from yarpy.sim.board import Board
 from yarpy.sim.body import Body
@@ -76,7 +81,7 @@ def opened(browser: Browser, url: str, **wishes: bool) -> Page:
 
 def seen(page: Page, number: int = 0) -> list[int]:
     """The green in a camera's picture, in 8 times 6 fields."""
-    shot = base64.b64encode(page.locator("#cameras img").nth(number).screenshot()).decode()
+    shot = base64.b64encode(page.locator("#cameras canvas").nth(number).screenshot()).decode()
     script = """async shot => {
         const bytes = Uint8Array.from(atob(shot), letter => letter.charCodeAt(0));
         const image = await createImageBitmap(new Blob([bytes], {type: "image/png"}));
@@ -92,8 +97,8 @@ def seen(page: Page, number: int = 0) -> list[int]:
 
 def loaded(page: Page) -> bool:
     """Whether both pictures have come."""
-    script = "[...document.images].every(image => image.naturalWidth)"
-    return bool(page.evaluate(script)) and page.locator("#cameras img").count() == 2
+    script = "[...document.querySelectorAll('#cameras canvas')].map(canvas => canvas.width)"
+    return bool(min(page.evaluate(script), default=0) > 4)
 
 
 def test_ports_of_the_robot(robot: Robot, url: str, names: yarpy.YarpNameClient) -> None:
@@ -166,7 +171,7 @@ def test_curves(browser: Browser, head: yarpy.RpcClient, url: str) -> None:
     page = opened(browser, url)
     page.locator("#curves article").nth(2).wait_for()
     assert page.locator("#curves h2").all_inner_texts() == [
-        *("head position", "inertial °/s, gyroscope", "inertial m/s², accelerometer")
+        *("head position", "inertial gyroscope", "inertial accelerometer")
     ]
     assert page.locator("#curves .joints .legend li").all_inner_texts() == JOINTS
     script = """canvas => {
@@ -182,7 +187,7 @@ def test_curves(browser: Browser, head: yarpy.RpcClient, url: str) -> None:
 
 def test_click_looks_there(browser: Browser, head: yarpy.RpcClient, url: str) -> None:
     page = opened(browser, url)
-    left = page.locator("#cameras img.looks").first
+    left = page.locator("#cameras .looks").first
     left.wait_for()
     size = left.bounding_box()
     assert size is not None
@@ -249,4 +254,96 @@ def test_robot_that_falls_silent(browser: Browser, names: yarpy.YarpNameClient) 
         page.get_by_text("waiting for the robot").wait_for()
         with Robot("/late", icub_head((32, 24)), names=names):
             page.get_by_text("live: drag the sliders").wait_for()
-        page.get_by_text("the robot is silent").wait_for()
+        page.get_by_text("the robot has been silent for").wait_for()
+
+
+def test_robot_that_is_started_again(browser: Browser, names: yarpy.YarpNameClient) -> None:
+    """Its ports have other numbers then. Until then a still picture looks still."""
+    browser.excuse("ERR_|Failed to load")
+    with yarpy.Port("/panel/again", names=names) as port:
+        Panel(port, "/again", names)
+        with Robot("/again", icub_head((64, 48)), names=names):
+            page = opened(browser, f"http://{port.address}/")
+            wait_until(lambda: loaded(page), PATIENCE)
+            page.locator("#cameras .facts", has_text=re.compile("64 . 48")).first.wait_for()
+            assert page.locator(".still").count() == 0
+            page.evaluate("window.same = true")
+        page.locator(".badge", has_text=re.compile(r"^still for \d")).first.wait_for()
+        assert page.locator("#cameras figure.still").count() == 2
+        page.get_by_text("the robot has been silent for").wait_for()
+        browser.picture(page, "panel_silent")
+        with Robot("/again", icub_head((96, 72)), names=names):
+            page.locator("#cameras .facts", has_text=re.compile("96 . 72")).nth(1).wait_for()
+            page.get_by_text("live: drag the sliders").wait_for()
+            wait_until(lambda: page.locator(".still").count() == 0, PATIENCE)
+            page.get_by_label("neck_roll").fill("30")
+            page.locator(".joint .value", has_text="30.0°").wait_for()
+        assert page.evaluate("window.same"), "the page was loaded anew"
+
+
+def test_limits_and_units(browser: Browser, head: yarpy.RpcClient, url: str) -> None:
+    page = opened(browser, url)
+    limits = page.locator(".joint .limits").nth(1)
+    assert limits.locator(".low").inner_text() == "-70°"
+    assert limits.locator(".high").inner_text() == "60°"
+
+
+def test_nothing_is_wasted_on_a_wide_screen(
+    browser: Browser, head: yarpy.RpcClient, url: str
+) -> None:
+    page = opened(browser, url)
+    page.locator("#curves article").nth(2).wait_for()
+    for width in (1280, 1920):
+        page.set_viewport_size({"width": width, "height": 1080})
+        rights = page.locator("#curves article").evaluate_all(
+            "all => all.map(e => Math.round(e.getBoundingClientRect().right))"
+        )
+        assert rights[0] == rights[2], "the curves leave a hole"
+        edge = page.locator("#boards").evaluate("e => e.getBoundingClientRect().right")
+        assert width - edge < 40
+        browser.picture(page, f"panel_{width}")
+
+
+class CppCamera(BaseHTTPRequestHandler):
+    """A camera of C++ YARP in HTTP: scripts of other pages may look at nothing of it."""
+
+    def do_GET(self) -> None:
+        self.send_response(200)
+        if "action=stream" not in self.path:
+            self.end_headers()
+            return
+        self.send_header("Content-Type", "multipart/x-mixed-replace;boundary=xyz")
+        self.end_headers()
+        data = jpeg.encode(yarpy.Image(np.full((48, 64, 3), (30, 200, 40), "u1")))
+        try:
+            while True:
+                head = f"--xyz\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\n\r\n"
+                self.wfile.write(head.encode() + data + b"\r\n")
+                time.sleep(0.05)
+        except OSError:
+            pass
+
+    def log_message(self, *details: object) -> None:
+        pass
+
+
+def test_camera_that_only_browsers_may_look_at(
+    browser: Browser, names: yarpy.YarpNameClient
+) -> None:
+    browser.excuse("ERR_|Failed to load|CORS|Access to")
+    camera = ThreadingHTTPServer(("127.0.0.1", 0), CppCamera)
+    camera.daemon_threads = True
+    threading.Thread(target=camera.serve_forever, daemon=True).start()
+    for name in ("/old/cam", "/old/cam/rpc"):
+        names.register(name, "tcp", "127.0.0.1", camera.server_address[1])
+    with yarpy.Port("/panel/of/old", names=names) as port:
+        Panel(port, "/old", names)
+        page = browser.open()
+        page.goto(f"http://{port.address}/", wait_until="commit")
+        page.locator("#cameras .facts", has_text=re.compile("64 . 48")).wait_for()
+        assert page.locator("#cameras img").count() == 1
+        assert page.locator(".still").count() == 0
+        camera.shutdown()
+        camera.server_close()
+        page.locator(".badge", has_text="still for").wait_for()
+        browser.picture(page, "panel_cpp_camera")

@@ -239,6 +239,44 @@ def test_range_of_the_axis(browser: Browser) -> None:
             reads(page, ".facts", "1 number more: --index draws others")
 
 
+# The seconds of a plot of 20 s in which something is drawn, of messages at these times.
+DRAWN = """async (times) => {
+    const {Plot} = await import("/plot.js");
+    const canvas = document.createElement("canvas");
+    canvas.style = "width: 1000px; height: 200px";
+    document.body.prepend(canvas);
+    const view = {end: 20, window: 20, low: 0, high: 10, hover: null};
+    const plot = new Plot(canvas);
+    const before = [];
+    const look = (curves) => {
+        plot.draw(curves, view);
+        const {width, height} = canvas;
+        return [...canvas.getContext("2d").getImageData(0, 0, width, height).data];
+    };
+    const [empty, full] = [look([]), look([{times, values: times.map(() => 5.3), number: 0}])];
+    const found = new Set();
+    full.forEach((value, at) => {
+        const x = (at >> 2) % canvas.width;
+        if (value !== empty[at]) found.add(Math.floor(plot.timeAt(x, view)));
+    });
+    canvas.remove();
+    return [...found].filter((second) => second >= 0 && second < 20).sort((a, b) => a - b);
+}"""
+
+
+@pytest.mark.parametrize("rate", [10, 2000], ids=["few", "many"])
+def test_no_line_is_drawn_across_an_outage(browser: Browser, rate: int) -> None:
+    with bench(browser) as here:
+        page = browser.open(here.url)
+        times = [start + n / rate for start in (1.2, 7.2) for n in range(rate)] + [15.5]
+        assert page.evaluate(DRAWN, times) == [1, 2, 7, 8, 15]
+        # A port that sends a message every three seconds has no outage, nor one that hesitates.
+        slow = [0.5, 3.5, 6.5, 9.5, 12.5, 15.5, 18.5]
+        assert page.evaluate(DRAWN, slow) == [*range(19)]
+        hesitating = [n / rate for n in range(5 * rate)] + [5.4 + n / rate for n in range(rate)]
+        assert page.evaluate(DRAWN, hesitating) == [*range(7)]
+
+
 def test_several_ports_in_one_plot(browser: Browser) -> None:
     with bench(browser, ["/one", "/two"]) as here:
         page = browser.open(here.url)

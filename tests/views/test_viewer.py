@@ -137,6 +137,30 @@ def test_pictures_and_what_is_told_of_them(browser: Browser) -> None:
         assert "warn" in (facts.first.get_attribute("class") or "")
 
 
+def test_a_picture_that_stays_says_why(browser: Browser) -> None:
+    with room(browser, "/view") as here:
+        page = browser.open(here.url)
+        here.cameras[0].write(plain(RED))
+        shows(page, RED)
+        assert page.locator(".still").count() == 0
+        reads(
+            page,
+            "figure .banner",
+            "^This picture is .* old. /cam/0 is connected, but sends nothing",
+        )
+        assert page.locator("figure.still").count() == 1
+        here.cameras[0].disconnect("/view")
+        reads(page, "figure .banner", "Nobody sends pictures here: yarpy connect /CAMERA /view$")
+        here.pictures[0].wait_for('Waiting for /cam/0: no port "/cam/0" is registered')
+        reads(page, "figure .banner", "Waiting for /cam/0: no port")
+        here.cameras[0].write(plain(GREEN))
+        here.cameras[0].connect("/view")
+        here.cameras[0].write(plain(GREEN))
+        here.pictures[0].wait_for("")
+        shows(page, GREEN)
+        wait_until(lambda: page.locator(".still").count() == 0, PATIENCE)
+
+
 def test_pause_costs_nothing_and_goes_on(browser: Browser) -> None:
     with room(browser, "/view") as here:
         page = browser.open(here.url)

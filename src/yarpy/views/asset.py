@@ -18,7 +18,7 @@ _KINDS: Final = {
     "css": "text/css; charset=utf-8",
     "js": "text/javascript; charset=utf-8",
 }
-_SHARED: Final = ("style.css", "common.js", "plot.js")
+_SHARED: Final = ("style.css", "common.js", "live.js", "plot.js")
 
 
 @cache

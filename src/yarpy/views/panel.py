@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _FILES = (
     *("panel.css", "style.css", "panel.js", "panel_camera.js", "panel_curve.js", "panel_joint.js"),
-    *("panel_port.js", "panel_sensor.js", "common.js", "plot.js", "horizon.js"),
+    *("panel_port.js", "panel_sensor.js", "common.js", "live.js", "plot.js", "horizon.js"),
 )
 
 

@@ -29,6 +29,10 @@ class Joint {
     Object.assign(this.slider, {id, min: lowest, max: highest, step});
     this.element.querySelector("label").htmlFor = id;
     say(part(this.element, "name"), name);
+    const written = (limit) => `${Number(limit.toFixed(1))}${this.unit}`;
+    say(part(this.element, "low"), written(lowest));
+    say(part(this.element, "middle"), slides ? "slides, in the robot's unit of length" : "");
+    say(part(this.element, "high"), written(highest));
     this.slider.oninput = () => {
       stop();
       this.send();
@@ -101,11 +105,18 @@ export class Board {
       part(this.element, "joints").append(joint.element);
     }
     const names = this.joints.map((joint) => joint.name);
-    this.curves = new Curves(this.info.name, "position", names);
+    const unit = this.joints.some((joint) => joint.unit === "") ? "" : "°";
+    this.curves = new Curves(this.info.name, "position", names, unit);
     this.curves.element.classList.add("joints");
-    listen(this.info.state, (time, angles) => this.show(time, angles), () => this.ask());
+    const show = (time, angles) => this.show(time, angles);
+    listen(() => this.info.state, show, () => this.ask());
     this.followOthers();
     this.offerGaze();
+  }
+
+  // The robot was started again, with other numbers.
+  move(info) {
+    this.info = info;
   }
 
   show(time, angles) {
@@ -116,7 +127,8 @@ export class Board {
 
   // Where the joints are, from a port that does not tell by itself.
   async ask() {
-    for (;;) {
+    const {info} = this;
+    while (info === this.info) {
       await pause(ASK);
       if (document.hidden) continue;
       const reply = await call(this.info.rpc, "get encs").catch(() => null);

@@ -1,5 +1,7 @@
 // How the panel talks to the ports of a robot: questions, commands, events.
 
+const SILENT = 10000; // ms without an event after which they are asked for anew
+
 // Its name, and when this page last heard of its joints or sensors.
 export const robot = {name: "", heard: null};
 
@@ -16,24 +18,35 @@ export async function call(address, words, values = {}) {
   return answer.json();
 }
 
-// Every message that a port writes while somebody sees the page: told(time, values). Ports of C++
-// send no events; `otherwise` is what to do then.
+// Every message that a port writes while somebody sees the page: told(time, values). address() is
+// where the port is now. Ports of C++ send no events; `otherwise` is what to do with such a one.
 export function listen(address, told, otherwise) {
   let events = null;
-  const look = () => {
+  let where = "";
+  let heard = 0;
+  let mute = ""; // where a port without events is
+  const open = () => {
     events?.close();
-    if (document.hidden) return;
-    events = new EventSource(`${url(address)}/r?sse`);
-    events.onmessage = (event) => {
+    events = null;
+    where = url(address());
+    if (document.hidden || where === mute) return;
+    heard = performance.now();
+    const source = (events = new EventSource(`${where}/r?sse`));
+    source.onmessage = (event) => {
+      heard = performance.now();
       const time = Number(event.lastEventId.split(" ")[1]);
       told(time || Date.now() / 1000, JSON.parse(event.data));
     };
-    events.onerror = () => {
-      if (events.readyState !== EventSource.CLOSED || !otherwise) return;
-      document.removeEventListener("visibilitychange", look);
+    source.onerror = () => {
+      if (events !== source || source.readyState !== EventSource.CLOSED || !otherwise) return;
+      mute = where;
       otherwise();
     };
   };
-  document.addEventListener("visibilitychange", look);
-  look();
+  document.addEventListener("visibilitychange", open);
+  setInterval(() => {
+    if (document.hidden) return;
+    if (where !== url(address()) || performance.now() - heard > SILENT) open();
+  }, 1000);
+  open();
 }

@@ -7,8 +7,8 @@ import {listen, robot, short} from "./panel_port.js";
 
 // The kinds of sensors in a message, and how they are drawn.
 const KINDS = [
-  [0, "°/s, gyroscope", ["x", "y", "z"]],
-  [1, "m/s², accelerometer", ["x", "y", "z"]],
+  [0, "gyroscope", "°/s"],
+  [1, "accelerometer", "m/s²"],
 ];
 const ORIENTATION = 3;
 
@@ -21,19 +21,30 @@ function openHorizon(name) {
   return horizon;
 }
 
-export function openSensors(info) {
-  const curves = new Map();
-  let horizon = null;
-  listen(info.measures, (time, kinds) => {
+export class Sensors {
+  constructor(info) {
+    this.info = info;
+    this.curves = new Map();
+    this.horizon = null;
+    listen(() => this.info.measures, (time, kinds) => this.show(time, kinds));
+  }
+
+  // The robot was started again, with other numbers.
+  move(info) {
+    this.info = info;
+  }
+
+  show(time, kinds) {
+    const {curves, info} = this;
     robot.heard = performance.now();
     if (kinds[ORIENTATION]?.length) {
-      horizon ??= openHorizon(info.name);
-      [horizon.angles] = kinds[ORIENTATION][0];
+      this.horizon ??= openHorizon(info.name);
+      [this.horizon.angles] = kinds[ORIENTATION][0];
     }
-    for (const [kind, unit, names] of KINDS) {
+    for (const [kind, name, unit] of KINDS) {
       if (!kinds[kind]?.length) continue;
-      if (!curves.has(kind)) curves.set(kind, new Curves(info.name, unit, names));
+      if (!curves.has(kind)) curves.set(kind, new Curves(info.name, name, ["x", "y", "z"], unit));
       curves.get(kind).add(time, kinds[kind][0][0]);
     }
-  });
+  }
 }

@@ -5,6 +5,9 @@ const RIGHT = 12;
 const TOP = 10;
 const BOTTOM = 24;
 const CALM = 0.06; // of the way that a range shrinks in one drawing
+const OUTAGE = 5; // times the usual distance of two messages: nobody knows what was in between,
+const HICCUP = 0.5; // unless it is shorter than so many seconds
+const SAMPLES = 64; // distances that tell the usual one
 
 // Colours that stay apart for most eyes, on light and on dark; a second round is dashed.
 const LIGHT = ["#0072b2", "#d55e00", "#009e73", "#b5179e", "#8a6d00", "#c1121f", "#7a3ff2", "#555f6b"];
@@ -26,6 +29,15 @@ export function search(times, time) {
   return low;
 }
 
+// How far apart two messages may be that a line joins, judged by those between two places.
+export function outage(times, first, last) {
+  const step = Math.max(1, Math.floor((last - first - 1) / SAMPLES));
+  const found = [];
+  for (let at = first + 1; at < last; at += step) found.push(times[at] - times[at - 1]);
+  found.sort((a, b) => a - b);
+  return Math.max(HICCUP, OUTAGE * (found[found.length >> 1] ?? 0));
+}
+
 // Round numbers in a range, about `count` of them, and how many decimals they need.
 export function ticks(low, high, count) {
   const rough = (high - low) / Math.max(count, 1);
@@ -43,8 +55,9 @@ export function written(value, decimals) {
 }
 
 export class Plot {
-  constructor(canvas) {
+  constructor(canvas, unit = "") {
     this.canvas = canvas;
+    this.unit = unit; // of the vertical axis
     this.context = canvas.getContext("2d");
     this.low = null; // the range as it is drawn
     this.high = null;
@@ -86,9 +99,10 @@ export class Plot {
     context.rect(LEFT, TOP, right - LEFT, bottom - TOP);
     context.clip();
     context.lineWidth = 1.6;
-    context.lineJoin = "round";
+    context.lineJoin = context.lineCap = "round";
     for (const curve of curves) this.curve(curve, start, view, x, y);
     context.restore();
+    if (this.unit.length > 1) this.name();
     if (view.hover !== null) this.mark(curves, view, x, y, bottom);
   }
 
@@ -152,7 +166,7 @@ export class Plot {
       context.lineTo(right, at);
       context.stroke();
       context.fillStyle = ink;
-      context.fillText(written(value, rows.decimals), LEFT - 6, at);
+      context.fillText(written(value, rows.decimals) + (this.unit.length > 1 ? "" : this.unit), LEFT - 6, at);
     }
     context.strokeStyle = line;
     context.textBaseline = "top";
@@ -168,21 +182,34 @@ export class Plot {
     }
   }
 
+  // A long unit, at the upper end of the axis; a short one stands behind each number.
+  name() {
+    const {context} = this;
+    context.fillStyle = this.style.getPropertyValue("--soft");
+    context.textBaseline = "top";
+    context.textAlign = "left";
+    context.fillText(this.unit, LEFT + 6, TOP + 2);
+  }
+
   curve({times, values, number}, start, view, x, y) {
     const {context} = this;
     const first = Math.max(0, search(times, start) - 1);
     const last = Math.min(times.length, search(times, view.end) + 1);
+    const most = outage(times, Math.max(0, last - 10 * SAMPLES), last);
+    const apart = (at) => at > first && times[at] - times[at - 1] > most;
     context.strokeStyle = colour(number);
     context.setLineDash(dashes(number));
     context.beginPath();
-    let drawing = false;
     const scale = devicePixelRatio || 1;
     if (last - first < 3 * scale * this.width) {
+      let drawing = false;
       for (let at = first; at < last; at++) {
+        if (apart(at)) drawing = false;
         if (values[at] === null) drawing = false;
-        else if (drawing) context.lineTo(x(times[at]), y(values[at]));
         else {
-          context.moveTo(x(times[at]), y(values[at]));
+          const place = [x(times[at]), y(values[at])];
+          if (!drawing) context.moveTo(...place);
+          context.lineTo(...place); // also to itself: a message between two outages is a dot
           drawing = true;
         }
       }
@@ -197,6 +224,10 @@ export class Plot {
       };
       for (let at = first; at < last; at++) {
         const value = values[at];
+        if (column !== null && (value === null || apart(at))) {
+          leave();
+          column = null;
+        }
         if (value === null) continue;
         const now = Math.round(x(times[at]) * scale) / scale;
         if (now !== column) {
