@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from struct import pack
+from zlib import crc32
+
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from support.capture import load_capture
 from support.steps import chop
 
@@ -12,7 +17,7 @@ from yarpy.route import Route
 from yarpy.testing import CarrierConformance, Dialogue, End
 from yarpy.testing.drive import UDP_PORT
 from yarpy.wire import framing
-from yarpy.wire.message import Packet
+from yarpy.wire.message import Message, Packet
 from yarpy.wire.stream import DatagramStream
 
 
@@ -63,18 +68,23 @@ def datagrams(value: object) -> list[bytes]:
 
 def receive(pieces: list[bytes], limit: int = 1 << 20) -> tuple[list[object], int]:
     """What a receiver makes of datagrams, and how many messages it counts as lost."""
+    messages, lost = received(pieces, limit)
+    return [message.value for message in messages], lost
+
+
+def received(pieces: list[bytes], limit: int = 1 << 20) -> tuple[list[Message], int]:
     stream, carrier = DatagramStream(limit), Udp(Route("/a", "/b", "udp"))
     for piece in pieces:
         stream.feed(piece)
-    values: list[object] = []
+    messages: list[Message] = []
     while True:
         steps = carrier.decode(stream)
         try:
             next(steps)
         except StopIteration as stop:
-            values.append(stop.value.value)
+            messages.append(stop.value)
             continue
-        return values, carrier.lost
+        return messages, carrier.lost
 
 
 def test_messages_keep_their_datagrams_apart() -> None:
@@ -95,23 +105,42 @@ def test_every_kind_of_loss_is_counted_and_survived() -> None:
     assert receive([*large, *small], limit=10_000) == ([[1]], 1)
 
 
+def wrapped(data: bytes) -> bytes:
+    return pack("<Ii", crc32(data), 0) + data
+
+
 def test_whole_datagram_without_a_message_in_it_is_a_loss() -> None:
-    from struct import pack
-    from zlib import crc32
-
-    def wrapped(data: bytes) -> bytes:
-        return pack("<Ii", crc32(data), 0) + data
-
     whole = datagrams([1])[0][8:]
-    for data in (b"", b"nonsense", whole[:-1], whole[:20], framing.INDEX + b"\x02\x01" + bytes(30)):
+    broken_list = whole[:18] + pack("<3i", 8, 7, 0) + whole[30:38] + b"\x00\x01\0\0\xff\xff\xff\xff"
+    for data in (
+        *(b"", b"nonsense", whole[:-1], whole[:20], framing.INDEX + b"\x02\x01" + bytes(30)),
+        broken_list,
+    ):
         assert receive([wrapped(data), wrapped(whole)]) == ([[1]], 1), data
+
+
+@pytest.mark.parametrize("key", ["q", "r", "a", "/elsewhere", "~", "!", "i"])
+def test_nobody_commands_by_datagrams(key: str) -> None:
+    """Anybody can send one: a goodbye would end somebody else's connection."""
+    small = datagrams([1])
+    command = b"".join(map(bytes, framing.encode_text_command(key[0], key[1:].encode())))
+    assert receive([wrapped(command), *small]) == ([[1]], 1)
+    question = b"".join(map(bytes, framing.encode(Packet(["list"], key="a"))))
+    assert receive([wrapped(question), *small]) == ([[1]], 1)
+
+
+@given(st.integers(0, 3), st.lists(st.tuples(st.integers(0, 79), st.integers(0, 255)), max_size=6))
+def test_any_forged_message_is_survived(which: int, changes: list[tuple[int, int]]) -> None:
+    value: object = ([], [1, "ping", 3.5], [[1, [2]], "a"], [b"x" * 50])[which]
+    data = bytearray(b"".join(map(bytes, framing.encode(Packet(value, b"1 2.5")))))
+    for place, byte in changes:
+        data[place % len(data)] = byte
+    messages, _ = received([wrapped(bytes(data)), *datagrams([7])])
+    assert messages[-1].value == [7]
 
 
 def test_loss_is_known_as_soon_as_it_happened() -> None:
     """Not only with the next datagram: whoever looks at the counters sees it."""
-    from struct import pack
-    from zlib import crc32
-
     stream, carrier = DatagramStream(), Udp(Route("/a", "/b", "udp"))
     steps = carrier.decode(stream)
     next(steps)

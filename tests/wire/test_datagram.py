@@ -100,6 +100,10 @@ def message() -> bytes:
         ([1, 2, 3, 0, 1, 2, 3], 1, 0),  # we came late: not ours to count
         ([0, 1, 2], 0, 0),  # still coming
         ([0, 1, 2, 0, 1, 2, 3], 1, 1),  # the end was lost
+        ([0, 1, 2, 3, 1, 2, 3, 0, 1, 2, 3], 2, 1),  # the beginning was lost
+        ([0, 1, 2, 3, 2, 3, 2, 3], 1, 2),  # ... twice
+        ([0, 1, 2, 1, 2, 3], 0, 2),  # the end of one, and the beginning of the next
+        ([0, 2, 3, 1, 2, 3, 0, 1, 2, 3], 1, 2),  # a piece of one, and the beginning of the next
     ],
 )
 def test_losses_are_counted_by_message(order: list[int], whole: int, lost: int) -> None:
@@ -127,6 +131,21 @@ def test_message_beyond_the_limit_is_dropped_and_the_next_one_comes() -> None:
     assert assembler.lost == 1
     small = list(split(framing.encode(Packet([1]))))
     assert assembler.add(small[0]) is not None
+
+
+def wrapped(piece: bytes, sequence: int) -> bytes:
+    return struct.pack("<Ii", crc32(piece), sequence) + piece
+
+
+@pytest.mark.parametrize("piece", [b"", b"x"])
+def test_tiny_pieces_do_not_pile_up(piece: bytes) -> None:
+    assembler = Assembler(1 << 30)
+    head = framing.INDEX + b"\x02\x01" + b"\xff" * 8 + struct.pack("<3i", 8, 1 << 29, 0)
+    assembler.add(wrapped(head, 0))
+    with measured() as peak:
+        for sequence in range(1, 20_000):
+            assert assembler.add(wrapped(piece, sequence)) is None
+    assert peak.bytes < 50_000
 
 
 def test_announced_length_takes_no_memory() -> None:

@@ -2,19 +2,19 @@
 
 Rules: the acceptor opens a UDP socket and tells its port; the initiator sends from the UDP port
 with the number of its TCP port. Nothing comes back; a lost piece drops its message, which is
-counted.
+counted. A datagram can be forged by anybody: none ends a connection, and none is a command.
 """
 
 from __future__ import annotations
 
 from yarpy.carriers.base import Indexed
-from yarpy.errors import RemoteProtocolError
+from yarpy.errors import RemoteProtocolError, YarpError
 from yarpy.route import Route
 from yarpy.wire import framing
 from yarpy.wire.datagram import MAX_DATAGRAM, Assembler, split
 from yarpy.wire.effects import Open, Steps, Switch
-from yarpy.wire.message import Message, Packet
-from yarpy.wire.stream import ByteStream, DatagramStream
+from yarpy.wire.message import CALL, DATA, Message, Packet
+from yarpy.wire.stream import Buffer, ByteStream, DatagramStream
 
 
 class Datagrams(Indexed):
@@ -43,6 +43,8 @@ class Datagrams(Indexed):
         while True:
             whole = assembler.add((yield from stream.read_datagram()))
             message = parse_whole(whole, stream.limit) if whole is not None else None
+            if message is not None and message.key not in (DATA, CALL):
+                message = None  # nobody commands by datagrams: anybody could
             if whole is not None and message is None:
                 assembler.lost += 1
             self.lost = assembler.lost
@@ -53,7 +55,7 @@ class Datagrams(Indexed):
         """Not told in datagrams: the closing side asks the peer's port by a text connection."""
 
 
-def parse_whole(data: bytes, limit: int) -> Message | None:
+def parse_whole(data: Buffer, limit: int) -> Message | None:
     """The message that `data` is from end to end, or None."""
     stream = ByteStream(limit, size=max(len(data), 1))
     stream.feed(data)
@@ -67,7 +69,7 @@ def parse_whole(data: bytes, limit: int) -> Message | None:
     except StopIteration as stop:
         found: Message = stop.value
         return found
-    except (RemoteProtocolError, ConnectionError):
+    except YarpError:
         pass
     return None
 

@@ -18,6 +18,7 @@ from yarpy.wire.stream import Buffer
 _HEAD: Final = struct.Struct("<Ii")
 MAX_DATAGRAM: Final = 65499  # what C++ sends at most
 _INDEX_HEAD: Final = 18
+_NEW: Final = 1 << 31  # beyond every piece's number
 
 
 def split(buffers: Sequence[Buffer], size: int = MAX_DATAGRAM) -> Iterator[bytes]:
@@ -30,62 +31,75 @@ def split(buffers: Sequence[Buffer], size: int = MAX_DATAGRAM) -> Iterator[bytes
 
 
 class Assembler:
-    """Puts datagrams together again. `lost` counts messages that began and could not be
-    finished."""
+    """Puts datagrams together again. `lost` counts messages of which something came and could not
+    be used; a message that was on its way when we came is not among them."""
 
     def __init__(self, limit: int) -> None:
         self.limit = limit
         self.lost = 0
-        self._parts: list[bytes] = []
-        self._size = 0
+        # One block, so that a million tiny pieces take no more memory than their bytes.
+        self._data: bytearray | None = None  # what has come of a message; None: none is begun
         self._total = 0
+        # The piece that comes next. While none is begun, pieces before it are of a message whose
+        # beginning did not come; those from it on, of one that is given up already.
         self._expected = 0
+        self._late = 0  # the piece for want of which a message was given up; 0: none
 
-    def add(self, datagram: bytes) -> bytes | None:
+    def add(self, datagram: bytes) -> bytes | bytearray | None:
         """Take one datagram; returns the message's bytes when it is whole."""
         if len(datagram) < _HEAD.size:
-            self._drop()
+            self._give_up(0)
             return None
         crc, sequence = _HEAD.unpack_from(datagram)
         if sequence == -1:
             return None
-        piece = datagram[_HEAD.size :]
+        piece = memoryview(datagram)[_HEAD.size :]
+        if sequence == 0 and self._data is not None:
+            self._give_up(0)  # its end was lost
         if crc32(piece) != crc:
-            if sequence == 0 or self._parts:  # else its message is given up already
-                self._drop()
+            if sequence == 0 or self._data is not None:
+                self._give_up(sequence + 1)
             return None
         if sequence == 0:
-            if self._parts:
-                self._drop()
+            self._data = bytearray()
             self._total = announced(piece)
             if self._total > self.limit:
-                self._drop()
+                self._give_up(1)
                 return None
-        elif sequence != self._expected or not self._parts:
-            if self._parts:
-                self._drop()
+        elif self._data is None or sequence != self._expected:
+            self._skip(sequence)
             return None
-        self._parts.append(piece)
-        self._size += len(piece)
+        self._data += piece
         self._expected = sequence + 1
-        if self._size < self._total:
+        if len(self._data) < self._total:
             return None
-        whole = piece if len(self._parts) == 1 else b"".join(self._parts)
-        self._reset()
+        whole, self._data = self._data, None
+        self._expected = _NEW
         return whole
 
-    def _drop(self) -> None:
+    def _skip(self, sequence: int) -> None:
+        """A piece that continues nothing."""
+        if self._data is not None:
+            late = self._expected
+            self._give_up(late)
+            self._late = late
+        elif sequence == self._late:
+            self._late = 0  # overtaken on the way
+            return
+        if sequence < self._expected:
+            self.lost += 1
+        self._expected = sequence + 1
+
+    def _give_up(self, expected: int) -> None:
         self.lost += 1
-        self._reset()
-
-    def _reset(self) -> None:
-        self._parts = []
-        self._size = self._expected = self._total = 0
+        self._data = None
+        self._expected = expected
+        self._late = 0
 
 
-def announced(piece: bytes) -> int:
+def announced(piece: Buffer) -> int:
     """How long the message that begins with `piece` says it is."""
-    if not piece.startswith(INDEX) or len(piece) < _INDEX_HEAD:
+    if bytes(piece[: len(INDEX)]) != INDEX or len(piece) < _INDEX_HEAD:
         return len(piece)
     count, replies = piece[8], piece[9]
     start = _INDEX_HEAD + 4 * (count + replies)
