@@ -2,21 +2,36 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+EXTRA ?= test
 
-.PHONY: demo test check bench clean
+.PHONY: demo test pure links programs stress check bench clean
+.NOTPARALLEL: # the stages, in their order
 
-$(VENV)/.ready: pyproject.toml
-	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "yarpy needs Python 3.11 or newer: make PYTHON=/path/to/python3.11")'
+# What yarpy itself needs, told while it comes.
+$(VENV)/.base: pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "yarpy needs Python 3.11 or newer: make PYTHON=/path/to/python3.11")'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
-	touch $@
+	$(BIN)/python -m pip install --disable-pip-version-check -e .
+	@touch $@
 
-demo: $(VENV)/.ready
+$(VENV)/.ready: $(VENV)/.base
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[$(EXTRA)]'
+	@touch $@
+
+demo: $(VENV)/.base
 	$(BIN)/yarpy demo
 
-# Two at a time, each with whole files: most tests wait for something.
-test: $(VENV)/.ready
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+# Two at a time, each with whole files: most tests wait for something. What is quick comes first, so
+# that a mistake in it is known within a minute.
+PYTEST := $(BIN)/python -m pytest -n 2 --dist loadfile
+test: pure links programs
+
+pure links programs: $(VENV)/.ready
+	$(PYTEST) --stage $@
+
+# The same on a loaded machine, with the patience that this takes.
+stress: $(VENV)/.ready
+	YARPY_TEST_PATIENCE=4 $(BIN)/python tests/support/busy.py $(MAKE) test
 
 check: $(VENV)/.ready
 	$(BIN)/ruff check .

@@ -41,8 +41,7 @@ def test_json(here, ports):
 
 def test_watching_ends_with_a_signal(cli, ports):
     with cli.start("stats", "--watch", "--json") as process:
-        for _ in range(2):
-            process.wait_line(r"^\[", stream="out")
+        process.wait_line(r"^\[", stream="out", count=2)
         process.signal(signal.SIGINT)
         assert process.wait() == 0
 

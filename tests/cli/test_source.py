@@ -7,13 +7,14 @@ import time
 
 import click
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 from yarpy.cli import source
 from yarpy.cli.source import Source
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 @pytest.fixture

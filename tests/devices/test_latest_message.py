@@ -2,6 +2,7 @@ import threading
 
 import pytest
 from support.board import Bare, FakeBoard
+from support.patience import patience
 
 import yarpy
 from yarpy import Bottle
@@ -10,7 +11,7 @@ from yarpy.devices.control_board.state import State
 from yarpy.devices.latest_message import Newest
 from yarpy.errors import DecodeError, Timeout, UnknownName
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 def watch_of(timeout, names, source="/head/stateExt:o"):

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from support.browser import Browser
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -24,7 +25,7 @@ from yarpy.nameserver.local import LocalNames
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 EXAMPLE = Path(__file__).parents[2] / "examples" / "websocket.html"
 EVIL = "<script>window.hacked = 1</script><img src=x onerror='window.hacked = 2'>"
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.capture import load_capture
+from support.patience import patience
 from support.port import free_port
 from support.process import Process
 from support.wait import wait_until
@@ -25,7 +26,7 @@ from yarpy.data import jpeg
 from yarpy.names.default import secret
 from yarpy.port.reconnect import pending
 
-PATIENCE = 10.0
+PATIENCE = patience(10.0)
 
 
 @contextmanager

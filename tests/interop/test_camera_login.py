@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from support.command_line import CommandLine
+from support.patience import patience
 from support.wait import wait_until
 from support.web_camera import CARRIER, PATH, WebCamera, is_the_picture
 
@@ -18,7 +19,7 @@ import yarpy
 from yarpy import network
 from yarpy.port import reconnect
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 LOGIN = 'me "x":se+cret%'  # what has to be quoted in the carrier string, and for the camera
 WORDS = "+user.me%20%22x%22+password.se%2Bcret%25"
 DIGESTS = ["MD5", "MD5-sess", "SHA-256", "SHA-256-sess"]

@@ -7,12 +7,13 @@ from collections.abc import Callable
 import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
+from support.patience import patience
 from support.process import Process
 from support.wait import wait_until
 
 import yarpy
 
-PATIENCE = 5.0  # seconds; the goal is 2
+PATIENCE = patience(5.0)  # seconds; the goal is 2
 CARRIERS = ("tcp", "fast_tcp", "udp", "mcast", "text", "text_ack")
 TWO_PORTS = """
 a, b = yarp.Port(), yarp.BufferedPortBottle()

@@ -11,6 +11,7 @@ from support.board import FakeBoard
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device
 from support.cpp_venv import MissingPeer
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -19,7 +20,7 @@ from yarpy.devices import ControlBoard, ControlBoardServer
 from yarpy.devices.control_board.interface import Gains
 from yarpy.errors import LocalProtocolError
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 @pytest.fixture(scope="module")

@@ -10,13 +10,14 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 from support.command_line import CommandLine
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 from yarpy.network import traffic
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 
 
 @pytest.fixture

@@ -8,12 +8,13 @@ from support.camera import FakeCamera
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device, device_host
 from support.cpp_venv import MissingPeer
+from support.patience import patience
 from support.wait import wait_until
 
 from yarpy.devices import FrameGrabber, FrameGrabberServer
 from yarpy.errors import LocalProtocolError
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 @pytest.fixture(autouse=True)

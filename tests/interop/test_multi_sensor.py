@@ -7,11 +7,12 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device, device_host
 from support.cpp_venv import MissingPeer
+from support.patience import patience
 from support.wait import wait_until
 
 from yarpy.devices import MultiSensor, MultiSensorServer
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 class Sensors:

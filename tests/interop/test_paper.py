@@ -15,6 +15,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from support.patience import patience
 from support.port import free_port
 from support.process import Process
 from support.wait import wait_until
@@ -23,7 +24,7 @@ import yarpy
 from yarpy.data import jpeg
 
 HEAD = "/icubSim/head/rpc:i"
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device, device_host
 from support.cpp_venv import MissingPeer
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -23,7 +24,7 @@ from yarpy.views.panel import Panel
 if TYPE_CHECKING:
     from support.browser import Browser
 
-PATIENCE = 40.0
+PATIENCE = patience(40.0)
 
 
 @pytest.fixture(autouse=True)

@@ -5,11 +5,12 @@ from collections.abc import Callable
 
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 
-PATIENCE = 10.0  # seconds for a server to make the connections that follow from names
+PATIENCE = patience(10.0)  # seconds for a server to make the connections that follow from names
 
 
 def flows(send: Callable[[int], object], port: yarpy.BufferedPort) -> None:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 from wsproto import ConnectionType, WSConnection
 from wsproto.events import AcceptConnection, CloseConnection, Event, Ping, Pong, Request
@@ -19,7 +20,7 @@ import yarpy
 from yarpy import network
 from yarpy.data.bottle import Bottle
 
-PATIENCE = 10.0
+PATIENCE = patience(10.0)
 
 
 class Page:

@@ -13,12 +13,13 @@ from typing import Any
 from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 from yarpy.data.value import Vocab
 
-PATIENCE = 10.0
+PATIENCE = patience(10.0)
 
 
 def proxy(port: yarpy.Port | yarpy.RpcServer, path: str = "/RPC2") -> xmlrpc.client.ServerProxy:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 from yarpy.link.counter import Counter
@@ -39,9 +40,9 @@ def test_books_balance_over_broken_connections(carrier: str, names: LocalNames) 
                 took = out.write([number])
                 taken, dropped = taken + took, dropped + 1 - took
             else:
-                wait_until(lambda: out.outputs, patience=20)
+                wait_until(lambda: out.outputs, timeout=patience(20))
         out.disconnect("/in")
-        wait_until(lambda: not in_.inputs, patience=20)
+        wait_until(lambda: not in_.inputs, timeout=patience(20))
         books = out.stats["past"]["outputs"]
         assert books["messages"] + books["drops"] == taken + dropped
         read = 0

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from support.patience import patience
 from support.process import Process
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, ConsoleMessage, Page
 
 OUTPUT = Path(__file__).parents[1] / "output"  # not in git
-PATIENCE = 20.0  # seconds for a page to do something; a loaded machine is slow
+PATIENCE = patience(20.0)  # seconds for a page to do something; a loaded machine is slow
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",

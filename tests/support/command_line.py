@@ -11,6 +11,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from support.patience import patience
 from support.process import Process
 
 YARPY = [sys.executable, "-m", "yarpy"]
@@ -35,7 +36,7 @@ class CommandLine:
         return Process([*YARPY, *words], env=self.environment, cwd=self.home)
 
     def run(
-        self, *words: str, input: str = "", timeout: float = 20.0
+        self, *words: str, input: str = "", timeout: float = patience(20.0)
     ) -> "subprocess.CompletedProcess[str]":
         """Run `yarpy WORDS` to its end: output and exit code. AssertionError if it takes longer."""
         with self.start(*words) as process:

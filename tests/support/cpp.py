@@ -25,6 +25,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from support.cpp_venv import MissingPeer, prepare
+from support.patience import patience
 from support.port import free_block
 from support.process import Process
 
@@ -87,7 +88,7 @@ class CppYarp:
         *args: str,
         program: str = "yarp",
         input: str = "",
-        timeout: float = 20.0,
+        timeout: float = patience(20.0),
     ) -> "subprocess.CompletedProcess[str]":
         """Run `yarp ARGS` (or another program) to its end; its output and exit code.
 
@@ -101,7 +102,7 @@ class CppYarp:
         return self._start([self.program(program), *args])
 
     def python(
-        self, code: str, *args: str, input: str = "", timeout: float = 20.0
+        self, code: str, *args: str, input: str = "", timeout: float = patience(20.0)
     ) -> "subprocess.CompletedProcess[str]":
         """Run a script under CPython 3.10 with the C++ binding to its end; its output and code."""
         with self.python_popen(code, *args) as process:
@@ -156,7 +157,7 @@ def _finish(process: Process, input: str, timeout: float) -> "subprocess.Complet
     return subprocess.CompletedProcess(process.args, code, process.stdout, process.stderr)
 
 
-def _wait_until_it_answers(process: Process, port: int, patience: float = 10.0) -> None:
+def _wait_until_it_answers(process: Process, port: int, patience: float = patience(10.0)) -> None:
     """Ask for the last name the server registers itself, as telnet would: its output is no sign,
     it is block buffered when it does not go to a terminal."""
     deadline = time.monotonic() + patience

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 
 from support.capture import Capture, Step
 from support.difference import LIVE_DIFFERENT
+from support.patience import patience
 
 from yarpy import network
 from yarpy.data.bottle import Bottle
@@ -24,7 +25,7 @@ from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.wire.message import Message
 
-PATIENCE = 5.0
+PATIENCE = patience(5.0)
 
 
 def echo(message: Message) -> object:

@@ -21,12 +21,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from support.patience import patience
 from support.port import free_block
 from support.process import Process
 
 FIRST = 10000  # the port number of the name server in the text
 SIZE = 100
-PATIENCE = 15.0  # seconds for a command of a session
+PATIENCE = patience(15.0)  # seconds for a command of a session
 
 _FENCE = re.compile(r"( *)```(\S*) ?(\S*)\s*$")
 _NUMBER = re.compile(r"(?:\b\d+ )?(?:\d+\.\d{4,}|\d{6,}(?:\.\d+)?)")

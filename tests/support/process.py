@@ -18,6 +18,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal, Self
 
+from support.patience import patience
+
 _running: weakref.WeakSet["Process"] = weakref.WeakSet()
 
 
@@ -89,7 +91,7 @@ class Process:
         self,
         pattern: str,
         *,
-        timeout: float = 10.0,
+        timeout: float = patience(10.0),
         count: int = 1,
         stream: Literal["out", "err", "any"] = "any",
     ) -> re.Match[str]:
@@ -114,7 +116,7 @@ class Process:
                     raise AssertionError(f"{self} did not say {pattern!r} in time{self._said()}")
                 self._changed.wait(left)
 
-    def wait(self, timeout: float = 10.0) -> int:
+    def wait(self, timeout: float = patience(10.0)) -> int:
         """Wait for the end, and for the last words; the exit code."""
         deadline = time.monotonic() + timeout
         try:

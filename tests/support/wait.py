@@ -5,11 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from support.patience import patience
 
-def wait_until(condition: Callable[[], object], patience: float = 5.0, what: str = "") -> None:
+
+def wait_until(
+    condition: Callable[[], object], timeout: float = patience(5.0), what: str = ""
+) -> None:
     """Return as soon as `condition` holds; AssertionError if it does not in time."""
-    deadline = time.monotonic() + patience
+    deadline = time.monotonic() + timeout
     while not condition():
         if time.monotonic() > deadline:
-            raise AssertionError(f"after {patience} s still not: {what or condition}")
+            raise AssertionError(f"after {timeout} s still not: {what or condition}")
         time.sleep(0.002)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
     from support.browser import Browser
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 JOINTS = ["neck_pitch", "neck_roll", "neck_yaw", "eyes_tilt", "eyes_version", "eyes_vergence"]
 
 

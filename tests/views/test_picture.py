@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 from yarpy.data import jpeg
 from yarpy.views.picture import Drops, Picture, visible
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 RED = yarpy.Image(np.full((24, 32, 3), (200, 20, 20), "u1"))
 
 

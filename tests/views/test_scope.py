@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from support.browser import OUTPUT, Browser
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -22,7 +23,7 @@ from yarpy.views.scope import SOURCES, Scope
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 
 
 class Bench:

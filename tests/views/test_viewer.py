@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from support.browser import OUTPUT, Browser
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -23,7 +24,7 @@ from yarpy.views.viewer import Viewer
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 RED, GREEN, BLUE = (220, 20, 30), (30, 200, 40), (20, 40, 230)
 
 

@@ -124,8 +124,8 @@ def show(watch: bool, as_json: bool) -> int:
 
 
 def _repeat(overview: Overview, watch: bool, tell: Any) -> int:
-    tell()
     try:
+        tell()
         while watch:
             time.sleep(PERIOD)
             overview.look()

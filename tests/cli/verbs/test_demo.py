@@ -10,10 +10,11 @@ from pathlib import Path
 
 import pytest
 from support.command_line import CommandLine
+from support.patience import patience
 from support.process import Process
 from support.wait import wait_until
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 
 needs_curl = pytest.mark.skipif(not shutil.which("curl"), reason="curl is not installed")
 needs_netcat = pytest.mark.skipif(not shutil.which("nc"), reason="netcat (nc) is not installed")

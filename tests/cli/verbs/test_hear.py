@@ -8,12 +8,13 @@ import wave
 import numpy as np
 import pytest
 from support.alsa import equipped, played, silent_card, sound_card
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 from yarpy.cli.verbs.hear import follow, sounds
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 
 
 def ramp(start=0, frequency=8000):

@@ -4,12 +4,13 @@ import json
 import signal
 import urllib.request
 
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 from yarpy.sim.robot import Robot, icub_head
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 
 
 def test_robot_that_starts_later(cli, names):

@@ -7,11 +7,12 @@ import signal
 import urllib.request
 
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 
 
 def address(process):

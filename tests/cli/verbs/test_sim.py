@@ -6,11 +6,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 ARM = Path(__file__).parents[2] / "support" / "arm.xml"
 
 

@@ -8,12 +8,13 @@ import wave
 import numpy as np
 import pytest
 from support.alsa import equipped, sound_card
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 from yarpy.cli.verbs.speak import LEAD, send
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ import urllib.request
 
 import numpy as np
 import pytest
+from support.patience import patience
 from support.port import free_port
 from support.process import Process
 from support.wait import wait_until
@@ -16,7 +17,7 @@ from support.wait import wait_until
 import yarpy
 from yarpy.cli.verbs.view import names_of
 
-PATIENCE = 30.0
+PATIENCE = patience(30.0)
 
 
 def status(url):

@@ -6,6 +6,7 @@ import threading
 import numpy as np
 import pytest
 from support.board import Bare, FakeBoard
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -20,7 +21,7 @@ from yarpy.errors import (
     UnknownName,
 )
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ from http.client import HTTPConnection
 import pytest
 from support.board import Bare, FakeBoard
 from support.capture import load_capture
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -18,7 +19,7 @@ from yarpy.devices.control_board.server import ControlBoardServer
 from yarpy.devices.control_board.state import State
 from yarpy.errors import AddressError, UnknownName
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 @pytest.fixture

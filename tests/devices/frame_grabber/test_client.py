@@ -1,5 +1,6 @@
 import pytest
 from support.camera import FakeCamera
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -9,7 +10,7 @@ from yarpy.devices.frame_grabber.interface import FrameGrabberLike
 from yarpy.devices.frame_grabber.server import FrameGrabberServer
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout, UnknownName
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 @pytest.fixture

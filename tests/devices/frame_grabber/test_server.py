@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from support.camera import FakeCamera
 from support.capture import load_capture
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 from yarpy.devices.frame_grabber.server import FrameGrabberServer
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 @pytest.fixture

@@ -1,4 +1,5 @@
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -8,7 +9,7 @@ from yarpy.devices.multi_sensor.interface import KINDS, MultiSensorLike
 from yarpy.devices.multi_sensor.server import MultiSensorServer
 from yarpy.errors import DecodeError, RemoteProtocolError, Timeout, UnknownName
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 class Imu:

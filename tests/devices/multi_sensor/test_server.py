@@ -2,13 +2,14 @@ import logging
 import threading
 
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
 from yarpy import Bottle
 from yarpy.devices.multi_sensor.server import MultiSensorServer
 
-PATIENCE = 20.0
+PATIENCE = patience(20.0)
 
 
 class Imu:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -250,7 +251,7 @@ def only(port: yarpy.BufferedPort, name: str) -> None:
             last.append(port.read(timeout=5).value[0])
         return set(last[-20:]) == {name}
 
-    wait_until(settled, patience=20, what=f"only {name} gets through")
+    wait_until(settled, timeout=patience(20), what=f"only {name} gets through")
 
 
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "udp", "unix_stream", "local", "text_ack"])
