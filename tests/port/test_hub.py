@@ -29,6 +29,7 @@ from yarpy.errors import (
 )
 from yarpy.nameserver.local import LocalNames
 from yarpy.nameserver.server import NameServer
+from yarpy.port import hub as hub_module
 from yarpy.port import probe
 from yarpy.port.hub import Crew, Hub
 from yarpy.port.mailbox import Latest
@@ -318,3 +319,25 @@ def test_closed_port_cannot_be_resumed(names: LocalNames) -> None:
     port.resume()
     with pytest.raises(PortClosed):
         port.read(timeout=5)
+
+
+def test_greetings_over_datagrams_do_not_pile_up(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Each leaves a thread and a socket behind when its TCP connection is gone."""
+    monkeypatch.setattr(hub_module, "MAX_DATAGRAM_INPUTS", 5)
+    udp = framing.number(framing.BASE) + framing.encode_name("")
+    mcast = framing.number(framing.BASE + 1) + framing.encode_name("/stranger")
+    with Port("/in", names=names) as port, Port("/out", names=names) as out:
+        for number in range(8):
+            first = (udp, mcast.replace(b"stranger", b"strange%d" % number))[number % 2]
+            with socket.create_connection(("127.0.0.1", port.contact.port)) as sock:
+                sock.sendall(first + (bytes((224, 1, 200, 9, 40, 0)) if number % 2 else b""))
+                wait_until(lambda: len(port.inputs) == min(number + 1, 5))  # noqa: B023
+        wait_until(lambda: caplog.text.count("5 inputs over datagrams already") == 3)
+        assert len(port.inputs) == 5
+        out.connect("/in")  # other carriers are as welcome as ever
+        port._hub.inputs[0].close()
+        wait_until(lambda: len(port.inputs) == 5)
+        out.connect("/in", "udp")
+        assert port.inputs[-1].carrier == "udp"

@@ -112,6 +112,39 @@ def test_a_nameless_sender_is_not_judged(names: LocalNames, judge: Judge) -> Non
 
 
 @pytest.mark.parametrize("carrier", ["udp", "mcast"])
+def test_lease_of_a_sender_whom_nobody_can_ask(
+    carrier: str, names: LocalNames, judge: Judge, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A greeting costs its sender nothing: a name that nobody knows must not cost us for ever."""
+    with Port("", names=names) as out, BufferedPort("/in", names=names) as in_:
+        out.connect("/in", carrier)
+        assert in_.wait_for_inputs(timeout=5)
+        [link] = out._hub.outputs
+        monkeypatch.setattr(keepalive, "LEASE", 1e-9)
+        for count in range(5):
+            link.send(Packet([count]))
+            wait_until(lambda: in_.inputs[0].stats["messages"] == count + 1)  # noqa: B023
+            judge.pulse.look([in_._hub])
+        assert len(in_.inputs) == 1, "it lives by its traffic"
+        judge(in_)
+        wait_until(lambda: not in_.inputs)
+        assert not judge.dead, "nobody is asked to send again"
+        assert in_.stats["past"]["inputs"]["messages"] == 5
+
+
+def test_sender_who_can_be_asked_needs_no_traffic(
+    names: LocalNames, judge: Judge, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(keepalive, "LEASE", 1e-9)
+    with Port("/out", names=names) as out, BufferedPort("/in", names=names) as in_:
+        out.connect("/in", "udp")
+        assert in_.wait_for_inputs(timeout=5)
+        assert judge(in_) == 0
+        out.write(["still here"])
+        assert in_.read(timeout=5).value == ["still here"]
+
+
+@pytest.mark.parametrize("carrier", ["udp", "mcast"])
 def test_who_does_not_know_us_any_more_is_dead(
     carrier: str, names: LocalNames, judge: Judge
 ) -> None:

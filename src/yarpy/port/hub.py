@@ -15,14 +15,14 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from yarpy.carriers.base import PAGE, Carrier
 from yarpy.carriers.http.page import Page, Pages
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
-from yarpy.errors import NoNameServer, PortClosed, YarpError
+from yarpy.errors import NoNameServer, PortClosed, RemoteProtocolError, YarpError
 from yarpy.link.acceptor import Acceptor
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import welcome
@@ -43,6 +43,10 @@ from yarpy.wire.message import Message
 from yarpy.wire.stream import DEFAULT_LIMIT
 
 log = logging.getLogger("yarpy.port")
+
+# Inputs over datagrams that a port has at most: each costs a thread and a socket here, and whoever
+# asked for it nothing, since no connection is left that would end with its program.
+MAX_DATAGRAM_INPUTS: Final = 256
 
 
 class Repair(Protocol):
@@ -202,15 +206,27 @@ class Hub(Registered):
             self._displace(link.route.source)
         with self.lock:
             late = self.closing
-            if not late:
+            full = link.carrier.connectionless and self._datagram_inputs() >= MAX_DATAGRAM_INPUTS
+            if not (late or full):
                 self.inputs = (*self.inputs, link)
+        if full:
+            self._turn_away(link)
+            raise RemoteProtocolError(
+                f"there are {MAX_DATAGRAM_INPUTS} inputs over datagrams already; use tcp"
+            )
         if late:
             with contextlib.suppress(NoNameServer):
                 self.ask_to_leave(link.route.source)
-            link.driver.transport.close()
-            if link.own_chain is not None:
-                link.own_chain.close()
+            self._turn_away(link)
             raise PortClosed(f'"{self.name}" is closed')
+
+    def _turn_away(self, link: Inbound) -> None:
+        link.driver.transport.close()
+        if link.own_chain is not None:
+            link.own_chain.close()
+
+    def _datagram_inputs(self) -> int:
+        return sum(link.carrier.connectionless for link in self.inputs)
 
     def serve_input(self, link: Inbound) -> None:
         """Serve an input, in this thread, until it ends."""

@@ -3,12 +3,14 @@
 Rules: TCP tells of its end, datagrams do not, so an end that gives no sign is asked: a sender that
 is silent, and every receiver of a multicast group. (A UDP sender hears from the receiver's host.)
 Where nobody listens the other end has died; so it has where somebody answers, twice in a row, who
-knows nothing of the connection. Somebody too busy to answer lives. Runs in the thread of `repair`,
-which then mends the connection.
+knows nothing of the connection. Somebody too busy to answer lives. A sender whom nobody can ask,
+since no name service knows where it is, lives by its traffic: its lease ends when none comes for
+long. Runs in the thread of `repair`, which mends what has died; what lapsed just ends.
 """
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable, Iterable
 from typing import Final
@@ -23,9 +25,12 @@ from yarpy.link.outbound import Outbound
 from yarpy.port import probe
 from yarpy.port.hub import Hub
 
+log = logging.getLogger("yarpy.port")
+
 SOON: Final = 0.4  # seconds from a sign of life, or a bad one, to the next question
 LATER: Final = 1.6  # ... while all that is heard are good answers
 CERTAIN: Final = 2
+LEASE: Final = 300.0  # seconds of silence in which a sender is let be whom nobody can ask
 
 Link = Inbound | Outbound
 
@@ -33,7 +38,7 @@ Link = Inbound | Outbound
 class _Sign:
     """When a connection is to be looked at, and what it was found like."""
 
-    __slots__ = ("contact", "due", "messages", "misses", "pause")
+    __slots__ = ("contact", "due", "heard", "messages", "misses", "pause")
 
     def __init__(self) -> None:
         # Where the other end is. Kept, since its name may be taken off the name server first.
@@ -41,7 +46,8 @@ class _Sign:
         self.messages = -1
         self.misses = 0
         self.pause = SOON
-        self.due = time.monotonic() + SOON
+        self.heard = time.monotonic()
+        self.due = self.heard + SOON
 
 
 class Pulse:
@@ -71,14 +77,29 @@ class Pulse:
             return False
         heard = isinstance(link, Inbound) and link.counter.messages != sign.messages
         sign.messages = link.counter.messages
-        if not heard:
+        if heard:
+            sign.heard = now
+        else:
             sign.contact = _other_end(hub, link) or sign.contact
-        # A port that was never registered anywhere cannot be asked.
+        if sign.contact is None and isinstance(link, Inbound) and now - sign.heard > LEASE:
+            self._lapse(hub, link)
+            return False
         found = 0 if heard or sign.contact is None else doubt(hub, link, sign.contact)
         sign.misses = sign.misses + found if found else 0
         sign.pause = SOON if heard or found else min(2 * sign.pause, LATER)
         sign.due = now + sign.pause
         return sign.misses >= CERTAIN
+
+    def _lapse(self, hub: Hub, link: Inbound) -> None:
+        log.info(
+            "%s: the connection from %s over %s ends: nothing came for %g s, and no name service "
+            "knows where to ask whether it still stands",
+            hub.name,
+            link.route.source or "somebody without a name",
+            link.route.carrier,
+            LEASE,
+        )
+        link.close()
 
 
 def _other_end(hub: Hub, link: Link) -> Contact | None:
