@@ -137,7 +137,7 @@ def masked(text: str) -> str:
 @dataclass(slots=True, init=False)
 class Route:
     """Who talks to whom over what: one connection. `port` is the accepting side's TCP port,
-    `host` its address, where we dialled it."""
+    `host` its address, where it was dialled."""
 
     source: str
     target: str

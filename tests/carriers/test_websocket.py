@@ -292,16 +292,22 @@ def test_broken_frames(frame: bytes) -> None:
 
 
 def test_other_origins(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("YARPY_WEB_ORIGINS", "http://good:1")
-    for origin, wishes, admitted in (
-        ("http://good:1", "", True),
-        ("http://bad", "", False),
-        ("http://bad", "&read", True),
+    for setting, origin, wishes, host, admitted in (
+        ("http://good:1", "http://good:1", "", "", True),
+        ("http://good:1", "http://bad", "", "", False),
+        ("", "http://bad", "", "", False),
+        ("", "http://bad", "&admin", "", False),
+        ("", "http://bad", "&read", "", True),
+        ("", "http://h:1", "", "", True),
+        ("*", "http://bad", "", "", True),
+        ("", "http://h.evil.test", "&read", "127.0.0.1", False),  # a name that points to us
     ):
-        end, carrier = End(), WebSocket(Route("", "/p", "websocket"))
+        monkeypatch.setenv("YARPY_WEB_ORIGINS", setting)
+        end, carrier = End(), WebSocket(Route("", "/p", "websocket", 0, host))
         ws = WSConnection(ConnectionType.CLIENT)
         headers = [(b"Origin", origin.encode())]
-        request = ws.send(Request(host="h:1", target=f"/?ws{wishes}", extra_headers=headers))
+        name = "h.evil.test" if host else "h:1"
+        request = ws.send(Request(host=name, target=f"/?ws{wishes}", extra_headers=headers))
         end.begin(carrier.welcome(end.stream, request[:8]))
         end.feed(request[8:])
         ws.receive_data(end.take())

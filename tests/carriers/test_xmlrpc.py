@@ -183,18 +183,22 @@ def test_other_posts_are_left_to_http(piece: int) -> None:
 
 def request(body: bytes = b"", **headers: str) -> bytes:
     lines = "".join(f"{name.replace('_', '-')}: {value}\r\n" for name, value in headers.items())
-    return f"POST /RPC2 HTTP/1.1\r\n{lines}\r\n".encode() + body
+    return f"POST /RPC2 HTTP/1.1\r\nHost: h:1\r\n{lines}\r\n".encode() + body
 
 
 @pytest.mark.parametrize(
     ("data", "status"),
     [
         (request(b"<x/>"), b"411"),
-        (request(b"<x/>", Content_Length="-4"), b"411"),
-        (request(b"<x/>", Content_Length="many"), b"411"),
+        (request(b"<x/>", Content_Length="-4"), b"400"),
+        (request(b"<x/>", Content_Length="many"), b"400"),
+        (request(b"<x/>", Content_Length="4", Transfer_Encoding="chunked"), b"411"),
+        (request(b"<x/>", Content_Length="4\r\nContent-Length: 5"), b"400"),
+        (b"POST /RPC2 HTTP/1.1\r\nContent-Length: 4\r\n\r\n<x/>", b"400"),
+        (request(b"<x/>", Content_Length="4", **{"Bad name": "x"}), b"400"),
         (request(b"4\r\n<x/>\r\n", Transfer_Encoding="chunked"), b"411"),
         (request(b"<x/>", Content_Length="99999999"), b"413"),
-        (request(b"<x/>", Content_Length="9" * 4000), b"413"),
+        (request(b"<x/>", Content_Length="9" * 4000), b"400"),
     ],
 )
 def test_bad_requests_get_their_status(data: bytes, status: bytes) -> None:
@@ -207,6 +211,54 @@ def test_bad_requests_get_their_status(data: bytes, status: bytes) -> None:
     if not end.done:
         with pytest.raises(RemoteProtocolError, match=status.decode()):
             end.feed_eof()
+
+
+EVIL = {"Origin": "http://evil", "Content_Type": "text/plain"}
+
+
+@pytest.mark.parametrize(
+    ("headers", "reached", "status"),
+    [
+        (EVIL, "10.0.0.1", b"403"),
+        ({"Referer": "http://evil/page"}, "10.0.0.1", b"403"),
+        ({"User_Agent": "Mozilla/5.0"}, "10.0.0.1", b"403"),
+        ({"Origin": "http://h:1"}, "10.0.0.1", b"200"),
+        ({"User_Agent": "Python-xmlrpc/3.11"}, "127.0.0.1", b"200"),
+    ],
+)
+@pytest.mark.parametrize("path", ["/RPC2", "/"])
+def test_pages_of_others_may_not_call(
+    headers: dict[str, str], reached: str, status: bytes, path: str
+) -> None:
+    body = xmlrpc.encode_call(["move", 1])
+    lines = {"Content_Type": "text/xml", **headers, "Content_Length": str(len(body))}
+    data = request(body, **lines).replace(b"/RPC2", path.encode(), 1)
+    if path == "/" and b"text/xml" not in data:
+        return  # that is for http
+    end, served = End(), Served()
+    end.begin(serve(end, served, answer, host=reached))
+    end.feed(data)
+    assert end.take().startswith(b"HTTP/1.1 " + status + b" ")
+    assert bool(served.messages) == (status == b"200")
+
+
+def test_name_of_another_is_turned_away_on_the_loopback() -> None:
+    data = request(b"<x/>", Content_Length="4").replace(b"h:1", b"evil.test:1")
+    end, served = End(), Served()
+    end.begin(serve(end, served, answer, host="127.0.0.1"))
+    end.feed(data)
+    assert end.take().startswith(b"HTTP/1.1 421 ")
+
+
+def test_what_a_browser_would_accept_is_not_what_it_brings() -> None:
+    """Browsers name XML among what they accept; their forms are for http."""
+    data = b"POST / HTTP/1.1\r\nHost: h\r\nAccept: text/html,application/xml\r\n\r\n"
+    end, carrier = End(), XmlRpc(Route("", "/p", "xmlrpc"))
+    end.begin(carrier.welcome(end.stream, data[:8]))
+    end.stream.feed(data[:8])
+    end.stream.head += 8
+    end.feed(data[8:])
+    assert carrier.instead is Http
 
 
 def test_client_that_asks_before_it_sends() -> None:

@@ -58,7 +58,7 @@ def test_both_sides_know_each_other() -> None:
         driver, carrier = greet(contact, Route("/me", "/target", "tcp+a.b", contact.port))
     assert isinstance(carrier, Tcp)
     (far,) = found
-    assert far[1].route == Route("/me", "/target", "tcp+a.b", 21602)
+    assert far[1].route == Route("/me", "/target", "tcp+a.b", 21602, "127.0.0.1")
     for side in (driver, far[0]):
         side.transport.close()
 

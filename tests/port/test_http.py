@@ -374,7 +374,7 @@ def test_a_program_shows_pages(echo: yarpy.RpcServer, caplog: pytest.LogCaptureF
     connection.request("HEAD", "/n.json")
     response = connection.getresponse()
     assert (response.getheader("Content-Type"), response.read()) == ("application/json", b"")
-    assert response.getheader("Content-Security-Policy") is None
+    assert response.getheader("Content-Security-Policy") == "frame-ancestors 'self'"
     # What it leaves, and every message, is the port's.
     assert "<h1>/echo</h1>" in get(connection, "/*")[1]
     assert "Here are the commands" in get(connection, "/?")[1]
@@ -450,7 +450,7 @@ def test_curl(echo: yarpy.RpcServer) -> None:
     assert head.startswith("HTTP/1.1 200 OK\n")
     assert curl("-o", "-", "-w", "%{http_code}", "-X", "DELETE", url) == "405"
     assert curl("--http1.0", f"{url}/?req=x") == '["ok", "echo", ["x"]]\n'
-    options = curl("-i", "-X", "OPTIONS", "-H", "Origin: http://x", f"{url}/form")
+    options = curl("-i", "-X", "OPTIONS", "-H", f"Origin: {url}", f"{url}/form")
     assert options.startswith("HTTP/1.1 204 No Content\n")
     assert "Access-Control-Allow-Methods: GET, HEAD, POST\n" in options
     many = curl("-w", "new connections: %{num_connects}\n", *[f"{url}/?req=x"] * 4)

@@ -53,14 +53,14 @@ class Served:
     reversed: bool = False
 
 
-def serve(end: End, served: Served, answer: Answer, port: int = 0) -> Steps[None]:
-    """Welcome whoever it is and answer until they quit."""
+def serve(end: End, served: Served, answer: Answer, port: int = 0, host: str = "") -> Steps[None]:
+    """Welcome whoever it is and answer until they quit. `host`: where they reached us."""
     first = bytes((yield from end.stream.read_exact(8)))
     kind = recognise(first)
     if kind is None:
         end.stream.write(UNKNOWN_PROTOCOL)
         return
-    carrier = served.carrier = kind(Route("", "/cap/target", kind.name, port))
+    carrier = served.carrier = kind(Route("", "/cap/target", kind.name, port, host))
     yield from carrier.welcome(end.stream, first)
     while True:
         message = yield from carrier.decode(end.stream)

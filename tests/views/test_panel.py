@@ -7,6 +7,7 @@ import json
 import re
 import threading
 import time
+import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -348,3 +349,21 @@ def test_camera_that_only_browsers_may_look_at(
         camera.server_close()
         page.locator(".badge", has_text="still for").wait_for()
         browser.picture(page, "panel_cpp_camera")
+
+
+def test_questions_go_to_ports_of_the_robot_alone(robot: Robot, url: str, names: Any) -> None:
+    """The page asks through its own port, as ports let no page of another origin act."""
+    told = get(f"{url}robot")
+    where = told["boards"][0]["rpc"]
+
+    def ask(*words: object, **headers: str) -> Any:
+        body = json.dumps({"admin": 1, "req": ["ask", *words]}).encode()
+        kind = {"Content-Type": "application/json", **headers}
+        request = urllib.request.Request(f"{url}form", body, kind)
+        with urllib.request.urlopen(request, timeout=PATIENCE) as answer:
+            return json.load(answer)
+
+    assert ask(*where, "get axes")[:3] == ["is", "axes", 6]
+    assert ask("", names.port, "list")[0] == "fail"  # the name server is no port of the robot
+    with pytest.raises(urllib.error.HTTPError, match="403"):
+        ask(*where, "get axes", Origin="http://evil.test")

@@ -23,6 +23,8 @@ from yarpy.carriers.base import Carrier
 from yarpy.carriers.http.chunk import Chunks
 from yarpy.carriers.http.header import CHALLENGES, MAX_LINE, read_headers
 from yarpy.carriers.http.login import refusal, take_login
+from yarpy.carriers.http.origin import not_ours, origins_of
+from yarpy.carriers.http.refusal import refuse
 from yarpy.data import jpeg
 from yarpy.data.image import Image, is_image
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
@@ -70,6 +72,8 @@ class Mjpeg(Carrier):
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
         line = yield from stream.read_line(MAX_LINE)
         headers = yield from read_headers(stream)
+        if origins_of().turns_away(headers, self.route.host):
+            yield from refuse(stream, 421, not_ours(headers.get("host", "")))
         self.begin(stream, line.decode("latin-1").partition(" ")[0], "origin" in headers)
 
     def begin(self, stream: ByteStream, query: str, shared: bool) -> None:

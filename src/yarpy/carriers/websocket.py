@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.http.header import MAX_LINE, read_headers
-from yarpy.carriers.http.origin import origins_of
+from yarpy.carriers.http.origin import not_ours, origins_of
+from yarpy.carriers.http.refusal import refuse
 from yarpy.data import codec
 from yarpy.data.json import from_json, to_json
 from yarpy.data.value import Vocab
@@ -46,14 +47,6 @@ _PING = 0x9
 _PONG = 0xA
 _PROTOCOL_ERROR = (1002).to_bytes(2, "big")
 _NO_MASK = bytes(4)  # a mask that changes nothing: no proxy is to be protected from us
-_REFUSAL: Final = (
-    "HTTP/1.1 {status}\r\n"
-    "Content-Type: text/plain\r\n"
-    "Content-Length: {size}\r\n"
-    "{more}Connection: close\r\n"
-    "\r\n"
-    "{text}"
-)
 
 
 class WebSocket(Carrier):
@@ -118,12 +111,14 @@ class WebSocket(Carrier):
         key = headers.get("sec-websocket-key", "")
         known = headers.get("sec-websocket-version", "13") == "13"
         if not (key and known and "websocket" in headers.get("upgrade", "").lower()):
-            more = "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-            text = "This address is for WebSockets.\n"
-            yield from _refuse(stream, "426 Upgrade Required", text, more)
-        if self.push and not origins_of().admits(headers):
-            text = "Pages of this origin may only read (&read), see YARPY_WEB_ORIGINS.\n"
-            yield from _refuse(stream, "403 Forbidden", text)
+            more = [("Upgrade", "websocket"), ("Sec-WebSocket-Version", "13")]
+            yield from refuse(stream, 426, "this address is for WebSockets", more)
+        origins = origins_of()
+        if origins.turns_away(headers, self.route.host):
+            yield from refuse(stream, 421, not_ours(headers.get("host", "")))
+        if self.push and not origins.admits(headers):
+            text = "pages of this origin may only read (&read), see YARPY_WEB_ORIGINS"
+            yield from refuse(stream, 403, text)
         offered = headers.get("sec-websocket-protocol", "").replace(",", " ").split()
         self.json = JSON in offered
         answer = (
@@ -309,13 +304,3 @@ class WebSocket(Carrier):
                 self._rest = memoryview(payload)
                 self._inside = not (frame.frame_finished and frame.message_finished)
                 return not self._inside
-
-
-def _refuse(stream: ByteStream, status: str, text: str, more: str = "") -> Steps[None]:
-    """Say no, give the peer the time to read it, and end."""
-    stream.write(_REFUSAL.format(status=status, size=len(text), more=more, text=text).encode())
-    try:
-        yield from stream.more(stream.waiting + 1)
-    except LinkClosed:
-        pass
-    raise RemoteProtocolError(f"a WebSocket was refused: {status}")

@@ -6,16 +6,19 @@ Rules: each message is a POST, its reply the response; also a port that says not
 an empty string. The questions of ROS nodes (`getPid`, `requestTopic`, `getBusInfo`,
 `publisherUpdate`) go to the administration, and the connection ends after them. What is not
 XML-RPC is answered with a fault, what comes too slowly with a status. A POST to `/` belongs here if
-it brings XML, else to http.
+it brings XML, else to http. Every call may act, so which web pages may call is said by `origin`.
 How values are spelled: `yarpy.data.xmlrpc`.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
 from yarpy.carriers.http.header import MAX_LINE, read_headers
+from yarpy.carriers.http.message import CONTINUE, MAX_BODY, MAX_HEAD, next_event
+from yarpy.carriers.http.origin import not_ours, origins_of
+from yarpy.carriers.http.refusal import refuse
 from yarpy.data import codec, xmlrpc
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
@@ -24,9 +27,9 @@ from yarpy.wire.effects import Steps
 from yarpy.wire.message import ADMIN, CALL, Message, Packet
 from yarpy.wire.stream import ByteStream
 
-MAX_BODY: Final = 1 << 24
-DRAIN: Final = 1 << 26  # bytes of a refused body that are read
-MAX_HEAD: Final = 1 << 14
+if TYPE_CHECKING:
+    import h11
+
 NOT_UNDERSTOOD: Final = -32700  # the fault of a body that is no XML-RPC
 ROS: Final = frozenset(("publisherUpdate", "requestTopic", "getPid", "getBusInfo"))
 
@@ -68,7 +71,7 @@ class XmlRpc(Carrier):
             return
         while not (head := _head(stream)) and stream.waiting < MAX_HEAD:
             yield from stream.more(stream.waiting + 1)
-        if b"xml" not in head.lower():
+        if not _brings_xml(head):
             from yarpy.carriers.http.carrier import Http
 
             self.instead = Http
@@ -77,12 +80,12 @@ class XmlRpc(Carrier):
     def decode(self, stream: ByteStream) -> Steps[Message]:
         while True:
             yield from stream.more(1)
+            if stream.buffer[stream.head] in b"\r\n":
+                stream.head += 1
+                continue  # between two calls
             self.midway = True
             try:
-                line = yield from stream.read_line(MAX_LINE)
-                if not line:
-                    continue  # between two calls
-                body = yield from self._read_body(stream, line)
+                body = yield from self._read_body(stream)
             except Timeout:
                 stream.write(_RESPONSE.format(status="408 Request Timeout", size=0).encode())
                 self.finished = True
@@ -90,7 +93,7 @@ class XmlRpc(Carrier):
             finally:
                 self.midway = False
             try:
-                call = xmlrpc.decode_call(body)
+                call = xmlrpc.decode_call(memoryview(body))
             except DecodeError as error:
                 self._respond(stream, xmlrpc.encode_fault(NOT_UNDERSTOOD, str(error)))
                 continue
@@ -100,34 +103,48 @@ class XmlRpc(Carrier):
             self._owed = True
             return Message(key, b"".join(map(bytes, codec.encode(call))))
 
-    def _read_body(self, stream: ByteStream, line: bytes) -> Steps[bytes | memoryview]:
-        headers = yield from read_headers(stream)
-        words = line.split()
+    def _read_body(self, stream: ByteStream) -> Steps[bytearray]:
+        """The body of a call, whose head is nobody's but h11's to judge."""
+        import h11
+
+        talk = h11.Connection(h11.SERVER, max_incomplete_event_size=MAX_HEAD)
+        body = bytearray()
+        try:
+            head = yield from next_event(stream, talk)
+            if not isinstance(head, h11.Request):
+                raise LinkClosed("the peer closed the connection")
+            yield from self._judge(stream, head, min(MAX_BODY, stream.limit))
+            if talk.they_are_waiting_for_100_continue:
+                stream.write(CONTINUE)
+            while isinstance(event := (yield from next_event(stream, talk)), h11.Data):
+                body += event.data
+        except h11.RemoteProtocolError as error:
+            yield from refuse(stream, error.error_status_hint, str(error))
+        rest, _ = talk.trailing_data
+        stream.unread(len(rest))  # of the next call
+        return body
+
+    def _judge(self, stream: ByteStream, head: h11.Request, most: int) -> Steps[None]:
+        """Go on only with a call that may be made, of at most so many bytes."""
+        headers = {key.decode("ascii"): value.decode("latin-1") for key, value in head.headers}
         connection = headers.get("connection", "").lower()
         self._last = "close" in connection or (
-            words[-1:] == [b"HTTP/1.0"] and "keep-alive" not in connection
+            head.http_version == b"1.0" and "keep-alive" not in connection
         )
+        if head.method != b"POST":
+            yield from refuse(stream, 405, "a call of XML-RPC is a POST", [("Allow", "POST")])
         size = headers.get("content-length", "")
-        if words[:1] != [b"POST"]:
-            yield from self._refuse(stream, "405 Method Not Allowed")
-        if not (size.isascii() and size.isdigit()):
-            yield from self._refuse(stream, "411 Length Required")
-        if len(size) > 9 or int(size) > min(MAX_BODY, stream.limit):
-            yield from self._refuse(stream, "413 Content Too Large", int(size[:9]))
-        if "100-continue" in headers.get("expect", "").lower():
-            stream.write(b"HTTP/1.1 100 Continue\r\n\r\n")
-        return (yield from stream.read_exact(int(size)))
-
-    def _refuse(self, stream: ByteStream, status: str, rest: int = 0) -> Steps[None]:
-        """Say why, give the peer the time to read it, and end. `rest` bytes are still to come: who
-        hangs up before they are read takes its answer back."""
-        stream.write(_RESPONSE.format(status=status, size=0).encode())
-        try:
-            yield from stream.skip(min(rest, DRAIN))
-            yield from stream.more(stream.waiting + 1)
-        except LinkClosed:
-            pass
-        raise RemoteProtocolError(f"an XML-RPC call was refused: {status}")
+        if not size or "transfer-encoding" in headers:
+            yield from refuse(stream, 411, "a call of XML-RPC has a Content-Length, and no chunks")
+        if int(size) > most:
+            text = f"a call of XML-RPC has at most {most} bytes"
+            yield from refuse(stream, 413, text, rest=int(size) - stream.waiting)
+        origins = origins_of()
+        if origins.turns_away(headers, self.route.host):
+            yield from refuse(stream, 421, not_ours(headers.get("host", "")), rest=int(size))
+        if not origins.admits(headers):
+            text = "pages of this origin may only read, see YARPY_WEB_ORIGINS"
+            yield from refuse(stream, 403, text, rest=int(size))
 
     def _respond(self, stream: ByteStream, body: bytes) -> None:
         stream.write(_RESPONSE.format(status="200 OK", size=len(body)).encode() + body)
@@ -210,3 +227,9 @@ def _head(stream: ByteStream) -> bytes:
         if found:
             return head
     return b""
+
+
+def _brings_xml(head: bytes) -> bool:
+    """Whether the body will be XML; a browser that would accept some does not bring any."""
+    lines = (line.partition(b":") for line in head.lower().split(b"\n"))
+    return any(name.strip() == b"content-type" and b"xml" in value for name, _, value in lines)

@@ -143,11 +143,20 @@ def welcome(
         driver.stream.write(UNKNOWN_PROTOCOL)
         driver.flush()
         raise RemoteProtocolError(f"no carrier begins with the bytes {first!r}")
-    carrier = kind(Route("", target, kind.name, port))
+    reached = _reached(transport)
+    carrier = kind(Route("", target, kind.name, port, reached))
     carrier.accepted = True
     driver.run(carrier.welcome(driver.stream, first), deadline)
     if carrier.instead is not None:  # the first bytes alone did not tell
-        carrier = carrier.instead(Route("", target, carrier.instead.name, port))
+        carrier = carrier.instead(Route("", target, carrier.instead.name, port, reached))
         carrier.accepted = True
         driver.run(carrier.welcome(driver.stream, first), deadline)
     return driver, carrier
+
+
+def _reached(transport: TcpTransport) -> str:
+    """The address of ours that was dialled."""
+    try:
+        return transport.local[0]
+    except OSError:
+        return ""  # closed meanwhile, as whoever reads will notice

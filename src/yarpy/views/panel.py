@@ -2,10 +2,12 @@
 
 GET /         the page
 GET /robot    which ports of control boards, cameras and sensors there are, as JSON
+POST /form    {"admin": 1, "req": ["ask", HOST, PORT, TEXT]}: a question to one of those ports
 
-Rules: the page talks to the ports of the robot itself, as any page could: questions and commands
-to `rpc:i`, events from `state:o` and `measures:o`, MJPEG from cameras. The robot knows nothing of
-it and may be a C++ one, of which it shows joints and, if it has that carrier, pictures.
+Rules: the page reads the ports of the robot itself, as any page may: events from `state:o` and
+`measures:o`, MJPEG from cameras. Questions and commands to `rpc:i` go through here, because ports
+let only pages of their own act. The robot knows nothing of it and may be a C++ one, of which it
+shows joints and, if it has that carrier, pictures.
 """
 
 from __future__ import annotations
@@ -17,11 +19,14 @@ import yarpy
 from yarpy.contact import Contact
 from yarpy.names.address import is_loopback
 from yarpy.names.client import YarpNameClient
+from yarpy.port.caller import Caller
 from yarpy.views.asset import asset, jsonpage
 
 if TYPE_CHECKING:
     from yarpy.names.base import NameClient
     from yarpy.port.base import BasePort
+
+PATIENCE = 4.0  # seconds for an answer, a bit less than the page has
 
 _FILES = (
     *("panel.css", "style.css", "panel.js", "panel_camera.js", "panel_curve.js", "panel_joint.js"),
@@ -38,7 +43,9 @@ class Panel:
     def __init__(self, port: BasePort, robot: str, names: NameClient) -> None:
         self._robot = "/" + robot.strip("/")
         self._names = names
+        self._known: dict[tuple[str, int], Contact] = {}  # ports of the robot, as pages call them
         port.on_page(self._page)
+        port.on_admin(self._asked)
 
     def _page(self, path: str, fields: Mapping[str, str]) -> yarpy.Page | None:
         if path == "/":
@@ -51,12 +58,28 @@ class Panel:
         name = path.removeprefix("/")
         return asset(name) if name in _FILES else None
 
+    def _asked(self, message: yarpy.Message) -> object:
+        """A question of the page to a port of the robot, and its answer."""
+        match message.value:
+            case ["ask", str(host), int(port), str(text)]:
+                contact = self._known.get((host, port))
+                if contact is None:
+                    return [yarpy.Vocab("fail"), f"no port of {self._robot} is there"]
+                try:
+                    with Caller(contact, timeout=PATIENCE) as caller:
+                        answer = caller.ask(yarpy.Bottle.from_text(text), PATIENCE)
+                        return [] if answer is None else answer.value
+                except yarpy.YarpError as error:
+                    return [yarpy.Vocab("fail"), str(error)]
+        return None
+
     def robot(self) -> dict[str, Any]:
         """The ports of the robot by what they are for. Raises NoNameServer.
 
         An address is a host and a number; a host of "" is the one that the page came from.
         """
         found = {contact.name: contact for contact in self._names.list(self._robot)}
+        self._known = {_address(contact): contact for contact in found.values()}
 
         def named(end: str) -> list[str]:
             return sorted(name.removesuffix(end) for name in found if name.endswith(end))

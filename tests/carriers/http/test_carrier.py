@@ -78,12 +78,14 @@ class Owner:
         self.ended.append((reason, quit_))
 
 
-def serve(*pieces: bytes, answer: object = None, name: str = "/cap/srv") -> tuple[Owner, bytes]:
-    """What a port says to a peer that says `pieces` and hangs up."""
+def serve(
+    *pieces: bytes, answer: object = None, name: str = "/cap/srv", host: str = ""
+) -> tuple[Owner, bytes]:
+    """What a port says to a peer that says `pieces` and hangs up. `host`: where it was reached."""
     transport = ScriptTransport(pieces)
     driver = Driver(transport)  # type: ignore[arg-type]
     driver.eager = False
-    carrier = Http(Route("", name, "http"))
+    carrier = Http(Route("", name, "http", 0, host))
     carrier.accepted = True
     owner = Owner(answer)
     try:
@@ -459,7 +461,7 @@ def test_head_has_the_length_and_changes_nothing() -> None:
 
 
 def test_preflight() -> None:
-    status, headers, _ = get("/form", "Origin: http://y", method="OPTIONS")
+    status, headers, _ = get("/form", "Origin: http://x:1", method="OPTIONS")
     assert status == 204
     assert headers["access-control-allow-origin"] == "*"
     assert "POST" in headers["access-control-allow-methods"]
@@ -665,8 +667,9 @@ def setting(monkeypatch: pytest.MonkeyPatch, text: str) -> Iterator[None]:
         yield
 
 
-def test_other_pages_can_be_kept_from_acting(monkeypatch: pytest.MonkeyPatch) -> None:
-    with setting(monkeypatch, "none"):
+@pytest.mark.parametrize("text", ["", "none", "http://good"])
+def test_other_pages_may_not_act(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    with setting(monkeypatch, text):
         evil = "Origin: http://evil"
         for target in ("/?req=x", "/?data=x", "/set/pos", "/?cmd=/there", "/?admin=1&req=ver"):
             assert get(target, evil)[0] == 403, target
@@ -678,3 +681,35 @@ def test_other_pages_can_be_kept_from_acting(monkeypatch: pytest.MonkeyPatch) ->
         assert get("/?req=x", "Origin: http://x:1")[0] == 200
         preflight = get("/form", evil, method="OPTIONS")[1]
         assert preflight["access-control-allow-methods"] == "GET, HEAD"
+
+
+LENGTHS = [
+    "Content-Length: 3\r\nContent-Length: 4",
+    "Content-Length: 3\r\nTransfer-Encoding: chunked",
+    "Transfer-Encoding: chunked\r\nContent-Length: 3",
+    "Transfer-Encoding: identity\r\nContent-Length: 3",
+]
+
+
+@pytest.mark.parametrize("lines", LENGTHS)
+def test_two_lengths_are_refused(lines: str) -> None:
+    """Somebody in between may have read another request (smuggling)."""
+    wire = f"POST /form HTTP/1.1\r\nHost: x\r\n{lines}\r\n\r\n0\r\n\r\n".encode()
+    owner, said = serve(wire)
+    assert said.split(b" ")[1] in (b"400", b"501")
+    assert owner.heard == []
+
+
+def test_name_of_another_is_turned_away_on_the_loopback() -> None:
+    """A site may let its name point to this computer (DNS rebinding)."""
+    for host, reached, status in (
+        ("evil.test:1", "127.0.0.1", 421),
+        ("evil.test:1", "10.0.0.1", 200),
+        ("127.0.0.1:1", "127.0.0.1", 200),
+        ("localhost", "127.0.0.1", 200),
+    ):
+        request = f"GET /?req=x HTTP/1.1\r\nHost: {host}\r\n\r\n".encode()
+        owner, said = serve(request, host=reached)
+        assert said.startswith(b"HTTP/1.1 %d " % status), (host, reached)
+        assert bool(owner.heard) == (status == 200)
+        assert (b"not known as evil.test" in said) == (status == 421)

@@ -27,8 +27,9 @@ from yarpy.carriers.http.message import (
     MAX_HEAD,
     chunk,
     next_event,
+    two_lengths,
 )
-from yarpy.carriers.http.origin import origins_of
+from yarpy.carriers.http.origin import not_ours, origins_of
 from yarpy.carriers.http.response import (
     CUT_OFF,
     LATE,
@@ -151,7 +152,9 @@ class Http(Carrier):
                 raise LinkClosed("the peer closed the connection")
             self._take_head(head)
             event = None
-            if sum(map(len, (head.target, *self._headers, *self._headers.values()))) > MAX_HEAD:
+            if two_lengths(head):
+                refusal = 400, "a body has a length or comes in chunks, not both"
+            elif sum(map(len, (head.target, *self._headers, *self._headers.values()))) > MAX_HEAD:
                 refusal = 431, f"the head of a request has at most {MAX_HEAD} bytes"
             elif int(self._headers.get("content-length", "0")) <= MAX_BODY:
                 if talk.they_are_waiting_for_100_continue:
@@ -206,6 +209,9 @@ class Http(Carrier):
         """What is wanted of the port; None if the request is answered without it."""
         from yarpy.carriers.http.request import Refusal, page_asked, read_wish
 
+        if self.origins.turns_away(self._headers, self.route.host):
+            self._respond(stream, complaint(421, not_ours(self._host)))
+            return None
         if request.method == "OPTIONS":
             self._respond(stream, self._responder.preflight(self._headers))
             return None

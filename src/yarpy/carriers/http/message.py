@@ -35,8 +35,11 @@ _REASONS: Final = {
     404: "Not Found",
     405: "Method Not Allowed",
     408: "Request Timeout",
+    411: "Length Required",
     413: "Content Too Large",
     415: "Unsupported Media Type",
+    421: "Misdirected Request",
+    426: "Upgrade Required",
     431: "Request Header Fields Too Large",
     500: "Internal Server Error",
     501: "Not Implemented",
@@ -69,6 +72,13 @@ def _head(first: str, headers: Headers) -> bytes:
             raise LocalProtocolError(f"the header {name} cannot be {value!r}")
         lines.append(line)
     return ("\r\n".join(lines) + "\r\n\r\n").encode("latin-1", "replace")
+
+
+def two_lengths(head: h11.Request) -> bool:
+    """Whether a request says twice, in different ways, where it ends: somebody between us and who
+    sent it may have read another request than we would (smuggling). h11 refuses two numbers."""
+    names = {name for name, _ in head.headers}
+    return b"transfer-encoding" in names and b"content-length" in names
 
 
 def next_event(stream: ByteStream, talk: h11.Connection) -> Steps[Any]:

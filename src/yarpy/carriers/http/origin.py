@@ -1,11 +1,15 @@
-"""Whose web pages may act on a port: `YARPY_WEB_ORIGINS`.
+"""Whose web pages may act on a port, and how it may be called: `YARPY_WEB_ORIGINS`.
 
-    *                                 any page, as in C++ YARP (also if nothing is said)
-    http://dash:8080 https://x.org    pages from there, and the port's own
-    none                              only the port's own
+    (nothing), none                   only the port's own page
+    http://dash:8080 https://x.org    pages from there too
+    robot.lab.example                 every page of that computer, which may be ours
+    *                                 any page, as in C++ YARP
 
 Rules: a browser tells where the page is from that makes it ask; who is no browser may act in any
-case. This protects people who browse, it is no password.
+case. This protects people who browse, it is no password. Reading is open to every page, as in
+C++ YARP. A site may let its name point to this computer, to be taken for its own page (DNS
+rebinding): so a name with dots that nobody listed is not ours, and who comes over the loopback,
+where nobody else's name leads, is turned away with it.
 """
 
 from __future__ import annotations
@@ -15,10 +19,14 @@ from collections.abc import Mapping
 
 
 class Origins:
-    """Whose pages may act on a port. `listed` None: those of everybody."""
+    """Whose pages may act on a port: those of the `listed` origins and `hosts`.
 
-    def __init__(self, listed: frozenset[str] | None) -> None:
+    `listed` None: those of everybody.
+    """
+
+    def __init__(self, listed: frozenset[str] | None, hosts: frozenset[str] = frozenset()) -> None:
         self.listed = listed
+        self.hosts = hosts
 
     def admits(self, headers: Mapping[str, str]) -> bool:
         """Whether a request comes from such a page, from the port's own, or from no browser."""
@@ -30,12 +38,41 @@ class Origins:
             scheme, _, rest = referer.partition("://")
             origin = f"{scheme}://{rest.partition('/')[0]}" if rest else None
         if origin is not None:
-            return origin in self.listed or _is_own(origin, headers.get("host", ""))
+            origin = origin.lower()
+            return (
+                origin in self.listed
+                or hostname(origin.partition("://")[2]) in self.hosts
+                or self._is_own(origin, headers.get("host", ""))
+            )
         site = headers.get("sec-fetch-site")
         if site is not None:
-            return site in ("same-origin", "none")
+            return site in ("same-origin", "none") and self.knows(headers.get("host", ""))
         # A browser that tells nothing may have been told to by the page.
         return "mozilla/" not in headers.get("user-agent", "").lower()
+
+    def knows(self, host: str) -> bool:
+        """Whether this is what the computer may be called, by its Host header: an address, a name
+        of this network, or one of `hosts`. Any other may be a site's that points it to us."""
+        name = hostname(host.lower())
+        return (
+            self.listed is None
+            or name.startswith("[")
+            or "." not in name
+            or name.replace(".", "").isdigit()
+            or name.endswith((".local", ".localhost"))
+            or name in self.hosts
+        )
+
+    def turns_away(self, headers: Mapping[str, str], reached: str) -> bool:
+        """Whether a request is for a computer of another name. `reached`: the address that it came
+        to, which is a loopback's if the name led there."""
+        if not (reached.startswith("127.") or reached == "::1"):
+            return False  # people call computers of a network as they like
+        return not self.knows(headers.get("host", ""))
+
+    def _is_own(self, origin: str, host: str) -> bool:
+        """Whether a page is of the port itself."""
+        return origin == f"http://{host.lower()}" and self.knows(host)
 
     @property
     def framing(self) -> str:
@@ -43,17 +80,31 @@ class Origins:
         Content-Security-Policy; empty if everybody may."""
         if self.listed is None:
             return ""
-        return " ".join(["frame-ancestors 'self'", *sorted(self.listed)])
+        hosts = [f"{scheme}://{host}:*" for host in sorted(self.hosts) for scheme in _SCHEMES]
+        return " ".join(["frame-ancestors 'self'", *sorted(self.listed), *hosts])
+
+
+_SCHEMES = ("http", "https")
 
 
 def origins_of(text: str | None = None) -> Origins:
-    """What YARPY_WEB_ORIGINS says, or a text like it: `*`, or origins between blanks."""
+    """What YARPY_WEB_ORIGINS says, or a text like it: `*`, or origins and hosts between blanks."""
     if text is None:
-        text = os.environ.get("YARPY_WEB_ORIGINS", "*")
-    words = text.replace(",", " ").split()
+        text = os.environ.get("YARPY_WEB_ORIGINS", "")
+    words = {word.rstrip("/").lower() for word in text.replace(",", " ").split()} - {"none"}
     if "*" in words:
         return Origins(None)
-    return Origins(frozenset(word.rstrip("/").lower() for word in words if word != "none"))
+    listed = frozenset(word for word in words if "://" in word or word == "null")
+    return Origins(listed, frozenset(words) - listed)
+
+
+def not_ours(host: str) -> str:
+    """What to tell somebody who was turned away."""
+    name = "".join(c for c in hostname(host) if c.isalnum() or c in ".-_")[:80]
+    return (
+        f"this computer is not known as {name}: call it by its address, or name it in "
+        "YARPY_WEB_ORIGINS where the port was opened"
+    )
 
 
 def hostname(host: str) -> str:
@@ -61,11 +112,3 @@ def hostname(host: str) -> str:
     if host.startswith("["):
         return host.partition("]")[0] + "]"
     return host.partition(":")[0]
-
-
-def _is_own(origin: str, host: str) -> bool:
-    """Whether a page is of the port itself. A name that somebody else gave this computer does not
-    count: it may be theirs today and ours tomorrow."""
-    name = hostname(host)
-    known = name.startswith("[") or "." not in name or name.replace(".", "").isdigit()
-    return origin.lower() == f"http://{host.lower()}" and (known or name.endswith(".local"))

@@ -79,7 +79,9 @@ LATE: Final = Response(408, body=b"the request takes too long to come\n")
 CUT_OFF: Final = Response(400, body=b"the body is shorter than its length\n")
 NO_SUCH_METHOD: Final = Response(405, more=[_ALLOW])
 MAY_NOT_ACT: Final = Response(
-    403, body=b"the owner of this port lets only some pages act here (YARPY_WEB_ORIGINS)\n"
+    403,
+    body=b"only the port's own page may act here, and who is no browser: open the port's page, or "
+    b"name yours in YARPY_WEB_ORIGINS where the port was opened\n",
 )
 UNSPEAKABLE: Final = Response(500, body=b"the port's answer cannot be sent\n")
 

@@ -21,6 +21,7 @@ export class Horizon {
     const {canvas} = this;
     const scale = devicePixelRatio || 1;
     const size = canvas.clientWidth;
+    if (size < 8) return; // not laid out yet
     if (canvas.width !== Math.round(size * scale)) {
       canvas.width = canvas.height = Math.round(size * scale);
     }
