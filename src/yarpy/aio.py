@@ -30,7 +30,7 @@ from yarpy.port.base import BasePort
 from yarpy.port.connection import Connection
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.reader import ReadingPort
-from yarpy.wire.message import UNSENDABLE, Message
+from yarpy.wire.message import Answer, Message
 
 P = TypeVar("P", bound=BasePort)
 
@@ -272,7 +272,7 @@ class _Arrival:
         if answer is not None:
             # A message of the reader's own: the connection's thread holds on to the other one.
             # Once the reader forgets it nobody is left who could answer.
-            reply = _Reply(answer, self._done)
+            reply = _Reply(answer.give, self._done.set)
             self._message = message.replaced(message.payload)
             self._message.spelling, self._message.answer = message.spelling, reply
 
@@ -306,27 +306,14 @@ class _Arrival:
         self._done.set()
 
 
-class _Reply:
+class _Reply(Answer):
     """The way back of one question; its connection goes on when it is used or forgotten."""
 
-    __slots__ = ("_done", "_send")
-
-    def __init__(self, send: Callable[[object], None], done: threading.Event) -> None:
-        self._send = send
-        self._done = done
-
-    def __call__(self, value: object) -> None:
-        try:
-            self._send(value)
-        except UNSENDABLE:
-            raise  # it cannot be sent: the question is still open
-        except BaseException:
-            self._done.set()
-            raise
-        self._done.set()
+    __slots__ = ()
 
     def __del__(self) -> None:
-        self._done.set()
+        if self.then is not None:
+            self.then()
 
 
 class RpcClient:

@@ -1,4 +1,4 @@
-"""Inbound links: reading, answering, acknowledging, ending; the turn that readers may take.
+"""Inbound links: reading, answering, acknowledging, ending; readers with a direct-read lease.
 
 With a scripted transport where order matters, over a socket pair where threads do.
 """
@@ -20,7 +20,7 @@ from yarpy.carriers.text import TextAck
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
-from yarpy.link import inbound
+from yarpy.link import turn
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import recognise
 from yarpy.link.inbound import Inbound
@@ -153,41 +153,38 @@ def test_close_from_another_thread_wakes_the_reader() -> None:
 
 @pytest.fixture(autouse=True)
 def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Links wait longer for a reader with the turn than a busy machine makes it wait."""
-    monkeypatch.setattr(inbound, "PARKED", 0.5)
+    """Links wait longer for a reader with the lease than a busy machine makes it wait."""
+    monkeypatch.setattr(turn, "AWAY", 0.5)
 
 
-def take(link: Inbound) -> None:
-    """Make the link's thread leave the turn to us."""
-    link.wanted = True
+def soon() -> float:
+    return time.monotonic() + 5
 
 
 def test_reader_may_take_the_turn() -> None:
     """A waiting reader reads the socket itself; the thread takes over when it stays away."""
     with linked() as (near, link, owner):
-        take(link)
+        link.turn.ask()
         near.sendall(message([1]))
-        wait_until(lambda: link.borrow())
+        wait_until(lambda: link.turn.leased)
         near.sendall(message([2]))
-        found = link.fetch(None)
+        found = link.read(None)
         assert found is not None
         assert found.value == [2]
         assert len(owner.heard) == 1
-        link.give_back()
         near.sendall(message([3]))
         wait_until(lambda: len(owner.heard) == 2)
         assert owner.heard[1].value == [3]
-        assert not link.borrow()
+        assert not link.turn.leased
 
 
 def test_turn_given_back_leaves_no_time_limit_behind() -> None:
     """The thread waits as long as it takes: a silent peer is no failure."""
     with linked() as (near, link, owner):
-        take(link)
+        link.turn.ask()
         near.sendall(message([1]))
-        wait_until(lambda: link.borrow())
-        assert link.fetch(time.monotonic() + 0.01) is None
-        link.give_back()
+        wait_until(lambda: link.turn.leased)
+        assert link.read(time.monotonic() + 0.01) is None
         time.sleep(0.2)
         assert owner.ended == []
         near.sendall(message([2]))
@@ -196,15 +193,14 @@ def test_turn_given_back_leaves_no_time_limit_behind() -> None:
 
 def test_borrower_obeys_commands_and_answers() -> None:
     with linked() as (near, link, _):
-        take(link)
+        link.turn.ask()
         near.sendall(message([1]))
-        wait_until(lambda: link.borrow())
+        wait_until(lambda: link.turn.leased)
         near.sendall(message([Vocab("ver")], "a") + message([2], "d"))
-        found = link.fetch(None)
+        found = link.read(None)
         assert found is not None
         assert found.wants_reply
         found.reply(["answer"])
-        link.give_back()
         wanted = (
             ACK
             + Bottle([Vocab("ver"), 1, 2, 3]).to_bytes()
@@ -221,19 +217,18 @@ def test_borrower_obeys_commands_and_answers() -> None:
 def test_borrower_that_wants_the_newest_gets_the_last_of_those_that_are_there() -> None:
     """What it passes over is acknowledged, and counted; a command among it is obeyed."""
     with linked() as (near, link, _):
-        take(link)
+        link.turn.ask()
         near.sendall(message([1]))
-        wait_until(lambda: link.borrow())
+        wait_until(lambda: link.turn.leased)
         near.sendall(
             message([2]) + message([3]) + message([Vocab("ver")], "a") + message([4]) + b"YA\n"
         )
         wait_until(lambda: link.driver.stream.waiting or link.driver.try_fill())
-        found = link.fetch(None, newest=True)
+        found = link.read(None, newest=True)
         assert found is not None
         assert found.value == [4]
         assert link.snapshot()["drops"] == 2
         assert link.snapshot()["messages"] == 4  # a command is none
-        link.give_back()
         near.sendall(message([5])[3:])
         wanted = ACK * 3 + Bottle([Vocab("ver"), 1, 2, 3]).to_bytes() + ACK * 3
         got = b""
@@ -246,17 +241,16 @@ def test_borrower_that_wants_the_newest_gets_the_last_of_those_that_are_there() 
 def test_message_of_a_sender_who_has_gone_is_not_lost(newest: bool) -> None:
     """Its acknowledgement finds nobody, which is no reason to forget it."""
     with linked() as (near, link, owner):
-        take(link)
+        link.turn.ask()
         near.sendall(message([1]))
-        wait_until(lambda: link.borrow())
+        wait_until(lambda: link.turn.leased)
         large = [b"x" * 20_000]  # is acknowledged at once; of small ones, every so many together
         values: list[object] = [[number] for number in range(100)] if newest else [large]
         near.sendall(b"".join(map(message, values)))
         wait_until(lambda: link.driver.stream.waiting or link.driver.try_fill())
         near.close()
-        found = link.fetch(None, newest=newest)
+        found = link.read(None, newest=newest)
         assert found is not None
-        link.give_back()
         wait_until(lambda: owner.ended)
         heard = [item.value for item in owner.heard]
         drops = link.snapshot()["drops"]
@@ -265,41 +259,38 @@ def test_message_of_a_sender_who_has_gone_is_not_lost(newest: bool) -> None:
 
 def test_question_is_never_passed_over_for_something_newer() -> None:
     with linked() as (near, link, _):
-        take(link)
+        link.turn.ask()
         near.sendall(message([1]))
-        wait_until(lambda: link.borrow())
+        wait_until(lambda: link.turn.leased)
         near.sendall(message([2]) + message([3], "d") + message([4]))
         wait_until(lambda: link.driver.stream.waiting or link.driver.try_fill())
-        found = link.fetch(None, newest=True)
+        found = link.read(None, newest=True)
         assert found is not None
         assert (found.value, found.wants_reply) == ([3], True)
         found.reply(["answer"])
-        found = link.fetch(None, newest=True)
+        found = link.read(None, newest=True)
         assert found is not None
         assert found.value == [4]
-        link.give_back()
 
 
 def test_end_met_by_a_borrower_is_told_by_the_thread() -> None:
     with linked() as (near, link, owner):
-        take(link)
+        link.turn.ask()
         near.sendall(message([1]))
-        wait_until(lambda: link.borrow())
+        wait_until(lambda: link.turn.leased)
         near.shutdown(socket.SHUT_WR)
-        assert link.fetch(None) is None
-        link.give_back()
+        assert link.read(None) is None
         wait_until(lambda: owner.ended)
         assert owner.ended == [("the peer closed the connection", False)]
 
 
 def test_quit_met_by_a_borrower() -> None:
     with linked() as (near, link, owner):
-        take(link)
+        link.turn.ask()
         near.sendall(message([1]))
-        wait_until(lambda: link.borrow())
+        wait_until(lambda: link.turn.leased)
         near.sendall(QUIT)
-        assert link.fetch(None) is None
-        link.give_back()
+        assert link.read(None) is None
         wait_until(lambda: owner.ended)
         assert owner.ended == [("", True)]
 

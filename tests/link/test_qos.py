@@ -77,7 +77,7 @@ def test_output_that_is_scheduled_gets_its_thread(ports, asked) -> None:
 
 def test_input_that_is_scheduled_is_read_by_its_thread(ports, asked) -> None:
     out, in_ = ports
-    for number in range(20):  # the reader takes the turn
+    for number in range(20):  # the reader gets the lease
         out.write([number])
         in_.read(timeout=5)
     in_.inputs[0].qos = Qos("SCHED_RR", 7)
@@ -86,7 +86,7 @@ def test_input_that_is_scheduled_is_read_by_its_thread(ports, asked) -> None:
     for number in range(20):
         out.write([number])
         assert in_.read(timeout=5).value == [number]
-    assert not link.wanted
+    assert not link.turn.leased
 
 
 def test_refusal_says_what_to_do_and_changes_nothing(ports, refusing) -> None:

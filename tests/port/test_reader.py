@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 import time
+from pathlib import Path
 
 import pytest
 from support.wait import wait_until
@@ -27,7 +29,7 @@ def make(kind: str, names: LocalNames) -> Port | BufferedPort:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_ping_pong_then_pause_then_ping_pong(kind: str, names: LocalNames) -> None:
-    """A quick reader takes the turn, stays away, and comes back: nothing is lost or twice."""
+    """A quick reader gets the lease, stays away, and comes back: nothing is lost or twice."""
     with make(kind, names) as in_, Port("/out", names=names) as out:
         out.connect("/in")
         number = 0
@@ -44,7 +46,7 @@ def test_ping_pong_then_pause_then_ping_pong(kind: str, names: LocalNames) -> No
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_silence_is_no_failure(kind: str, names: LocalNames) -> None:
-    """Time limits of a reader that took the turn do not stay with the connection."""
+    """Time limits of a reader that had the lease do not stay with the connection."""
     with make(kind, names) as in_, Port("/out", names=names) as out:
         out.connect("/in")
         for number in range(20):
@@ -60,7 +62,7 @@ def test_silence_is_no_failure(kind: str, names: LocalNames) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_time_limit_is_kept_with_the_turn(kind: str, names: LocalNames) -> None:
+def test_time_limit_is_kept_with_the_lease(kind: str, names: LocalNames) -> None:
     with make(kind, names) as in_, Port("/out", names=names) as out:
         out.connect("/in")
         for number in range(20):
@@ -74,7 +76,7 @@ def test_time_limit_is_kept_with_the_turn(kind: str, names: LocalNames) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_interrupt_wakes_a_reader_with_the_turn(kind: str, names: LocalNames) -> None:
+def test_interrupt_wakes_a_reader_with_the_lease(kind: str, names: LocalNames) -> None:
     with make(kind, names) as in_, Port("/out", names=names) as out:
         out.connect("/in")
         for number in range(20):
@@ -91,7 +93,7 @@ def test_interrupt_wakes_a_reader_with_the_turn(kind: str, names: LocalNames) ->
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_second_connection_while_a_reader_has_the_turn(kind: str, names: LocalNames) -> None:
+def test_second_connection_while_a_reader_has_the_lease(kind: str, names: LocalNames) -> None:
     with (
         make(kind, names) as in_,
         Port("/out", names=names) as out,
@@ -115,7 +117,7 @@ def test_second_connection_while_a_reader_has_the_turn(kind: str, names: LocalNa
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_port_can_be_asked_while_a_reader_has_the_turn(kind: str, names: LocalNames) -> None:
+def test_port_can_be_asked_while_a_reader_has_the_lease(kind: str, names: LocalNames) -> None:
     with make(kind, names) as in_, Port("/out", names=names) as out:
         out.connect("/in")
         for number in range(20):
@@ -132,7 +134,7 @@ def test_port_can_be_asked_while_a_reader_has_the_turn(kind: str, names: LocalNa
 
 
 @pytest.mark.parametrize("kind", ["plain", "spinning"])
-def test_questions_with_the_turn(kind: str, names: LocalNames) -> None:
+def test_questions_with_the_lease(kind: str, names: LocalNames) -> None:
     with make(kind, names) as in_, RpcClient("/in", names=names) as client:
 
         def serve() -> None:
@@ -147,7 +149,7 @@ def test_questions_with_the_turn(kind: str, names: LocalNames) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_sender_disconnects_while_a_reader_has_the_turn(kind: str, names: LocalNames) -> None:
+def test_sender_disconnects_while_a_reader_has_the_lease(kind: str, names: LocalNames) -> None:
     with make(kind, names) as in_, Port("/out", names=names) as out:
         for _ in range(3):
             out.connect("/in")
@@ -187,7 +189,7 @@ def test_latest_is_the_newest_for_a_reader_that_works_between_messages(names: Lo
         assert newest >= 40
 
 
-def test_polling_while_the_turn_is_out(names: LocalNames) -> None:
+def test_polling_while_the_lease_is_out(names: LocalNames) -> None:
     """Who polls instead of reading gets what comes, a moment later at most."""
     with Port("/in", names=names) as in_, Port("/out", names=names) as out:
         out.connect("/in")
@@ -255,7 +257,7 @@ def test_question_left_open_is_closed_though_another_connection_came(names: Loca
     with Port("/in", names=names) as in_, RpcClient("/in", names=names) as client:
         reader = threading.Thread(target=_hold, args=(in_, held, free))
         reader.start()
-        wait_until(lambda: client.call("x") and in_._hub.inputs[0].wanted, what="the turn")
+        wait_until(lambda: client.call("x") and in_._hub.inputs[0].turn.leased, what="the lease")
         answers: list[object] = []
         asker = threading.Thread(target=lambda: answers.append(client.call("hold", timeout=20)))
         asker.start()
@@ -274,7 +276,9 @@ def test_question_of_an_asker_who_left_is_no_error_of_the_next_read(names: Local
         reader = threading.Thread(target=_hold, args=(in_, held, free))
         reader.start()
         with RpcClient("/in", names=names) as client:
-            wait_until(lambda: client.call("x") and in_._hub.inputs[0].wanted, what="the turn")
+            wait_until(
+                lambda: client.call("x") and in_._hub.inputs[0].turn.leased, what="the lease"
+            )
             with pytest.raises(Timeout):
                 client.call("hold", timeout=0.05)
         free.set()
@@ -295,3 +299,48 @@ def test_question_of_a_thread_that_ended_is_closed_by_the_next_read(names: Local
             in_.read(timeout=0)
         asker.join(20)
         assert answers == [[]]
+
+
+# ---------------------------------------------------------------------------- a silent port
+
+
+def switches() -> int:
+    """How often threads of this process have gone to sleep by themselves."""
+    found = 0
+    for status in Path("/proc/self/task").glob("*/status"):
+        with contextlib.suppress(OSError):  # it has just ended
+            text = status.read_text()
+            found += int(text.partition("\nvoluntary_ctxt_switches:")[2].split()[0])
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs Linux's /proc")
+@pytest.mark.parametrize("kind", ["plain", "strict", "latest"])
+def test_nobody_wakes_up_on_a_silent_port(kind: str, names: LocalNames) -> None:
+    """Neither a reader that had the socket to itself nor the thread of the connection."""
+    with make(kind, names) as in_, Port("/out", names=names) as out:
+        out.connect("/in")
+        wait_until(lambda: in_._hub.inputs)
+        link = in_._hub.inputs[0]
+        heard: list[Message] = []
+        reader = threading.Thread(target=lambda: heard.extend(in_))
+        reader.start()
+        try:
+
+            def has_lease() -> bool:
+                out.write(["x"])
+                return link.turn.leased
+
+            wait_until(has_lease, what="a lease")
+            wait_until(lambda: not link.turn.leased, what="its end")
+            time.sleep(0.1)
+            before = switches()
+            time.sleep(1.0)
+            assert switches() - before < 40
+            count = len(heard)
+            out.write(["after"])
+            wait_until(lambda: len(heard) > count)
+            assert heard[-1].value == ["after"]
+        finally:
+            in_.interrupt()
+            reader.join(5)

@@ -13,8 +13,8 @@ from yarpy.data.property import Property
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.data.vector import Vector
-from yarpy.errors import DecodeError, LocalProtocolError
-from yarpy.wire.message import CALL, DATA, UNSENDABLE, Lines, Message, Packet
+from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError
+from yarpy.wire.message import CALL, DATA, UNSENDABLE, Answer, Lines, Message, Packet
 
 
 def nested(depth: int) -> list[object]:
@@ -123,13 +123,37 @@ def test_reply_goes_once() -> None:
     assert not message.wants_reply
     with pytest.raises(LocalProtocolError, match="/asker"):
         message.reply(1)
-    message.answer = answers.append
+    message.answer = Answer(answers.append)
     assert message.wants_reply
     message.reply([1, 2])
     assert answers == [[1, 2]]
     assert not message.wants_reply
     with pytest.raises(LocalProtocolError, match="RpcClient"):
         message.reply(3)
+
+
+def test_answer_tells_of_its_end_once_it_went_or_failed_for_good() -> None:
+    """What cannot be sent is no end: somebody may give another answer."""
+    ends: list[str] = []
+
+    def send(value: object) -> None:
+        if value == "gone":
+            raise LinkClosed("gone")
+        Packet(value).blocks  # noqa: B018
+
+    for values, raised in (((1,), None), ((object(), 1), TypeError), (("gone",), LinkClosed)):
+        answer = Answer(send, lambda: ends.append("end"))
+        for value in values:
+            try:
+                answer.give(value)
+            except (TypeError, LinkClosed) as error:
+                assert type(error) is raised
+                assert answer.open == (raised is TypeError)
+                assert len(ends) == (raised is LinkClosed)
+        assert ends.pop() == "end"
+        with pytest.raises(LocalProtocolError, match="already"):
+            answer.give(2)
+        assert not ends
 
 
 def test_lines_are_text_for_people_and_a_string_for_programs() -> None:
@@ -156,7 +180,7 @@ def test_copy_says_the_same_and_answers_nobody(
 ) -> None:
     received = bytearray(b"".join(Vector(range(1000)).to_wire()))
     message = Message(CALL, memoryview(received), "7 1.5")
-    message.source, message.answer = "/out", lambda value: None
+    message.source, message.answer = "/out", Answer(lambda value: None)
     if looked:
         _ = message.value
     found = how(message)
@@ -170,7 +194,7 @@ def test_copy_says_the_same_and_answers_nobody(
 def test_reply_that_cannot_be_sent_leaves_the_question_open(value: object) -> None:
     sent: list[object] = []
     message = Message(CALL)
-    message.answer = lambda value: sent.append(Packet(value).blocks)
+    message.answer = Answer(lambda value: sent.append(Packet(value).blocks))
     with pytest.raises(UNSENDABLE):
         message.reply(value)
     message.reply([1])

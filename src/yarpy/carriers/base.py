@@ -200,11 +200,8 @@ class Indexed(Carrier):
         wanted."""
         return value % 16 == cls.code % 16
 
-    def parse(self, stream: ByteStream) -> Message | None:
-        return framing.parse_plain(stream)
-
-    def parse_reply(self, stream: ByteStream) -> Message | None:
-        return framing.parse_reply(stream)
+    parse = staticmethod(framing.parse_plain)
+    parse_reply = staticmethod(framing.parse_reply)
 
     def encode_acks(self, stream: ByteStream, count: int) -> None:
         stream.write(framing.ACK * count)

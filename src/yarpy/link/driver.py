@@ -92,9 +92,8 @@ class Driver:
 
     def flush(self) -> None:
         """Send what the protocol wrote."""
-        stream = self.stream
-        if stream.pending:
-            output = stream.take_output()
+        output = self.stream.take_output()
+        if output:
             try:
                 self.transport.send(output)
             except OSError as error:

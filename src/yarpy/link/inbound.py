@@ -1,9 +1,7 @@
 """Inbound: a connection that brings messages to a port; one thread, or the reader's own.
 
 Rules: the thread is the link, so its scheduling is the connection's. It reads and hands each
-message to the port. A reader that is already waiting for the next message may take the turn and
-read the socket itself (`borrow`), which saves the hop between threads; the thread then looks in
-every few milliseconds and takes over as soon as the reader stays away.
+message to the port, unless the port's reader has a lease to read the socket itself (`turn.py`).
 """
 
 from __future__ import annotations
@@ -11,22 +9,23 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from yarpy.data.bottle import Bottle
 from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.link.driver import Driver
-from yarpy.link.receiver import PATIENCE, Receiver
+from yarpy.link.receiver import Receiver
+from yarpy.link.turn import SILENCE, Turn
 from yarpy.qos import Sched
 from yarpy.wire.message import CALL, DATA, QUIT, Message
 
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
+    from yarpy.contact import Route
+    from yarpy.link.counter import Counter
     from yarpy.monitors.chain import Chain
 
 log = logging.getLogger("yarpy.link")
-
-PARKED = 0.005  # seconds between looks while a reader has the turn
 
 
 class Owner(Protocol):
@@ -50,21 +49,22 @@ class Owner(Protocol):
         """The link has ended. `quit_` tells that it ended in good order."""
 
 
-class Inbound(Receiver):
+class Inbound:
     """One connection into a port."""
 
     def __init__(self, owner: Owner, driver: Driver, carrier: Carrier) -> None:
-        super().__init__(driver, carrier)
         self.owner = owner
+        self.driver = driver
+        self.carrier = carrier
+        self.route: Route = carrier.route
+        self.receiver = Receiver(driver, carrier)
+        self.counter: Counter = self.receiver.counter
+        self.turn = Turn()
         self.thread: threading.Thread | None = None
         self.sched = Sched()  # what somebody asked for; -1: nothing
         self.tos = 0
         self.own_chain: Chain | None = None  # the monitors that ride on it
         self.chain: Chain | None = None  # those, and the port's
-        self.wanted = False  # a reader would like the turn
-        self.visited = 0.0  # when a reader with the turn was last here
-        self._turn = threading.Lock()  # who may read: the thread, or a reader that borrowed it
-        self._woken = threading.Event()
         self._closing = False
         self._quit = False
         self._reversed = False
@@ -80,158 +80,162 @@ class Inbound(Receiver):
     def serve(self) -> None:
         """Read until the connection ends. Runs in the link's own thread."""
         reason = ""
-        if self.carrier.patience is not None:
-            self._limit(None)
+        patience = self.carrier.patience
+        limited = patience is not None
         try:
             while not self._quit and not self._reversed:
-                with self._turn:
-                    self._read_on()
-                if self._leaving and not self._quit:
-                    self._park()
+                with self.turn.lock:
+                    if limited:
+                        self.receiver.limit(patience)
+                    limited = self._read_on()
+                if limited:
+                    self.turn.park(lambda: self.receiver.question is not None)
         except LinkClosed as error:
             reason = str(error)
         except YarpError as error:
             reason = f"{error}"
-            if self.carrier.patience is None or not isinstance(error, Timeout):
+            if patience is None or not isinstance(error, Timeout):
                 self._tell(error)  # silence beyond a carrier's patience is nobody's fault
         except BaseException as error:  # a callback's sys.exit() too ends this link, and no more
             reason = f"{type(error).__name__}: {error}"
             log.exception("%s: connection %s fails on a defect", self.owner.name, self.route)
         if self._reversed:
-            self._limit(None)
+            self.receiver.limit(patience)
             self.owner.reverse(self)
             return
-        self._finish()
+        self.receiver.finish()
         self.owner.closed(self, reason, self._quit)
 
-    def _read_on(self) -> None:
-        """Read and hand on until the link ends or a reader wants the turn."""
+    def _read_on(self) -> bool:
+        """Read and hand on until the link ends, or a reader has the lease: then True, and each
+        wait is limited."""
+        receiver, turn = self.receiver, self.turn
+        while (message := self._next(None)) is not None:
+            leased = turn.asked and turn.grant()
+            if message.key == CALL:
+                receiver.open_question(message)
+            self.owner.receive(self, message)
+            receiver.settle(message)
+            if leased:
+                receiver.limit(SILENCE)
+                return True
+        return False
+
+    def _next(self, deadline: float | None) -> Message | None:
+        """The next data message that the monitors let through; None if the link is over first."""
         while not self._quit and not self._reversed:
-            message = self.advance(None)
+            message = self.receiver.advance(deadline)
             if message.key == DATA or message.key == CALL:
-                if self.chain is not None:
-                    passed = self.chain.take(message)
-                    if passed is None:
-                        self._refuse(message)
-                        continue
-                    message = passed
-                # Decided before the reader can see the message: when it comes back, the turn is
-                # free or about to be.
-                self._leaving = self.wanted
-                self._deliver(message)
-                if self._leaving:
-                    self._limit(PATIENCE)  # so often a reader with the turn looks around
-                    return
+                if self.chain is None:
+                    return message
+                passed = self.chain.take(message)
+                if passed is not None:
+                    return passed
+                self.receiver.refuse(message)
             else:
                 self._obey(message)
+        return None
 
-    def _park(self) -> None:
-        """Leave reading to the port's reader while it keeps coming back."""
-        self._woken.clear()
-        self.visited = time.perf_counter()
-        while self._leaving and not self._closing:
-            self._woken.wait(PARKED)
-            if not self._turn.acquire(blocking=False):
-                continue  # the reader is waiting for data right now
-            try:
-                gone = time.perf_counter() - self.visited > PARKED
-                if (gone or not self.wanted) and self._answering is None:
-                    self.wanted = self._leaving = False
-                    self._limit(None)
-            finally:
-                self._turn.release()
-        self.wanted = self._leaving = False
+    def _obey(self, message: Message) -> None:
+        """A port command that is not data."""
+        self._asker = threading.get_ident()
+        self.receiver.obey(message, self._answer)
+        self._asker = 0
 
-    # -- a reader with the turn -------------------------------------------------------------------
+    def _answer(self, message: Message) -> Bottle | list[str] | None:
+        if message.key == "a":
+            return self.owner.administer(self, message)
+        if message.key == QUIT:
+            self._quit = True
+        elif message.key == "r":
+            self._reversed = True
+        else:
+            return self.owner.command(self, message)
+        return None
 
-    def borrow(self) -> bool:
-        """Take the turn for a reader, if the link's thread is not reading itself."""
-        if not (self.wanted and self._leaving) or not self._turn.acquire(timeout=PATIENCE):
-            return False
-        if not (self.wanted and self._leaving) or self._closing:
-            self._turn.release()
-            return False
-        return True
+    # -- a reader with the lease ------------------------------------------------------------------
 
-    def release(self) -> None:
-        """The reader takes the turn no more: the link's thread reads on at once."""
-        self.wanted = False
-        self._woken.set()
-
-    def give_back(self) -> None:
-        """End of `borrow`."""
-        self.visited = time.perf_counter()
-        self._turn.release()
-
-    def idle(self) -> bool:
-        """Whether nothing has come yet; for who has the turn."""
-        return not (self.driver.stream.waiting or self.carrier.holding or self.driver.try_fill())
-
-    def fetch(
-        self, deadline: float | None, spin: bool = False, newest: bool = False
+    def read(
+        self,
+        deadline: float | None,
+        spin: bool = False,
+        newest: bool = False,
+        late: bool = False,
     ) -> Message | None:
-        """The next data message, read by a borrower; None when it should look around again.
+        """The next data message, read in the thread of a reader that has the lease.
 
-        `deadline` is for waits shorter than PATIENCE only. With `newest` it is the last of those
-        that are there; the others are dropped and counted.
+        None when the lease is over, or `deadline` has come. With `newest` it is the last of the
+        messages that are there; the others are dropped and counted. A reader that was away for
+        long (`late`) gives the lease up if that has kept the sender waiting.
         """
+        turn, receiver = self.turn, self.receiver
+        if deadline is not None and deadline - time.monotonic() >= SILENCE:
+            deadline = None
+        if not turn.take(SILENCE if deadline is None else max(0.0, deadline - time.monotonic())):
+            return None
         try:
-            while True:
-                idle = not (self.driver.stream.waiting or self.carrier.holding)
-                if spin and idle and not self._spin(deadline):
-                    return None
-                message = self.advance(deadline)
-                if message.key == DATA or message.key == CALL:
-                    if self.chain is not None:
-                        passed = self.chain.take(message)
-                        if passed is None:
-                            self._refuse(message)
-                            continue
-                        message = passed
-                    return self._take(message, newest)
-                self._obey(message)
-                if self._quit or self._reversed:
-                    break
+            if receiver.question is not None:
+                return None  # another thread of the program is at it
+            if late and (receiver.waiting or self.driver.try_fill()):
+                turn.end()
+            if spin and not receiver.waiting and not self._spin(deadline):
+                return None
+            message = self._next(deadline)
+            if message is not None:
+                return self._take_newest(message) if newest else self._take(message)
         except Timeout:
-            if deadline is not None:
-                self._limit(PATIENCE)
+            if deadline is None:
+                turn.end()
+            else:
+                receiver.limit(SILENCE)
             return None
         except YarpError:
             pass  # the link's thread meets the same end at once, and tells of it
-        self.wanted = False
-        self._woken.set()
+        finally:
+            turn.leave()
+        turn.end()
         return None
 
-    def _take(self, message: Message, newest: bool) -> Message:
-        """Accept a message; with `newest`, the last of those that have come already."""
-        stream, parse, chain = self.driver.stream, self.carrier.parse, self.chain
+    def _take(self, message: Message) -> Message:
+        """Acknowledge data; a question keeps the link's thread parked until its end."""
+        if message.key == CALL and self.receiver.open_question(message):
+            if message.answer is not None:
+                message.answer.then = self.turn.stir
+            return message
         try:
-            self.accept(message)
-            while newest and message.key == DATA and stream.waiting:
-                later = parse(stream)
+            self.receiver.settle(message)
+        except YarpError:
+            pass  # the sender has gone: who reads next meets it
+        return message
+
+    def _take_newest(self, message: Message) -> Message:
+        """Take the last of those that have come already."""
+        receiver, stream = self.receiver, self.driver.stream
+        self._take(message)
+        try:
+            while message.key == DATA and stream.waiting:
+                later = self.carrier.parse(stream)
                 if later is None:
                     break
-                self._count(later)
+                receiver.count(later)
                 if later.key != DATA and later.key != CALL:
                     self._obey(later)
                     continue
-                passed = later if chain is None else chain.take(later)
+                passed = later if self.chain is None else self.chain.take(later)
                 if passed is None:
-                    self._refuse(later)
+                    receiver.refuse(later)
                     continue
                 self.counter.drops += 1
-                message = passed
-                self.accept(message)
+                message = self._take(passed)
         except YarpError:
             pass  # the sender has gone, or breaks the rules: who reads next meets it
         return message
 
     def _spin(self, deadline: float | None) -> bool:
         """Ask the socket again and again instead of sleeping; False when the time is over."""
-        if self._unsent_acks:
-            self._send_acks()
+        self.receiver.send_acks()
         driver = self.driver
-        until = deadline if deadline is not None else time.monotonic() + PATIENCE
+        until = deadline if deadline is not None else time.monotonic() + SILENCE
         while True:
             for _ in range(64):
                 if driver.try_fill():
@@ -239,42 +243,13 @@ class Inbound(Receiver):
             if time.monotonic() > until:
                 return False
 
-    # -- handing on -------------------------------------------------------------------------------
-
-    def _deliver(self, message: Message) -> None:
-        if message.key == CALL and self.carrier.replies:
-            self._answering = message
-            message.answer = self._reply
-            self.owner.receive(self, message)
-            self.settle(message)
-        else:
-            self.owner.receive(self, message)
-            self._acknowledge(message)
-
-    def _refuse(self, message: Message) -> None:
-        """A monitor dropped it: its sender is told that it came, and no more."""
-        self.counter.drops += 1
-        self.accept(message)
-        self.settle(message)
-
-    def _obey(self, message: Message) -> None:
-        """A port command that is not data."""
-        carrier, stream = self.carrier, self.driver.stream
-        self.counter.messages -= 1  # nobody reads it
-        self._owe_acks()
-        self._asker = threading.get_ident()
-        if message.key == "a":
-            carrier.encode_reply(stream, self.owner.administer(self, message))
-        elif message.key == QUIT:
-            self._quit = True
-        elif message.key == "r":
-            self._reversed = True
-        else:
-            carrier.encode_lines(stream, self.owner.command(self, message))
-        self._asker = 0
-        if carrier.acks:
-            carrier.encode_ack(stream)
-        self.driver.flush()
+    def leave(self, message: Message) -> None:
+        """The reader is done with a message: a question that nobody answered is closed."""
+        try:
+            self.receiver.settle(message)
+        except YarpError:
+            pass  # who asked has gone
+        self.turn.stir()
 
     # -- ending -----------------------------------------------------------------------------------
 
@@ -292,7 +267,7 @@ class Inbound(Receiver):
         if self.asking:
             self._quit = True
             return
-        self._woken.set()
+        self.turn.end()
         self.driver.transport.interrupt()
 
     def _tell(self, error: YarpError) -> None:
@@ -313,9 +288,14 @@ class Inbound(Receiver):
             return "somebody"
         return f"{host}:{port}"
 
-    def _finish(self) -> None:
-        try:
-            self._send_acks()
-        except YarpError:
-            pass  # the last acknowledgements find nobody
-        self.driver.transport.close()
+    @property
+    def lost(self) -> int:
+        """What the protocol and the kernel lost on the way."""
+        dropped: int = getattr(self.driver.transport, "dropped", 0)
+        return self.carrier.lost + dropped
+
+    def snapshot(self) -> dict[str, Any]:
+        """Counters as plain numbers, with the protocol's and the kernel's own losses in `drops`."""
+        found: dict[str, Any] = self.counter.as_dict()
+        found["drops"] += self.lost
+        return found

@@ -1,6 +1,6 @@
 """Receiver: reads the messages of a connection one after the other, acknowledges and answers them.
 
-Rules: one thread at a time; who that is, is the business of `Inbound`. Acknowledgements leave when
+Rules: one thread at a time; who that is, `Turn` says. Acknowledgements leave when
 there is nothing more to read at once, so a burst costs one send; and always before what answers a
 later message.
 """
@@ -8,21 +8,22 @@ later message.
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from yarpy.data.bottle import Bottle
-from yarpy.errors import RemoteProtocolError, Timeout
+from yarpy.errors import RemoteProtocolError, Timeout, YarpError
 from yarpy.link.counter import Counter
 from yarpy.link.driver import Driver
-from yarpy.wire.message import CALL, QUIT, Message
+from yarpy.wire.message import CALL, QUIT, Answer, Message
 from yarpy.wire.stream import LARGE
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from yarpy.carriers.base import Carrier
     from yarpy.route import Route
     from yarpy.wire.effects import Steps
 
-PATIENCE = 0.02  # seconds a reader with the turn waits before it looks around
 MAX_UNSENT_ACKS = 64
 
 
@@ -35,25 +36,23 @@ class Receiver:
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
         self._steps: Steps[Message] | None = None
-        self._leaving = False  # the thread of the connection leaves the turn to a reader
+        self._wait: float | None = None  # seconds that each wait for bytes may take
         self._begun = 0.0  # when a message that must hurry began to come; 0: none has
         self._unsent_acks = 0
-        self._answering: Message | None = None
+        self.question: Answer | None = None  # is open: nothing is read before it is answered
 
     # -- reading ----------------------------------------------------------------------------------
 
     def advance(self, deadline: float | None) -> Message:
-        """The next message. The caller has the turn. Raises Timeout (what came is kept),
-        LinkClosed."""
+        """The next message. Raises Timeout (what came is kept), LinkClosed."""
         driver = self.driver
         carrier = self.carrier
-        while True:
-            stream = driver.stream
-            if self._steps is None and (stream.waiting or carrier.holding):
-                message = carrier.parse(stream)
-                if message is not None:
-                    break
-                self._steps = carrier.decode(stream)
+        message = None
+        if self._steps is None and (driver.stream.waiting or carrier.holding):
+            message = carrier.parse(driver.stream)
+            if message is None:
+                self._steps = carrier.decode(driver.stream)
+        while message is None:
             if self._steps is not None:
                 try:
                     next(self._steps)
@@ -65,7 +64,7 @@ class Receiver:
                     self._steps = None  # whoever reads next meets the same end
                     raise
             if self._unsent_acks or driver.stream.pending:
-                self._send_acks()
+                self.send_acks()
             if carrier.finished:
                 message = Message(QUIT)
                 break
@@ -73,14 +72,22 @@ class Receiver:
                 driver.fill(deadline)
             else:
                 self._fill_in_time(carrier.hurry, deadline)
-            if self._steps is None and not driver.stream.waiting:
-                self._steps = carrier.decode(driver.stream)  # meets the end, and says how
+            if self._steps is None:
+                message = carrier.parse(driver.stream)
+                if message is None:  # there is a part of it, or the end; `decode` says which
+                    self._steps = carrier.decode(driver.stream)
         if self._begun:
             self._forget_hurry()
-        self._count(message)
+        self.count(message)
         return message
 
-    def _count(self, message: Message) -> None:
+    @property
+    def waiting(self) -> bool:
+        """Whether some of the next message has come already."""
+        return bool(self.driver.stream.waiting) or self.carrier.holding
+
+    def count(self, message: Message) -> None:
+        """Number a message, and name its sender."""
         message.source = self.route.source
         counter = self.counter
         counter.count(time.perf_counter())
@@ -98,7 +105,7 @@ class Receiver:
         try:
             if left <= 0:
                 raise Timeout("the peer is too slow")
-            if not self._leaving:  # a reader with the turn looks around often enough
+            if self._wait is None or left < self._wait:
                 self.driver.transport.limit_waiting(left)
             self.driver.fill(deadline)
         except Timeout as error:
@@ -113,12 +120,11 @@ class Receiver:
         """Nothing has begun to come: wait as long as usual."""
         if self._begun:
             self._begun = 0.0
-            self._limit(PATIENCE if self._leaving else None)
+            self.limit(self._wait)
 
-    def _limit(self, seconds: float | None) -> None:
-        """Let each wait for bytes take so long; None: as long as the carrier has patience."""
-        if seconds is None:
-            seconds = self.carrier.patience
+    def limit(self, seconds: float | None) -> None:
+        """Let each wait for bytes take so long."""
+        self._wait = seconds
         try:
             self.driver.transport.limit_waiting(seconds)
         except OSError:
@@ -126,65 +132,83 @@ class Receiver:
 
     # -- answering --------------------------------------------------------------------------------
 
-    def accept(self, message: Message) -> None:
-        """Prepare a data message for the port: whether it can be answered, and that it must be
-        acked."""
-        if message.key == CALL and self.carrier.replies:
-            self._answering = message
-            message.answer = self._reply
-        else:
-            self._acknowledge(message)
+    def open_question(self, message: Message) -> bool:
+        """Give a question its way back; False if `message` is none."""
+        if message.key != CALL or not self.carrier.replies:
+            return False
+        self.question = message.answer = Answer(self._reply)
+        return True
 
     def settle(self, message: Message) -> None:
-        """The port is done with `message`: if nobody answered a question, an empty answer goes."""
-        if self._answering is not message:
-            return
-        message.answer = None
-        self._answering = None
-        # Without any answer a caller waits for ever; one in C++ takes the acknowledgement for it. A
-        # person at a text prompt, a name service, and a page are told nothing rather than that.
-        if self.carrier.spelling != "text" and not self.carrier.lossy:
-            self._reply(Bottle())
-        else:
-            self._acknowledge(message)
+        """The port is done with `message`: it is acknowledged, or answered if nobody did that."""
+        answer = message.answer
+        if answer is not None:
+            if answer is not self.question:
+                return  # answered in time, or long ago
+            answer.open = False
+            self.question = None
+            # Without any answer a caller waits for ever; one in C++ takes the acknowledgement for
+            # it. A person at a text prompt, a name service, and a page are told nothing rather than
+            # that.
+            if self.carrier.spelling != "text" and not self.carrier.lossy:
+                self._reply(Bottle())
+                return
+        if self.carrier.acks:
+            self._unsent_acks += 1
+            # The sender of a large message is likely to wait: it is not let far ahead.
+            if self._unsent_acks >= MAX_UNSENT_ACKS or (
+                message.spelling == "binary" and len(message.payload) >= LARGE
+            ):
+                self.send_acks()
+
+    def refuse(self, message: Message) -> None:
+        """A monitor dropped it: its sender is told that it came, and no more."""
+        self.counter.drops += 1
+        self.open_question(message)
+        self.settle(message)
+
+    def obey(
+        self, message: Message, answer: Callable[[Message], Bottle | list[str] | None]
+    ) -> None:
+        """A port command: what `answer` says to it goes back, and its acknowledgement."""
+        carrier, stream = self.carrier, self.driver.stream
+        self.counter.messages -= 1  # nobody reads it
+        self._owe_acks()
+        answered = answer(message)
+        if isinstance(answered, Bottle):
+            carrier.encode_reply(stream, answered)
+        elif answered is not None:
+            carrier.encode_lines(stream, answered)
+        if carrier.acks:
+            carrier.encode_ack(stream)
+        self.driver.flush()
 
     def _reply(self, value: object) -> None:
         stream = self.driver.stream
         self._owe_acks()
         self.carrier.encode_reply(stream, value)  # a TypeError leaves the question open
-        self._answering = None
+        self.question = None
         if self.carrier.acks:
             self.carrier.encode_ack(stream)
         self.driver.flush()
 
-    def _eager_for_ack(self, message: Message) -> bool:
-        """Whether the sender is likely to wait: it is not let far ahead with large messages."""
-        return message.spelling == "binary" and len(message.payload) >= LARGE
-
-    def _acknowledge(self, message: Message) -> None:
-        if self.carrier.acks:
-            self._unsent_acks += 1
-            if self._unsent_acks >= MAX_UNSENT_ACKS or self._eager_for_ack(message):
-                self._send_acks()
-
-    def _send_acks(self) -> None:
-        self._owe_acks()
+    def send_acks(self) -> None:
+        """Acknowledge what was held back, and send what else was written."""
+        if self._unsent_acks:
+            self.carrier.encode_acks(self.driver.stream, self._unsent_acks)
+            self._unsent_acks = 0
         self.driver.flush()
+
+    def finish(self) -> None:
+        """The last acknowledgements, and the end."""
+        try:
+            self.send_acks()
+        except YarpError:
+            pass  # they find nobody
+        self.driver.transport.close()
 
     def _owe_acks(self) -> None:
         """Put acknowledgements that were held back in front of what is written next."""
         if self._unsent_acks:
             self.carrier.encode_acks(self.driver.stream, self._unsent_acks)
             self._unsent_acks = 0
-
-    def snapshot(self) -> dict[str, Any]:
-        """Counters as plain numbers, with the protocol's and the kernel's own losses in `drops`."""
-        found: dict[str, Any] = self.counter.as_dict()
-        found["drops"] += self.lost
-        return found
-
-    @property
-    def lost(self) -> int:
-        """What the protocol and the kernel lost on the way."""
-        dropped: int = getattr(self.driver.transport, "dropped", 0)
-        return self.carrier.lost + dropped

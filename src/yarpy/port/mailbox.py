@@ -11,11 +11,11 @@ import logging
 import threading
 from collections.abc import Callable
 from queue import Empty, SimpleQueue
-from typing import Final
+from typing import Final, TypeAlias
 
 from yarpy.errors import PortClosed, YarpError
 from yarpy.link.inbound import Inbound
-from yarpy.wire.message import UNSENDABLE, Message
+from yarpy.wire.message import Message
 
 log = logging.getLogger("yarpy.port")
 
@@ -31,6 +31,7 @@ class Mailbox:
         self.stopped = False
         self.drops = 0
         self._why = "the port was closed or interrupted while reading"
+        self.held: dict[threading.Thread, Question] = {}  # questions of readers, by their thread
         self._ready: SimpleQueue[object] = SimpleQueue()
         # A message goes in, or the mailbox stops: what came in between would wait for ever.
         self._gate = threading.Lock()
@@ -57,6 +58,13 @@ class Mailbox:
         if self._ready.empty():
             return None
         return self.take(0)
+
+    def keep(self, link: Inbound, message: Message) -> None:
+        """A question was read directly; here nobody is let take time to answer it."""
+        link.leave(message)
+
+    def settle(self) -> None:
+        """This thread is done with the message it took last."""
 
     @property
     def waiting(self) -> int:
@@ -180,7 +188,7 @@ class Fifo(Mailbox):
             self._room.notify_all()
 
 
-class _Offer:
+class Offer:
     """A message whose connection waits until the reader is done with it."""
 
     __slots__ = ("done", "link", "message")
@@ -189,36 +197,41 @@ class _Offer:
         self.link = link
         self.message = message
         self.done = threading.Event()
+        if message.answer is not None:
+            message.answer.then = self.done.set
+
+    def leave(self) -> None:
+        """The reader is done with it; the connection's thread closes the question."""
+        self.done.set()
+
+
+class Read:
+    """A question that a reader took from the socket itself, and is not done with."""
+
+    __slots__ = ("link", "message")
+
+    def __init__(self, link: Inbound, message: Message) -> None:
+        self.link = link
+        self.message = message
+
+    def leave(self) -> None:
+        """The reader is done with it."""
+        self.link.leave(self.message)
+
+
+Question: TypeAlias = Offer | Read
 
 
 class Rendezvous(Mailbox):
     """A plain port: each connection waits until its message was taken, and answered if it asks.
 
     Several threads may read, and answer side by side: each is done with its own messages only.
+    `held` is changed by single dictionary operations only, by the thread itself and by who finds
+    it gone.
     """
 
-    def __init__(self) -> None:
-        super().__init__()
-        # Questions that were taken, each with the thread that answers it. Changed by single
-        # dictionary operations only, by the thread itself and by who finds it gone.
-        self._pending: dict[threading.Thread, _Offer] = {}
-
     def put(self, link: Inbound, message: Message) -> None:
-        offer = _Offer(link, message)
-        if message.answer is not None:
-            answer = message.answer
-
-            def reply(value: object) -> None:
-                try:
-                    answer(value)
-                except UNSENDABLE:
-                    raise  # it cannot be sent: the question is still open
-                except BaseException:
-                    offer.done.set()
-                    raise
-                offer.done.set()
-
-            message.answer = reply
+        offer = Offer(link, message)
         with self._gate:
             if self.stopped:
                 self._drop(link)
@@ -226,44 +239,42 @@ class Rendezvous(Mailbox):
             self._ready.put(offer)
         offer.done.wait()
 
-    def take(self, timeout: float | None = None) -> Message | None:
-        self.settle()
-        return super().take(timeout)
+    def keep(self, link: Inbound, message: Message) -> None:
+        self.held[threading.current_thread()] = Read(link, message)
 
     def settle(self) -> None:
         """This thread is done with the message it took last; unanswered questions get no answer,
         nor do those of threads that have ended."""
-        if not self._pending:
-            return
         own = threading.current_thread()
-        for thread in tuple(self._pending):
+        for thread in tuple(self.held):
             if thread is own or not thread.is_alive():
                 self._leave(thread)
 
     def _leave(self, thread: threading.Thread) -> None:
-        offer = self._pending.pop(thread, None)
-        if offer is not None:
-            offer.done.set()
+        question = self.held.pop(thread, None)
+        if question is not None:
+            question.leave()
 
     def _next(self, token: object) -> Message | None:
-        assert isinstance(token, _Offer)
+        assert isinstance(token, Offer)
         if token.message.answer is None:
             token.done.set()
         else:
-            self._pending[threading.current_thread()] = token
+            self.held[threading.current_thread()] = token
             if self.stopped:
                 token.done.set()  # `interrupt` may have looked before it was there
         return token.message
 
     def _discard(self, token: object) -> None:
-        assert isinstance(token, _Offer)
+        assert isinstance(token, Offer)
         self._drop(token.link)
         token.done.set()
 
     def interrupt(self) -> None:
         super().interrupt()
-        for thread in tuple(self._pending):
-            self._leave(thread)
+        for thread, question in tuple(self.held.items()):
+            if isinstance(question, Offer):
+                self._leave(thread)
 
 
 class Callback(Mailbox):

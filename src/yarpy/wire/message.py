@@ -133,6 +133,37 @@ class Packet:
         return self._line
 
 
+class Answer:
+    """The way back of one question: whoever has the message gives it, once, from any thread.
+
+    `send` puts it on the wire. `then` is called once that is done, or has failed for good: whoever
+    waits for the end of the question sets it.
+    """
+
+    __slots__ = ("_send", "open", "then")
+
+    def __init__(
+        self, send: Callable[[object], None], then: Callable[[], None] | None = None
+    ) -> None:
+        self._send = send
+        self.then = then
+        self.open = True
+
+    def give(self, value: object) -> None:
+        """Send it. What cannot be sent leaves the question open. Raises as `Message.reply`."""
+        if not self.open:
+            raise LocalProtocolError("the question was answered already, or its sender went away")
+        self.open = False
+        try:
+            self._send(value)
+        except UNSENDABLE:
+            self.open = True
+            raise
+        finally:
+            if self.then is not None and not self.open:
+                self.then()
+
+
 class Message:
     """What came in. `value` is the natural Python object, `as_(Type)` the same bytes as that type.
 
@@ -156,7 +187,7 @@ class Message:
         self.spelling = spelling
         self.text = text  # what followed the key of a port command: a destination, a word
         self.source = ""
-        self.answer: Callable[[object], None] | None = None  # set by the link while a reply can go
+        self.answer: Answer | None = None  # set by the link of a question
         self._value: object = _UNSET
 
     @classmethod
@@ -246,7 +277,7 @@ class Message:
     @property
     def wants_reply(self) -> bool:
         """Whether the sender is waiting for a reply."""
-        return self.answer is not None
+        return self.answer is not None and self.answer.open
 
     def reply(self, value: object) -> None:
         """Answer the sender. Once, and only if it asked: `wants_reply` tells.
@@ -255,17 +286,12 @@ class Message:
         ValueError or OverflowError for what cannot be sent, which leaves the question open.
         """
         answer = self.answer
-        if answer is None:
+        if answer is None or not answer.open:
             raise LocalProtocolError(
                 f'"{self.source}" does not wait for a reply: it sent plain data, went away, or was '
                 "answered already; call it with an RpcClient to get replies"
             )
-        self.answer = None
-        try:
-            answer(value)
-        except UNSENDABLE:
-            self.answer = answer
-            raise
+        answer.give(value)
 
     def __repr__(self) -> str:
         try:
