@@ -80,7 +80,7 @@ def test_thousand_silent_connections() -> None:
             with dial(acceptor) as sock:
                 sock.sendall(b"I speak")
                 assert sock.recv(10) == b"I speak"
-            assert time.monotonic() - started < 1
+            assert time.monotonic() - started < 5
             silent[500].sendall(b"me too")
             assert silent[500].recv(10) == b"me too"
             assert threads() <= 2

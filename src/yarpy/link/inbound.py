@@ -21,9 +21,9 @@ from yarpy.wire.message import CALL, DATA, QUIT, Message
 
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
-    from yarpy.contact import Route
     from yarpy.link.counter import Counter
     from yarpy.monitors.chain import Chain
+    from yarpy.route import Route
 
 log = logging.getLogger("yarpy.link")
 
