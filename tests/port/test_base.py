@@ -176,20 +176,6 @@ def test_own_administrative_commands(names: LocalNames) -> None:
         assert network.admin("/it", "known", names=names)[0] == "fail"
 
 
-def test_failing_administrative_callback_ends_that_connection_alone(
-    names: LocalNames, caplog: pytest.LogCaptureFixture
-) -> None:
-    def fail(message: Message) -> object:
-        raise ValueError("oh")
-
-    with Port("/it", names=names) as port:
-        port.on_admin(fail)
-        with pytest.raises(LinkClosed):
-            network.admin("/it", "unknown", names=names)
-        assert network.exists("/it", names=names)
-    assert "oh" in caplog.text
-
-
 def test_closed_port_refuses(names: LocalNames) -> None:
     port = Port("/it", names=names)
     port.close()

@@ -74,17 +74,6 @@ def test_failure_has_a_reason(names: LocalNames) -> None:
         assert len(heard) == 2
 
 
-def test_failing_callback_is_logged(names: LocalNames, caplog: pytest.LogCaptureFixture) -> None:
-    def fail(event: ConnectionEvent) -> None:
-        raise ValueError("oh")
-
-    with Port("/in", names=names, on_connection=fail) as in_, Port("/out", names=names) as out:
-        out.connect("/in")
-        out.write([1])
-        assert in_.read(timeout=5).value == [1]
-    assert "the connection callback failed" in caplog.text
-
-
 def test_reversed_connection_is_an_input_that_becomes_an_output(names: LocalNames) -> None:
     seen: list[ConnectionEvent] = []
     with (

@@ -1,16 +1,12 @@
-"""A port's connections: opening and closing it, who displaces whom, keys, strangers."""
+"""A port's connections: opening and closing it, who displaces whom."""
 
 from __future__ import annotations
 
 import contextlib
-import logging
 import os
 import socket
-import subprocess
-import sys
 import threading
 import time
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -28,12 +24,12 @@ from yarpy.errors import (
     YarpError,
 )
 from yarpy.nameserver.local import LocalNames
-from yarpy.nameserver.server import NameServer
 from yarpy.port import hub as hub_module
 from yarpy.port import probe
 from yarpy.port.hub import Crew, Hub
 from yarpy.port.mailbox import Latest
 from yarpy.port.port import Port
+from yarpy.port.registration import Registration
 from yarpy.wire import framing
 
 # ---------------------------------------------------------------------------------- opening
@@ -64,7 +60,8 @@ def test_hub_knows_nobody_who_acts_on_it() -> None:
         close_output=lambda hub, link: None,
         repair=repair,  # type: ignore[arg-type]
     )
-    hub = Hub("/here", Latest(), None, crew, register=False)
+    registration = Registration("/here", None, "", register=False)
+    hub = Hub(registration, Latest(), crew)
     hub.open(0, "")
     try:
         contact = Contact("tcp", "/here", "127.0.0.1", hub.port)
@@ -111,16 +108,6 @@ def test_closing_frees_the_number_and_its_threads(names: LocalNames) -> None:
     wait_until(lambda: threading.active_count() <= before + 1)
 
 
-def test_closing_does_not_wait_for_strangers(names: LocalNames) -> None:
-    port = Port("/here", names=names)
-    with socket.create_connection(("127.0.0.1", port.contact.port)) as sock:
-        sock.sendall(b"CONNECT /nobody\r\n")
-        assert sock.recv(100) == b"Welcome /nobody\r\n"
-        started = time.monotonic()
-        port.close()
-        assert time.monotonic() - started < 3
-
-
 # ---------------------------------------------------------------------------------- displacing
 
 
@@ -162,101 +149,7 @@ def test_sender_that_is_busy_does_not_hold_its_successor_up(names: LocalNames) -
             sock.close()
 
 
-# ---------------------------------------------------------------------------------- keys
-
-
-@pytest.fixture
-def key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A configuration directory with a key in it."""
-    monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))
-    (tmp_path / "auth.conf").write_text("[AUTH]\nkey secret word\n")
-    return tmp_path
-
-
-def test_ports_and_tools_with_the_same_key_find_each_other(key: Path) -> None:
-    with NameServer(), Port("/in") as in_, Port("/out") as out:
-        out.connect("/in")
-        out.write([1])
-        assert in_.read(timeout=5).value == [1]
-        assert network.exists("/in")
-        assert network.is_connected("/out", "/in")
-        assert network.ping("/in")[0].startswith("This is /in at ")
-        assert network.disconnect("/out", "/in")
-
-
-def test_who_does_not_know_the_key_stays_out(
-    key: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    other = tmp_path / "other"
-    other.mkdir()
-    code = """
-import sys, yarpy
-names = yarpy.LocalNames()
-with yarpy.Port("", names=names) as port:
-    try:
-        port.connect(sys.argv[1])
-    except yarpy.YarpError as error:
-        print(type(error).__name__, error)
-"""
-    names = LocalNames()
-    with Port("/in", names=names) as in_:
-        for word in ("[AUTH]\nkey another\n", None):
-            if word:
-                (other / "auth.conf").write_text(word)
-            else:
-                (other / "auth.conf").unlink()
-            done = subprocess.run(
-                [sys.executable, "-c", code, f"/127.0.0.1:{in_.contact.port}"],
-                capture_output=True,
-                text=True,
-                timeout=20,
-                env={**os.environ, "YARP_CONFIG_HOME": str(other)},
-            )
-            assert "auth.conf" in done.stdout, done.stdout + done.stderr
-        wait_until(lambda: "refused" in caplog.text)
-        assert in_.inputs == []
-
-
-def test_person_cannot_get_in_either(key: Path) -> None:
-    with (
-        Port("/in", names=LocalNames()) as in_,
-        socket.create_connection(("127.0.0.1", in_.contact.port)) as sock,
-    ):
-        sock.settimeout(5)
-        sock.sendall(b"CONNECT me and some more words to fill the forty bytes\r\n")
-        assert len(sock.recv(40)) == 40  # the port speaks first
-        assert sock.recv(40) == b""
-
-
-# ---------------------------------------------------------------------------------- strangers
-
-
-def test_garbage_first_then_a_good_connection(
-    names: LocalNames, caplog: pytest.LogCaptureFixture
-) -> None:
-    with Port("/in", names=names) as in_:
-        with socket.create_connection(("127.0.0.1", in_.contact.port)) as sock:
-            sock.sendall(b"what is this?\r\n")
-            with sock.makefile("rb") as lines:
-                assert lines.readline() == b"* Error. Protocol not found.\r\n"
-        with socket.create_connection(("127.0.0.1", in_.contact.port)) as sock:
-            sock.sendall(b"CONNECT test\r\nd\r\nhello 1\r\n")
-            assert in_.read(timeout=5).value == ["hello", 1]
-        wait_until(lambda: "refused" in caplog.text)
-    (line,) = [r for r in caplog.records if r.levelno >= logging.WARNING]
-    assert "refused" in line.getMessage()
-    assert "127.0.0.1:" in line.getMessage()
-
-
-def test_unknown_carrier_code(names: LocalNames) -> None:
-    with (
-        Port("/in", names=names) as in_,
-        socket.create_connection(("127.0.0.1", in_.contact.port)) as sock,
-    ):
-        sock.settimeout(5)
-        sock.sendall(framing.number(framing.BASE + 5))
-        assert sock.recv(28) == b"* Error. Protocol not found."
-        assert in_.inputs == []
+# ---------------------------------------------------------------------------------- failures
 
 
 def test_error_for_a_peer_that_is_not_there(names: LocalNames) -> None:

@@ -31,7 +31,9 @@ log = logging.getLogger("yarpy.link")
 class Owner(Protocol):
     """What a link needs of its port."""
 
-    name: str
+    @property
+    def name(self) -> str:
+        """The port's name."""
 
     def receive(self, link: Inbound, message: Message) -> None:
         """Take a data message. May block; answers through `message.reply` if that is wanted."""

@@ -124,8 +124,8 @@ class NameServer:
         except BaseException:
             self.close()
             raise
-        self._hub.lines_for_people = self._page
-        self._hub.on_page = pages
+        self._hub.callbacks.lines_for_people = self._page
+        self._hub.callbacks.on_page = pages
         desk.open(self._answer)
 
     @property

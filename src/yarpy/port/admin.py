@@ -92,8 +92,8 @@ def _answer(hub: Hub, message: Message) -> Bottle:
     handler = _HANDLERS.get(word(request[0])) if request else None
     if handler is not None:
         return handler(hub, request)
-    if hub.on_admin is not None:
-        reply = hub.on_admin(message)
+    if hub.callbacks.on_admin is not None:
+        reply = hub.callbacks.on_admin(message)
         if reply is not None:
             return Bottle(reply) if isinstance(reply, (list, tuple)) else Bottle([reply])
     return failure("send [help] for list of valid commands")

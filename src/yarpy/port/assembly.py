@@ -15,6 +15,7 @@ from yarpy.port import admin, command, fork, reconnect
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.hub import Crew, Hub
 from yarpy.port.mailbox import Mailbox
+from yarpy.port.registration import Registration
 from yarpy.wire.stream import DEFAULT_LIMIT
 
 CREW: Final = Crew(admin.answer, command.obey, command.close_output, reconnect)
@@ -34,22 +35,20 @@ def open_hub(
     on_connection: Callable[[ConnectionEvent], None] | None = None,
     register: bool = True,
 ) -> Hub:
-    """A hub that listens and is registered. Parameters as `Hub`; `port` 0 is any free TCP port.
+    """A hub that listens and is registered; parameters as `Hub` and `Registration`. `port` 0 is any
+    free TCP port, or the one that the environment names for this port.
 
     Raises AddressError (name unusable, name or port in use), NoNameServer.
     """
     fork.prepare()
     hub = Hub(
-        name,
+        Registration(name, names, type_, register),
         mailbox,
-        names,
         CREW,
-        type_=type_,
         admits_outputs=admits_outputs,
         rpc=rpc,
         limit=limit,
-        on_connection=on_connection,
-        register=register,
     )
+    hub.callbacks.on_connection = on_connection
     hub.open(port or port_number(hub.name, os.environ), host)
     return hub

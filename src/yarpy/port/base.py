@@ -94,11 +94,11 @@ class BasePort:
 
     def on_connection(self, callback: Callable[[ConnectionEvent], None] | None) -> None:
         """Call `callback` whenever a connection comes or goes."""
-        self._hub.on_connection = callback
+        self._hub.callbacks.on_connection = callback
 
     def on_admin(self, callback: Callable[[Message], object] | None) -> None:
         """Let `callback` answer administrative messages that the port itself does not know."""
-        self._hub.on_admin = callback
+        self._hub.callbacks.on_admin = callback
 
     def on_page(self, callback: Pages | None) -> None:
         """Let `callback(path, fields)` show pages to browsers: a Page, a string of HTML, or
@@ -108,7 +108,7 @@ class BasePort:
         threads of their connections; `path` begins with a slash, `fields` are the arguments. See
         `yarpy.Page`.
         """
-        self._hub.on_page = callback
+        self._hub.callbacks.on_page = callback
 
     def interrupt(self) -> None:
         """Stop reading and writing: who waits in `read` gets PortClosed; connections stay."""

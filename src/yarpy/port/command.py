@@ -124,7 +124,7 @@ def connect(hub: Hub, text: str, timeout: float | None = None) -> str:
 
 def _connect(hub: Hub, text: str, contact: Contact, target: str, spec: CarrierSpec) -> str:
     """The rest of `connect`, while nobody else dials the target."""
-    hub.repair.give_up(hub, target)
+    hub.crew.repair.give_up(hub, target)
     if contact.name:
         for old in hub.outputs:
             if old.route.target == target:
@@ -168,12 +168,16 @@ def open_output(hub: Hub, contact: Contact, target: str, spec: CarrierSpec, text
         raise Refused(f"Cannot connect to {text or target}: {error}") from error
     try:
         try:
-            driver, speaker = greet(contact, route, key=hub.key, group=hub.group, limit=hub.limit)
+            driver, speaker = greet(
+                contact, route, key=hub.key, group=hub.registration.group, limit=hub.limit
+            )
         except (LinkClosed, Timeout):
             other = _other_address(hub, contact)
             if other is None:
                 raise
-            driver, speaker = greet(other, route, key=hub.key, group=hub.group, limit=hub.limit)
+            driver, speaker = greet(
+                other, route, key=hub.key, group=hub.registration.group, limit=hub.limit
+            )
             contact = other
     except (YarpError, OSError) as error:
         if chain is not None:
@@ -302,7 +306,7 @@ def _receiver(hub: Hub, target: str) -> Contact | None:
 
 def disconnect_output(hub: Hub, target: str) -> tuple[bool, str]:
     """Remove the outputs to `target`; whether there were any, and the line that says so."""
-    tried = hub.repair.give_up(hub, target, incoming=False)
+    tried = hub.crew.repair.give_up(hub, target, incoming=False)
     found = [link for link in hub.outputs if link.route.target == target]
     for link in found:
         close_output(hub, link)
@@ -316,7 +320,7 @@ def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bo
 
     `by_sender`: in the way in which senders of datagrams say goodbye, so they need not be told.
     """
-    tried = hub.repair.give_up(hub, source, incoming=True)
+    tried = hub.crew.repair.give_up(hub, source, incoming=True)
     found = [link for link in hub.inputs if link.route.source == source]
     told = [link for link in found if link.asking or (by_sender and link.carrier.connectionless)]
     if len(told) < len(found):

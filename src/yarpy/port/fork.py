@@ -35,8 +35,7 @@ def _leave_behind() -> None:
 def _abandon(hub: Hub) -> None:
     hub.closing = hub.inherited = True
     hub.mailbox.abandon("this port was opened before the process was forked; open one here")
-    if hub.acceptor is not None:
-        hub.acceptor.abandon()
+    hub.reception.abandon()
     links: tuple[Inbound | Outbound, ...] = (*hub.inputs, *hub.outputs)
     for link in links:
         sock = getattr(link.driver.transport, "sock", None)

@@ -1,4 +1,4 @@
-"""Hub: a port without its reader - a listening socket, and the links in and out.
+"""Hub: a port without its reader - a name, a listening socket, and the links in and out.
 
 Rules: the tuples of links are replaced under `lock`, never changed, so who walks them needs no
 lock; no lock is held while user code runs or bytes move. Every end of a connection comes through
@@ -10,35 +10,32 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import socket
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, Protocol
 
 from yarpy.carriers.base import PAGE, Carrier
-from yarpy.carriers.http.page import Page, Pages
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.errors import NoNameServer, PortClosed, RemoteProtocolError, YarpError
-from yarpy.link.acceptor import Acceptor
 from yarpy.link.driver import Driver
-from yarpy.link.handshake import welcome
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.port import probe
+from yarpy.port.callbacks import Callbacks
 from yarpy.port.dialling import Dialling
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.monitoring import Monitoring
 from yarpy.port.past import Past
-from yarpy.port.registration import Registered
+from yarpy.port.reception import Reception
+from yarpy.port.registration import Registration
 from yarpy.route import Route
-from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import Message
 from yarpy.wire.stream import DEFAULT_LIMIT
 
@@ -78,102 +75,91 @@ class Crew:
     repair: Repair
 
 
-class Hub(Registered):
-    """A port's connections. `names` None: the default service; `register` False: no name service.
+class Hub:
+    """A port's connections.
 
     `admits_outputs` and `rpc` are what requests for outputs are checked against. `limit` is the
-    largest message in bytes. Raises AddressError (name unusable), NoNameServer.
+    largest message in bytes.
     """
 
     def __init__(
         self,
-        name: str,
+        registration: Registration,
         mailbox: Mailbox,
-        names: NameClient | None,
         crew: Crew,
         *,
-        type_: str = "",
         admits_outputs: bool = True,
         rpc: bool = False,
         limit: int = DEFAULT_LIMIT,
-        on_connection: Callable[[ConnectionEvent], None] | None = None,
-        register: bool = True,
     ) -> None:
-        super().__init__(name, names, type_, register)
+        self.registration = registration
         self.mailbox = mailbox
-        self._crew = crew
-        self.repair = crew.repair
+        self.crew = crew
         self.admits_outputs = admits_outputs
         self.rpc = rpc
         self.limit = limit
-        self.on_connection = on_connection
+        self.callbacks = Callbacks(registration)
         self.properties = Property()
         self.inputs: tuple[Inbound, ...] = ()
         self.outputs: tuple[Outbound, ...] = ()
-        self.past_inputs, self.past_outputs = Past(), Past()
+        self.past = {"inputs": Past(), "outputs": Past()}
         self.closing = False
         self.inherited = False  # from the process that this one was forked from
         self.interrupted = False
-        self.on_admin: Callable[[Message], object] | None = None
-        self.on_page: Pages | None = None  # what the program shows to browsers
-        self.lines_for_people: Callable[[], list[str]] = list  # more of them on the port's page
         self.on_inputs: Callable[[], None] = lambda: None  # the reader looks at them again
-        self._greeting: set[threading.Thread] = set()  # connections that are being welcomed
         self.lock = threading.Lock()  # replaces the tuples of links
         self.dialling = Dialling()
         self.monitoring = Monitoring(self)
-        self.acceptor: Acceptor | None = None
+        self.reception = Reception(registration, limit, self.run_input)
+
+    # -- what it is -------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """The name, complete once the port is open."""
+        return self.registration.name
+
+    @property
+    def contact(self) -> Contact:
+        """Where the port listens."""
+        return self.registration.contact
+
+    @property
+    def port(self) -> int:
+        """The number of the listening socket."""
+        return self.registration.port
+
+    @property
+    def key(self) -> bytes:
+        """The secret of auth.conf, b"" without one."""
+        return self.registration.key
+
+    @property
+    def names(self) -> NameClient | None:
+        """The name service we are registered with."""
+        return self.registration.names
+
+    def service(self) -> NameClient | None:
+        """The name service to look others up with, None if there is none."""
+        return self.registration.service()
 
     # -- opening ----------------------------------------------------------------------------------
 
     def open(self, port: int, host: str) -> None:
         """Listen on `port` (0: any free one) and register. Raises AddressError, NoNameServer."""
         try:
-            self._open(port, host)
+            self.registration.open(port, host, self.reception.listen)
+            self.reception.open()
+            self.registration.tell()
         except BaseException:
-            self._give_up()
+            self.closing = True
+            self.reception.close()
+            self.registration.forget()
             raise
-        self.repair.watch(self)
+        self.crew.repair.watch(self)
         log.info("Port %s active at %s", self.name, f"tcp://{self.contact.address}/")
 
-    def _give_up(self) -> None:
-        """Opening failed: leave nothing behind."""
-        self.closing = True
-        self._opened.set()
-        if self.acceptor is not None:
-            self.acceptor.close()
-        self._forget_name()
-
-    def _listen(self, port: int) -> None:
-        self.acceptor = Acceptor(self.name, port, self._serve, speaks_first=bool(self.key))
-        self.port = self.acceptor.port
-
-    @property
-    def thread_id(self) -> int:
-        """The kernel's id of the thread that accepts connections."""
-        return -1 if self.acceptor is None else self.acceptor.thread.native_id or -1
-
     # -- connections in ---------------------------------------------------------------------------
-
-    def _serve(self, sock: socket.socket) -> None:
-        """The life of one accepted connection, in its own thread."""
-        self._opened.wait()
-        transport = TcpTransport(sock)
-        peer = _peer(transport)
-        self._greeting.add(threading.current_thread())
-        try:
-            found = welcome(transport, self.name, self.port, key=self.key, limit=self.limit)
-        except (YarpError, OSError) as error:
-            transport.close()
-            if not self.closing:
-                log.warning("%s: connection from %s refused: %s", self.name, peer, error)
-            return
-        finally:
-            self._greeting.discard(threading.current_thread())
-        if found is None:
-            transport.close()
-            return
-        self.run_input(*found)
 
     def run_input(self, driver: Driver, carrier: Carrier) -> None:
         """Serve an open connection as an input, in this thread, until it ends.
@@ -196,7 +182,7 @@ class Hub(Registered):
     def take_input(self, link: Inbound) -> None:
         """Make an open connection one of our inputs, to be served next. Raises PortClosed, and as
         monitors do that cannot start; the connection is closed then."""
-        link.carrier.pages = self.page
+        link.carrier.pages = self.callbacks.page
         try:
             self.monitoring.incoming(link)
         except YarpError:
@@ -250,24 +236,13 @@ class Hub(Registered):
         self.mailbox.put(link, message)
 
     def administer(self, link: Inbound, message: Message) -> Bottle:
-        return self._crew.administer(self, message)
+        return self.crew.administer(self, message)
 
     def command(self, link: Inbound, message: Message) -> list[str]:
-        lines = self._crew.obey(self, link, message)
+        lines = self.crew.obey(self, link, message)
         if (message.key, message.text) == ("*", PAGE):
-            lines += self._whereabouts() + self.lines_for_people()
+            lines += self._whereabouts() + self.callbacks.lines_for_people()
         return lines
-
-    def page(self, path: str, fields: Mapping[str, str]) -> Page | None:
-        """What the program shows at `path`, None if it leaves that to the port."""
-        if self.on_page is None:
-            return None
-        try:
-            found = self.on_page(path, fields)
-            return Page(found) if isinstance(found, str) else found
-        except Exception:
-            log.exception("%s: the page %s failed", self.name, path)
-            return Page("the program of this port fails on this page\n", "text/plain", 500)
 
     def _whereabouts(self) -> list[str]:
         """Where the other ports are to be found, if somebody knows."""
@@ -304,14 +279,14 @@ class Hub(Registered):
             return
         self.report(link, created=False, reason=reason)
         if not (quit_ or link.closing or self.closing):
-            self.repair.input_lost(self, link.route)
+            self.crew.repair.input_lost(self, link.route)
 
     def _forget_input(self, link: Inbound) -> bool:
         with self.lock:
             known = link in self.inputs
             self.inputs = tuple(item for item in self.inputs if item is not link)
         if known:
-            self.past_inputs.add(link.counter, link.lost)
+            self.past["inputs"].add(link.counter, link.lost)
         self.on_inputs()
         return known
 
@@ -334,12 +309,12 @@ class Hub(Registered):
             self.outputs = tuple(item for item in self.outputs if item is not link)
             self._elect()
         if known:
-            self.past_outputs.add(link.counter)
+            self.past["outputs"].add(link.counter)
             if link.chain is not None:
                 link.chain.close()
             self.report(link, created=False, reason=reason)
             if lost and link.dialled and not self.closing:
-                self.repair.output_lost(self, link.route)
+                self.crew.repair.output_lost(self, link.route)
         return known
 
     def _elect(self) -> None:
@@ -361,11 +336,8 @@ class Hub(Registered):
             incoming, created, route.source, route.target, route.carrier, reason
         )
         log.log(logging.INFO if peer.startswith("/") else logging.DEBUG, "%s", event)
-        if self.on_connection is not None and peer.startswith("/"):
-            try:
-                self.on_connection(event)
-            except Exception:
-                log.exception("%s: the connection callback failed", self.name)
+        if peer.startswith("/"):
+            self.callbacks.connection(event)
 
     # -- ending -----------------------------------------------------------------------------------
 
@@ -388,27 +360,24 @@ class Hub(Registered):
             if self.closing:
                 return
             self.closing = True
-        self.repair.forget(self)
+        self.crew.repair.forget(self)
         self.mailbox.interrupt()
-        soon = time.monotonic() + 0.3
-        for thread in tuple(self._greeting):  # who is just arriving is told to leave as well
-            thread.join(max(0.0, soon - time.monotonic()))
+        self.reception.finish(0.3)  # who is just arriving is told to leave as well
         answers = self._ask_senders_to_leave()
         for output in self.outputs:
-            self._crew.close_output(self, output)
+            self.crew.close_output(self, output)
         for link in self.inputs:
             link.close()
         deadline = time.monotonic() + 3.0
         for link in self.inputs:
             if link.thread is not None and link.thread is not threading.current_thread():
                 link.thread.join(max(0.0, deadline - time.monotonic()))
-        if self.acceptor is not None:
-            self.acceptor.close()
+        self.reception.close()
         self.monitoring.close()
         try:
             if not answers:
                 raise NoNameServer("it did not answer just now")
-            self._give_name_back()
+            self.registration.give_back()
         except NoNameServer as error:
             log.info("%s: the name stays registered: %s", self.name, error)
 
@@ -447,20 +416,9 @@ class Hub(Registered):
             "name": self.name,
             "inputs": [{**_route(link), **link.snapshot()} for link in self.inputs],
             "outputs": [{**_route(link), **link.snapshot()} for link in self.outputs],
-            "past": {
-                "inputs": self.past_inputs.as_dict(),
-                "outputs": self.past_outputs.as_dict(),
-            },
+            "past": {side: past.as_dict() for side, past in self.past.items()},
             "waiting": self.mailbox.waiting,
         }
-
-
-def _peer(transport: TcpTransport) -> str:
-    try:
-        host, port = transport.remote
-    except OSError:
-        return "somebody who left"
-    return f"{host}:{port}"
 
 
 def _route(link: Inbound | Outbound) -> dict[str, str]:

@@ -29,10 +29,12 @@ DEFAULT = "portmonitor"  # the monitor that is attached when none is named
 class Monitored(Protocol):
     """What monitors need of their port."""
 
-    name: str
     limit: int
     inputs: tuple[Inbound, ...]
     outputs: tuple[Outbound, ...]
+
+    @property
+    def name(self) -> str: ...
 
     def service(self) -> NameClient | None:
         """The name service to look others up with."""

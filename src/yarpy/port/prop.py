@@ -25,7 +25,7 @@ from yarpy.qos import Sched, policy_of, schedule, scheduled, tos_of
 def get_self(hub: Hub) -> Bottle:
     """Scheduling of the accepting thread, the process, the platform, the port's kind."""
     argv = sys.orig_argv
-    thread = hub.thread_id
+    thread = hub.reception.thread_id
     own, process = scheduled(thread), scheduled(os.getpid())
     return Bottle(
         [
@@ -50,7 +50,7 @@ def get_self(hub: Hub) -> Bottle:
                         is_input=1,
                         is_output=int(hub.admits_outputs),
                         is_rpc=int(hub.rpc),
-                        type=hub.type,
+                        type=hub.registration.type,
                     ),
                 ]
             ),

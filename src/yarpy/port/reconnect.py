@@ -187,8 +187,10 @@ class Repairer:
                 known = client.query(hub.name)
                 contact = hub.contact
                 if known is None or (known.host, known.port) != (contact.host, hub.port):
-                    client.register(hub.name, "tcp", contact.host, hub.port, hub.type or None)
-                hub.describe(client)
+                    client.register(
+                        hub.name, "tcp", contact.host, hub.port, hub.registration.type or None
+                    )
+                hub.registration.describe(client)
             except YarpError as error:
                 log.warning("%s could not be registered again: %s", hub.name, error)
 

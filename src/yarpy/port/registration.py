@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import logging
 import os
-import threading
+from collections.abc import Callable
 
 from yarpy.config.configuration import port_name
 from yarpy.contact import Contact, check_name
@@ -24,9 +24,9 @@ from yarpy.registry import carriers
 log = logging.getLogger("yarpy.port")
 
 
-class Registered:
+class Registration:
     """What of a port is known to others. `names` None: the default service; `register` False: no
-    name service.
+    name service. `port` is the number of the listening socket, `contact` where that is found.
 
     Raises AddressError (name unusable), NoNameServer.
     """
@@ -45,14 +45,13 @@ class Registered:
         self.names = names
         if self.registered and names is None:
             self.names = DEFAULT.current()
-        self._opened = threading.Event()  # who dials us before we know our name has to wait
 
-    def _listen(self, port: int) -> None:
-        """Listen on `port`, 0 for any free one, and set `self.port`. Raises OSError."""
-        raise NotImplementedError
+    def open(self, port: int, host: str, listen: Callable[[int], int]) -> None:
+        """Listen on `port`, 0 for any free one, and register.
 
-    def _open(self, port: int, host: str) -> None:
-        """Listen and register. Raises AddressError (name or number in use), NoNameServer."""
+        `listen` opens the socket: it returns the number it got, or raises OSError. Raises
+        AddressError (name or number in use), NoNameServer.
+        """
         if not 0 <= port < 65536:
             raise AddressError(
                 f'"{self.name}" cannot listen on TCP port {port}: choose a number below 65536, or '
@@ -65,10 +64,10 @@ class Registered:
             self.name = contact.name
             self._has_name = True
             try:
-                self._listen(contact.port)
+                self.port = listen(contact.port)
             except OSError:
                 # Somebody who never asked the name server listens on that number.
-                self._listen(0)
+                self.port = listen(0)
                 contact = names.register(
                     self.name, "tcp", contact.host, self.port, self.type or None
                 )
@@ -76,7 +75,7 @@ class Registered:
             if names is not None:
                 self._refuse_taken(names)
             try:
-                self._listen(port)
+                self.port = listen(port)
             except OSError as error:
                 raise AddressError(
                     f'"{self.name}" cannot listen on TCP port {port} ({error.strerror}); '
@@ -91,7 +90,10 @@ class Registered:
         self.contact = contact
         self.name = contact.name
         self._has_name = names is not None
-        self._opened.set()
+
+    def tell(self) -> None:
+        """The port is open: tell the name service what we are, and that we listen."""
+        names = self.names if self.registered else None
         if names is not None:
             self.describe(names)
 
@@ -142,7 +144,7 @@ class Registered:
                 names.set(self.name, "owns", contact.name)
         return contact.host, contact.port
 
-    def _forget_name(self) -> None:
+    def forget(self) -> None:
         """Opening failed: leave no name behind."""
         if self._has_name and self.names is not None:
             try:
@@ -150,7 +152,7 @@ class Registered:
             except YarpError:
                 pass  # nobody to tell; a name server forgets names where nobody listens
 
-    def _give_name_back(self) -> None:
+    def give_back(self) -> None:
         """The port closes. What somebody else has registered under its name meanwhile stays."""
         if not self.registered or self.names is None:
             return

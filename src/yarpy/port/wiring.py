@@ -97,7 +97,7 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
     if not find_carrier(parse_carrier(carrier).base).push:
         connect(hub, source, carrier, None)
         return
-    target = hub.name if hub.registered else f"/{hub.contact.address}"
+    target = hub.name if hub.registration.registered else f"/{hub.contact.address}"
     reply = probe.ask(contact, ["add", command.joined(target, carrier)], secret_=hub.key)
     if not reply or reply[0] != 0:
         text = plain_text(reply[1]).strip() if len(reply) > 1 else "no answer"

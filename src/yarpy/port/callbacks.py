@@ -1,0 +1,48 @@
+"""Callbacks: what a program does for its port - it hears of connections, answers, shows pages.
+
+Rules: they run in the threads of connections, without a lock held. What they raise is logged, and
+costs one connection at most.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping
+
+from yarpy.carriers.http.page import Page, Pages
+from yarpy.port.event import ConnectionEvent
+from yarpy.port.registration import Registration
+from yarpy.wire.message import Message
+
+log = logging.getLogger("yarpy.port")
+
+
+class Callbacks:
+    """The callbacks of the port that `registration` names; None: the program leaves that alone."""
+
+    def __init__(self, registration: Registration) -> None:
+        self._registration = registration
+        self.on_connection: Callable[[ConnectionEvent], None] | None = None
+        self.on_admin: Callable[[Message], object] | None = None
+        self.on_page: Pages | None = None  # what the program shows to browsers
+        self.lines_for_people: Callable[[], list[str]] = list  # more of them on the port's page
+
+    def connection(self, event: ConnectionEvent) -> None:
+        """A connection came or went."""
+        if self.on_connection is None:
+            return
+        try:
+            self.on_connection(event)
+        except Exception:
+            log.exception("%s: the connection callback failed", self._registration.name)
+
+    def page(self, path: str, fields: Mapping[str, str]) -> Page | None:
+        """What the program shows at `path`, None if it leaves that to the port."""
+        if self.on_page is None:
+            return None
+        try:
+            found = self.on_page(path, fields)
+            return Page(found) if isinstance(found, str) else found
+        except Exception:
+            log.exception("%s: the page %s failed", self._registration.name, path)
+            return Page("the program of this port fails on this page\n", "text/plain", 500)

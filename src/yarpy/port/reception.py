@@ -1,0 +1,106 @@
+"""Reception: the listening socket of a port, and who is just arriving there.
+
+Rules: what a connection speaks is found out in a thread of its own, after its first bytes. Who
+comes before the port knows its own name waits for that.
+"""
+
+from __future__ import annotations
+
+import logging
+import socket
+import threading
+import time
+from collections.abc import Callable
+
+from yarpy.carriers.base import Carrier
+from yarpy.errors import YarpError
+from yarpy.link.acceptor import Acceptor
+from yarpy.link.driver import Driver
+from yarpy.link.handshake import welcome
+from yarpy.port.registration import Registration
+from yarpy.transports.tcp import TcpTransport
+
+log = logging.getLogger("yarpy.port")
+
+
+class Reception:
+    """Welcomes connections and hands each to `serve`, which runs in its thread until it ends."""
+
+    def __init__(
+        self,
+        registration: Registration,
+        limit: int,
+        serve: Callable[[Driver, Carrier], None],
+    ) -> None:
+        self._registration = registration
+        self._limit = limit
+        self._serve = serve
+        self._acceptor: Acceptor | None = None
+        self._arriving: set[threading.Thread] = set()  # connections that are being welcomed
+        self._open = threading.Event()
+        self._closing = False
+
+    def listen(self, port: int) -> int:
+        """Listen on `port`, 0 for any free one; the number it is. Raises OSError."""
+        self._acceptor = Acceptor(
+            self._registration.name, port, self._welcome, bool(self._registration.key)
+        )
+        return self._acceptor.port
+
+    def open(self) -> None:
+        """The port knows its name: let them in."""
+        self._open.set()
+
+    @property
+    def thread_id(self) -> int:
+        """The kernel's id of the thread that accepts connections."""
+        return -1 if self._acceptor is None else self._acceptor.thread.native_id or -1
+
+    def _welcome(self, sock: socket.socket) -> None:
+        """The life of one accepted connection, in its own thread."""
+        self._open.wait()
+        own = self._registration
+        transport = TcpTransport(sock)
+        peer = _peer(transport)
+        self._arriving.add(threading.current_thread())
+        try:
+            found = welcome(transport, own.name, own.port, key=own.key, limit=self._limit)
+        except (YarpError, OSError) as error:
+            transport.close()
+            if not self._closing:
+                log.warning("%s: connection from %s refused: %s", own.name, peer, error)
+            return
+        finally:
+            self._arriving.discard(threading.current_thread())
+        if found is None:
+            transport.close()
+            return
+        self._serve(*found)
+
+    def finish(self, seconds: float) -> None:
+        """The port closes: give who is just arriving so long to become one of its connections,
+        which are told to leave."""
+        self._closing = True
+        soon = time.monotonic() + seconds
+        for thread in tuple(self._arriving):
+            thread.join(max(0.0, soon - time.monotonic()))
+
+    def abandon(self) -> None:
+        """Give back this process's copies of the sockets, in a process without our thread."""
+        if self._acceptor is not None:
+            self._acceptor.abandon()
+
+    def close(self) -> None:
+        """Stop listening; connections that were handed on are not touched."""
+        self._closing = True
+        self._open.set()  # nobody waits any longer
+        if self._acceptor is not None:
+            self._acceptor.close()
+
+
+def _peer(transport: TcpTransport) -> str:
+    try:
+        host, port = transport.remote
+    except OSError:
+        return "somebody who left"
+    return f"{host}:{port}"
