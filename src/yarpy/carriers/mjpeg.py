@@ -1,6 +1,7 @@
 """mjpeg: pictures for browsers, and from network cameras: JPEG files in an endless HTTP answer.
 
     GET /?action=stream HTTP/1.1            the one who dials is the one who watches
+    GET /?action=snapshot HTTP/1.1          the next picture alone
 
     HTTP/1.0 200 OK ... Content-Type: multipart/x-mixed-replace;boundary=boundarydonotcross
     --boundarydonotcross
@@ -10,19 +11,23 @@
 Rules: a watcher who is too slow gets fewer pictures, its port never waits for it. A picture is
 compressed once for all watchers that want the same quality (`/?action=stream&quality=50&rate=10`,
 or `mjpeg+quality.50+rate.10` between ports; pictures per second). What is no picture is not sent,
-and counted. The envelope is the comment in the JPEG file. Cameras are understood that order, spell
-or leave out headers in their own way, or send in chunks; a damaged picture is dropped, and counted
-in `lost`. A camera that wants a password is dialled once more, with the answer that login.py knows.
+and counted; browsers, who are answered with the first message, are told that there are none. The
+envelope is the comment in the JPEG file. Cameras are understood that order, spell or leave out
+headers in their own way, or send in chunks; a damaged picture is dropped, and counted in `lost`. A
+camera that wants a password is dialled once more, with the answer that login.py knows.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Final
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.http.chunk import Chunks
 from yarpy.carriers.http.header import CHALLENGES, MAX_LINE, read_headers
 from yarpy.carriers.http.login import refusal, take_login
+from yarpy.carriers.http.message import TEXT, response_head
 from yarpy.carriers.http.origin import not_ours, origins_of
 from yarpy.carriers.http.refusal import refuse
 from yarpy.data import jpeg
@@ -45,6 +50,11 @@ _ANSWER: Final = (
     b"Expires: Mon, 3 Jan 2000 12:34:56 GMT\r\n"
     b"Content-Type: multipart/x-mixed-replace;boundary=boundarydonotcross\r\n"
 )
+_LAST: Final = (
+    ("Cache-Control", "no-store"),
+    ("X-Content-Type-Options", "nosniff"),
+    ("Connection", "close"),
+)
 
 
 class Mjpeg(Carrier):
@@ -65,44 +75,72 @@ class Mjpeg(Carrier):
         self.quality = jpeg.QUALITY
         self._mark = b"--"  # what a line between two pictures contains
         self._past_mark = False  # that line has begun: its end is next
+        self._once = False  # one picture is asked for, not a stream
+        self._asked = False  # the answer begins with the first message
+        self._shared = b""  # a header of the answer
         self._chunks: Chunks | None = None  # what a camera's server has put the pictures into
 
     # -- the sender -------------------------------------------------------------------------------
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
-        line = yield from stream.read_line(MAX_LINE)
+        line = bytes(first) + (yield from stream.read_line(MAX_LINE))
         headers = yield from read_headers(stream)
         if origins_of().turns_away(headers, self.route.host):
             yield from refuse(stream, 421, not_ours(headers.get("host", "")))
-        self.begin(stream, line.decode("latin-1").partition(" ")[0], "origin" in headers)
+        try:
+            wishes = read_wishes(line.decode("latin-1").split()[1])
+        except ValueError as error:
+            yield from refuse(stream, 400, str(error))
+        self.begin(stream, wishes, headers)
 
-    def begin(self, stream: ByteStream, query: str, shared: bool) -> None:
-        """Answer a request. `shared`: it comes from another page."""
+    def begin(self, stream: ByteStream, wishes: Wishes, headers: Mapping[str, str]) -> None:
+        """Answer a request."""
         self.route.source = "null"  # as C++ calls it: watchers have no names
-        self._obey(query)
-        # Scripts of other pages may look too, as they may at everything that ports show.
-        more = b"Access-Control-Allow-Origin: *\r\n" if shared else b""
-        stream.write(_ANSWER + more + b"\r\n" + _BOUNDARY)
-
-    def _obey(self, query: str) -> None:
-        """Take the wishes out of a request: `quality` and `rate`."""
-        from urllib.parse import parse_qs
-
-        wishes = parse_qs(query, max_num_fields=20) if query.count("&") < 20 else {}
-        quality = _number(wishes.get("quality", [""])[-1])
-        rate = _number(wishes.get("rate", [""])[-1])
-        if quality:
-            self.quality = max(1, min(100, int(quality)))
+        self._once = wishes.once
+        if wishes.quality:
+            self.quality = wishes.quality
             self.route.spec = self.route.spec.plus(f"quality.{self.quality}")
-        if rate:
-            self.interval = 1 / rate
-            self.route.spec = self.route.spec.plus(f"rate.{rate:g}")
+        if wishes.rate:
+            self.interval = 1 / wishes.rate
+            self.route.spec = self.route.spec.plus(f"rate.{wishes.rate:g}")
+        # Scripts of other pages may look too, as they may at everything that ports show.
+        self._shared = b"Access-Control-Allow-Origin: *\r\n" if "origin" in headers else b""
+        agent = headers.get("user-agent", "yarp")
+        if self._once or "yarp" not in agent.lower():
+            self._asked = True  # people are told if there are no pictures: that shows later
+        else:
+            stream.write(_ANSWER + self._shared + b"\r\n" + _BOUNDARY)
+
+    def _plain(self, status: int, text: str) -> bytes:
+        body = f"{text}\n".encode()
+        headers = (("Content-Type", TEXT), ("Content-Length", str(len(body))), *_LAST)
+        head = response_head(status, headers)
+        return head.removesuffix(b"\r\n") + self._shared + b"\r\n" + body
 
     def prepare(self, packet: Packet) -> bool:
-        return bool(self._frame(packet))
+        if self.finished:
+            raise LinkClosed("the picture that was asked for was sent")
+        return bool(self._frame(packet)) or self._asked
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
-        stream.write(*self._frame(packet))
+        frame = self._frame(packet)
+        if self.finished:
+            return  # it waited behind the picture that was asked for
+        if not self._asked:
+            stream.write(*frame)
+            return
+        self._asked = False
+        if not frame:
+            name = self.route.source
+            stream.write(self._plain(404, f"{name} sends no pictures; what it sends is at /r"))
+            self.finished = True
+        elif self._once:
+            size = ("Content-Length", str(len(frame[1])))
+            head = response_head(200, (("Content-Type", "image/jpeg"), size, *_LAST))
+            stream.write(head.removesuffix(b"\r\n") + self._shared + b"\r\n", frame[1])
+            self.finished = True
+        else:
+            stream.write(_ANSWER + self._shared + b"\r\n" + _BOUNDARY, *frame)
 
     def _frame(self, packet: Packet) -> tuple[Buffer, ...]:
         """The part of the answer that shows a packet's picture; empty if it is none."""
@@ -283,10 +321,43 @@ def _compressed(packet: Packet, quality: int) -> tuple[Buffer, ...]:
     return head, data, b"\r\n" + _BOUNDARY
 
 
-def _number(text: str) -> float:
-    """A positive number, or 0."""
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What a request for pictures asks for; 0: nothing is said. once: one picture, no stream."""
+
+    once: bool = False
+    quality: int = 0
+    rate: float = 0.0
+
+
+def read_wishes(target: str) -> Wishes:
+    """The wishes in `/?action=stream&quality=50&rate=10`. Raises ValueError.
+
+    >>> read_wishes("/?action=snapshot&quality=50")
+    Wishes(once=True, quality=50, rate=0.0)
+    """
+    from urllib.parse import parse_qsl
+
+    query = target.partition("?")[2]
+    found = dict(parse_qsl(query, keep_blank_values=True)) if query.count("&") < 20 else {}
+    action = found.get("action", "stream")
+    if action not in ("stream", "snapshot"):
+        raise ValueError(f"action is stream or snapshot, not {action[:40]!r}")
+    quality = _number("quality", found, 1, 100)
+    if quality != int(quality):
+        raise ValueError("quality is a whole number from 1 to 100")
+    return Wishes(action == "snapshot", int(quality), _number("rate", found, 0.001, 1000))
+
+
+def _number(name: str, fields: Mapping[str, str], least: float, most: float) -> float:
+    """The number that a field holds, 0 where there is no such field. Raises ValueError."""
+    text = fields.get(name)
+    if text is None:
+        return 0.0
     try:
         value = float(text)
     except ValueError:
-        return 0.0
-    return value if 0 < value < 1e6 else 0.0
+        value = 0.0
+    if not least <= value <= most:
+        raise ValueError(f"{name} is a number from {least:g} to {most:g}, not {text[:40]!r}")
+    return value

@@ -471,8 +471,9 @@ def test_preflight() -> None:
 
 def test_methods_that_ports_do_not_have() -> None:
     for method in ("PUT", "DELETE", "PATCH"):
-        status, headers, _ = get("/", method=method)
+        status, headers, body = get("/", method=method)
         assert status == 405
+        assert b"GET, HEAD, POST and OPTIONS" in body
         assert headers["allow"] == "GET, HEAD, POST, OPTIONS"
 
 

@@ -321,12 +321,17 @@ class Http(Carrier):
 
     def _show_pictures(self, stream: ByteStream, target: str) -> None:
         """A browser asks for MJPEG on a connection that it has used for a page before."""
-        from yarpy.carriers.mjpeg import Mjpeg
+        from yarpy.carriers.mjpeg import Mjpeg, read_wishes
 
+        try:
+            wishes = read_wishes(target)
+        except ValueError as error:
+            self._respond(stream, complaint(400, str(error)))
+            return
         old = self.route
         self.successor = mjpeg = Mjpeg(Route("", old.target, "mjpeg", old.port, old.host))
         mjpeg.accepted = True
-        mjpeg.begin(stream, target, "origin" in self._headers)
+        mjpeg.begin(stream, wishes, self._headers)
 
     def prepare(self, packet: Packet) -> bool:
         if not self._streaming:

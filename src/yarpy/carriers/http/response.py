@@ -77,7 +77,11 @@ class Response:
 
 LATE: Final = Response(408, body=b"the request takes too long to come\n")
 CUT_OFF: Final = Response(400, body=b"the body is shorter than its length\n")
-NO_SUCH_METHOD: Final = Response(405, more=[_ALLOW])
+NO_SUCH_METHOD: Final = Response(
+    405,
+    body=b"a port knows GET, HEAD, POST and OPTIONS; messages are posted to /form\n",
+    more=[_ALLOW],
+)
 MAY_NOT_ACT: Final = Response(
     403,
     body=b"only the port's own page may act here, and who is no browser: open the port's page, or "
