@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import threading
 import xmlrpc.client
@@ -10,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from shutil import which
 from typing import Any
+from unittest.mock import ANY
 from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 import pytest
@@ -17,7 +19,9 @@ from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
+from yarpy.carriers.xmlrpc import XmlRpc
 from yarpy.data.value import Vocab
+from yarpy.wire.message import Packet
 
 PATIENCE = patience(10.0)
 
@@ -151,3 +155,91 @@ def test_port_calls_python() -> None:
             for number in range(5):
                 assert out.write(["add", number, 1], wait=True) == 1
         assert heard == [(1, 2.5), *((number, 1) for number in range(5))]
+
+
+class Silent:
+    """A server that reads calls and responds to none, as a C++ port whose reader does not reply;
+    `respond` sends what it owes."""
+
+    OK = xmlrpc.client.dumps(("",), methodresponse=True).encode()
+
+    def __init__(self) -> None:
+        self.heard = 0
+        self.owed = 0
+        self.lock = threading.Lock()
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.line: socket.socket | None = None
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def _run(self) -> None:
+        while True:
+            try:
+                self.line, _ = self.listener.accept()
+            except OSError:
+                return
+            while data := self.line.recv(1 << 16):
+                with self.lock:
+                    self.heard += data.count(b"</methodCall>")
+                    self.owed += data.count(b"</methodCall>")
+            self.line.close()
+
+    def respond(self) -> None:
+        with self.lock:
+            head = b"HTTP/1.1 200 OK\r\nContent-Length: %d\r\n\r\n" % len(self.OK)
+            assert self.line is not None
+            self.line.sendall((head + self.OK) * self.owed)
+            self.owed = 0
+
+
+def test_reader_that_does_not_respond(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The second message waited for the first one's response for ever."""
+    monkeypatch.setattr(XmlRpc, "confirmation", 0.05)
+    names, server = yarpy.LocalNames(), Silent()
+    names.register("/mute", "xmlrpc", *server.listener.getsockname())
+    with yarpy.Port("/out", names=names) as out:
+        out.connect("/mute", "xmlrpc")
+        for number in range(10):
+            assert out.write(["add", number]) == 1
+        wait_until(lambda: server.heard == 10)
+        assert caplog.text.count('"/mute" does not respond') == 1
+        with pytest.raises(yarpy.Timeout):
+            out._hub.outputs[0].call(Packet(["add", 1], key="d"), timeout=0.05)
+        wait_until(lambda: out.stats["past"]["outputs"]["drops"])
+        assert out.stats["past"]["outputs"] == {"messages": 0, "bytes": ANY, "drops": 10}
+    server.listener.close()
+
+
+def test_reader_that_responds_again_is_waited_for_again(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(XmlRpc, "confirmation", 0.05)
+    names, server = yarpy.LocalNames(), Silent()
+    names.register("/slow", "xmlrpc", *server.listener.getsockname())
+    with yarpy.Port("/out", names=names) as out:
+        out.connect("/slow", "xmlrpc")
+        for number in range(3):
+            out.write(["add", number])
+        wait_until(lambda: server.heard == 3)
+        server.respond()
+        wait_until(lambda: not out.outputs[0].stats["unacknowledged"])
+        for number in range(2):
+            out.write(["add", number])
+        assert caplog.text.count('"/slow" does not respond') == 2
+    server.listener.close()
+
+
+def test_buffered_writer_goes_on_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(XmlRpc, "confirmation", 0.05)
+    names, server = yarpy.LocalNames(), Silent()
+    names.register("/mute", "xmlrpc", *server.listener.getsockname())
+    with yarpy.BufferedPort("/out", names=names) as out:
+        out.connect("/mute", "xmlrpc")
+
+        def arrived() -> bool:
+            out.write(["add", 1])
+            return server.heard >= 5
+
+        wait_until(arrived)
+    server.listener.close()

@@ -54,6 +54,7 @@ class Carrier:
     gathers: ClassVar[bool] = True  # small messages of a burst may leave in one send
     connectionless: ClassVar[bool] = False  # closing must be told to the peer some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
+    confirmation: ClassVar[float | None] = None  # seconds for an acknowledgement, one at a time
     patience: ClassVar[float | None] = None  # seconds an accepted peer may be silent
     hurry: ClassVar[float | None] = None  # seconds for a message from its first byte to its last
     lossy: bool = False  # who reads too slowly misses messages; its writer never waits

@@ -3,10 +3,11 @@
     xmlrpc.client.ServerProxy("http://host:port/RPC2").get("encs")        get encs
 
 Rules: each message is a POST, its reply the response; also a port that says nothing responds, with
-an empty string. The questions of ROS nodes (`getPid`, `requestTopic`, `getBusInfo`,
-`publisherUpdate`) go to the administration, and the connection ends after them. What is not
-XML-RPC is answered with a fault, what comes too slowly with a status. A POST to `/` belongs here if
-it brings XML, else to http. Every call may act, so which web pages may call is said by `origin`.
+an empty string. (A C++ port whose reader does not reply gives no response: a message waits for that
+to the one before it, but not for ever.) The questions of ROS nodes (`getPid`, `requestTopic`,
+`getBusInfo`, `publisherUpdate`) go to the administration, and the connection ends after them. What
+is not XML-RPC is answered with a fault, what comes too slowly with a status. A POST to `/` belongs
+here if it brings XML, else to http.
 How values are spelled: `yarpy.data.xmlrpc`.
 """
 
@@ -47,6 +48,7 @@ class XmlRpc(Carrier):
     acks = True
     foreign = True
     gathers = False
+    confirmation = 5.0
     hurry = 60.0
 
     def __init__(self, route: Route) -> None:

@@ -193,6 +193,8 @@ class Outbound(Sender):
         LinkClosed."""
         if self.carrier.lossy:
             return
+        if timeout is None:
+            timeout = self.carrier.confirmation
         deadline = None if timeout is None else time.monotonic() + timeout
         self._take_turn(timeout)
         try:

@@ -8,11 +8,12 @@ short timer sends what a writer leaves behind.
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 from typing import TYPE_CHECKING, Any, Final
 
-from yarpy.errors import LinkClosed, YarpError
+from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.link.background import GATHER_SECONDS, Sweeper
 from yarpy.link.counter import Counter
 from yarpy.wire.message import UNSENDABLE, Packet
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from yarpy.link.driver import Driver
     from yarpy.route import Route
     from yarpy.wire.effects import Steps
+
+log = logging.getLogger("yarpy.link")
 
 # How far a sender may be ahead of acknowledgements: so many messages, bytes, seconds. A slow reader
 # thus holds its sender up, as it does in C++, instead of getting old data.
@@ -49,6 +52,7 @@ class Sender:
         self.broken = False
         self.unacknowledged = 0
         self._acks: Steps[None] | None = None
+        self._mute = False  # the peer leaves messages unconfirmed: they are not waited for
         self._ahead_since = 0.0
         self._ahead_from = 0
         self._rush = 0
@@ -67,7 +71,9 @@ class Sender:
         carrier, driver = self.carrier, self.driver
         now = time.perf_counter()
         try:
-            if self.unacknowledged and (
+            if self.unacknowledged and carrier.confirmation is not None:
+                self._confirm(carrier.confirmation)
+            elif self.unacknowledged and (
                 now - self._ahead_since > WINDOW_SECONDS
                 or driver.bytes_out - self._ahead_from > WINDOW_BYTES
             ):
@@ -137,9 +143,34 @@ class Sender:
 
     # -- what comes back --------------------------------------------------------------------------
 
+    def _confirm(self, limit: float) -> None:
+        """Wait for the acknowledgement of the last message before the next one goes, `limit`
+        seconds at most."""
+        if self._mute:
+            self._collect(wait=False)
+            return
+        try:
+            self._collect(wait=True, all_=True, deadline=time.monotonic() + limit)
+        except Timeout:
+            self._fall_mute(limit)
+        finally:
+            self.driver.transport.limit_waiting(None)
+
+    def _fall_mute(self, limit: float) -> None:
+        self._mute = True
+        log.warning(
+            '%s: "%s" does not respond to messages over %s within %g s; from now on none is waited '
+            "for, and what was not confirmed counts as dropped when the connection ends. Connect "
+            "with tcp if you can",
+            self.route.source,
+            self.route.target,
+            self.carrier.name,
+            limit,
+        )
+
     def _look_for_acks(self) -> None:
         try:
-            self._collect(wait=self.unacknowledged >= WINDOW)
+            self._collect(wait=self.unacknowledged >= WINDOW and not self._mute)
         except YarpError:
             self._break()
             raise
@@ -172,11 +203,13 @@ class Sender:
         if self.unacknowledged < before:
             self._ahead_since = time.perf_counter()
             self._ahead_from = driver.bytes_out
+        if not self.unacknowledged:
+            self._mute = False
         if deadline is not None:
             driver.transport.limit_waiting(None)
 
     def _caught_up(self) -> bool:
-        """Whether the reader has taken the last message."""
+        """Whether the reader has taken the last message, or will not tell."""
         if not self.lock.acquire(blocking=False):
             return False
         try:
@@ -186,7 +219,11 @@ class Sender:
             return True  # sending finds out, and says so
         finally:
             self.lock.release()
-        return not self.unacknowledged
+        limit = self.carrier.confirmation
+        late = limit is not None and time.perf_counter() - self._ahead_since > limit
+        if self.unacknowledged and late and limit is not None and not self._mute:
+            self._fall_mute(limit)
+        return not self.unacknowledged or self._mute
 
     def _break(self) -> None:
         """The connection failed: what was never acknowledged is lost, and counted."""
