@@ -21,6 +21,7 @@ TREE = [
     ("DecodeError", ValueError),
     ("Truncated", errors.DecodeError),
     ("LocalProtocolError", errors.YarpError),
+    ("NotAllowed", errors.LocalProtocolError),
     ("RemoteProtocolError", errors.YarpError),
     ("LoginRefused", errors.RemoteProtocolError),
 ]

@@ -62,6 +62,7 @@ _WHERE = {
     "DecodeError": "yarpy.errors",
     "Truncated": "yarpy.errors",
     "LocalProtocolError": "yarpy.errors",
+    "NotAllowed": "yarpy.errors",
     "RemoteProtocolError": "yarpy.errors",
     "LoginRefused": "yarpy.errors",
 }
@@ -91,6 +92,7 @@ if TYPE_CHECKING:
     from yarpy.errors import LocalProtocolError as LocalProtocolError
     from yarpy.errors import LoginRefused as LoginRefused
     from yarpy.errors import NoNameServer as NoNameServer
+    from yarpy.errors import NotAllowed as NotAllowed
     from yarpy.errors import PortClosed as PortClosed
     from yarpy.errors import RemoteProtocolError as RemoteProtocolError
     from yarpy.errors import Timeout as Timeout

@@ -45,6 +45,11 @@ class Contact:
         host = f"[{self.host}]" if ":" in self.host else self.host
         return f"{host}:{self.port}"
 
+    @property
+    def label(self) -> str:
+        """What ports call a connection that was dialled so: the name, or `/host:port/`."""
+        return self.name or f"/{self.address}/"
+
     def __str__(self) -> str:
         carrier = self.carrier or "tcp"
         if self.name:

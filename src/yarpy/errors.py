@@ -11,6 +11,7 @@
     |-- DecodeError (ValueError)         bytes or text that are not what they claim to be
     |   `-- Truncated                    ... because they end too early
     |-- LocalProtocolError               we asked for the impossible (a reply where none can go)
+    |   `-- NotAllowed                   ... or for what this port does not do
     `-- RemoteProtocolError              the peer broke the rules: its link closes, the port lives
         `-- LoginRefused                 ... or has its own rules: it wants another name, password
 
@@ -66,6 +67,10 @@ class Truncated(DecodeError):
 
 class LocalProtocolError(YarpError):
     """This side asked for something the connection cannot do."""
+
+
+class NotAllowed(LocalProtocolError):
+    """A port does not make such connections; another one may."""
 
 
 class RemoteProtocolError(YarpError):

@@ -111,7 +111,7 @@ def test_streams_are_copied_too_and_what_is_no_bottle_is_not(names: yarpy.LocalN
 
 def test_nobody_looks_on(names: yarpy.LocalNames, server: yarpy.RpcServer) -> None:
     with yarpy.RpcClient(names=names) as client:
-        with pytest.raises(yarpy.LinkClosed, match=r'no port "/monitor"'):
+        with pytest.raises(yarpy.LocalProtocolError, match=r'no port "/monitor"'):
             client.connect("/srv", "tcp+send.rpc_monitor")
         client.connect("/srv")
         assert client.call("hi")

@@ -128,7 +128,7 @@ def test_asking_somebody_to_send_here(names: LocalNames) -> None:
             in_.listen_to("/none")
         with (
             RpcServer("/server", lambda m: None, names=names),
-            pytest.raises(LocalProtocolError, match="does not send"),
+            pytest.raises(LocalProtocolError, match="Outputs not allowed"),
         ):
             in_.listen_to("/server")
 
@@ -181,6 +181,6 @@ def test_closed_port_refuses(names: LocalNames) -> None:
     port.close()
     with pytest.raises(PortClosed, match='"/it" is closed'):
         port.write([1])
-    with Port("/in", names=names), pytest.raises(LinkClosed):
+    with Port("/in", names=names), pytest.raises(PortClosed):
         port.connect("/in")
     assert port.outputs == []

@@ -9,7 +9,7 @@ import pytest
 from support.wait import wait_until
 
 import yarpy
-from yarpy.port import command
+from yarpy.port import connecting
 from yarpy.port.dialling import Dialling
 from yarpy.port.hub import Hub
 
@@ -46,13 +46,13 @@ def test_a_failed_attempt_lets_the_next_one_in() -> None:
 
 
 class Slow:
-    """`command.open_output`, but the thread of repairs pauses once inside until it is let go."""
+    """`connecting.open_output`, but the thread of repairs pauses once inside until it is let go."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.inside = threading.Event()
         self.go_on = threading.Event()
-        self._real = command.open_output
-        monkeypatch.setattr(command, "open_output", self)
+        self._real = connecting.open_output
+        monkeypatch.setattr(connecting, "open_output", self)
 
     def __call__(self, hub: Hub, *arguments: object) -> None:
         if threading.current_thread().name == "yarpy repair" and not self.inside.is_set():

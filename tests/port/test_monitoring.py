@@ -108,9 +108,9 @@ def test_a_dropped_question_is_answered_with_nothing(names) -> None:
     ("carrier", "kind", "text"),
     [
         ("tcp+send.wrod", yarpy.UnknownPlugin, 'did you mean "word"'),
-        ("tcp+send.word+word.bad", yarpy.LinkClosed, "bad is no word"),
-        ("tcp+recv.word+word.bad", yarpy.LinkClosed, "what is wrong with word there"),
-        ("tcp+recv.wrod", yarpy.LinkClosed, "what is wrong with wrod there"),
+        ("tcp+send.word+word.bad", yarpy.LocalProtocolError, "bad is no word"),
+        ("tcp+recv.word+word.bad", yarpy.LocalProtocolError, "what is wrong with word there"),
+        ("tcp+recv.wrod", yarpy.LocalProtocolError, "what is wrong with wrod there"),
         ("word", yarpy.UnknownPlugin, r"tcp\+recv\.word"),
     ],
 )

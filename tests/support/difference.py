@@ -102,6 +102,7 @@ ROS_WORDS = (
     "is the http connection of a ROS node that ends after one request"
 )
 MONITORS = "we say why a monitor does not start"
+WHY = "C++ does not say why it cannot connect; we do"
 AT_ONCE = (
     "C++ connects, and hangs up with the first message if the monitor does not start; we refuse at "
     "once and say why"
@@ -131,6 +132,12 @@ SELF = (
 # Only against real ports: these answers depend on what a port is and does.
 LIVE_DIFFERENT: dict[str, dict[int, Difference]] = {
     **DIFFERENT,
+    "admin_add_del": {
+        26: Difference(
+            matching(r'-1 "Cannot connect to nosuch://cap/in2: no carrier .*\\r\\n"\r\n<ACK>\r\n'),
+            WHY,
+        )
+    },
     "admin_atch_dtch": {
         step: Difference(
             matching(

@@ -19,7 +19,6 @@ from yarpy.errors import (
     AddressError,
     LinkClosed,
     LocalProtocolError,
-    LoginRefused,
     RemoteProtocolError,
     Timeout,
     UnknownName,
@@ -27,9 +26,8 @@ from yarpy.errors import (
 from yarpy.link.handshake import find_carrier
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
-from yarpy.port import probe
-from yarpy.port.command import NOT_ADMITTED
-from yarpy.port.wiring import unknown
+from yarpy.port import probe, refusal
+from yarpy.port.connecting import unknown
 from yarpy.route import masked, parse_carrier
 
 _POLL = 0.05  # seconds between looks while waiting
@@ -108,7 +106,7 @@ class Pairing:
                 f"a {asked.carrier} endpoint takes no YARP commands"
             )
         self.asked = asked
-        self.peer = _peer_name(from_ if self.pull else to)
+        self.peer = (from_ if self.pull else to).label
         # Perhaps a camera, which does not understand us: its watcher is asked first.
         self.plain = from_.reachable and not from_.name and not self.pull
 
@@ -144,7 +142,7 @@ class Pairing:
         if self.pull or not _competent(self.there):
             return Bottle()
         try:
-            return probe.ask(self.there, [*words, _peer_name(self.source)], timeout=10.0)
+            return probe.ask(self.there, [*words, self.source.label], timeout=10.0)
         except (LinkClosed, Timeout, RemoteProtocolError):
             return Bottle()
 
@@ -172,10 +170,6 @@ def _written(text: str) -> str:
         if ":/" in text and not contact.reachable
         else (contact.carrier if "://" in text else "")
     )
-
-
-def _peer_name(contact: Contact) -> str:
-    return contact.name or f"/{contact.address}/"
 
 
 def _competent(contact: Contact) -> bool:
@@ -222,12 +216,8 @@ def _connect(source: str, target: str, carrier: str | None, names: NameClient | 
     text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
     if reply and reply[0] == 0:
         return text
-    if text.startswith(NOT_ADMITTED):
-        raise LoginRefused(text)
-    # The other end may not be there yet: a camera that still starts, a program that died.
-    kind = LinkClosed if text.startswith("Cannot connect") else LocalProtocolError
     way = f'"{masked(source)}" -> "{masked(target)}" over {pairing.spec}'
-    raise kind(f"{way} was refused: {text or 'no answer'}")
+    raise refusal.error(text, way)
 
 
 def _decorated(text: str, carrier: str) -> str:

@@ -18,11 +18,10 @@ from yarpy.data.property import Property
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
-from yarpy.port import command
+from yarpy.port import command, disconnecting
 from yarpy.port.hub import Hub
 from yarpy.port.prop import get_peer, get_self, set_peer, set_self
 from yarpy.port.report import report
-from yarpy.route import masked
 from yarpy.wire.message import Message
 
 log = logging.getLogger("yarpy.port")
@@ -118,19 +117,14 @@ def _add(hub: Hub, request: Bottle) -> Bottle:
         dest = f"{carrier}:/{dest}"
     elif ":/" in dest and "://" not in dest:
         return Bottle([-1, f"Do not know how to connect to {dest}\r\n"])
-    try:
-        return Bottle([0, command.connect(hub, dest) + "\r\n"])
-    except command.Refused as error:
-        if error.__cause__ is not None:
-            line, cause = str(error), str(error.__cause__)
-            log.warning("%s: %s", hub.name, masked(line if cause in line else f"{line}: {cause}"))
-        return Bottle([-1, f"{error}\r\n"])
+    done, line = command.connect(hub, dest)
+    return Bottle([0 if done else -1, f"{line}\r\n"])
 
 
 def _delete(hub: Hub, request: Bottle) -> Bottle:
     name = _text(request, 1)
-    out, out_line = command.disconnect_output(hub, name)
-    in_, in_line = command.disconnect_input(hub, name)
+    out, out_line = disconnecting.disconnect_output(hub, name)
+    in_, in_line = disconnecting.disconnect_input(hub, name)
     lines = [line for found, line in ((out, out_line), (in_, in_line)) if found]
     if not lines:
         return Bottle([-1, f"{out_line}\r\n{in_line}\r\n"])

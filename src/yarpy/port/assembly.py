@@ -11,14 +11,14 @@ from typing import Final
 
 from yarpy.config.configuration import port_number
 from yarpy.names.base import NameClient
-from yarpy.port import admin, command, fork, reconnect
+from yarpy.port import admin, command, disconnecting, fork, reconnect
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.hub import Crew, Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.registration import Registration
 from yarpy.wire.stream import DEFAULT_LIMIT
 
-CREW: Final = Crew(admin.answer, command.obey, command.close_output, reconnect)
+CREW: Final = Crew(admin.answer, command.obey, disconnecting.close_output, reconnect)
 
 
 def open_hub(

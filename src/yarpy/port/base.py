@@ -10,7 +10,7 @@ from typing import Any, Self
 from yarpy.carriers.http.page import Pages
 from yarpy.contact import Contact
 from yarpy.errors import PortClosed
-from yarpy.port import command, wiring
+from yarpy.port import connecting, disconnecting
 from yarpy.port.connection import Connection
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.hub import Hub
@@ -45,7 +45,7 @@ class BasePort:
         """The connections that bring messages here."""
         hub = self._hub
         return [
-            Connection(link, lambda link=link: command.close_input(hub, link))  # type: ignore[misc]
+            Connection(link, lambda link=link: disconnecting.close_input(hub, link))  # type: ignore[misc]
             for link in hub.inputs
             if _shown(link.route.source)
         ]
@@ -55,7 +55,7 @@ class BasePort:
         """The connections that take messages away."""
         hub = self._hub
         return [
-            Connection(link, lambda link=link: command.close_output(hub, link))  # type: ignore[misc]
+            Connection(link, lambda link=link: disconnecting.close_output(hub, link))  # type: ignore[misc]
             for link in hub.outputs
         ]
 
@@ -69,19 +69,20 @@ class BasePort:
         """Send what this port writes to `target` (`/name`, `/host:port`) over `carrier`.
 
         With `timeout`, wait that many seconds for a port that is not there yet. Raises UnknownName,
-        UnknownPlugin (a wrong carrier), LinkClosed, LocalProtocolError (the port takes no outputs).
+        UnknownPlugin (a wrong carrier), LinkClosed (nobody is there), LoginRefused, NotAllowed
+        (this port takes no outputs), LocalProtocolError, RemoteProtocolError.
         """
-        wiring.connect(self._hub, target, carrier, timeout)
+        connecting.connect(self._hub, target, carrier, timeout)
         return self
 
     def disconnect(self, target: str) -> bool:
         """End what `connect` with this target has made; whether there was anything."""
-        return wiring.disconnect(self._hub, target)
+        return disconnecting.disconnect(self._hub, target)
 
     def listen_to(self, source: str, carrier: str = "tcp") -> Self:
         """Ask the port `source` to send here. Raises UnknownName, LinkClosed,
-        LocalProtocolError."""
-        wiring.subscribe(self._hub, source, carrier)
+        NotAllowed."""
+        connecting.subscribe(self._hub, source, carrier)
         return self
 
     def wait_for_outputs(self, count: int = 1, timeout: float | None = None) -> bool:

@@ -24,7 +24,7 @@ from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
-from yarpy.port import command, probe
+from yarpy.port import connecting, disconnecting, probe
 from yarpy.port.hub import Hub
 from yarpy.port.keepalive import Link, Pulse
 from yarpy.route import Route
@@ -212,10 +212,16 @@ class Repairer:
                 done = self._mend_input(item)
             else:
                 done = self._dial_again(item, item.route.target)
-        except command.Refused as error:
-            if isinstance(error.__cause__, LoginRefused):
-                item.pause = LOCKED
-                log.warning("%s: %s; it is asked again every %g s", item.hub.name, error, LOCKED)
+        except LoginRefused as error:
+            item.pause = LOCKED
+            who = item.route.source if item.incoming else item.route.target
+            log.warning(
+                "%s: not admitted to %s: %s; it is asked again every %g s",
+                item.hub.name,
+                who,
+                error,
+                LOCKED,
+            )
         except (YarpError, OSError):
             pass  # not yet
         if item.incoming and not _is_pulled(item.route) and now - item.since > INPUT_PATIENCE:
@@ -256,17 +262,17 @@ class Repairer:
                 return False
             if item not in self._lost or _is_there(item):
                 return True
-            contact = command.locate(hub, parse_contact(peer))
+            contact = hub.registration.locate(parse_contact(peer))
             if contact is None:
                 return False
-            command.open_output(hub, contact, peer, route.spec)
+            connecting.open_output(hub, contact, peer, route.spec)
             if item in self._lost:
                 way = "from" if item.incoming else "to"
                 log.info("%s: the connection %s %s is back", hub.name, way, peer)
             elif item.incoming:  # somebody disconnected it meanwhile
-                command.disconnect_input(hub, peer)
+                disconnecting.disconnect_input(hub, peer)
             else:
-                command.disconnect_output(hub, peer)
+                disconnecting.disconnect_output(hub, peer)
         return True
 
 

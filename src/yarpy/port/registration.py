@@ -131,6 +131,14 @@ class Registration:
                 return None
         return self.names
 
+    def locate(self, wanted: Contact) -> Contact | None:
+        """Where a destination is; None if no name service knows. Raises NoNameServer if none
+        answers."""
+        if wanted.reachable:
+            return wanted
+        names = self.service() if wanted.name.startswith("/") else None
+        return None if names is None else names.query(wanted.name)
+
     def group(self, local_host: str) -> tuple[str, int]:
         """The multicast group of this port: one for all its connections."""
         names = self.service()

@@ -1,0 +1,265 @@
+"""Connecting: makes the connections of a port of ours, whoever wants them - its program, a message
+from outside, or a repair.
+
+Rules: what cannot be is an error of yarpy.errors, and its text says why; the line that C++ has for
+it is found in `refusal`. Of one port's attempts to reach one target a single one goes on at a time.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from dataclasses import replace
+from typing import Final
+
+from yarpy.contact import Contact, parse_contact
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+from yarpy.errors import (
+    LinkClosed,
+    LocalProtocolError,
+    LoginRefused,
+    NotAllowed,
+    Timeout,
+    UnknownName,
+    UnknownPlugin,
+    YarpError,
+)
+from yarpy.link.handshake import find_carrier, greet
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
+from yarpy.names.address import is_loopback
+from yarpy.port import probe, refusal
+from yarpy.port.disconnecting import close_output
+from yarpy.port.hub import Hub
+from yarpy.route import CarrierSpec, Route, masked, parse_carrier
+
+JOINING: Final = 0.5  # seconds for a receiver to join a multicast group
+_POLL: Final = 0.05  # seconds between attempts to reach a port that is not there yet
+
+
+# -- for programs ---------------------------------------------------------------------------------
+
+
+def connect(hub: Hub, target: str, carrier: str, timeout: float | None) -> None:
+    """Connect `hub` to `target`; see Port.connect."""
+    wanted = parse_contact(target)
+    if not wanted.carrier or ":/" not in target:  # what is written in front of a target counts
+        wanted = replace(wanted, carrier=carrier)
+    find_carrier(parse_carrier(wanted.carrier).base)  # no time makes that one come
+    deadline = None if timeout is None else time.monotonic() + timeout
+    while True:
+        try:
+            dial(hub, wanted)
+            return
+        except YarpError as error:
+            # A camera locks those out who try a wrong password again and again.
+            final = isinstance(error, LoginRefused)
+            if final or deadline is None or time.monotonic() >= deadline:
+                raise _told(hub, wanted, masked(target), error) from error
+        time.sleep(_POLL)
+
+
+def _told(hub: Hub, wanted: Contact, target: str, error: YarpError) -> YarpError:
+    """The error with what it was about in front."""
+    if isinstance(error, UnknownPlugin):
+        return error
+    if isinstance(error, UnknownName):
+        return unknown(target, hub.service())
+    if isinstance(error, LoginRefused):
+        return LoginRefused(f'"{hub.name}" is not admitted to "{target}": {error}')
+    over = parse_carrier(wanted.carrier).base
+    return type(error)(f'"{hub.name}" cannot connect to "{target}" over {over}: {error}')
+
+
+def unknown(name: str, names: object) -> UnknownName:
+    """The error for a name that nobody knows, with the nearest one that somebody does."""
+    from difflib import get_close_matches
+
+    near: list[str] = []
+    try:
+        known = [contact.name for contact in names.list()]  # type: ignore[attr-defined]
+        near = get_close_matches(name, known, n=1)
+    except (YarpError, AttributeError):
+        pass
+    hint = f'did you mean "{near[0]}"?' if near else "is its program running?"
+    return UnknownName(f'no port "{name}" is registered: {hint} (`yarpy name list` shows all)')
+
+
+def joined(dest: str, carrier: str) -> str:
+    """Destination and carrier as one text, the way C++ puts them together."""
+    if not carrier:
+        return dest
+    bare = parse_contact(dest) if dest else None
+    if bare is not None and bare.carrier and not bare.reachable:
+        dest = bare.name
+    if bare is not None and bare.reachable:
+        return f"{carrier}://{bare.address}{bare.name}"
+    return f"{carrier}:/{dest}"
+
+
+def subscribe(hub: Hub, source: str, carrier: str) -> None:
+    """Ask the port `source` to send to `hub`; see BasePort.listen_to."""
+    contact = parse_contact(source)
+    if not contact.reachable:
+        names = hub.service()
+        found = names.query(contact.name) if names is not None else None
+        if found is None:
+            raise unknown(source, names)
+        contact = found
+    if not find_carrier(parse_carrier(carrier).base).push:
+        connect(hub, source, carrier, None)
+        return
+    target = hub.name if hub.registration.registered else f"/{hub.contact.address}"
+    reply = probe.ask(contact, ["add", joined(target, carrier)], secret_=hub.key)
+    if not reply or reply[0] != 0:
+        line = plain_text(reply[1]).strip() if len(reply) > 1 else ""
+        raise refusal.error(line, f'"{source}" -> "{hub.name}"')
+
+
+# -- one attempt ----------------------------------------------------------------------------------
+
+
+def dial(hub: Hub, wanted: Contact) -> CarrierSpec:
+    """Connect `hub` to the destination `wanted`, once; an existing connection to it is replaced.
+
+    Raises UnknownName, NoNameServer, UnknownPlugin, NotAllowed, LinkClosed, LoginRefused,
+    LocalProtocolError, RemoteProtocolError, PortClosed.
+    """
+    spec = parse_carrier(wanted.carrier or "tcp")
+    contact = hub.registration.locate(wanted)
+    if contact is None:
+        raise UnknownName(f'no port "{wanted.name}" is registered')
+    target = wanted.label
+    with hub.dialling.alone(target):
+        hub.crew.repair.give_up(hub, target)
+        if contact.name:
+            for old in hub.outputs:
+                if old.route.target == target:
+                    close_output(hub, old)
+        _check(hub, spec)
+        open_output(hub, contact, target, spec)
+    return spec
+
+
+def _check(hub: Hub, spec: CarrierSpec) -> None:
+    """Refuse what this port does not do, or this carrier."""
+    kind = find_carrier(spec.base)
+    if spec.log not in (None, "in"):
+        raise NotAllowed(f"Logger configured as log.{spec.log}, but only log.in is supported")
+    if kind.push and spec.log is None:
+        if not hub.admits_outputs:
+            raise NotAllowed("Outputs not allowed")
+        if hub.rpc and any(map(_asks, hub.outputs)):
+            raise NotAllowed("RPC output already connected")
+    unheard = spec.recv if kind.push else spec.send
+    if unheard and (kind.foreign or not kind.introduces):
+        raise LocalProtocolError(
+            f"{kind.name} does not tell the {'receiver' if kind.push else 'sender'} of "
+            f"{', '.join(name for name, _ in unheard)}: take another carrier, or attach it to "
+            "that port by the administrative message atch"
+        )
+
+
+def _asks(link: Outbound) -> bool:
+    """Whether an output is one that questions go to; not those of loggers and onlookers."""
+    return not link.log and not link.carrier.lossy
+
+
+def open_output(hub: Hub, contact: Contact, target: str, spec: CarrierSpec) -> None:
+    """Dial `contact` and take the connection in. Raises as `dial`."""
+    route = Route(hub.name, target, spec, contact.port)
+    try:
+        chain = hub.monitoring.outgoing(route)
+    except UnknownPlugin:
+        raise
+    except YarpError as error:  # what a monitor has met is not what became of this connection
+        raise LocalProtocolError(str(error)) from error
+    try:
+        try:
+            driver, speaker = greet(
+                contact, route, key=hub.key, group=hub.registration.group, limit=hub.limit
+            )
+        except (LinkClosed, Timeout):
+            other = _other_address(hub, contact)
+            if other is None:
+                raise
+            driver, speaker = greet(
+                other, route, key=hub.key, group=hub.registration.group, limit=hub.limit
+            )
+            contact = other
+        if not speaker.push:
+            # Who dials a pull carrier is the one that receives.
+            route.source, route.target = target, hub.name
+            source = Inbound(hub, driver, speaker)
+            hub.take_input(source)
+            threading.Thread(target=hub.serve_input, args=(source,), daemon=True).start()
+            return
+        if speaker.broadcast or spec.recv:
+            _wait_for_member(hub, contact, speaker.name)
+        link = Outbound(driver, speaker)
+        link.chain = chain
+        if spec.recv and link.ended():
+            monitors = ", ".join(name for name, _ in spec.recv)
+            raise LocalProtocolError(
+                f'"{target}" hung up: its log tells what is wrong with {monitors} there'
+            )
+        hub.add_output_link(link)
+    except (YarpError, OSError) as error:
+        if chain is not None:
+            chain.close()
+        if isinstance(error, LinkClosed):
+            _complain(hub, target)
+        if isinstance(error, YarpError) and not isinstance(error, Timeout):
+            raise
+        raise LinkClosed(str(error)) from error
+
+
+def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:
+    """Wait until the receiver says that it has our connection.
+
+    It does not say so by itself: a multicast greeting has no answer, and the first messages would
+    miss it; and what rides on its end is looked at after the greeting was answered.
+    """
+    deadline = time.monotonic() + JOINING
+    question = [Vocab("list"), Vocab("in"), hub.name]
+    try:
+        while time.monotonic() < deadline:
+            input_ = probe.ask(contact, question, timeout=JOINING, secret_=hub.key)
+            if input_ and parse_carrier(plain_text(input_.find("carrier", ""))).base == carrier:
+                return
+            time.sleep(0.002)
+    except (YarpError, OSError):
+        pass  # a receiver that answers no questions
+
+
+def _other_address(hub: Hub, contact: Contact) -> Contact | None:
+    """Where else a port on a host with several networks can be reached from here, if anywhere.
+
+    It told the name server all its addresses; whoever answers there has to have the right name.
+    """
+    names = hub.service()
+    if names is None or not contact.name:
+        return None
+    try:
+        addresses = names.get(contact.name, "ips")
+    except YarpError:
+        return None
+    for address in addresses:
+        other = replace(contact, host=address)
+        if address == contact.host or is_loopback(address):
+            continue
+        if probe.is_alive(other, hub.key):
+            return other
+    return None
+
+
+def _complain(hub: Hub, target: str) -> None:
+    """Tell the name service about a registered port that nobody answers for."""
+    names = hub.service()
+    if names is None:
+        return
+    try:
+        names.announce(target, False)
+    except YarpError:
+        pass  # it is not our business to be heard
