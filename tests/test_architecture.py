@@ -68,7 +68,6 @@ KNOWN_CIRCLES: list[set[str]] = [
         "yarpy.data.writer",
     },
     {"yarpy.wire.effects", "yarpy.wire.stream"},
-    {"yarpy.link.background", "yarpy.link.outbound", "yarpy.link.sender"},
 ]
 HEAVY_MODULES = ("numpy", "click", "rich", "sqlite3", "asyncio", "email", "http", "xml")
 

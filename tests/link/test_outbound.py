@@ -33,7 +33,7 @@ def test_waiting_for_acknowledgements() -> None:
         assert not link.broken
         read_messages(far, 1)
         link.wait_acknowledged(5)
-        assert link.unacknowledged == 0
+        assert link.sender.unacknowledged == 0
         far.close()
         with pytest.raises(LinkClosed):
             link.send(Packet([2]))
@@ -117,7 +117,7 @@ def test_end_behind_unread_acknowledgements_is_noticed() -> None:
         for number in range(5):
             link.send(Packet([number]))
         read_messages(far, 5)
-        assert link.unacknowledged
+        assert link.sender.unacknowledged
         far.close()
         wait_until(link.ended)
         assert link.broken
@@ -129,14 +129,14 @@ def test_end_behind_unread_acknowledgements_is_noticed() -> None:
 
 def test_background_link_drops_what_comes_too_early() -> None:
     with connected() as (link, far):
-        taken = sum(link.offer(Packet([number])) for number in range(50))
+        taken = sum(link.try_send(Packet([number])) for number in range(50))
         wait_until(lambda: link.counter.messages == taken)
         assert 1 <= taken < 50
         assert link.counter.drops == 50 - taken
         read_messages(far, taken)
-        wait_until(lambda: link._caught_up())
-        assert link.offer(Packet([1]))
-        assert link.drain(5)
+        wait_until(lambda: link.sender.caught_up())
+        assert link.try_send(Packet([1]))
+        assert link.wait_sent(5)
         assert total(link) == 51
 
 
@@ -147,7 +147,7 @@ def test_background_link_can_send_every_message() -> None:
         reader.start()
         for number in range(100):
             link.send(Packet([number]))
-        assert link.drain(5)
+        assert link.wait_sent(5)
         reader.join(5)
         assert not reader.is_alive()
         assert link.counter.messages == 100
@@ -174,7 +174,7 @@ def test_drain_has_a_limit() -> None:
         link.start_background()
         link.send(Packet([bytes(10_000_000)]))
         started = time.monotonic()
-        assert not link.drain(0.05)
+        assert not link.wait_sent(0.05)
         assert time.monotonic() - started < 2
         link.driver.transport.interrupt()
 
@@ -304,7 +304,7 @@ def test_stalled_reader_of_a_lossy_carrier_costs_its_writer_nothing() -> None:
 def test_reader_of_a_lossy_carrier_gets_a_short_burst_whole() -> None:
     with connected(Shown) as (link, far):
         link.start_background()
-        with link.lock:  # nothing leaves meanwhile
+        with link.sender.lock:  # nothing leaves meanwhile
             link.send(Packet([0]))
             wait_until(lambda: link._queue is not None and link._queue._busy)
             for number in range(1, 7):

@@ -99,12 +99,12 @@ def test_acknowledgements_are_read_late_but_within_a_window() -> None:
         threading.Thread(target=flood, daemon=True).start()
         read_messages(far, 10, ack=False)
         assert not done.wait(0.1), "a sender runs ahead of a reader that does not acknowledge"
-        assert link.unacknowledged <= WINDOW
+        assert link.sender.unacknowledged <= WINDOW
         far.sendall(ACK * 10)
         read_messages(far, 2 * WINDOW - 10)
         assert done.wait(5)
         link.wait_acknowledged(5)
-        assert link.unacknowledged == 0
+        assert link.sender.unacknowledged == 0
 
 
 def test_slow_reader_holds_its_sender_up() -> None:
@@ -116,7 +116,7 @@ def test_slow_reader_holds_its_sender_up() -> None:
         started = time.monotonic()
         link.send(Packet([2]))
         assert time.monotonic() - started > 0.05
-        assert link.unacknowledged == 1
+        assert link.sender.unacknowledged == 1
 
 
 @pytest.mark.parametrize("sends", [0, 1, 5, 17])
@@ -165,9 +165,9 @@ def test_gathered_messages_that_never_left_are_drops() -> None:
     for number in range(200):  # a flood: the last ones wait for the timer
         attempts += 1
         link.send(Packet([number]))
-        if link._gathered > 3:
+        if link.sender.gathered > 3:
             break
-    waiting = link._gathered
+    waiting = link.sender.gathered
     assert waiting
     sent = attempts - waiting
     transport.fails_after = transport.sends

@@ -1,7 +1,8 @@
 """Sending from other threads than the writer's: a link's own thread, and the one that sweeps up.
 
-Rules: both take the link's lock for one message at a time. The queue of a link's own thread holds
-one message, so that what is sent is never old; a carrier for people may allow a few more.
+Rules: they know no link; they are handed what to call, which takes the link's lock for one message
+at a time. The queue of a link's own thread holds one message, so that what is sent is never old; a
+carrier for people may allow a few more.
 """
 
 from __future__ import annotations
@@ -9,24 +10,25 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable
+from typing import Final
 
-from yarpy.errors import LinkClosed, YarpError
-from yarpy.qos import schedule
+from yarpy.errors import YarpError
+from yarpy.link.counter import Counter
 from yarpy.wire.message import Packet
-
-if TYPE_CHECKING:
-    from yarpy.link.outbound import Outbound
-    from yarpy.link.sender import Sender
 
 GATHER_SECONDS: Final = 200e-6  # how long a burst's message may wait for others
 
 
 class Background:
-    """The queue and loop of a link's own sending thread: one message in flight, one waiting."""
+    """The queue and loop of a link's own sending thread: one message in flight, one waiting.
 
-    def __init__(self, link: Outbound) -> None:
-        self._link = link
+    What is dropped is counted in `counter`.
+    """
+
+    def __init__(self, send: Callable[[Packet], object], counter: Counter) -> None:
+        self._send = send
+        self._counter = counter
         self._waiting: deque[Packet] = deque()
         self._busy = False
         self._stopped = False
@@ -38,7 +40,7 @@ class Background:
         with self._changed:
             busy = self._busy or bool(self._waiting)
             if self._stopped or (busy and len(self._waiting) >= backlog):
-                self._link.counter.drops += 1
+                self._counter.drops += 1
                 return False
             self._waiting.append(packet)
             self._changed.notify_all()
@@ -49,15 +51,17 @@ class Background:
         waiting = len(self._waiting)
         return not self._stopped and (waiting < backlog or not (waiting or self._busy))
 
-    def wait_put(self, packet: Packet) -> None:
-        """Take the packet; wait while an earlier one has not begun to leave."""
+    def wait_put(self, packet: Packet) -> bool:
+        """Take the packet; wait while an earlier one has not begun to leave. False, and counted,
+        if none leaves any more."""
         with self._changed:
             self._changed.wait_for(lambda: not self._waiting or self._stopped)
             if self._stopped:
-                self._link.counter.drops += 1
-                raise LinkClosed(f'the connection to "{self._link.route.target}" is gone')
+                self._counter.drops += 1
+                return False
             self._waiting.append(packet)
             self._changed.notify_all()
+            return True
 
     def wait_empty(self, timeout: float | None) -> bool:
         """Wait until nothing waits or leaves."""
@@ -70,18 +74,12 @@ class Background:
         """Let the thread end."""
         with self._changed:
             self._stopped = True
-            self._link.counter.drops += len(self._waiting)
+            self._counter.drops += len(self._waiting)
             self._waiting.clear()
             self._changed.notify_all()
 
     def run(self) -> None:
         """Send what is put, until stopped."""
-        link = self._link
-        if link.sched.policy >= 0:
-            try:
-                schedule(0, link.sched)
-            except YarpError:
-                pass  # said when it was asked for; the link sends all the same
         while True:
             with self._changed:
                 self._busy = False
@@ -93,20 +91,24 @@ class Background:
                 self._busy = True
                 self._changed.notify_all()
             try:
-                with link.lock:
-                    link.send_now(packet)
+                self._send(packet)
             except YarpError:
                 self.stop()
 
 
 class Sweeper:
-    """Sends what a burst left behind, if its writer does not come back to do so."""
+    """Sends what a burst left behind, if its writer does not come back to do so.
 
-    def __init__(self, link: Sender) -> None:
-        self._link = link
+    `sweep` does that, and says whether the burst may still go on.
+    """
+
+    def __init__(self, name: str, sweep: Callable[[], bool]) -> None:
+        self._sweep = sweep
         self._wake = threading.Semaphore(0)
         self._asleep = True
-        threading.Thread(target=self._run, name=f"yarpy sweep {link.route}", daemon=True).start()
+        self._stopped = False
+        self.thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self.thread.start()
 
     def watch(self) -> None:
         """Something was gathered."""
@@ -114,14 +116,19 @@ class Sweeper:
             self._asleep = False
             self._wake.release()
 
+    def stop(self) -> None:
+        """Let the thread end."""
+        self._stopped = True
+        self._wake.release()
+
     def _run(self) -> None:
-        while not self._link.broken:
-            if not self._wake.acquire(timeout=5.0):
-                continue
+        while True:
+            self._wake.acquire()
+            if self._stopped:
+                return
             while True:
                 time.sleep(GATHER_SECONDS)
-                self._link.sweep()
-                if time.perf_counter() - self._link.left > 100 * GATHER_SECONDS:
+                if not self._sweep():
                     break
             self._asleep = True
-            self._link.sweep()
+            self._sweep()

@@ -8,19 +8,21 @@ from __future__ import annotations
 
 import threading
 import time
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
+from yarpy.errors import LocalProtocolError, Timeout, YarpError
 from yarpy.link.background import Background
 from yarpy.link.sender import Sender, interrupts, seconds
-from yarpy.qos import Sched
+from yarpy.qos import Sched, schedule
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import CALL, Message, Packet
 
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
+    from yarpy.link.counter import Counter
     from yarpy.link.driver import Driver
     from yarpy.monitors.chain import Chain
+    from yarpy.route import Route
     from yarpy.wire.effects import Steps
 
 UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may hold back
@@ -29,11 +31,15 @@ LISTEN_PATIENCE: Final = 0.1  # seconds for an answer to what a reader says whil
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
 
-class Outbound(Sender):
-    """One connection out of a port. `background` links send from a thread of their own."""
+class Outbound:
+    """One connection out of a port."""
 
     def __init__(self, driver: Driver, carrier: Carrier, dialled: bool = True) -> None:
-        super().__init__(driver, carrier)
+        self.driver = driver
+        self.carrier = carrier
+        self.route: Route = carrier.route
+        self.sender = Sender(driver, carrier)
+        self.counter: Counter = self.sender.counter
         self.dialled = dialled  # by us; else the reader came to us, and has to come again
         self.sched = Sched()  # what somebody asked for; -1: nothing
         self.tos = 0
@@ -45,6 +51,11 @@ class Outbound(Sender):
         self._listening: Steps[None] | None = None
         self._queue: Background | None = None
 
+    @property
+    def broken(self) -> bool:
+        """Whether it has failed, or was closed."""
+        return self.sender.broken
+
     # -- sending ----------------------------------------------------------------------------------
 
     def send(self, packet: Packet) -> bool:
@@ -55,9 +66,9 @@ class Outbound(Sender):
         may be dropped instead. Raises LinkClosed.
         """
         if self.carrier.lossy:
-            if self.broken:
-                raise LinkClosed(f'the connection to "{self.route.target}" is gone')
-            return self.offer(packet)
+            if self.sender.broken:
+                raise self.sender.gone()
+            return self.try_send(packet)
         if self.chain is not None:
             passed = self._pass(self.chain, packet)
             if passed is None:
@@ -65,18 +76,18 @@ class Outbound(Sender):
             packet = passed
         if self._queue is not None:
             packet.own(self.carrier.spelling)  # what cannot be sent is the writer's error
-            self._queue.wait_put(packet)
+            if not self._queue.wait_put(packet):
+                raise self.sender.gone()
             return True
-        with self.lock:
-            self.send_now(packet)
+        self.sender.send(packet)
         return True
 
-    def offer(self, packet: Packet) -> bool:
+    def try_send(self, packet: Packet) -> bool:
         """Send in the background unless the previous message is still going: then drop, and
         count."""
         if self._queue is None:
             self.start_background()
-        if self.unacknowledged and not self._caught_up():
+        if self.sender.unacknowledged and not self.sender.caught_up():
             self.counter.drops += 1
             return False
         queue, carrier = self._queue, self.carrier
@@ -110,23 +121,31 @@ class Outbound(Sender):
         return True
 
     def start_background(self) -> None:
-        """Give the link a thread that sends; `send` and `offer` then only hand over."""
-        with self.lock:
+        """Give the link a thread that sends; `send` and `try_send` then only hand over."""
+        with self.sender.lock:
             if self._queue is None and not self.broken:
                 transport = self.driver.transport
                 if self.carrier.lossy and isinstance(transport, TcpTransport):
                     transport.limit_unsent(UNSENT)  # else the kernel is the growing queue
-                self._queue = Background(self)
+                self._queue = Background(self.sender.send, self.counter)
                 self.thread = threading.Thread(
-                    target=self._queue.run, name=f"yarpy {self.route}", daemon=True
+                    target=self._run, args=(self._queue,), name=f"yarpy {self.route}", daemon=True
                 )
                 self.thread.start()
 
-    def drain(self, timeout: float | None = None) -> bool:
+    def _run(self, queue: Background) -> None:
+        if self.sched.policy >= 0:
+            try:
+                schedule(0, self.sched)
+            except YarpError:
+                pass  # said when it was asked for; the link sends all the same
+        queue.run()
+
+    def wait_sent(self, timeout: float | None = None) -> bool:
         """Wait until everything handed over was sent; False if `timeout` seconds were not
         enough."""
         done = self._queue.wait_empty(timeout) if self._queue is not None else True
-        return done and self.sweep(timeout)
+        return done and self.sender.sweep(timeout)
 
     # -- questions --------------------------------------------------------------------------------
 
@@ -148,16 +167,16 @@ class Outbound(Sender):
                 return None
             packet = passed
         deadline = None if timeout is None else time.monotonic() + timeout
-        self._take_turn(timeout)
+        self._take_lock(timeout)
         try:
             started = time.perf_counter()
             driver = self.driver
             try:
-                if self.unacknowledged:
-                    self._collect(wait=True, deadline=deadline)
+                if self.sender.unacknowledged:
+                    self.sender.collect(wait=True, deadline=deadline)
                 carrier, stream = self.carrier, driver.stream
                 carrier.encode(stream, packet)
-                self._flush()
+                self.sender.flush()
                 if not stream.waiting:
                     driver.fill(deadline)
                 reply = carrier.parse_reply(stream)
@@ -166,13 +185,14 @@ class Outbound(Sender):
                 if carrier.acks and not carrier.parse_acks(stream, 1):
                     driver.run(carrier.expect_ack(stream), deadline)
             except Timeout:
-                self._break()
+                self.sender.give_up()
                 raise Timeout(
                     f'"{self.route.target}" did not reply within {timeout} s; is its program stuck?'
                 ) from None
             except BaseException as error:
                 if interrupts(error):
-                    self._break()  # its answer must not be taken for that of the next question
+                    # Its answer must not be taken for that of the next question.
+                    self.sender.give_up()
                 raise
             finally:
                 if deadline is not None:
@@ -186,7 +206,7 @@ class Outbound(Sender):
             reply.source = self.route.target
             return reply if chain is None else chain.reply(reply)
         finally:
-            self.lock.release()
+            self.sender.lock.release()
 
     def wait_acknowledged(self, timeout: float | None = None) -> None:
         """Wait until the peer has taken every message, unless it may miss some. Raises Timeout,
@@ -196,44 +216,45 @@ class Outbound(Sender):
         if timeout is None:
             timeout = self.carrier.confirmation
         deadline = None if timeout is None else time.monotonic() + timeout
-        self._take_turn(timeout)
+        self._take_lock(timeout)
         try:
-            self._collect(wait=True, all_=True, deadline=deadline)
+            self.sender.collect(wait=True, all_=True, deadline=deadline)
         except Timeout:
             raise
         except YarpError:
-            self._break()
+            self.sender.give_up()
             raise
         finally:
-            self.lock.release()
+            self.sender.lock.release()
 
-    def _take_turn(self, timeout: float | None) -> None:
+    def _take_lock(self, timeout: float | None) -> None:
         """Take the lock once nothing waits to be sent. Raises Timeout, LinkClosed."""
-        if self._queue is None and not self._gathered and self.lock.acquire(blocking=False):
+        sender = self.sender
+        if self._queue is None and not sender.gathered and sender.lock.acquire(blocking=False):
             pass  # as nearly always
-        elif not (self.drain(timeout) and self.lock.acquire(timeout=seconds(timeout))):
+        elif not (self.wait_sent(timeout) and sender.lock.acquire(timeout=seconds(timeout))):
             raise Timeout(f'"{self.route.target}" did not take earlier messages within {timeout} s')
-        if self.broken:
-            self.lock.release()
-            raise LinkClosed(f'the connection to "{self.route.target}" is gone')
+        if sender.broken:
+            sender.lock.release()
+            raise sender.gone()
 
     # -- ending -----------------------------------------------------------------------------------
 
     def ended(self) -> bool:
         """Whether the peer has hung up, found out without sending anything."""
-        if self.unacknowledged:
-            self._caught_up()  # acknowledgements that nobody read hide the end behind them
+        if self.sender.unacknowledged:
+            self.sender.caught_up()  # acknowledgements that nobody read hide the end behind them
         if self.carrier.listens:
             self._listen()
         if not self.broken and self.driver.transport.ended():
             self.driver.transport.interrupt()  # frees who is stuck in sending
-            with self.lock:
-                self._break()
+            with self.sender.lock:
+                self.sender.give_up()
         return self.broken
 
     def _listen(self) -> None:
         """Let the protocol deal with what the reader said meanwhile."""
-        if not self.lock.acquire(blocking=False):
+        if not self.sender.lock.acquire(blocking=False):
             return  # next time
         try:
             if self.broken:
@@ -251,9 +272,9 @@ class Outbound(Sender):
             driver.transport.limit_waiting(None)
         except (StopIteration, YarpError):
             self._say_last_words()
-            self._break()
+            self.sender.give_up()
         finally:
-            self.lock.release()
+            self.sender.lock.release()
 
     def _say_last_words(self) -> None:
         try:
@@ -264,11 +285,11 @@ class Outbound(Sender):
 
     def close(self, quit_: bool = True) -> None:
         """End the connection: say `q`, wait a moment for its acknowledgement, hang up."""
-        if not self.drain(CLOSE_PATIENCE):
+        if not self.wait_sent(CLOSE_PATIENCE):
             self.driver.transport.interrupt()  # nothing is taken: free who is stuck in sending
         if self._queue is not None:
             self._queue.stop()
-        with self.lock:
+        with self.sender.lock:
             if self.broken:
                 return
             driver = self.driver
@@ -278,13 +299,16 @@ class Outbound(Sender):
                     deadline = time.monotonic() + CLOSE_PATIENCE
                     driver.flush()
                     if self.carrier.acks:
-                        self.unacknowledged += 1
-                        self._collect(wait=True, all_=True, deadline=deadline)
+                        self.sender.unacknowledged += 1
+                        self.sender.collect(wait=True, all_=True, deadline=deadline)
                     else:
                         driver.run(self.carrier.hear_out(driver.stream), deadline)
             except (YarpError, OSError):
-                lost = max(self.unacknowledged - 1, 0)
+                lost = max(self.sender.unacknowledged - 1, 0)
                 self.counter.messages -= lost
                 self.counter.drops += lost
-            self.broken = True
-            driver.transport.close()
+            self.sender.end()
+
+    def snapshot(self) -> dict[str, Any]:
+        """Counters as plain numbers."""
+        return {**self.counter.as_dict(), "unacknowledged": self.sender.unacknowledged}

@@ -11,7 +11,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.link.background import GATHER_SECONDS, Sweeper
@@ -57,17 +57,22 @@ class Sender:
         self._ahead_from = 0
         self._rush = 0
         self._cost = 12e-6  # what a send takes when nothing holds it up: the least seen, in seconds
-        self.left = 0.0  # when the last send ended
-        self._gathered = 0  # messages that wait in the stream for the next send
+        self._left = 0.0  # when the last send ended
+        self.gathered = 0  # messages that wait in the stream for the next send
         self._gathered_since = 0.0
         self._sweeper: Sweeper | None = None
 
     # -- sending ----------------------------------------------------------------------------------
 
-    def send_now(self, packet: Packet) -> None:
+    def send(self, packet: Packet) -> None:
+        """Send a message, or gather it. Raises LinkClosed."""
+        with self.lock:
+            self._send(packet)
+
+    def _send(self, packet: Packet) -> None:
         if self.broken:
             self.counter.drops += 1
-            raise LinkClosed(f'the connection to "{self.route.target}" is gone')
+            raise self.gone()
         carrier, driver = self.carrier, self.driver
         now = time.perf_counter()
         try:
@@ -77,9 +82,9 @@ class Sender:
                 now - self._ahead_since > WINDOW_SECONDS
                 or driver.bytes_out - self._ahead_from > WINDOW_BYTES
             ):
-                self._collect(wait=True, all_=True)
+                self.collect(wait=True, all_=True)
             carrier.encode(driver.stream, packet)
-            if now - self.left > RUSH * self._cost:
+            if now - self._left > RUSH * self._cost:
                 self._rush = 0
                 self._flush_at_once(now)
             elif self._rush < BURST:
@@ -88,11 +93,11 @@ class Sender:
             elif carrier.gathers and packet.small:
                 self._gather(now)
             else:
-                self._flush()
+                self.flush()
         except BaseException as error:
             if interrupts(error):
                 self.counter.drops += 1
-                self._break()
+                self.give_up()
             raise
         counter = self.counter
         counter.count(now)
@@ -104,28 +109,33 @@ class Sender:
             self.unacknowledged += 1
             if self.unacknowledged % ASK_EVERY == 0:
                 self._look_for_acks()
-        self.left = time.perf_counter()
+        self._left = time.perf_counter()
 
-    def _flush(self) -> None:
+    def gone(self) -> LinkClosed:
+        """What a writer is told once it is broken."""
+        return LinkClosed(f'the connection to "{self.route.target}" is gone')
+
+    def flush(self) -> None:
+        """Send what was written, and what was gathered before it."""
         self.driver.flush()
-        self._gathered = 0
+        self.gathered = 0
 
     def _flush_at_once(self, now: float) -> None:
         """Send, and learn what that takes; often it seems more, when the reader runs first."""
-        self._flush()
+        self.flush()
         self._cost = min(self._cost, time.perf_counter() - now)
 
     def _gather(self, now: float) -> None:
         """Leave the message in the stream for the next send of many, which comes soon."""
-        if not self._gathered:
+        if not self.gathered:
             self._gathered_since = now
             if self._sweeper is None:
-                self._sweeper = Sweeper(self)
+                self._sweeper = Sweeper(f"yarpy sweep {self.route}", self._sweep_up)
             self._sweeper.watch()
-        if self._gathered + 1 >= GATHER or now - self._gathered_since >= GATHER_SECONDS:
-            self._flush()
+        if self.gathered + 1 >= GATHER or now - self._gathered_since >= GATHER_SECONDS:
+            self.flush()
         else:
-            self._gathered += 1
+            self.gathered += 1
 
     def sweep(self, timeout: float | None = None) -> bool:
         """Send what a burst left behind; False if somebody is stuck in sending for `timeout`
@@ -133,13 +143,18 @@ class Sender:
         if not self.lock.acquire(timeout=seconds(timeout)):
             return False
         try:
-            if self._gathered and not self.broken:
-                self._flush()
+            if self.gathered and not self.broken:
+                self.flush()
         except YarpError:
-            self._break()
+            self.give_up()
         finally:
             self.lock.release()
         return True
+
+    def _sweep_up(self) -> bool:
+        """Sweep for the sweeper: whether the burst may still go on."""
+        self.sweep()
+        return not self.broken and time.perf_counter() - self._left < 100 * GATHER_SECONDS
 
     # -- what comes back --------------------------------------------------------------------------
 
@@ -147,10 +162,10 @@ class Sender:
         """Wait for the acknowledgement of the last message before the next one goes, `limit`
         seconds at most."""
         if self._mute:
-            self._collect(wait=False)
+            self.collect(wait=False)
             return
         try:
-            self._collect(wait=True, all_=True, deadline=time.monotonic() + limit)
+            self.collect(wait=True, all_=True, deadline=time.monotonic() + limit)
         except Timeout:
             self._fall_mute(limit)
         finally:
@@ -170,18 +185,18 @@ class Sender:
 
     def _look_for_acks(self) -> None:
         try:
-            self._collect(wait=self.unacknowledged >= WINDOW and not self._mute)
+            self.collect(wait=self.unacknowledged >= WINDOW and not self._mute)
         except YarpError:
-            self._break()
+            self.give_up()
             raise
 
-    def _collect(self, wait: bool, all_: bool = False, deadline: float | None = None) -> None:
+    def collect(self, wait: bool, all_: bool = False, deadline: float | None = None) -> None:
         """Read acknowledgements: those that are there; with `wait`, until half the window is
         free."""
         target = 0 if all_ or (wait and self.unacknowledged < WINDOW) else WINDOW // 2
         driver = self.driver
-        if self._gathered:
-            self._flush()
+        if self.gathered:
+            self.flush()
         before = self.unacknowledged
         while self.unacknowledged > (target if wait else 0):
             if self._acks is None:
@@ -208,14 +223,14 @@ class Sender:
         if deadline is not None:
             driver.transport.limit_waiting(None)
 
-    def _caught_up(self) -> bool:
+    def caught_up(self) -> bool:
         """Whether the reader has taken the last message, or will not tell."""
         if not self.lock.acquire(blocking=False):
             return False
         try:
-            self._collect(wait=False)
+            self.collect(wait=False)
         except YarpError:
-            self._break()
+            self.give_up()
             return True  # sending finds out, and says so
         finally:
             self.lock.release()
@@ -225,19 +240,21 @@ class Sender:
             self._fall_mute(limit)
         return not self.unacknowledged or self._mute
 
-    def _break(self) -> None:
+    def give_up(self) -> None:
         """The connection failed: what was never acknowledged is lost, and counted."""
         if not self.broken:
-            self.broken = True
-            lost = self.unacknowledged if self.carrier.acks else self._gathered
+            lost = self.unacknowledged if self.carrier.acks else self.gathered
             self.counter.messages -= lost
             self.counter.drops += lost
-            self.unacknowledged = self._gathered = 0
-            self.driver.transport.close()
+            self.unacknowledged = self.gathered = 0
+            self.end()
 
-    def snapshot(self) -> dict[str, Any]:
-        """Counters as plain numbers."""
-        return {**self.counter.as_dict(), "unacknowledged": self.unacknowledged}
+    def end(self) -> None:
+        """Nothing is sent any more."""
+        self.broken = True
+        if self._sweeper is not None:
+            self._sweeper.stop()
+        self.driver.transport.close()
 
 
 def interrupts(error: BaseException) -> bool:

@@ -64,7 +64,7 @@ class BufferedPort(ReadingPort):
                 self._hub.drop_output(link, "the connection broke", lost=True)
                 continue
             try:
-                sent += link.offer(packet)
+                sent += link.try_send(packet)
             except LinkClosed as error:
                 self._hub.drop_output(link, str(error), lost=True)
             except YarpError as error:
