@@ -67,7 +67,6 @@ KNOWN_CIRCLES: list[set[str]] = [
         "yarpy.data.text",
         "yarpy.data.writer",
     },
-    {"yarpy.wire.effects", "yarpy.wire.stream"},
 ]
 HEAVY_MODULES = ("numpy", "click", "rich", "sqlite3", "asyncio", "email", "http", "xml")
 

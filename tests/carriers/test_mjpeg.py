@@ -19,8 +19,9 @@ from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Ya
 from yarpy.link.handshake import recognise
 from yarpy.route import Route
 from yarpy.testing import CarrierConformance, Dialogue, End, said
-from yarpy.wire.effects import Open, Steps
+from yarpy.wire.effects import Open
 from yarpy.wire.message import Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 Y, X = np.mgrid[:16, :24]

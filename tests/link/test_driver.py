@@ -14,7 +14,8 @@ from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Ti
 from yarpy.link.driver import Driver, closed
 from yarpy.transports.base import SocketTransport
 from yarpy.transports.datagram import DatagramTransport
-from yarpy.wire.effects import Group, Open, Steps, Switch
+from yarpy.wire.effects import Group, Open, Switch
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream, DatagramStream
 
 

@@ -19,8 +19,8 @@ from yarpy.link.receiver import MAX_UNSENT_ACKS
 from yarpy.route import Route
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import Message
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 ACK = framing.ACK

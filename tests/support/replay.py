@@ -19,8 +19,8 @@ from yarpy.errors import DecodeError
 from yarpy.link.handshake import UNKNOWN_PROTOCOL, find_carrier, recognise
 from yarpy.route import Route
 from yarpy.testing import End
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import Lines, Message, Packet
+from yarpy.wire.steps import Steps
 
 Answer = Callable[[Message], Any]
 

@@ -10,8 +10,8 @@ from yarpy.carriers.tcp import Tcp
 from yarpy.errors import YarpError
 from yarpy.testing.conformance_dialogue import DialogueConformance
 from yarpy.wire import framing
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import Message
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 

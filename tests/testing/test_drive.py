@@ -12,8 +12,9 @@ from yarpy.carriers.unix_stream import UnixStream
 from yarpy.errors import LinkClosed
 from yarpy.testing import Dialogue, End, Stalled, drive, said
 from yarpy.testing.drive import GROUP, TCP_PORT, UDP_PORT
-from yarpy.wire.effects import Open, Steps
+from yarpy.wire.effects import Open
 from yarpy.wire.framing import number
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream, DatagramStream
 
 

@@ -11,7 +11,7 @@ import secrets
 from collections.abc import Callable
 
 from yarpy.errors import RemoteProtocolError
-from yarpy.wire.effects import Steps
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 _NONCE = 8

@@ -21,8 +21,8 @@ from yarpy.carriers.http.page import Page
 from yarpy.data import codec
 from yarpy.route import Route
 from yarpy.wire import framing
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
 MAGIC_SIZE = 8  # bytes by which protocols are told apart

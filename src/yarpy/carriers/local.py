@@ -7,8 +7,9 @@ no end in the meeting place, so it is refused instead of waited for.
 from __future__ import annotations
 
 from yarpy.carriers.base import Carrier
-from yarpy.wire.effects import Open, Steps, Switch
+from yarpy.wire.effects import Open, Switch
 from yarpy.wire.message import Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream, ObjectStream
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from yarpy.carriers.udp import Datagrams
 from yarpy.errors import RemoteProtocolError
-from yarpy.wire.effects import Group, Open, Steps, Switch
+from yarpy.wire.effects import Group, Open, Switch
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream, DatagramStream
 
 

@@ -34,8 +34,9 @@ from yarpy.data import jpeg
 from yarpy.data.image import Image, is_image
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
 from yarpy.route import Route
-from yarpy.wire.effects import Open, Steps, Switch
+from yarpy.wire.effects import Open, Switch
 from yarpy.wire.message import DATA, Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
 MAX_FRAME: Final = 1 << 26  # bytes of one JPEG file

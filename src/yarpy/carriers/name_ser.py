@@ -10,8 +10,8 @@ from __future__ import annotations
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.text import reply_text
 from yarpy.route import Route
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import CALL, Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 _PREFIX = b"NAME_SERVER "

@@ -10,7 +10,7 @@ from typing import ClassVar
 from yarpy.carriers.base import ASKS_FOR_KEY, Indexed
 from yarpy.errors import RemoteProtocolError
 from yarpy.wire import framing
-from yarpy.wire.effects import Steps
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 

@@ -12,8 +12,8 @@ from yarpy.data import codec
 from yarpy.data.text import Balance
 from yarpy.errors import RemoteProtocolError
 from yarpy.wire import framing
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import Lines, Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 MAX_LINE = 1 << 24  # bytes of one payload spelled as text

@@ -12,8 +12,9 @@ from yarpy.errors import RemoteProtocolError, YarpError
 from yarpy.route import Route
 from yarpy.wire import framing
 from yarpy.wire.datagram import MAX_DATAGRAM, Assembler, split
-from yarpy.wire.effects import Open, Steps, Switch
+from yarpy.wire.effects import Open, Switch
 from yarpy.wire.message import CALL, DATA, Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream, DatagramStream
 
 

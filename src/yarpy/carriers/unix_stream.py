@@ -10,8 +10,9 @@ from __future__ import annotations
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
 from yarpy.errors import RemoteProtocolError
 from yarpy.wire import framing
-from yarpy.wire.effects import Open, Steps, Switch
+from yarpy.wire.effects import Open, Switch
 from yarpy.wire.message import Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 _ACK = b"ACK\0"

@@ -28,8 +28,8 @@ from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError
 from yarpy.route import Route
 from yarpy.wire import framing
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import ADMIN, CALL, QUIT, Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 if TYPE_CHECKING:

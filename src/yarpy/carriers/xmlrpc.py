@@ -24,8 +24,8 @@ from yarpy.data import codec, xmlrpc
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.route import Route
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import ADMIN, CALL, Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 if TYPE_CHECKING:

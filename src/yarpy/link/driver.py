@@ -17,7 +17,8 @@ from yarpy.transports.datagram import open_mcast, open_udp
 from yarpy.transports.inproc import InprocTransport, open_inproc
 from yarpy.transports.tcp import CONNECT_TIMEOUT, dial
 from yarpy.transports.unix import open_unix
-from yarpy.wire.effects import Group, Open, Steps, Switch
+from yarpy.wire.effects import Group, Open, Switch
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import DEFAULT_LIMIT, ByteStream, ObjectStream
 
 T = TypeVar("T")

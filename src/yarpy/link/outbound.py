@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from yarpy.link.driver import Driver
     from yarpy.monitors.chain import Chain
     from yarpy.route import Route
-    from yarpy.wire.effects import Steps
+    from yarpy.wire.steps import Steps
 
 UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may hold back
 LISTEN_MOST: Final = 64  # reads at a time of what a reader says

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from yarpy.carriers.base import Carrier
     from yarpy.route import Route
-    from yarpy.wire.effects import Steps
+    from yarpy.wire.steps import Steps
 
 MAX_UNSENT_ACKS = 64
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
     from yarpy.link.driver import Driver
     from yarpy.route import Route
-    from yarpy.wire.effects import Steps
+    from yarpy.wire.steps import Steps
 
 log = logging.getLogger("yarpy.link")
 

@@ -18,8 +18,9 @@ from yarpy import registry
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
 from yarpy.link.handshake import recognise
 from yarpy.route import Route
-from yarpy.wire.effects import Effect, Group, Open, Steps, Switch
+from yarpy.wire.effects import Group, Open, Switch
 from yarpy.wire.message import DATA, Message, Packet
+from yarpy.wire.steps import Effect, Steps
 from yarpy.wire.stream import DEFAULT_LIMIT, Buffer, ByteStream, DatagramStream, ObjectStream
 
 TCP_PORT = 21602  # what the accepting side of every connection says its number is

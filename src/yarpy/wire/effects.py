@@ -8,18 +8,15 @@ peer that hangs up opens `tcp`.
 
 from __future__ import annotations
 
-from collections.abc import Generator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import Any
 
-if TYPE_CHECKING:
-    from yarpy.wire.stream import ByteStream
-
-T = TypeVar("T")
+from yarpy.wire.steps import Effect
+from yarpy.wire.stream import ByteStream
 
 
 @dataclass(frozen=True, slots=True)
-class Open:
+class Open(Effect):
     """Open another way to the same peer; the driver sends back a handle with `.port` (0: none).
 
     `kind` names the transport (`tcp`, `udp`, `mcast`, `unix`, `inproc`). `listen` is true on the
@@ -34,7 +31,7 @@ class Open:
 
 
 @dataclass(frozen=True, slots=True)
-class Switch:
+class Switch(Effect):
     """Leave TCP: from here on this connection's bytes move by `handle`, buffered in `stream`."""
 
     handle: Any
@@ -42,9 +39,5 @@ class Switch:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class Group(Effect):
     """Ask for the multicast group of the sending port; the driver sends back `(address, port)`."""
-
-
-Effect: TypeAlias = Open | Switch | Group
-Steps: TypeAlias = Generator[Effect | None, Any, T]

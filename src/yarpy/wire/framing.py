@@ -13,8 +13,8 @@ from typing import Final
 from yarpy.data.codec import decode_leading
 from yarpy.data.walker import Walker
 from yarpy.errors import LinkClosed, RemoteProtocolError
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import CUT_OFF, LARGE, Buffer, ByteStream
 
 BASE: Final = 7777  # what a carrier's code is added to in its first eight bytes

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable
 from typing import Final, TypeAlias, TypeVar
 
 from yarpy.errors import LinkClosed, RemoteProtocolError
-from yarpy.wire.effects import Steps
+from yarpy.wire.steps import Steps
 
 Buffer: TypeAlias = bytes | bytearray | memoryview
 T = TypeVar("T")

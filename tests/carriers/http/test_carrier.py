@@ -33,8 +33,8 @@ from yarpy.link.handshake import recognise
 from yarpy.link.inbound import Inbound
 from yarpy.route import Route
 from yarpy.testing import CarrierConformance
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import Lines, Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream, run
 
 

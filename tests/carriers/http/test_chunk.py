@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from yarpy.carriers.http.chunk import MAX_LINE, Chunks
 from yarpy.errors import LinkClosed, RemoteProtocolError
-from yarpy.wire.effects import Steps
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 

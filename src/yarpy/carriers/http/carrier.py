@@ -44,8 +44,8 @@ from yarpy.carriers.http.response import (
 )
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.route import Route
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import CALL, QUIT, Lines, Message, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 if TYPE_CHECKING:

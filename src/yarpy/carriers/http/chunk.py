@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Final, TypeVar
 
 from yarpy.errors import LinkClosed, RemoteProtocolError
-from yarpy.wire.effects import Steps
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 T = TypeVar("T")

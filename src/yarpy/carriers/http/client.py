@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Final
 from yarpy.carriers.http.message import MAX_BODY, MAX_HEAD, TEXT, next_event, request_head
 from yarpy.errors import LinkClosed, RemoteProtocolError
 from yarpy.route import Route
-from yarpy.wire.effects import Steps
 from yarpy.wire.message import ADMIN, DATA, Packet
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 if TYPE_CHECKING:

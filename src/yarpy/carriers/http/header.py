@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Final
 
 from yarpy.errors import RemoteProtocolError
-from yarpy.wire.effects import Steps
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 MAX_LINE: Final = 1 << 14  # bytes of one line

@@ -10,7 +10,7 @@ from typing import Final, Never
 
 from yarpy.carriers.http.message import TEXT, Headers, response_head
 from yarpy.errors import LinkClosed, RemoteProtocolError
-from yarpy.wire.effects import Steps
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 DRAIN: Final = 1 << 26  # bytes of a refused request that are read
