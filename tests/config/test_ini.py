@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yarpy.config.ini import parse_ini, read_ini
+from yarpy.config.ini import LONGEST, parse_ini, read_ini
 
 ENVIRONMENT = {"HOME": "/h"}
 
@@ -198,3 +198,12 @@ def test_any_file(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None
 def test_hundreds_of_brackets() -> None:
     assert parse_ini(f"a {'(' * 3000}{')' * 3000}\nb 1").to_text() == "(b 1)"
     assert parse_ini(f"[{'(' * 3000}{')' * 3000}]\nb 1").to_text() != ""
+
+
+def test_variables_do_not_multiply_without_end(caplog: pytest.LogCaptureFixture) -> None:
+    """Each line makes the next a thousand times as long; what goes beyond the limit is empty."""
+    lines = "".join(f'v{n + 1} "{f"$v{n}" * 1000}"\n' for n in range(4))
+    with caplog.at_level(logging.WARNING, "yarpy.names"):
+        read = parse_ini(f"v0 abcdefgh\n{lines}")
+    assert all(len(value) <= LONGEST + 10_000 for value in read.values())
+    assert "longer than" in caplog.text

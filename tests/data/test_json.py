@@ -215,3 +215,11 @@ def test_pixels_may_stay_at_home() -> None:
         facts = json.loads(to_json(value, pixels=False))
         assert facts == {"type": "image", "width": 64, "height": 48, "pixel": "rgb"}
         assert json.loads(to_json(value)).keys() == {*facts, "base64"}
+
+
+@pytest.mark.parametrize("digits", [20, 309, 4300, 5000])
+def test_long_integers_are_refused(digits: int) -> None:
+    with pytest.raises(DecodeError):
+        from_json("9" * digits)
+    with pytest.raises(DecodeError):
+        from_json(f"[1, -{'9' * digits}]")

@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab, vocab_code, vocab_of
+from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab, fits, vocab_code, vocab_of
 
 
 @pytest.mark.parametrize(
@@ -70,3 +70,10 @@ def test_survives_copy_and_pickle(value):
     for again in (copy.deepcopy(value), pickle.loads(pickle.dumps(value))):
         assert again == value and type(again) is type(value)
         assert getattr(again, "code", None) == getattr(value, "code", None)
+
+
+@pytest.mark.parametrize("kind", [int, Int8, Int16, Int64])
+def test_what_fits(kind):
+    assert fits(kind(-128), 8) and fits(kind(127), 8)
+    assert fits(-(1 << 63), 64) and not fits(1 << 63, 64)
+    assert not fits(-(1 << 31) - 1, 32)

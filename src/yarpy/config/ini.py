@@ -17,21 +17,24 @@ swallows the rest of the file.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
-from yarpy.data.text import plain_text
+from yarpy.data.text import Balance, plain_text
 from yarpy.errors import DecodeError
 
 DEEPEST = 20  # files that include one another
 LARGEST = 16 << 20  # bytes of one file
+LONGEST = 1 << 20  # characters that the variables in a line may add to it
 
 # Finds a file in a context (a name; "" for none); None when there is none.
 Find = Callable[[str, str], Path | None]
 
-_VARIABLE = re.compile(r"\\.|\$(?:\{([^}]*)\}|\(([^)]*)\)|([A-Za-z0-9_]*))")
+_NESTING = re.compile(r'[\\"(){}]')
+# (a name has an end: a file of nothing but `${` would otherwise be searched for it at each)
+_VARIABLE = re.compile(r"\\.|\$(?:\{([^}]{0,255}+)\}|\(([^)]{0,255}+)\)|([A-Za-z0-9_]{0,255}+))")
 
 
 def read_ini(
@@ -88,14 +91,11 @@ class _Reader:
         self.parse(data.decode("utf-8", "surrogateescape"), [*parents, path])
 
     def parse(self, text: str, parents: list[Path]) -> None:
-        pending = ""
-        for line in text.removesuffix("\n").split("\n"):
-            pending = _unfolded(pending) + line.removesuffix("\r")
-            if _folded(pending) or not _balanced(pending):
-                continue
-            self._line(_without_comment(pending), parents)
-            pending = ""
-        self._put(pending)  # never closed: taken as it is, and most of it vanishes
+        for line, whole in _joined(text.removesuffix("\n").split("\n")):
+            if whole:
+                self._line(_without_comment(line), parents)
+            else:
+                self._put(line)  # never closed: taken as it is, and most of it vanishes
 
     def _line(self, line: str, parents: list[Path]) -> None:
         line = self._expand(line)
@@ -165,7 +165,25 @@ class _Reader:
     def _expand(self, line: str) -> str:
         if "$" not in line:
             return line
-        return _VARIABLE.sub(self._value, line)
+        left = LONGEST
+
+        def value(match: re.Match[str]) -> str:
+            nonlocal left
+            text = self._value(match)
+            left -= len(text)
+            return text if left >= 0 else ""
+
+        expanded = _VARIABLE.sub(value, line)
+        if left < 0:
+            import logging
+
+            logging.getLogger("yarpy.names").warning(
+                "the variables in a line make it longer than %d characters: those that go beyond "
+                "count as empty (%.60s)",
+                LONGEST,
+                line,
+            )
+        return expanded
 
     def _value(self, match: re.Match[str]) -> str:
         if match[0].startswith("\\"):
@@ -187,31 +205,32 @@ def _words(text: str) -> Bottle:
         return Bottle()
 
 
-def _folded(text: str) -> bool:
-    """Whether a backslash joins the next line to this one."""
-    return (len(text) - len(text.rstrip("\\"))) % 2 == 1
+def _joined(lines: Iterable[str]) -> Iterator[tuple[str, bool]]:
+    """Lines that a backslash, an open bracket or an open quote joins as one; whether it was closed.
 
-
-def _unfolded(text: str) -> str:
-    return text[:-1] if _folded(text) else text
-
-
-def _balanced(text: str) -> bool:
-    """Whether all round brackets and quotes of the text are closed."""
-    depth = {"(": 0, "{": 0}
-    quoted = escaped = False
-    for char in text:
-        if escaped:
-            escaped = False
-        elif char == "\\":
-            escaped = True
-        elif char == '"':
-            quoted = not quoted
-        elif not quoted and char in "({":
-            depth[char] += 1
-        elif not quoted and char in ")}":
-            depth["(" if char == ")" else "{"] -= 1
-    return not quoted and not any(depth.values())
+    Every character is looked at once, however many lines there are."""
+    parts: list[str] = []
+    balance = Balance()
+    slashes = 0  # backslashes at the end of what has come
+    closed = True
+    for line in lines:
+        line = line.removesuffix("\r")
+        if not parts and _NESTING.search(line) is None:
+            yield line, True
+            continue
+        last = len(line) - len(line.rstrip("\\"))
+        slashes = slashes + last if last == len(line) else last
+        folded = slashes % 2 == 1
+        if folded:
+            line = line[:-1]
+            slashes -= 1
+        parts.append(line)
+        closed = balance.feed(line.encode("utf-8", "surrogateescape")) and not folded
+        if closed:
+            yield "".join(parts), True
+            parts, balance, slashes = [], Balance(), 0
+    if not closed:
+        yield "".join(parts) + "\\" * folded, False
 
 
 def _without_comment(line: str) -> str:

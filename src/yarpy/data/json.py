@@ -20,13 +20,12 @@ from typing import Any, Final, Literal, TypeAlias
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
-from yarpy.data.value import MAX_DEPTH, Vocab
+from yarpy.data.value import MAX_DEPTH, Vocab, fits
 from yarpy.errors import DecodeError
 
 Outer: TypeAlias = Literal["auto", "list", "dict"]
 
 _TYPE: Final = "type"
-_INT64: Final = range(-(1 << 63), 1 << 63)
 
 
 def to_json(value: object, outer: Outer = "auto", *, pixels: bool = True) -> str:
@@ -235,8 +234,8 @@ def _message(value: Any, depth: int) -> Any:
     if value is None:
         return Vocab("null")
     if isinstance(value, int):
-        if value not in _INT64:
-            raise DecodeError(f"the number {value:.6g} does not fit in 64 bits")
+        if not fits(value, 64):
+            raise DecodeError(f"a number of {value.bit_length()} bits; a message has room for 64")
         return value
     if depth > MAX_DEPTH:
         raise DecodeError(f"JSON nested more than {MAX_DEPTH} deep")

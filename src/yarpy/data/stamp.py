@@ -15,7 +15,8 @@ from yarpy.errors import DecodeError, Truncated
 
 _WIRE = Struct("<iiiiid")
 _TEXT = re.compile(
-    r"\s*([+-]?\d{1,10})\s+([+-]?(?:inf|nan|(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?))", re.ASCII | re.I
+    r"\s*+([+-]?\d{1,10}+)\s++([+-]?(?:inf|nan|(?:\d++(?:\.\d*+)?|\.\d++)(?:e[+-]?\d++)?))",
+    re.ASCII | re.I,
 )
 _MAX_COUNT = 0x7FFFFFFF
 

@@ -42,10 +42,10 @@ _NESTING = re.compile(rb'[\\"(){}]')
 _SEPARATORS: Final = bytes.maketrans(b",\t\r\n", b"    ")
 
 #: Leading zeros, signs and x, then digits: anything else makes a token a word.
-_NUMBER = re.compile(rb"([0+\-xX]*)([0-9.eE+\-a-fA-F]*)")
+_NUMBER = re.compile(rb"([0+\-xX]*+)([0-9.eE+\-a-fA-F]*+)")
 _C_INT = re.compile(rb"([+-]?)(?:0[xX]([0-9a-fA-F]+)|(0[0-7]*)|([1-9][0-9]*))")
-_C_FLOAT = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-_C_HEX_FLOAT = re.compile(rb"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)")
+_C_FLOAT = re.compile(rb"[+-]?(?:[0-9]++(?:\.[0-9]*+)?|\.[0-9]++)(?:[eE][+-]?[0-9]++)?")
+_C_HEX_FLOAT = re.compile(rb"[+-]?0[xX](?:[0-9a-fA-F]++(?:\.[0-9a-fA-F]*+)?|\.[0-9a-fA-F]++)")
 _ESCAPE = re.compile(rb"\\(.?)", re.DOTALL)
 _ESCAPED: Final = {b"n": b"\n", b"r": b"\r", b"0": b"\0"}
 

@@ -147,8 +147,15 @@ def _vocab_text(code: int) -> str:
     return word.decode("utf-8", "surrogateescape")
 
 
+def fits(value: int, bits: int) -> bool:
+    """Whether a signed integer of `bits` bits can hold `value`.
+
+    (Not `value in range(...)`: for an instance of a subclass of int, as Int8 is, that walks through
+    all numbers of the range.)"""
+    return -(1 << (bits - 1)) <= value < 1 << (bits - 1)
+
+
 def _fitting(value: int, bits: int) -> int:
-    half = 1 << (bits - 1)
-    if not -half <= value < half:
+    if not fits(value, bits):
         raise OverflowError(f"{value} does not fit in {bits} bits; use a wider kind")
     return value

@@ -22,12 +22,10 @@ from typing import Any, Final
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
-from yarpy.data.value import MAX_DEPTH, Vocab
+from yarpy.data.value import MAX_DEPTH, Vocab, fits
 from yarpy.errors import DecodeError
 
 _HEAD: Final = '<?xml version="1.0"?>\r\n'
-_INT32: Final = range(-(1 << 31), 1 << 31)
-_INT64: Final = range(-(1 << 63), 1 << 63)
 _FORBIDDEN: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -126,7 +124,7 @@ def _value(value: Any, depth: int = 0, terse: bool = False) -> str:
     if isinstance(value, bool):
         return f"<value><boolean>{value:d}</boolean></value>"
     if isinstance(value, int):
-        kind = "i4" if value in _INT32 else "i8"
+        kind = "i4" if fits(value, 32) else "i8"
         return f"<value><{kind}>{int(value)}</{kind}></value>"
     if isinstance(value, float):
         return f"<value><double>{_decimal(value)}</double></value>"
@@ -229,7 +227,7 @@ def _read(value: Any, depth: int) -> Any:
     if isinstance(value, (bool, float, bytes)):
         return value
     if isinstance(value, int):
-        if value not in _INT64:
+        if not fits(value, 64):
             raise DecodeError("an integer of more than 64 bits")
         return value
     if depth >= MAX_DEPTH:

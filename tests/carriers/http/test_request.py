@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.steps import measured
 
 from yarpy.carriers.http.request import (
     MAX_FIELDS,
@@ -233,3 +236,24 @@ def test_what_programs_may_answer(target: str, asked: object) -> None:
     assert page_asked(Request("GET", target, {})) == asked
     assert page_asked(Request("HEAD", target, {})) == asked
     assert page_asked(Request("POST", target, {})) is None
+
+
+def test_arguments_do_not_multiply() -> None:
+    """Many short names that stand for one long argument: refused before the text is built."""
+    many, long = "$a" * 20_000, "x" * 50_000
+    body = json.dumps({"req": many, "a": long}).encode()
+    for request in (
+        Request("POST", "/form", {}, f"data={many}&a={long}".encode()),
+        Request("POST", "/", {"content-type": "application/json"}, body),
+        Request("GET", f"/?req={many[:4000]}&a={long[:8000]}", {}),
+    ):
+        with measured() as peak:
+            refusal = read_wish(request)
+        assert isinstance(refusal, Refusal) and refusal.status == 400
+        assert peak.bytes < 1 << 24
+    assert substitute("$a" * 1000, {"a": "x" * 1000}) == "x" * 1_000_000
+
+
+def test_the_address_of_a_proxy_counts_only_at_the_beginning() -> None:
+    wish = read_wish(Request("GET", "http://robot:10001/?req=see+http://elsewhere/", {}))
+    assert isinstance(wish, Wish) and wish.payload == b"see http://elsewhere/"

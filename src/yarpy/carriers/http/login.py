@@ -26,8 +26,8 @@ MAX_CHALLENGES: Final = 8192  # characters of all that a camera offers
 MAX_VALUE: Final = 1024  # characters of what goes back to it, its nonce above all
 
 _STRENGTH: Final = {"md5": 1, "sha-256": 2}
-_PIECE: Final = re.compile(r'(?:[^,"]|"(?:[^"\\]|\\.)*"?)+')
-_PARAMETER: Final = re.compile(r"(?:([^\s=\"]+)\s+)?([^\s=\"]+)\s*=\s*(.*)")
+_PIECE: Final = re.compile(r'(?:[^,"]|"(?:[^"\\]|\\.)*+"?+)++')
+_PARAMETER: Final = re.compile(r"(?:([^\s=\"]++)\s++(?!=))?([^\s=\"]++)\s*+=\s*+(.*)")
 _CONTROL: Final = re.compile(r"[\x00-\x1f\x7f]")
 
 

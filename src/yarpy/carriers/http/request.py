@@ -29,11 +29,12 @@ from yarpy.wire.message import ADMIN, CALL, DATA, Message, Spelling
 Form: TypeAlias = Literal["page", "json", "text", "none", "events", "guest"]
 
 MAX_FIELDS: Final = 1000
+MAX_FILLED: Final = 1 << 20  # characters that arguments may put in the place of their names
 FORM: Final = "application/x-www-form-urlencoded"
 READS: Final = ("*", "?", "h", "r")  # port commands that change nothing
 
 _VARIABLE = re.compile(r"\$([A-Za-z0-9_]*)")
-_ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*://[^/?#]*")
+_ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*+://[^/?#]*+")
 # What browsers and crawlers ask for by themselves: no message to a robot.
 _HABITS: Final = ("apple-touch-icon", ".well-known/", "robots.txt", "sitemap")
 _SPELLINGS: Final[dict[str, Form]] = {
@@ -92,17 +93,21 @@ class Refusal:
 
 def read_wish(request: Request) -> Wish | Refusal:
     """What a GET, HEAD or POST request is about."""
+    try:
+        return _read(request)
+    except DecodeError as error:
+        return Refusal(400, str(error))
+
+
+def _read(request: Request) -> Wish | Refusal:
     path, mark, query = _parts(request.target)
     if not query and "=" in path:
         path, query = "", path  # `/data=list`
-    try:
-        fields = read_fields(query)
-        if request.method == "POST":
-            if path not in ("", "form"):
-                return Refusal(404, "post to /form")
-            return _posted(request, fields)
-    except DecodeError as error:
-        return Refusal(400, str(error))
+    fields = read_fields(query)
+    if request.method == "POST":
+        if path not in ("", "form"):
+            return Refusal(404, "post to /form")
+        return _posted(request, fields)
     if path == "web/main.css":  # what the pages of C++ ports want of their name server
         from yarpy.carriers.http.port_page import STYLE
 
@@ -155,8 +160,20 @@ def read_fields(query: str) -> dict[str, str]:
 
 
 def substitute(text: str, fields: Mapping[str, str]) -> str:
-    """`text` with each `$name` replaced by the argument of that name; empty if there is none."""
-    return _VARIABLE.sub(lambda match: fields.get(match[1], ""), text)
+    """`text` with each `$name` replaced by the argument of that name; empty if there is none.
+
+    DecodeError if that would add more than MAX_FILLED characters."""
+    left = MAX_FILLED
+
+    def value(match: re.Match[str]) -> str:
+        nonlocal left
+        found = fields.get(match[1], "")
+        left -= len(found)
+        if left < 0:  # before the text is built: many short names may stand for one long argument
+            raise DecodeError(f"arguments that would make more than {MAX_FILLED} characters")
+        return found
+
+    return _VARIABLE.sub(value, text)
 
 
 # ---------------------------------------------------------------------------------- inside
@@ -164,7 +181,8 @@ def substitute(text: str, fields: Mapping[str, str]) -> str:
 
 def _parts(target: str) -> tuple[str, str, str]:
     """The path without its first slash, the question mark if there is one, and the query."""
-    target = _ABSOLUTE.sub("", target, count=1)
+    if (found := _ABSOLUTE.match(target)) is not None:
+        target = target[found.end() :]
     return target.partition("#")[0].removeprefix("/").partition("?")
 
 

@@ -1,0 +1,368 @@
+"""The grammars that read text of strangers, with what makes each of them work hardest.
+
+Rules: `GRAMMARS` names a function of bytes and the shapes that are bad for it: a beginning, a piece
+that is repeated, an end. Whoever adds a parser adds a line here.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from yarpy.carriers.http.login import MAX_CHALLENGES, parse_challenges
+from yarpy.carriers.http.port_page import page
+from yarpy.carriers.http.request import Request, page_asked, read_fields, read_wish
+from yarpy.config.configuration import parse_server
+from yarpy.config.ini import parse_ini
+from yarpy.contact import parse_contact
+from yarpy.data import xmlrpc
+from yarpy.data.json import from_json
+from yarpy.data.property import Property
+from yarpy.data.stamp import Stamp
+from yarpy.data.text import balanced, parse_text
+from yarpy.errors import AddressError, DecodeError, LocalProtocolError, RemoteProtocolError
+from yarpy.monitors.constraint import Constraint
+from yarpy.names.discovery import respond
+from yarpy.names.registration_line import parse_registration, plain
+from yarpy.nameserver.command import NameService
+from yarpy.nameserver.store import NameStore
+from yarpy.nameserver.topology import Topology
+from yarpy.route import Route, masked, parse_carrier
+from yarpy.wire.framing import parse_command
+
+#: what a parser may raise for a text that is none
+REFUSALS = (DecodeError, AddressError, LocalProtocolError, RemoteProtocolError)
+
+Shape = tuple[bytes, bytes, bytes]
+
+
+@dataclass(frozen=True)
+class Grammar:
+    """`read` takes bytes; `shapes` are (beginning, repeated piece, end); `pieces` is what texts of
+    the grammar are made of."""
+
+    read: Callable[[bytes], Any]
+    shapes: tuple[Shape, ...]
+    pieces: tuple[bytes, ...] = ()
+
+    def refuses(self, data: bytes) -> bool:
+        """Whether it says that this is no text of its own, as it should for most of them."""
+        try:
+            self.read(data)
+        except REFUSALS:
+            return True
+        return False
+
+
+def spelled(shape: Shape, size: int) -> bytes:
+    """A shape of about `size` bytes."""
+    begin, piece, end = shape
+    return begin + piece * (size // len(piece)) + end
+
+
+def _of_text(read: Callable[[str], Any]) -> Callable[[bytes], Any]:
+    return lambda data: read(data.decode("utf-8", "surrogateescape"))
+
+
+def _get(data: bytes) -> object:
+    return read_wish(Request("GET", "/" + data.decode("latin-1"), {}))
+
+
+def _post(data: bytes) -> object:
+    return read_wish(Request("POST", "/form", {}, data))
+
+
+def _post_json(data: bytes) -> object:
+    return read_wish(Request("POST", "/form", {"content-type": "application/json"}, data))
+
+
+def _page_asked(data: bytes) -> object:
+    return page_asked(Request("GET", "/" + data.decode("latin-1"), {}))
+
+
+def _introduced(data: bytes) -> object:
+    route = Route("", "/port")
+    route.introduce("/a " + data.decode("latin-1"))
+    return str(route)
+
+
+def _page(data: bytes) -> object:
+    return page("/port", [data.decode("utf-8", "surrogateescape")])
+
+
+def _challenges(data: bytes) -> object:
+    text = data.decode("latin-1")
+    return [parse_challenges(text[at : at + MAX_CHALLENGES]) for at in range(0, len(text), 8192)]
+
+
+def _call(data: bytes) -> object:
+    return xmlrpc.decode_call(
+        b"<methodCall><methodName>say</methodName><params><param><value>"
+        + data
+        + b"</value></param></params></methodCall>"
+    )
+
+
+def _method(data: bytes) -> object:
+    return xmlrpc.decode_call(b"<methodCall><methodName>" + data + b"</methodName></methodCall>")
+
+
+def _named(data: bytes) -> object:
+    service = NameService(NameStore(), Topology(time.monotonic))
+    text = data.decode("utf-8", "surrogateescape")
+    respond(b"NAME_SERVER " + data[:60000], service.answer_multicast)
+    return service.answer_text(text, "127.0.0.1").text_lines()
+
+
+LINE = b" and words up to the end of the line, as in a file that people write\n"
+_TEXT_PIECES = (
+    *(b"1", b"0", b"0x", b"+", b"-", b".", b"e", b"inf", b"nan", b"null", b"true", b"a", b"[a]"),
+    *(b'"', b"\\", b"(", b")", b"{", b"}", b"[", b"]", b" ", b",", b"\n", b"\xc3", b"\0", b"12 "),
+)
+
+GRAMMARS = {
+    "text": Grammar(
+        parse_text,
+        (
+            *(
+                (b"", digit, end)
+                for digit in (b"0", b"1", b"+", b"-", b"x")
+                for end in (b"g", b"e")
+            ),
+            (b"0x", b"1", b"."),
+            (b"0x.", b"f", b"g"),
+            (b"1.", b"1", b"e"),
+            (b".", b"1", b"e"),
+            (b"1e", b"1", b"."),
+            *((b"{", digit, end) for digit in (b"0", b"1") for end in (b"g}", b"e}")),
+            *((b"", piece, b"") for piece in (b"(", b")", b'"', b"\\", b"{", b"[", b" ", b"1 ")),
+            (b"(" * 90, b"a ", b")" * 90),
+            (b"", b"() ", b""),
+            (b'"', b"\\n", b'"'),
+        ),
+        _TEXT_PIECES,
+    ),
+    "property": Grammar(
+        Property.from_text, ((b"", b"(a 1) ", b""), (b"", b"(a ", b"")), _TEXT_PIECES
+    ),
+    "balance": Grammar(balanced, ((b"", b"(", b""), (b"", b'"', b""), (b"", b"\\", b""))),
+    "json": Grammar(
+        from_json,
+        (
+            *((b"", piece, b"") for piece in (b"1", b"[", b'{"a":', b" ", b'"', b"-", b"0", b"\\")),
+            (b"1.", b"1", b"x"),
+            (b"1e", b"1", b""),
+            (b"[", b"1,", b"1]"),
+            (b"[", b"[],", b"1]"),
+            (b'"', b"\\ud800", b'"'),
+            (b"{", b'"a":1,', b'"a":1}'),
+        ),
+        (
+            *(b"1", b"-", b".", b"e9", b"0", b"[", b"]", b"{", b"}", b'"', b"\\u0041", b"\\ud800"),
+            *(b",", b":", b" ", b"null", b"true", b"NaN", b"Infinity", b'"type":', b'"a"'),
+            *(b"9" * 309,),
+            *(b'"base64":', b'"blob"', b'"dict"', b'"list"'),
+        ),
+    ),
+    "xmlrpc": Grammar(
+        _call,
+        (
+            *((b"<i4>", piece, b"</i4>") for piece in (b"1", b" ", b"-")),
+            *((b"<double>", piece, b"</double>") for piece in (b"1", b"1e", b"0", b".")),
+            *((b"<biginteger>", piece, b"</biginteger>") for piece in (b"1",)),
+            *((b"<bigdecimal>", piece, b"</bigdecimal>") for piece in (b"1", b"0.")),
+            *((b"<base64>", piece, b"</base64>") for piece in (b"A", b"=", b"\n")),
+            *(
+                (b"", piece, b"")
+                for piece in (b"&amp;", b"<a ", b"<array><data>", b"</value><value>")
+            ),
+            (b"<dateTime.iso8601>", b"1", b"</dateTime.iso8601>"),
+            (b"<!--", b"-", b""),
+            (b"<![CDATA[", b"]", b""),
+            (b"[", b"1", b"e"),
+            (b"<array><data>", b"<value>1</value>", b"</data></array>"),
+        ),
+        (
+            *(b"<i4>", b"</i4>", b"<i8>", b"</i8>", b"<double>", b"</double>", b"1", b"nan", b"-"),
+            *(b"<array>", b"</array>", b"<data>", b"</data>", b"<struct>", b"</struct>", b"[a]"),
+            *(b"<member>", b"</member>", b"<name>", b"</name>", b"<value>", b"</value>", b"<nil/>"),
+            *(b"<base64>", b"</base64>", b"<boolean>", b"</boolean>", b"&lt;", b"&#0;"),
+            *(b"<string>",),
+            *(b"</string>", b"<dateTime.iso8601>", b"</dateTime.iso8601>", b"\0", b"\xff"),
+            *(b"9" * 20,),
+        ),
+    ),
+    "xmlrpc method": Grammar(_method, ((b"", b"1", b"e"), (b"", b"(", b"")), _TEXT_PIECES),
+    "stamp": Grammar(
+        Stamp.from_text,
+        ((b"", b" ", b"x"), (b"1", b" ", b"x"), (b"1 ", b"1", b"x"), (b"1 1.", b"1", b"e")),
+        (b"1", b" ", b".", b"e", b"-", b"+", b"inf", b"nan", b"2147483647"),
+    ),
+    "contact": Grammar(
+        _of_text(parse_contact),
+        ((b"/", b"a", b":"), (b"/a:", b"1", b"x"), (b"/[", b"1:", b"]x"), (b"", b"://", b"")),
+        (
+            b"/",
+            b":",
+            b"a",
+            b"1",
+            b"[",
+            b"]",
+            b"%",
+            b"://",
+            b"tcp",
+            b"+",
+            b".",
+            b"\xff",
+            b"\0",
+            b" ",
+        ),
+    ),
+    "specifier": Grammar(
+        _introduced,
+        ((b"", b"(", b""), (b"", b"(a b) ", b""), (b"", b")", b""), (b"", b"a ", b"")),
+        (b"(", b")", b" ", b"a", b"b", b"+", b".", b"\0"),
+    ),
+    "carrier": Grammar(
+        _of_text(parse_carrier),
+        ((b"", b"+", b""), (b"", b"(", b""), (b"(", b"+a", b")"), (b"", b"+send.x", b"")),
+        (b"+", b".", b"(", b")", b"a", b"send.", b"recv.", b"log.", b"password.", b" ", b"\0"),
+    ),
+    "masked": Grammar(
+        _of_text(masked),
+        ((b"", b"+password.", b""), (b"+password.", b"a", b""), (b"+password.", b":", b"")),
+        (b"+password.", b"+", b":/", b" ", b"a", b"."),
+    ),
+    "registration": Grammar(
+        _of_text(parse_registration),
+        (
+            (b"registration name ", b" ip ", b""),
+            (b"registration name a", b" ip x port 1", b""),
+            (b"registration name a ip ", b"x", b""),
+            (b"", b" ", b"x"),
+        ),
+        (b"registration name ", b" ip ", b" port ", b" type ", b"1", b"a", b"-", b"\n"),
+    ),
+    "plain": Grammar(_of_text(plain), ((b"", b'"', b""), (b"", b"\\", b""), (b"", b"a", b"\n"))),
+    "ini": Grammar(
+        _of_text(parse_ini),
+        (
+            *((b"", piece, b"") for piece in (b"${", b"$(", b"$", b"(" + LINE, b'"' + LINE, LINE)),
+            (b"", b"[a b]" + LINE, b""),
+            (b"", LINE[:-1] + b"\\\n", b""),
+            (b"a " + b"x" * 100 + b"\n", b"b $a$a$a" + LINE, b""),
+            (b"a b\n", b"a $a $a" + LINE, b""),
+        ),
+        (
+            *(b"a", b" ", b"\n", b"[", b"]", b"${", b"$(", b"$a", b"\\", b'"', b"("),
+            *(b"//", b"#", b"}"),
+            *(b"a 1\n", b"[a b]\n", b"\\\n", b"=", b"1"),
+        ),
+    ),
+    "server address": Grammar(
+        _of_text(parse_server),
+        ((b"[name]\n", b"a b\n", b""), (b"", b" ", b""), (b"", b"[name]\n", b"")),
+        (b"[name]\n", b"host a\n", b"port 1\n", b" ", b"\n", b'"', b"1", b"//", b"yarp", b"ros"),
+    ),
+    "fields": Grammar(
+        _of_text(read_fields),
+        ((b"a=", b"%41", b""), (b"a=", b"%", b""), (b"a=", b"+", b""), (b"a=", b"%ff", b"")),
+        (b"a", b"=", b"&", b"%41", b"%", b"+", b"%ff", b"\xff"),
+    ),
+    "get": Grammar(
+        _get,
+        (
+            *((b"", piece, b"") for piece in (b"a", b"a.", b"a:", b"/", b"?", b"#", b"%", b"$")),
+            (b"?req=", b"$a", b"&a=b"),
+            (b"?req=", b"$", b""),
+            (b"", b"a://", b""),
+        ),
+        (
+            *(b"a", b":", b"://", b"/", b"?", b"#", b"%41", b"%", b"&", b"=", b"+"),
+            *(b"req=", b"data="),
+            *(b"cmd=", b"$a", b"a=1", b"format=json", b"d%0A", b"admin=1", b"r", b"*"),
+        ),
+    ),
+    "post": Grammar(
+        _post,
+        (
+            (b"req=", b"$a", b"&a=b"),
+            (b"data=", b"$", b""),
+            (b"cmd=", b"a", b""),
+            (b"", b"%41", b""),
+            (b"cmd=d%0A", b"1", b"e"),
+        ),
+        (b"req=", b"data=", b"cmd=", b"$a", b"a=b", b"&", b"=", b"%0A", b"d ", b"\0", b"\xff"),
+    ),
+    "post json": Grammar(
+        _post_json,
+        ((b'{"req": "', b"$a", b'", "a": "b"}'), (b"", b"1", b""), (b"", b"[", b"")),
+        (b'{"req":', b'"$a"', b',"a":', b'"x"', b"}", b"[", b"]", b"1", b"true", b"null", b"1e999"),
+    ),
+    "page asked": Grammar(_page_asked, ((b"", b"a", b""), (b"", b"a.", b""), (b"?", b"%41", b""))),
+    "port page": Grammar(
+        _page,
+        (
+            (b"+ ", b"$", b""),
+            (b"+ ", b"[$a", b""),
+            (b"registration name ", b" ip ", b""),
+            (b"registration name ", b"a", b""),
+            (b"Name server at http://", b"a", b""),
+            (b"", b"+ $a" + LINE, b""),
+        ),
+        (
+            b"+ ",
+            b"$a",
+            b"[",
+            b"]",
+            b"registration name ",
+            b" ip ",
+            b" port ",
+            b" type ",
+            b"\n",
+            b"<",
+        ),
+    ),
+    "challenges": Grammar(
+        _challenges,
+        (
+            (b"", b"a", b""),
+            (b"", b'"', b""),
+            (b"", b"a ", b""),
+            (b"a=", b"\\", b""),
+            (b"", b"a=", b""),
+        ),
+        (b"Digest ", b"realm=", b'"', b"a", b",", b"=", b"\\", b" ", b"nonce=", b"qop=", b"Basic "),
+    ),
+    "constraint": Grammar(
+        _of_text(Constraint),
+        ((b"", b"(", b""), (b"", b"not ", b"a"), (b"", b"a or ", b"a")),
+        (b"a ", b"(", b")", b"not ", b"and ", b"or ", b"true ", b" "),
+    ),
+    "port command": Grammar(
+        _of_text(parse_command),
+        ((b"", b"a", b""), (b"d ", b" ", b""), (b"", b"~", b"")),
+        (b"d", b"D", b"a", b"~", b"q", b"r", b"*", b" ", b"\0", b"/x", b"!", b"tcp"),
+    ),
+    "name server": Grammar(
+        _named,
+        (
+            (b"register /a tcp ", b"1", b"e"),
+            (b"set /a x ", b"(", b""),
+            (b"list ", b"1 ", b""),
+            (b"register ", b"/", b""),
+            (b"query ", b"/a@", b""),
+        ),
+        (
+            *(b"register ", b"unregister ", b"list ", b"set ", b"get ", b"check "),
+            *(b"route ", b"gc "),
+            *(b"query ", b"bot ", b"NAME_SERVER ", b"announce ", b"subscribe ", b"topic "),
+            *(b"type ",),
+            *(b"/a ", b"/b ", b"... ", b"tcp ", b"1 ", b"(", b")", b'"', b"[add] "),
+            *(b"@/net", b"help "),
+            *(b"untopic ", b"unsubscribe ", b"127.0.0.1 ", b"99999999999 ", b"\0", b"\xff", b"= "),
+        ),
+    ),
+}
