@@ -8,6 +8,7 @@ import pytest
 from support.wait import wait_until
 
 import yarpy
+from yarpy.cli.overview import COLUMNS, layout
 
 
 @pytest.fixture(scope="module")
@@ -25,11 +26,39 @@ def ports(names):
 
 
 def test_lines(here, ports):
-    lines = here("stats").out.splitlines()
+    lines = here("stats", "--wide").out.splitlines()
     assert lines[0].split()[:4] == ["from", "to", "carrier", "messages"]
     [line] = [line for line in lines if "/over/in" in line]
     assert re.match(r"/over/\[bold\]out +/over/in +tcp +5 ", line)
     assert "AF42 / CS0" in line
+
+
+def test_few_columns_by_default_and_numbers_aligned(here, ports):
+    lines = here("stats").out.splitlines()
+    assert lines[0].split("  ")[0] == "from"
+    assert re.split(r"  +", lines[0]) == ["from", "to", "carrier", "msg/s", "MB/s", "drops",
+                                          "latency ms"]  # fmt: skip
+    end = lines[0].index("drops") + len("drops")
+    assert [line[:end].split()[-1].isdigit() for line in lines[1:]] == [True] * len(lines[1:])
+    assert all(line[end : end + 1] in ("", " ") for line in lines[1:])
+
+
+LONG = ("/robot/left_arm/very/long/name/state:o", "/logger/of/everything/left_arm/state:i", "tcp",
+        "1234567", "1000.0", "81.25", "12", "0.10", "0.52", "FIFO 30", "AF42", "")  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [80, 100, 120, 40])
+def test_narrow_terminals_lose_columns_and_no_letter_of_a_name(width):
+    lines = ["  ".join(text for text, _ in cells) for cells in layout([LONG], width, False)]
+    assert LONG[0] in lines[1] and LONG[1] in lines[1]
+    assert lines[0].rstrip().endswith("drops" if width < 100 else lines[0].split("  ")[-1])
+    assert max(map(len, lines)) <= max(width, len("  ".join([*LONG[:2], "drops"])))
+
+
+def test_wide_shows_everything():
+    [titles, row] = layout([LONG], 80, True)
+    assert [text.strip() for text, _ in row] == list(LONG)
+    assert len(titles) == len(COLUMNS)
 
 
 def test_json(here, ports):
@@ -52,7 +81,7 @@ def test_table_on_a_terminal(ports, monkeypatch):
 
     from rich.console import Console
 
-    from yarpy.cli.overview import Overview, _table
+    from yarpy.cli.overview import Overview, _text
 
     monkeypatch.setattr("yarpy.cli.overview.flows", lambda: found)
     from yarpy.network.traffic import End, Flow
@@ -62,10 +91,10 @@ def test_table_on_a_terminal(ports, monkeypatch):
     overview.look()
     out = io.StringIO()
     Console(file=out, width=200, force_terminal=True, color_system="standard").print(
-        _table(overview)
+        _text(overview, 200, False)
     )
     assert "/[bold]a" in out.getvalue()
-    assert "\x1b[1;31m3\x1b[0m" in out.getvalue()
+    assert "\x1b[1;31m    3\x1b[0m" in out.getvalue()
     found[0].sender.messages = 25
     overview.look()
     assert overview.rates["/[bold]a", "/b"][0] > 20

@@ -1,15 +1,17 @@
 """The table behind `yarpy stats`: every connection of the network, once or again and again.
 
 Rules: rates between two looks are counted, not smoothed, so the first look takes them from the
-ports. On a terminal it is a table; into a pipe go lines of text, with `--json` of JSON.
+ports. Names are never cut or folded: on a narrow terminal the least important columns are left out
+instead, and `--wide` shows them all wherever they go. With `--json` there is no table.
 """
 
 from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from yarpy.cli.output import print_json, print_line
 from yarpy.cli.signals import Interrupted
@@ -17,13 +19,36 @@ from yarpy.network.traffic import End, Flow, flows
 from yarpy.route import parse_carrier
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from rich.text import Text
 
 PERIOD: Final = 1.0  # seconds between looks
+
+
+class Column(NamedTuple):
+    """`rank` says when it goes: the highest first, 0 never."""
+
+    title: str
+    rank: int
+    numeric: bool = False
+    wide: bool = False  # shown with --wide only
+
+
 COLUMNS: Final = (
-    *("from", "to", "carrier", "messages", "msg/s", "MB/s", "drops"),
-    *("jitter ms", "latency ms", "thread", "packets", "monitors"),
+    Column("from", 0),
+    Column("to", 0),
+    Column("carrier", 2),
+    Column("messages", 0, numeric=True, wide=True),
+    Column("msg/s", 1, numeric=True),
+    Column("MB/s", 3, numeric=True),
+    Column("drops", 0, numeric=True),
+    Column("jitter ms", 0, numeric=True, wide=True),
+    Column("latency ms", 4, numeric=True),
+    Column("thread", 0, wide=True),
+    Column("packets", 0, wide=True),
+    Column("monitors", 0, wide=True),
 )
+DROPS: Final = "drops"
+GAP: Final = "  "
 
 
 class Overview:
@@ -105,25 +130,28 @@ class Overview:
         return found
 
 
-def show(watch: bool, as_json: bool) -> int:
+def show(watch: bool, as_json: bool, wide: bool) -> int:
     """The command without PORT."""
     overview = Overview()
     overview.look()
     if as_json:
         return _repeat(overview, watch, lambda: print_json(overview.as_json()))
     if not sys.stdout.isatty():
-        return _repeat(overview, watch, lambda: _print_lines(overview))
+        return _repeat(overview, watch, lambda: _print_lines(overview, wide))
     from rich.console import Console
     from rich.live import Live
 
+    console = Console()
     if not watch:
-        Console().print(_table(overview))
+        console.print(_text(overview, console.width, wide), soft_wrap=True)
         return 0
-    with Live(_table(overview), auto_refresh=False, screen=True) as live:
-        return _repeat(overview, True, lambda: live.update(_table(overview), refresh=True))
+    with Live(console=console, auto_refresh=False, screen=True) as live:
+        return _repeat(
+            overview, True, lambda: live.update(_text(overview, console.width, wide), refresh=True)
+        )
 
 
-def _repeat(overview: Overview, watch: bool, tell: Any) -> int:
+def _repeat(overview: Overview, watch: bool, tell: Callable[[], None]) -> int:
     try:
         tell()
         while watch:
@@ -135,27 +163,50 @@ def _repeat(overview: Overview, watch: bool, tell: Any) -> int:
     return 0
 
 
-def _print_lines(overview: Overview) -> None:
-    rows = [COLUMNS, *overview.rows()]
-    widths = [max(len(row[n]) for row in rows) for n in range(len(COLUMNS))]
-    for row in rows:
-        print_line("  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip())
+def _print_lines(overview: Overview, wide: bool) -> None:
+    for cells in layout(overview.rows(), None, wide):
+        print_line(GAP.join(text for text, _ in cells).rstrip())
 
 
-def _table(overview: Overview) -> Table:
-    from rich.table import Table
+def layout(
+    rows: list[tuple[str, ...]], width: int | None, wide: bool
+) -> list[list[tuple[str, Column]]]:
+    """The title line and the rows, as cells padded to their columns.
+
+    As many columns as `width` characters hold; all of them if it is None and `wide`.
+    """
+    cells = [tuple(column.title for column in COLUMNS), *rows]
+    widths = [max(len(row[n]) for row in cells) for n in range(len(COLUMNS))]
+    shown = [n for n, column in enumerate(COLUMNS) if wide or not column.wide]
+    if width is not None and not wide:
+        for n in sorted(shown, key=lambda n: -COLUMNS[n].rank):
+            if sum(widths[m] + len(GAP) for m in shown) - len(GAP) <= width or not COLUMNS[n].rank:
+                break
+            shown.remove(n)
+    return [
+        [
+            (row[n].rjust(widths[n]) if COLUMNS[n].numeric else row[n].ljust(widths[n]), COLUMNS[n])
+            for n in shown
+        ]
+        for row in cells
+    ]
+
+
+def _text(overview: Overview, width: int, wide: bool) -> Text:
+    """The table for a terminal: drops stand out."""
     from rich.text import Text
 
-    table = Table(title=f"{len(overview.flows)} connections", expand=False)
-    for name in COLUMNS:
-        numeric = name in COLUMNS[3:9]
-        table.add_column(name, justify="right" if numeric else "left", overflow="fold")
-    for row in overview.rows():
-        cells = [Text(cell) for cell in row]  # names are text, not markup
-        if row[6] not in ("", "0"):
-            cells[6].stylize("bold red")
-        table.add_row(*cells)
-    return table
+    whole = Text(no_wrap=True)
+    for number, cells in enumerate(layout(overview.rows(), width, wide)):
+        for text, column in cells:
+            dropped = number and column.title == DROPS and text.strip() not in ("", "0")
+            whole.append(text, "bold" if not number else "bold red" if dropped else "")
+            whole.append(GAP)
+        whole.append("\n")
+    if not overview.flows:
+        whole.append("no connections\n")
+    whole.rstrip()
+    return whole
 
 
 def _number(value: float | None, digits: int, scale: float = 1.0) -> str:

@@ -1,7 +1,9 @@
 """`yarpy stats [PORT]`: how every connection of the network is doing, or what one port sends.
 
-    stats [--watch] [--json]         all connections, as their ports count them: carrier, messages,
-                                     rates, drops, jitter, latency, what priority the system grants
+    stats [--watch] [--wide] [--json]
+                                     all connections, as their ports count them: carrier, rates,
+                                     drops, latency, as much as the terminal has room for; --wide
+                                     adds messages, jitter, granted priorities and monitors
     stats PORT [--duration S] ...    measure PORT by reading from it: a line each second, and the
                                      totals at the end, or when interrupted
 
@@ -76,6 +78,7 @@ def size_of(message: yarpy.Message) -> int:
 @click.command()
 @click.argument("port", required=False)
 @click.option("--watch", is_flag=True, help="Without PORT: show it anew each second.")
+@click.option("--wide", is_flag=True, help="Without PORT: all columns, however long the lines.")
 @click.option(
     "--port_type", type=click.Choice(["BufferedPort", "Port"]), default="BufferedPort",
     help="Read all that comes (BufferedPort), or one by one while PORT waits (Port).",
@@ -86,6 +89,7 @@ def size_of(message: yarpy.Message) -> int:
 def command(
     port: str | None,
     watch: bool,
+    wide: bool,
     port_type: str,
     duration: float | None,
     protocol: str,
@@ -95,7 +99,7 @@ def command(
     if port is None:
         from yarpy.cli.overview import show
 
-        return show(watch, as_json)
+        return show(watch, as_json, wide)
     kind: Any = yarpy.Port if port_type == "Port" else yarpy.BufferedPort
     options = {} if port_type == "Port" else {"strict": True}
     with open_port(kind, ANY, **options) as reader:
