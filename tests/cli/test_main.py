@@ -1,6 +1,7 @@
 """The frame of the command: verbs are found, errors are one line, exit codes are as promised."""
 
 import importlib
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -10,15 +11,16 @@ import pytest
 
 from yarpy import registry
 from yarpy.cli import main as frame
+from yarpy.cli.verb_list import GROUPS, VERBS
 
-VERBS = Path(frame.__file__).parent / "verbs"
+FOLDER = Path(frame.__file__).parent / "verbs"
 
 
 def test_every_verb_has_a_module_and_every_module_is_a_verb():
-    assert {path.stem for path in VERBS.glob("*.py")} - {"__init__"} == set(frame.VERBS)
+    assert {path.stem for path in FOLDER.glob("*.py")} - {"__init__"} == set(VERBS)
 
 
-@pytest.mark.parametrize("verb", frame.VERBS)
+@pytest.mark.parametrize("verb", VERBS)
 def test_every_verb_explains_itself(verb, here):
     assert isinstance(importlib.import_module(f"yarpy.cli.verbs.{verb}").command, click.Command)
     said = here(verb, "--help")
@@ -30,14 +32,39 @@ def test_every_verb_explains_itself(verb, here):
 def test_every_verb_is_in_the_documentation():
     page = (Path(__file__).parents[2] / "docs" / "cli.md").read_text()
     headings = " ".join(line for line in page.splitlines() if line.startswith("### "))
-    assert [verb for verb in frame.VERBS if f"`{verb}" not in headings] == []
+    assert [verb for verb in VERBS if f"`{verb}" not in headings] == []
 
 
 def test_alone_it_lists_the_verbs(cli):
     said = cli.run()
     assert said.returncode == 0
-    for verb, line in frame.VERBS.items():
-        assert f"  {verb} " in said.stdout and line in said.stdout
+    for name, verb in VERBS.items():
+        assert f"  {name} " in said.stdout and verb.about in said.stdout
+
+
+def test_groups_are_those_of_the_documentation():
+    page = (Path(__file__).parents[2] / "docs" / "cli.md").read_text()
+    sections = {part.partition("\n")[0]: part for part in page.split("\n## ")}
+    for title, verbs in GROUPS.items():
+        missing = [verb for verb in verbs if f"`{verb}" not in sections[title]]
+        assert missing == [], title
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_example_is_what_the_verb_takes(verb):
+    """The words of each example are parsed, and nothing is run."""
+    words = shlex.split(VERBS[verb].example.partition(" >> ")[0])
+    assert words[0] == verb
+    command = frame.find_verb(verb)
+    assert command is not None
+    with frame.root.make_context("yarpy", [verb], resilient_parsing=True) as top:
+        command.make_context(verb, words[1:], parent=top)
+
+
+def test_defaults_and_an_example_are_shown(here):
+    said = here("help", "split").out
+    assert "[default: udp]" in said
+    assert "Example: yarpy split /state" in said
 
 
 def test_version_flag(here):
@@ -79,7 +106,6 @@ def test_verbs_of_other_packages(here, monkeypatch):
         click.echo("hello")
         return 3
 
-    monkeypatch.setattr(frame, "VERBS", frame.VERBS)
     foreign = registry.Registry("commands", {})
     foreign.add("wave", wave)
     foreign.add("odd", print)

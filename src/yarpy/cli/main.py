@@ -1,9 +1,9 @@
 """`yarpy VERB ...`: finds the verb, runs it, and turns errors into one line and an exit code.
 
 Rules: a verb is a module of `verbs` that has a click command called `command`, and a line in
-`VERBS`; it is imported when it is used, so that `yarpy --help` and small verbs start fast. Packages
-add verbs by the entry point group `yarpy.commands`. What a command returns is the exit code, None
-is 0. Standard output belongs to the verb; errors go to standard error as `error: ...`.
+`verb_list`; it is imported when it is used, so that `yarpy --help` and small verbs start fast.
+Packages add verbs by the entry point group `yarpy.commands`. What a command returns is the exit
+code, None is 0. Standard output belongs to the verb; errors go to standard error as `error: ...`.
 
 Exit codes: 0 done; 1 not done, or used wrongly; 255 no such verb; 128 + N ended by signal N.
 """
@@ -18,52 +18,8 @@ import click
 
 from yarpy.cli import signals
 from yarpy.cli.stderr import complain
+from yarpy.cli.verb_list import GROUPS, VERBS
 from yarpy.errors import UnknownPlugin, YarpError
-
-VERBS: Final = {
-    "admin": "write or rpc to the administrative side of a port",
-    "check": "try whether ports can be opened, found and connected here",
-    "clean": "take names of dead ports off the name server",
-    "conf": "show or set the address of the name server",
-    "connect": "connect two ports, or list persistent connections",
-    "demo": "see and move a simulated robot in a browser",
-    "detect": "search the network for a name server",
-    "disconnect": "end a connection of two ports",
-    "env": "print environment variables",
-    "exists": "tell whether a port or a connection is alive",
-    "hear": "play what a port says, or record it",
-    "help": "list the commands, or explain one",
-    "merge": "concatenate what several ports send",
-    "name": "send a command to the name server",
-    "namespace": "show or set the namespaces in use",
-    "panel": "see and move a robot in a browser",
-    "ping": "ask a port about itself and its connections",
-    "plugin": "list carriers, types, monitors and commands that are installed",
-    "qos": "show or set the priority of a connection's packets",
-    "read": "print what arrives at a port",
-    "readwrite": "print what arrives at one port, send lines from another",
-    "repeat": "send on what a port receives",
-    "resource": "find configuration files",
-    "rpc": "send lines to a port and print its replies",
-    "rpcserver": "print questions and answer them by hand",
-    "sample": "send on what a port receives, at a constant rate",
-    "sched": "show or set the scheduling of a connection's thread",
-    "scope": "look at numbers as curves in a browser",
-    "server": "run a name server",
-    "sim": "simulate a robot",
-    "speak": "send a WAV file or the microphone to ports",
-    "split": "send each element of a message to a port of its own",
-    "stats": "show how every connection is doing, or measure what a port sends",
-    "terminate": "ask a program to end, by the name of its port",
-    "time": "print the time, again and again",
-    "topic": "make, list or remove topics",
-    "trafficgen": "send messages of a given size at a given rate",
-    "version": "print the version",
-    "view": "look at images in a browser",
-    "wait": "wait for a port or a connection",
-    "where": "tell where the name server is",
-    "write": "send lines from a port",
-}
 
 ALIASES: Final = {"priority-qos": "qos", "priority-sched": "sched"}  # the spellings of C++
 NO_SUCH_VERB: Final = 255
@@ -93,13 +49,18 @@ class Verbs(click.Group):
         return args[0], command, args[1:]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """The list of verbs, from the table: loading them all would take a second."""
-        rows = [
-            (name, VERBS.get(name) or "(from an installed package)")
-            for name in self.list_commands(ctx)
-        ]
-        with formatter.section("Commands"):
-            formatter.write_dl(rows)
+        """The groups of verbs, from the table: loading them all would take a second."""
+        groups = {
+            title: [(name, verb.about) for name, verb in group.items()]
+            for title, group in GROUPS.items()
+        }
+        foreign = [name for name in self.list_commands(ctx) if name not in VERBS]
+        groups["Of installed packages"] = [(name, "") for name in foreign]
+        wide = max(len(name) for rows in groups.values() for name, _ in rows)
+        for title, rows in groups.items():
+            if rows:
+                with formatter.section(title):
+                    formatter.write_dl([(name.ljust(wide), about) for name, about in rows])
 
 
 def find_verb(name: str) -> click.Command | None:
@@ -120,6 +81,8 @@ def find_verb(name: str) -> click.Command | None:
             f'the command "{name}" is installed, but is not a click command '
             "(its entry point in the group yarpy.commands must name one)"
         )
+    if name in VERBS:
+        command.epilog = f"Example: yarpy {VERBS[name].example}"
     return command
 
 
@@ -134,7 +97,11 @@ def _advice(name: str, known: Sequence[str]) -> str:
 @click.group(
     cls=Verbs,
     invoke_without_command=True,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    context_settings={
+        "help_option_names": ["-h", "--help"],
+        "max_content_width": 100,
+        "show_default": True,
+    },
 )
 @click.option("--version", is_flag=True, help="Print the version.")
 @click.pass_context

@@ -28,7 +28,7 @@ LATE = 0.5  # seconds that the loudspeaker may be behind
 @click.command()
 @click.argument("port", required=False)
 @click.option("--record", "path", metavar="FILE", help="Write a WAV file instead of playing.")
-@click.option("--name", default=NAME, metavar="PORT", help=f"The port to open ({NAME}).")
+@click.option("--name", default=NAME, metavar="PORT", help="The port to open.")
 @click.option("--carrier", metavar="C", help="How PORT is connected (tcp).")
 @click.option(
     "--duration", type=click.FloatRange(0, min_open=True), metavar="S",

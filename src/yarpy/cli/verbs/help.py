@@ -1,4 +1,8 @@
-"""`yarpy help [COMMAND]`: the list of commands, or what one of them does."""
+"""`yarpy help [COMMAND]`: the list of commands, or what one of them does.
+
+`yarpy help --man` prints all of it as a manual page, which `man yarpy` shows where yarpy is
+installed.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +11,18 @@ import click
 
 @click.command()
 @click.argument("verb", required=False, metavar="[COMMAND]")
+@click.option("--man", is_flag=True, help="Print the manual page, in the language of man(7).")
 @click.pass_context
-def command(ctx: click.Context, verb: str | None) -> None:
+def command(ctx: click.Context, verb: str | None, man: bool) -> None:
     """List the commands, or explain one."""
     from yarpy.cli import main
 
     top = ctx.find_root()
+    if man:
+        from yarpy.cli.manual import manual
+
+        click.echo(manual(main.root), nl=False)
+        return
     if verb is None:
         click.echo(main.root.get_help(top))
         return

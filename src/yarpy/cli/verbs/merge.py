@@ -53,7 +53,7 @@ class Merger:
 @click.option("--input", "first", metavar="PORT...", help="The ports to read from.")
 @click.option("--output", default=OUTPUT, metavar="PORT", help=f"Where it leaves ({OUTPUT}).")
 @click.option("--worker", default=WORKER, metavar="PREFIX", help=f"Where it arrives ({WORKER}).")
-@click.option("--carrier", default="udp", help="How the ports are connected (udp).")
+@click.option("--carrier", default="udp", help="How the ports are connected.")
 def command(
     ports: tuple[str, ...], first: str | None, output: str, worker: str, carrier: str
 ) -> int:

@@ -29,7 +29,7 @@ ROUNDS = 10
 @click.argument("port")
 @click.option("--time", "timed", is_flag=True, help="Measure the time of connecting.")
 @click.option("--rate", is_flag=True, help="Measure the rate of what PORT sends.")
-@click.option("--duration", default=5.0, metavar="S", help="Seconds for --rate (5).")
+@click.option("--duration", default=5.0, metavar="S", help="Seconds for --rate.")
 @click.option("--json", "as_json", is_flag=True, help="Print the answer as a JSON object.")
 def command(port: str, timed: bool, rate: bool, duration: float, as_json: bool) -> int:
     """Ask PORT about itself and its connections."""

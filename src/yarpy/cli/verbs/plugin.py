@@ -40,7 +40,7 @@ def command(name: str | None, names_only: bool, as_json: bool) -> int:
 def installed() -> Iterator[tuple[str, str]]:
     """Kind and name of every plug-in: ours, and those of other packages."""
     from yarpy import registry
-    from yarpy.cli.main import VERBS
+    from yarpy.cli.verb_list import VERBS
 
     for kind in (registry.carriers, registry.types, registry.monitors):
         for name in kind.names():

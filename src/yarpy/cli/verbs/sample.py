@@ -22,7 +22,7 @@ from yarpy.cli.relay import forwardable
 @click.option("--input", "source", metavar="SOURCE", help="Have the port SOURCE send to it.")
 @click.option("--period", type=click.FloatRange(0.0001), metavar="S", help="Seconds between two.")
 @click.option("--rate", type=click.FloatRange(0.0001), metavar="HZ", help="Messages per second.")
-@click.option("--carrier", default="tcp", help="How SOURCE is connected (tcp).")
+@click.option("--carrier", default="tcp", help="How SOURCE is connected.")
 @click.option("--show", is_flag=True, help="Print what is sent.")
 def command(
     output: str,

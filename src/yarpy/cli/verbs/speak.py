@@ -23,7 +23,7 @@ LEAD = 0.2  # seconds that are sent ahead, so that nobody runs dry
 @click.command()
 @click.argument("ports", nargs=-1)
 @click.option("--play", "path", metavar="FILE", help="Send this WAV file, not the microphone.")
-@click.option("--name", default=NAME, metavar="PORT", help=f"The port to open ({NAME}).")
+@click.option("--name", default=NAME, metavar="PORT", help="The port to open.")
 @click.option("--carrier", metavar="C", help="How PORTS are connected (tcp).")
 @click.option(
     "--frequency", type=click.IntRange(1), default=16000, show_default=True, metavar="HZ",

@@ -27,7 +27,7 @@ def part(element: Any) -> Any:
 
 @click.command()
 @click.argument("port")
-@click.option("--carrier", default="udp", help="How PORT is connected (udp).")
+@click.option("--carrier", default="udp", help="How PORT is connected.")
 def command(port: str, carrier: str) -> int:
     """Send each element of the messages of PORT to a port of its own."""
 

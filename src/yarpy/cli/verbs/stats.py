@@ -84,7 +84,7 @@ def size_of(message: yarpy.Message) -> int:
     help="Read all that comes (BufferedPort), or one by one while PORT waits (Port).",
 )  # fmt: skip
 @click.option("--duration", type=float, metavar="S", help="Seconds to measure.")
-@click.option("--protocol", default="tcp", help="The carrier to read over (tcp).")
+@click.option("--protocol", default="tcp", help="The carrier to read over.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON objects.")
 def command(
     port: str | None,

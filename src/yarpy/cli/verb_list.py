@@ -1,0 +1,100 @@
+"""The verbs of `yarpy`, in groups, each with what it does and an example.
+
+Rules: this table is what `yarpy help`, completion, the manual page and docs/cli.md agree on; it is
+read without loading a verb. A verb is the module of its name in `verbs`.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+
+class Verb(NamedTuple):
+    """`about` is one line without a full stop; `example` is typed behind `yarpy`."""
+
+    about: str
+    example: str
+
+
+GROUPS: Final[dict[str, dict[str, Verb]]] = {
+    "Sending and receiving": {
+        "read": Verb("print what arrives at a port", "read ... /icubSim/head/state:o once"),
+        "write": Verb("send lines from a port", "write /talker /listener"),
+        "readwrite": Verb(
+            "print what arrives at one port, send lines from another", "readwrite /me/in /me/out"
+        ),
+        "rpc": Verb("send lines to a port and print its replies", "rpc /icubSim/head/rpc:i"),
+        "rpcserver": Verb("print questions and answer them by hand", "rpcserver /answerer"),
+        "admin": Verb("write or rpc to the administrative side of a port", "admin rpc /listener"),
+    },
+    "Looking and hearing": {
+        "view": Verb("look at images in a browser", "view --connect /icubSim/cam/left"),
+        "scope": Verb("look at numbers as curves in a browser", "scope /icubSim/inertial"),
+        "panel": Verb("see and move a robot in a browser", "panel /icubSim"),
+        "hear": Verb("play what a port says, or record it", "hear /ears --record ears.wav"),
+        "speak": Verb("send a WAV file or the microphone to ports", "speak /mouth --play hi.wav"),
+    },
+    "A robot to try things with": {
+        "demo": Verb("see and move a simulated robot in a browser", "demo"),
+        "sim": Verb("simulate a robot", "sim --robot /icubSim"),
+    },
+    "Connections": {
+        "connect": Verb(
+            "connect two ports, or list persistent connections",
+            "connect /talker /listener fast_tcp",
+        ),
+        "disconnect": Verb("end a connection of two ports", "disconnect /talker /listener"),
+        "qos": Verb(
+            "show or set the priority of a connection's packets", "qos get /talker /listener"
+        ),
+        "sched": Verb(
+            "show or set the scheduling of a connection's thread",
+            "sched set /talker /listener --des FIFO:30",
+        ),
+        "exists": Verb("tell whether a port or a connection is alive", "exists /talker /listener"),
+        "wait": Verb("wait for a port or a connection", "wait /talker --timeout 10"),
+        "ping": Verb("ask a port about itself and its connections", "ping /talker"),
+        "topic": Verb("make, list or remove topics", "topic --list"),
+        "terminate": Verb("ask a program to end, by the name of its port", "terminate /module"),
+    },
+    "The name server": {
+        "server": Verb("run a name server", "server --portdb ports.db"),
+        "name": Verb("send a command to the name server", "name query /talker"),
+        "clean": Verb("take names of dead ports off the name server", "clean"),
+        "where": Verb("tell where the name server is", "where"),
+        "detect": Verb("search the network for a name server", "detect --write"),
+        "conf": Verb("show or set the address of the name server", "conf 192.168.0.3 10000"),
+        "namespace": Verb("show or set the namespaces in use", "namespace /lab"),
+    },
+    "Passing messages on": {
+        "repeat": Verb("send on what a port receives", "repeat /tee"),
+        "sample": Verb(
+            "send on what a port receives, at a constant rate",
+            "sample --output /slow --rate 10 --input /icubSim/inertial",
+        ),
+        "merge": Verb("concatenate what several ports send", "merge /left /right"),
+        "split": Verb("send each element of a message to a port of its own", "split /state"),
+    },
+    "Measuring and the rest": {
+        "stats": Verb(
+            "show how every connection is doing, or measure what a port sends", "stats --watch"
+        ),
+        "trafficgen": Verb(
+            "send messages of a given size at a given rate",
+            "trafficgen /load --bandwidth 100 --size 1",
+        ),
+        "check": Verb("try whether ports can be opened, found and connected here", "check"),
+        "resource": Verb("find configuration files", "resource --from robot.ini"),
+        "plugin": Verb(
+            "list carriers, types, monitors and commands that are installed", "plugin tcp"
+        ),
+        "completion": Verb(
+            "print what makes Tab complete in bash, zsh or fish", "completion bash >> ~/.bashrc"
+        ),
+        "env": Verb("print environment variables", "env"),
+        "time": Verb("print the time, again and again", "time"),
+        "version": Verb("print the version", "version"),
+        "help": Verb("list the commands, or explain one", "help connect"),
+    },
+}
+VERBS: Final = {name: verb for group in GROUPS.values() for name, verb in group.items()}

@@ -1,0 +1,78 @@
+"""`yarpy completion`: the scripts, in the shells that read them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import yarpy
+from yarpy.cli.verbs.completion import SCRIPTS
+
+TRIALS = {
+    "bash": r"""
+eval "$(yarpy completion bash)"
+compopt() { :; }
+COMP_LINE=$1 COMP_POINT=${#1} COMP_WORDBREAKS=$' \t\n"><=;|&(:'
+_yarpy_complete
+printf '%s\n' "${COMPREPLY[@]}"
+""",
+    "zsh": r"""
+compdef() { :; }
+compadd() { print -rl -- $values; }
+eval "$(yarpy completion zsh)"
+LBUFFER=$1
+_yarpy_complete
+""",
+    "fish": r"""
+yarpy completion fish | source
+complete -C "$argv[1]" | cut -f 1
+""",
+}
+
+
+@pytest.fixture(params=TRIALS)
+def offered(request, cli, tmp_path):
+    """What a shell makes of a line."""
+    shell = request.param
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not installed")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    script = tmp_path / "trial"
+    script.write_text(TRIALS[shell])
+
+    def ask(line: str) -> list[str]:
+        done = subprocess.run(
+            [shell, script, line],
+            env={**cli.environment, "PATH": path, "HOME": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+        assert done.stderr == ""
+        return done.stdout.split()
+
+    ask.shell = shell
+    return ask
+
+
+def test_verbs(offered):
+    assert offered("yarpy disc") == ["disconnect"]
+
+
+def test_ports_with_colons_in_their_names(offered, names):
+    with yarpy.Port("/shell/rpc:i", names=names), yarpy.Port("/shell/rpc:o", names=names):
+        heads = "" if offered.shell == "bash" else "/shell/rpc:"  # bash completes the last word
+        assert offered("yarpy ping /shell/rpc:") == [f"{heads}i", f"{heads}o"]
+        assert offered("yarpy connect /shell/rpc:o /shell/r") == ["/shell/rpc:i", "/shell/rpc:o"]
+
+
+def test_scripts_and_mistakes(here):
+    for shell, script in SCRIPTS.items():
+        assert here("completion", shell) == (0, script, "")
+    assert here("completion").code == 1
+    assert "bash" in here("completion", "tcsh").err
