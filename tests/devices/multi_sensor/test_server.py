@@ -102,6 +102,33 @@ def test_a_sensor_that_fails_keeps_its_last_values(names, caplog):
         wait_until(lambda: port.read(PATIENCE).as_(Bottle)[0][0][0] == [3.0, 2.0, 1.0], PATIENCE)
 
 
+class Dated:
+    """A sensor that counts how often it was read, and calls that the time."""
+
+    def __init__(self):
+        self.reads = 0
+
+    def gyroscopes(self):
+        self.reads += 1
+        return {"gyro": (float(self.reads), 0.0, 0.0)}
+
+    def timestamps(self):
+        return {"gyro": float(self.reads)}
+
+
+def test_time_is_that_of_the_values_it_comes_with(names):
+    """Not of those before, which after a pause are minutes old."""
+    with (
+        MultiSensorServer("/imu", Dated(), 0.005, names=names),
+        yarpy.BufferedPort("/me", names=names) as port,
+    ):
+        for _ in range(2):
+            port.listen_to("/imu/measures:o")
+            [[[[value, _, _], at]], *_] = port.read(PATIENCE).as_(Bottle)
+            assert at == value
+            yarpy.disconnect("/imu/measures:o", "/me", names=names)
+
+
 def test_nothing_is_read_while_nobody_listens(names):
     asked = []
 

@@ -46,7 +46,10 @@ class MultiSensorLike(Protocol):
     frames: Mapping[str, str]  # sensor name -> name of its frame; without it, the sensor's name
 
     def timestamps(self) -> Mapping[str, float]:
-        """When sensors were read, in seconds, by name; without it, when they are asked."""
+        """When sensors were read last, in seconds, by name; without it, when they are asked.
+
+        Asked after the values of all kinds.
+        """
 
     def gyroscopes(self) -> Readings:
         """Angular speeds around x, y, z, deg/s."""

@@ -117,7 +117,9 @@ class MultiSensorServer(Opened):
             return {}
         return found if isinstance(found, Mapping) else {}
 
-    def _read(self, times: Mapping[str, float]) -> None:
+    def _read(self) -> None:
+        """Take what all sensors measure, then ask when that was."""
+        fresh: dict[str, tuple[dict[str, list[float]], float]] = {}
         for kind, last in self._last.items():
 
             def check(read: Any, kind: str = kind, last: Any = last) -> dict[str, list[float]]:
@@ -128,19 +130,20 @@ class MultiSensorServer(Opened):
                 return found
 
             try:
-                found = self._sensors.use(kind, check)
+                fresh[kind] = self._sensors.use(kind, check), time.time()
             except Refused:
                 continue  # it was logged; its last values stand, with their time
-            now = time.time()
-            for name in last:
-                last[name] = found[name], float(times.get(name, now))
+        times = self._times()
+        for kind, (found, now) in fresh.items():
+            for name, values in found.items():
+                self._last[kind][name] = values, float(times.get(name, now))
 
     # -- ports --------------------------------------------------------------------------------
 
     def _publish(self) -> None:
         if not self._measures.outputs:
             return
-        self._read(self._times())
+        self._read()
         message = Bottle()
         for kind in KINDS:
             sensors = self._last.get(kind, {}).values()
