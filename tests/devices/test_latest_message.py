@@ -8,7 +8,7 @@ import yarpy
 from yarpy import Bottle
 from yarpy.devices.control_board.server import ControlBoardServer
 from yarpy.devices.control_board.state import State
-from yarpy.devices.latest_message import Newest
+from yarpy.devices.latest_message import LatestMessage
 from yarpy.errors import DecodeError, Timeout, UnknownName
 
 PATIENCE = patience(20.0)
@@ -16,7 +16,7 @@ PATIENCE = patience(20.0)
 
 def watch_of(timeout, names, source="/head/stateExt:o"):
     decode = lambda message: State.from_bottle(message.as_(Bottle)).values  # noqa: E731
-    return Newest(source, "/me", "tcp", timeout, names, decode)
+    return LatestMessage(source, "/me", "tcp", timeout, names, decode)
 
 
 def test_the_newest_counts(names):

@@ -1,6 +1,6 @@
-"""The newest message of an output elsewhere, as long as it is fresh.
+"""The latest message of an output elsewhere, as long as it is fresh.
 
-Rules: only the newest counts, and it is decoded when somebody asks, once. Who asks too early waits
+Rules: only the latest counts, and it is decoded when somebody asks, once. Who asks too early waits
 a moment; who asks in vain learns why. A sender that was away is asked to send again.
 """
 
@@ -12,7 +12,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from typing import Generic, TypeVar
 
-from yarpy.devices.opened import Opened
+from yarpy.devices.closeable import Closeable
 from yarpy.errors import Timeout, YarpError
 from yarpy.names.base import NameClient
 from yarpy.port.buffered import BufferedPort
@@ -21,7 +21,7 @@ from yarpy.wire.message import Message
 T = TypeVar("T")
 
 
-class Newest(Opened, Generic[T]):
+class LatestMessage(Closeable, Generic[T]):
     """Listens to the port `source`. `timeout`: seconds after which a message no longer counts."""
 
     def __init__(
@@ -42,10 +42,12 @@ class Newest(Opened, Generic[T]):
         self._arrival = 0.0
         self._count = 0
         self._known: tuple[Message, T] | None = None
-        with ExitStack() as opened:
-            self._port = opened.enter_context(BufferedPort(local, callback=self._take, names=names))
+        with ExitStack() as resources:
+            self._port = resources.enter_context(
+                BufferedPort(local, callback=self._take, names=names)
+            )
             self._listen()
-            self._opened = opened.pop_all()
+            self._resources = resources.pop_all()
 
     def value(self) -> T:
         """What came last. Raises Timeout (nothing fresh), DecodeError."""

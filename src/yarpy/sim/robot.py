@@ -15,9 +15,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from yarpy.devices.closeable import Closeable, prefix
 from yarpy.devices.control_board.interface import Joints
 from yarpy.devices.frame_grabber.interface import Camera
-from yarpy.devices.opened import Opened, prefix
 from yarpy.sim.axis import ICUB_HEAD
 from yarpy.sim.board import Board
 from yarpy.sim.body import Body, Clock
@@ -58,7 +58,7 @@ def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
     )
 
 
-class Robot(Opened):
+class Robot(Closeable):
     """Serves `parts` while it is open; a context manager.
 
     name: prefix of all ports. fps: pictures per second. names: a name client, None for the default.
@@ -72,14 +72,14 @@ class Robot(Opened):
 
         self.name = name = prefix(name)
         self.ports: list[str] = []  # prefixes
-        with ExitStack() as opened:
+        with ExitStack() as resources:
             for part, board in parts.boards.items():
                 server = ControlBoardServer(f"{name}/{part}", board, names=names)
-                self.ports.append(opened.enter_context(server).name)
+                self.ports.append(resources.enter_context(server).name)
             for part, camera in parts.cameras.items():
                 grabber = FrameGrabberServer(f"{name}/{part}", camera, 1 / fps, names=names)
-                self.ports.append(opened.enter_context(grabber).name)
+                self.ports.append(resources.enter_context(grabber).name)
             for part, sensors in parts.sensors.items():
                 measures = MultiSensorServer(f"{name}/{part}", sensors, names=names)
-                self.ports.append(opened.enter_context(measures).name)
-            self._opened = opened.pop_all()
+                self.ports.append(resources.enter_context(measures).name)
+            self._resources = resources.pop_all()

@@ -4,12 +4,12 @@ import pytest
 
 import yarpy
 from yarpy import Bottle
-from yarpy.devices.control_board.requests import Questions, RemotePids, RemoteVariables
+from yarpy.devices.control_board.requests import RemotePids, RemoteVariables, Requests
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, UnknownName
 
 
 class Parrot:
-    """A board with the answers a test gives it, and a memory for questions."""
+    """A board with the answers a test gives it, and a memory for requests."""
 
     def __init__(self, names):
         self.heard = []
@@ -31,11 +31,11 @@ def parrot(names):
 
 @pytest.fixture
 def ask(parrot, names):
-    with Questions("/head", "/me", names) as questions:
+    with Requests("/head", "/me", names) as requests:
         parrot.answers["[get] [axes]"] = "[is] [axes] 3 [tsta] 0 1.0 [ok]"
-        assert questions.count_axes() == 3
+        assert requests.count_axes() == 3
         parrot.heard.clear()
-        yield questions
+        yield requests
 
 
 # member, reply to the request(s) that it becomes, values
@@ -217,4 +217,4 @@ def test_how_many_joints(parrot, ask, reply):
 
 def test_nobody_there(names):
     with pytest.raises(UnknownName):
-        Questions("/nobody", "/me", names)
+        Requests("/nobody", "/me", names)

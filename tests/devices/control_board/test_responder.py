@@ -13,7 +13,7 @@ from support.replay import messages_of
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.devices.control_board import grammar
-from yarpy.devices.control_board.access import Board
+from yarpy.devices.control_board.board import Board
 from yarpy.devices.control_board.grammar import INTERFACES, PID, Form, lookup
 from yarpy.devices.control_board.responder import Responder
 

@@ -6,7 +6,7 @@ from support.replay import messages_of
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
-from yarpy.devices.control_board.access import Board
+from yarpy.devices.control_board.board import Board
 from yarpy.devices.control_board.state import FIELDS, State
 from yarpy.errors import DecodeError
 

@@ -9,13 +9,13 @@ from support.camera import FakeCamera
 from yarpy.data.bottle import Bottle
 from yarpy.data.image import Image
 from yarpy.data.value import Vocab
-from yarpy.devices.control_board.access import Part
+from yarpy.devices.access import Access
 from yarpy.devices.frame_grabber.responder import FrameGrabberResponder
 from yarpy.devices.refusal import Complaints, Refused
 
 
 def responder(camera):
-    part = Part(camera, 0, Complaints("/eye"), threading.Lock())
+    part = Access(camera, 0, Complaints("/eye"), threading.Lock())
 
     def grab():
         if not hasattr(camera, "image"):

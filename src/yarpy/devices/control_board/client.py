@@ -24,12 +24,12 @@ from typing import Any, Final, TypeAlias
 
 from yarpy.data.bottle import Bottle
 from yarpy.devices.adjustable import Adjustable
+from yarpy.devices.closeable import Closeable, local_prefix, prefix
 from yarpy.devices.control_board import command, grammar
 from yarpy.devices.control_board.interface import MotorTorqueParameters
-from yarpy.devices.control_board.requests import Questions, RemotePids, RemoteVariables
+from yarpy.devices.control_board.requests import RemotePids, RemoteVariables, Requests
 from yarpy.devices.control_board.state import State
-from yarpy.devices.latest_message import Newest
-from yarpy.devices.opened import Opened, local_prefix, prefix
+from yarpy.devices.latest_message import LatestMessage
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.names.base import NameClient
 from yarpy.port.port import Port
@@ -42,7 +42,7 @@ Words: TypeAlias = str | Sequence[str]
 _POLL: Final = 0.02
 
 
-class ControlBoard(Opened):
+class ControlBoard(Closeable):
     """The control board whose ports begin with `remote`.
 
     local: prefix of the own ports; one is made up without it.
@@ -65,14 +65,14 @@ class ControlBoard(Opened):
         self.remote = remote = prefix(remote)
         local = local_prefix(local, remote)
         self._carrier = carrier
-        with ExitStack() as opened:
-            self._ask = opened.enter_context(Questions(remote, f"{local}/rpc:o", names))
-            self._command = opened.enter_context(
+        with ExitStack() as resources:
+            self._ask = resources.enter_context(Requests(remote, f"{local}/rpc:o", names))
+            self._command = resources.enter_context(
                 Port(f"{local}/command:o", names=names, callback=lambda message: None)
             )
             self._command.connect(f"{remote}/command:i", carrier)
-            self._newest = opened.enter_context(
-                Newest(
+            self._latest = resources.enter_context(
+                LatestMessage(
                     f"{remote}/stateExt:o",
                     f"{local}/stateExt:i",
                     carrier,
@@ -84,7 +84,7 @@ class ControlBoard(Opened):
             self._check_version()
             self.axes = self._ask.count_axes()
             self._axis_names: list[str] = []
-            self._opened = opened.pop_all()
+            self._resources = resources.pop_all()
 
     def _check_version(self) -> None:
         version = self._ask.version()
@@ -107,7 +107,7 @@ class ControlBoard(Opened):
 
     def timestamps(self) -> list[float]:
         """When the encoders were read, seconds (of the board's clock)."""
-        return [self._newest.time()] * self.axes
+        return [self._latest.time()] * self.axes
 
     def encoder_speeds(self) -> list[float]:
         """How fast the joints move, deg/s."""
@@ -179,7 +179,7 @@ class ControlBoard(Opened):
                 late = [n for n, there in zip(self.axis_names, done, strict=True) if not there]
                 raise Timeout(f'"{self.remote}" still moves after {timeout} s: {", ".join(late)}')
             time.sleep(_POLL)
-        self._newest.renew()
+        self._latest.renew()
 
     # -- what acts ----------------------------------------------------------------------------
 
@@ -338,7 +338,7 @@ class ControlBoard(Opened):
     # -- within -------------------------------------------------------------------------------
 
     def _measured(self, field: str) -> list[Any]:
-        found = self._newest.value().values.get(field)
+        found = self._latest.value().values.get(field)
         if found is None:
             raise LocalProtocolError(f'"{self.remote}" does not measure {field.replace("_", " ")}')
         return [*found]

@@ -14,11 +14,11 @@ from typing import Any, Final
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.devices.adjustable import Adjustable
+from yarpy.devices.closeable import Closeable
 from yarpy.devices.control_board import grammar
 from yarpy.devices.control_board.grammar import INTERFACES, PID, Form, Interface, Row
 from yarpy.devices.control_board.interface import Gains
 from yarpy.devices.kind import FLAG, NOTHING, PAIR, Fixed
-from yarpy.devices.opened import Opened
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.names.base import NameClient
 from yarpy.port.rpc import RpcClient
@@ -44,14 +44,14 @@ _PID_READ: Final = _by_member([PID], lambda interface: interface.get)
 _PID_WRITE: Final = _by_member([PID], lambda interface: interface.set)
 
 
-class Questions(Opened):
+class Requests(Closeable):
     """Asks the board at `remote`."""
 
     def __init__(self, remote: str, local: str, names: NameClient | None) -> None:
         self.remote = remote
         self.axes = 0
-        self._opened = ExitStack()
-        self._client = self._opened.enter_context(
+        self._resources = ExitStack()
+        self._client = self._resources.enter_context(
             RpcClient(f"{remote}/rpc:i", name=local, names=names)
         )
 
@@ -210,19 +210,19 @@ def _prefix(interface: Interface) -> list[Vocab]:
     return [Vocab(interface.word)] if interface.word else []
 
 
-class _PidQuestions:
-    """`Questions` about one kind of controllers."""
+class _PidRequests:
+    """`Requests` about one kind of controllers."""
 
-    def __init__(self, questions: Questions, kind: str) -> None:
-        self.axes = questions.axes
-        self._questions = questions
+    def __init__(self, requests: Requests, kind: str) -> None:
+        self.axes = requests.axes
+        self._requests = requests
         self._kind = kind
 
     def read(self, member: str) -> list[Any]:
-        return self._questions.read_pid(self._kind, member)
+        return self._requests.read_pid(self._kind, member)
 
     def write(self, member: str, joints: Sequence[int], values: Sequence[Any] | None) -> None:
-        self._questions.write_pid(self._kind, member, joints, values)
+        self._requests.write_pid(self._kind, member, joints, values)
 
 
 class RemotePids:
@@ -233,8 +233,8 @@ class RemotePids:
     error_limits = Adjustable[float]("Beyond these errors they give up.")
     enabled = Adjustable[bool]("Whether they are at work.")
 
-    def __init__(self, questions: Questions, kind: str) -> None:
-        self._ask = _PidQuestions(questions, kind)
+    def __init__(self, requests: Requests, kind: str) -> None:
+        self._ask = _PidRequests(requests, kind)
 
     def errors(self) -> list[float]:
         """Target minus measurement."""
@@ -261,8 +261,8 @@ class RemotePids:
 class RemoteVariables(MutableMapping[str, Any]):
     """Variables of a remote board. A value is the list of what stands behind the name."""
 
-    def __init__(self, questions: Questions) -> None:
-        self._ask = questions
+    def __init__(self, requests: Requests) -> None:
+        self._ask = requests
 
     def __getitem__(self, key: str) -> Any:
         try:

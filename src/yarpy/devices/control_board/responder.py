@@ -21,8 +21,9 @@ from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
+from yarpy.devices.access import Access
 from yarpy.devices.control_board import grammar
-from yarpy.devices.control_board.access import TARGETS, Board, Part
+from yarpy.devices.control_board.board import TARGETS, Board
 from yarpy.devices.control_board.grammar import INTERFACES, PID, PLAIN, Form, Interface, Row
 from yarpy.devices.kind import FLAG, NOTHING, items, number, whole, word
 from yarpy.devices.refusal import Refused
@@ -140,7 +141,7 @@ class Responder:
 
         return self._stamped(reply) if interface.stamped else reply()
 
-    def _values(self, part: Part, form: Form, row: Row, rest: Request) -> list[Any]:
+    def _values(self, part: Access, form: Form, row: Row, rest: Request) -> list[Any]:
         kind = row.kind
         values = part.values(row.member, kind)
         if form is Form.ALL:
@@ -151,7 +152,7 @@ class Responder:
         return kind.write_all([values[joint] for joint in joints])
 
     def _change(
-        self, part: Part, rows: dict[str, tuple[Form, Row]], what: str, rest: Request
+        self, part: Access, rows: dict[str, tuple[Form, Row]], what: str, rest: Request
     ) -> None:
         form, row = _row(rows, what)
         kind, joints, values = row.kind, self._all, None

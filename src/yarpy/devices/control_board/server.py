@@ -18,12 +18,12 @@ from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
+from yarpy.devices.closeable import Closeable, prefix
 from yarpy.devices.control_board import command
-from yarpy.devices.control_board.access import Board
+from yarpy.devices.control_board.board import Board
 from yarpy.devices.control_board.interface import Joints
 from yarpy.devices.control_board.responder import FAIL, Responder
 from yarpy.devices.control_board.state import State
-from yarpy.devices.opened import Opened, prefix
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError
@@ -39,7 +39,7 @@ log = logging.getLogger("yarpy.devices")
 APART: Final = 1.0
 
 
-class ControlBoardServer(Opened):
+class ControlBoardServer(Closeable):
     """Serves `device` (see `yarpy.devices.control_board.interface`) to C++ and Python clients.
 
     name: prefix of the ports, for example `/icub/head`.
@@ -62,16 +62,20 @@ class ControlBoardServer(Opened):
         self._responder = Responder(self._board)
         self._complain = Complaints(name)
         self._stamp = Stamp()
-        with ExitStack() as opened:
-            self._rpc = opened.enter_context(RpcServer(f"{name}/rpc:i", self._answer, names=names))
-            self._command = opened.enter_context(
+        with ExitStack() as resources:
+            self._rpc = resources.enter_context(
+                RpcServer(f"{name}/rpc:i", self._answer, names=names)
+            )
+            self._command = resources.enter_context(
                 Port(f"{name}/command:i", callback=self._obey, names=names)
             )
-            self._state_ext = opened.enter_context(BufferedPort(f"{name}/stateExt:o", names=names))
-            self._state = opened.enter_context(BufferedPort(f"{name}/state:o", names=names))
+            self._state_ext = resources.enter_context(
+                BufferedPort(f"{name}/stateExt:o", names=names)
+            )
+            self._state = resources.enter_context(BufferedPort(f"{name}/state:o", names=names))
             self._publisher = Publisher(name, period, self._publish)
-            opened.callback(self._publisher.close)
-            self._opened = opened.pop_all()
+            resources.callback(self._publisher.close)
+            self._resources = resources.pop_all()
 
     @property
     def axes(self) -> int:

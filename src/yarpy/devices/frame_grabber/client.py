@@ -22,9 +22,9 @@ from yarpy.data.image import Image
 from yarpy.data.property import Property
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
+from yarpy.devices.closeable import Closeable, local_prefix, prefix
 from yarpy.devices.frame_grabber.interface import FEATURES
 from yarpy.devices.frame_grabber.responder import BUSES, MODES
-from yarpy.devices.opened import Opened, local_prefix, prefix
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.names.base import NameClient
 from yarpy.port.buffered import BufferedPort
@@ -34,7 +34,7 @@ from yarpy.port.rpc import RpcClient
 PATIENCE: Final = 10.0
 
 
-class FrameGrabber(Opened):
+class FrameGrabber(Closeable):
     """The camera whose images come from the port `remote`.
 
     local: name of the own port; one is made up without it.
@@ -55,12 +55,12 @@ class FrameGrabber(Opened):
         self._local = local_prefix(local, remote)
         self._carrier = carrier
         self.stamp = Stamp()
-        with ExitStack() as opened:
-            self._rpc = opened.enter_context(
+        with ExitStack() as resources:
+            self._rpc = resources.enter_context(
                 RpcClient(f"{remote}/rpc", name=f"{self._local}/rpc_client", names=names)
             )
-            self._images = opened.enter_context(BufferedPort(self._local, names=names))
-            self._opened = opened.pop_all()
+            self._images = resources.enter_context(BufferedPort(self._local, names=names))
+            self._resources = resources.pop_all()
 
     def __repr__(self) -> str:
         return f"<FrameGrabber {self.remote}>"

@@ -22,7 +22,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.image import Image
 from yarpy.data.property import Property, bottle_of
 from yarpy.data.value import Vocab
-from yarpy.devices.control_board.access import Part
+from yarpy.devices.access import Access
 from yarpy.devices.frame_grabber.interface import FEATURES
 from yarpy.devices.kind import items, number, whole, word
 from yarpy.devices.refusal import Refused
@@ -42,7 +42,7 @@ Request = Sequence[Any]
 class FrameGrabberResponder:
     """Answers requests for one camera; `grab` gives its next image, or raises Refused."""
 
-    def __init__(self, camera: Part, grab: Callable[[], Image], name: str) -> None:
+    def __init__(self, camera: Access, grab: Callable[[], Image], name: str) -> None:
         self._camera = camera
         self._grab = grab
         self._name = name

@@ -1,7 +1,7 @@
 """FrameGrabberServer: a camera of yours on the ports of a YARP frame grabber.
 
     <name>          its images; whoever connects for replies is answered here as well
-    <name>/rpc      requests and replies (`frame_grabber_responder`)
+    <name>/rpc      requests and replies (`responder`)
 
 Rules: no image is grabbed while nobody looks. A receiver that is slow misses images.
 
@@ -19,10 +19,10 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.image import Image
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
-from yarpy.devices.control_board.access import Part
+from yarpy.devices.access import Access
+from yarpy.devices.closeable import Closeable, prefix
 from yarpy.devices.frame_grabber.interface import Camera
 from yarpy.devices.frame_grabber.responder import FrameGrabberResponder
-from yarpy.devices.opened import Opened, prefix
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError
@@ -32,7 +32,7 @@ from yarpy.port.rpc import RpcServer
 from yarpy.wire.message import Message
 
 
-class FrameGrabberServer(Opened):
+class FrameGrabberServer(Closeable):
     """Serves `device` (see `yarpy.devices.frame_grabber.interface`) to viewers and other programs.
 
     name: the port of the images, for example `/robot/cam/left`.
@@ -51,19 +51,19 @@ class FrameGrabberServer(Opened):
     ) -> None:
         self.name = name = prefix(name)
         self.device = device
-        self._camera = Part(device, 0, Complaints(name), threading.Lock())
+        self._camera = Access(device, 0, Complaints(name), threading.Lock())
         if not self._camera.has("image"):
             raise ValueError(f"{name}: the device needs image(), which gives the next picture")
         self._responder = FrameGrabberResponder(self._camera, self._grab, name)
         self._stamp = Stamp()
-        with ExitStack() as opened:
-            self._rpc = opened.enter_context(RpcServer(f"{name}/rpc", self._answer, names=names))
-            self._images = opened.enter_context(
+        with ExitStack() as resources:
+            self._rpc = resources.enter_context(RpcServer(f"{name}/rpc", self._answer, names=names))
+            self._images = resources.enter_context(
                 BufferedPort(name, callback=self._reply, names=names)
             )
             self._publisher = Publisher(name, period, self._publish)
-            opened.callback(self._publisher.close)
-            self._opened = opened.pop_all()
+            resources.callback(self._publisher.close)
+            self._resources = resources.pop_all()
 
     def __repr__(self) -> str:
         return f"<FrameGrabberServer {self.name}>"

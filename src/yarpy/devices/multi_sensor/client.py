@@ -15,9 +15,9 @@ from contextlib import ExitStack
 from typing import Final
 
 from yarpy.data.bottle import Bottle
-from yarpy.devices.latest_message import Newest
+from yarpy.devices.closeable import Closeable, local_prefix, prefix
+from yarpy.devices.latest_message import LatestMessage
 from yarpy.devices.multi_sensor.interface import KINDS
-from yarpy.devices.opened import Opened, local_prefix, prefix
 from yarpy.errors import DecodeError, RemoteProtocolError
 from yarpy.names.base import NameClient
 from yarpy.port.rpc import RpcClient
@@ -31,7 +31,7 @@ PATIENCE: Final = 10.0
 _Measures = list[list[tuple[tuple[float, ...], float]]]
 
 
-class MultiSensor(Opened):
+class MultiSensor(Closeable):
     """The sensors whose ports begin with `remote`.
 
     local: prefix of the own ports; one is made up without it.
@@ -54,13 +54,13 @@ class MultiSensor(Opened):
         local = local_prefix(local, remote)
         self.frames: dict[str, str] = {}
         self._sensors: list[list[str]] = []
-        with ExitStack() as opened:
-            self._rpc = opened.enter_context(
+        with ExitStack() as resources:
+            self._rpc = resources.enter_context(
                 RpcClient(f"{remote}/rpc:o", name=f"{local}/rpc:i", names=names)
             )
             self._learn_names()
-            self._newest = opened.enter_context(
-                Newest(
+            self._latest = resources.enter_context(
+                LatestMessage(
                     f"{remote}/measures:o",
                     f"{local}/measures:i",
                     carrier,
@@ -69,7 +69,7 @@ class MultiSensor(Opened):
                     self._decode,
                 )
             )
-            self._opened = opened.pop_all()
+            self._resources = resources.pop_all()
 
     def __repr__(self) -> str:
         pairs = zip(KINDS, self._sensors, strict=True)
@@ -78,7 +78,7 @@ class MultiSensor(Opened):
 
     def timestamps(self) -> dict[str, float]:
         """When each sensor was read, seconds (of the sender's clock)."""
-        measures = self._newest.value()
+        measures = self._latest.value()
         return {
             name: at
             for names, row in zip(self._sensors, measures, strict=True)
@@ -131,7 +131,7 @@ class MultiSensor(Opened):
         index = [*KINDS].index(kind)
         if not self._sensors[index]:
             return {}
-        row = self._newest.value()[index]
+        row = self._latest.value()[index]
         return {name: values for name, (values, _) in zip(self._sensors[index], row, strict=True)}
 
     def _learn_names(self) -> None:

@@ -22,9 +22,9 @@ from typing import Any, Final
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
-from yarpy.devices.control_board.access import Part
+from yarpy.devices.access import Access
+from yarpy.devices.closeable import Closeable, prefix
 from yarpy.devices.multi_sensor.interface import KINDS
-from yarpy.devices.opened import Opened, prefix
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError
@@ -39,7 +39,7 @@ _FRAMELESS: Final = frozenset(("contact_loads", "encoder_arrays", "skin_patches"
 _Measurement = tuple[list[float], float]
 
 
-class MultiSensorServer(Opened):
+class MultiSensorServer(Closeable):
     """Serves `device` (see `yarpy.devices.multi_sensor.interface`) to C++ and Python clients.
 
     name: prefix of the ports, for example `/robot/imu`.
@@ -58,17 +58,21 @@ class MultiSensorServer(Opened):
     ) -> None:
         self.name = name = prefix(name)
         self.device = device
-        self._sensors = Part(device, 0, Complaints(name), threading.Lock())
+        self._sensors = Access(device, 0, Complaints(name), threading.Lock())
         self._last: dict[str, dict[str, _Measurement]] = {}
         self._read_first()
         self._metadata = self._describe()
         self._stamp = Stamp()
-        with ExitStack() as opened:
-            self._rpc = opened.enter_context(RpcServer(f"{name}/rpc:o", self._answer, names=names))
-            self._measures = opened.enter_context(BufferedPort(f"{name}/measures:o", names=names))
+        with ExitStack() as resources:
+            self._rpc = resources.enter_context(
+                RpcServer(f"{name}/rpc:o", self._answer, names=names)
+            )
+            self._measures = resources.enter_context(
+                BufferedPort(f"{name}/measures:o", names=names)
+            )
             self._publisher = Publisher(name, period, self._publish)
-            opened.callback(self._publisher.close)
-            self._opened = opened.pop_all()
+            resources.callback(self._publisher.close)
+            self._resources = resources.pop_all()
 
     def __repr__(self) -> str:
         listed = ", ".join(f"{len(names)} {kind}" for kind, names in self._last.items())

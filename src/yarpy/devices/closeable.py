@@ -10,14 +10,14 @@ from typing import Self
 _numbers = count(1)
 
 
-class Opened:
+class Closeable:
     """Closes what is on its stack, once. A context manager."""
 
-    _opened: ExitStack
+    _resources: ExitStack
 
     def close(self) -> None:
         """Close the ports, and end what runs for them. Idempotent."""
-        self._opened.close()
+        self._resources.close()
 
     def __enter__(self) -> Self:
         return self

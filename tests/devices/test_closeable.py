@@ -2,13 +2,13 @@ from contextlib import ExitStack
 
 import pytest
 
-from yarpy.devices.opened import Opened, local_prefix, prefix
+from yarpy.devices.closeable import Closeable, local_prefix, prefix
 
 
-class Device(Opened):
+class Device(Closeable):
     def __init__(self, closed):
-        self._opened = ExitStack()
-        self._opened.callback(closed.append, 1)
+        self._resources = ExitStack()
+        self._resources.callback(closed.append, 1)
 
 
 def test_it_closes_once():

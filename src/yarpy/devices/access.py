@@ -1,4 +1,4 @@
-"""A user's device, used by the rules that `control_board` states.
+"""A user's device of any kind, used by the rules that the `interface` of each kind states.
 
 Rules: one thread at a time, but for what may take long. Nothing gets to the device that was not
 checked, nothing from it goes on that is not what was promised. Whatever a device raises becomes
@@ -9,11 +9,10 @@ needs none.
 from __future__ import annotations
 
 import threading
-import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Final, TypeVar
 
-from yarpy.devices.kind import FLOAT, JOINT_TYPE, Kind
+from yarpy.devices.kind import FLOAT, Kind
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import LocalProtocolError
 
@@ -24,22 +23,11 @@ _LONG: Final = frozenset(
     ("calibrate", "calibrate_joint", "home", "park", "quit_calibration", "quit_parking")
 )
 
-#: What was commanded -> the method that commands it.
-TARGETS: Final = {
-    "position_targets": "position_move",
-    "direct_targets": "position_direct",
-    "velocity_targets": "velocity_move",
-    "torque_targets": "apply_torques",
-    "current_targets": "apply_currents",
-    "duty_cycle_targets": "apply_duty_cycles",
-}
-_COMMANDED: Final = {command: targets for targets, command in TARGETS.items()}
-
 _MISSING: Final[Any] = object()
 
 
-class Part:
-    """An object with methods and attributes for `count` joints; all of it may be missing."""
+class Access:
+    """An object with methods and attributes, any of which may be missing, for `count` joints."""
 
     def __init__(
         self, target: object, count: int, complain: Complaints, lock: threading.Lock
@@ -130,83 +118,3 @@ class Part:
         for joint, value in zip(joints, values, strict=True):
             changed[joint] = value
         setattr(self.target, member, changed)
-
-
-class Board(Part):
-    """A control board. What it was told last is remembered, for devices that do not."""
-
-    def __init__(self, device: object, name: str) -> None:
-        super().__init__(device, 0, Complaints(name), threading.Lock())
-        self.name = name
-        names = self.ask("axis_names") if self.has("axis_names") else None
-        if isinstance(names, str) or names is None or not len(names):
-            raise ValueError(f"{name}: the device needs axis_names, a list with all its joints")
-        if not self.has("encoders"):
-            raise ValueError(f"{name}: the device needs encoders(), the positions of its joints")
-        self.count = len(names)
-        self._memory: dict[str, list[float]] = {}
-
-    def pid(self, kind: str) -> Part:
-        """The controllers of one kind."""
-        controllers = self.ask("pids")
-        found = controllers.get(kind) if isinstance(controllers, Mapping) else None
-        if found is None:
-            raise Refused(f"the device has no {kind} controllers")
-        return Part(found, self.count, self._complain, self._lock)
-
-    def values(self, member: str, kind: Kind = FLOAT) -> list[Any]:
-        command = TARGETS.get(member)
-        if not self.has(member):
-            if command is not None and self.has(command):
-                return self._remembered(member)
-            if kind is JOINT_TYPE:
-                return ["revolute"] * self.count
-        return super().values(member, kind)
-
-    def timestamps(self) -> list[float]:
-        """When the encoders were read, seconds."""
-        if self.has("timestamps"):
-            return super().values("timestamps")
-        return [time.time()] * self.count
-
-    def apply(self, member: str, joints: Sequence[int], values: Sequence[Any] | None) -> None:
-        if member == "relative_move" and values is not None:
-            self._move_by(joints, values)
-            return
-        super().apply(member, joints, values)
-        targets = _COMMANDED.get(member)
-        if targets is not None and values is not None:
-            self._remember(targets, joints, values)
-        elif member == "stop":
-            self._remember("velocity_targets", joints, [0.0] * len(joints))
-
-    def _move_by(self, joints: Sequence[int], values: Sequence[float]) -> None:
-        own = self.has("relative_move")
-        if own and self.has("position_targets"):
-            super().apply("relative_move", joints, values)
-            return
-        self._check(joints)
-        here = self.values("encoders")
-        there = [here[joint] + value for joint, value in zip(joints, values, strict=True)]
-        if own:
-            super().apply("relative_move", joints, values)
-            self._remember("position_targets", joints, there)
-        else:
-            self.apply("position_move", joints, there)
-
-    def _remembered(self, targets: str) -> list[float]:
-        known = self._memory.get(targets)
-        if known is not None:
-            return [*known]
-        if targets in ("position_targets", "direct_targets"):
-            return self.values("encoders")  # nobody moved it yet: it is meant to be where it is
-        return [0.0] * self.count
-
-    def _remember(self, targets: str, joints: Sequence[int], values: Sequence[float]) -> None:
-        try:
-            known = self._remembered(targets)
-        except Refused:  # it moved all the same
-            known = [0.0] * self.count
-        for joint, value in zip(joints, values, strict=True):
-            known[joint] = value
-        self._memory[targets] = known
