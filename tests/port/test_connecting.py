@@ -176,3 +176,22 @@ def test_nothing_is_lost_after_connecting(carrier: str, names: LocalNames) -> No
             out.connect("/in", carrier)
             out.write([turn])
             assert in_.read(timeout=5).value == [turn]
+
+
+def test_port_that_waits_for_its_reader_is_not_connected_to_itself(names: LocalNames) -> None:
+    """Its first thread would wait for ever for what it does itself."""
+    with Port("/both", names=names) as both:
+        for target in ("/both", f"/{both.address}", f"/localhost:{both.contact.port}"):
+            with pytest.raises(NotAllowed, match=r"BufferedPort\(\) or a callback"):
+                both.connect(target)
+        with pytest.raises(yarpy.YarpError, match="waits until it is read"):
+            yarpy.connect("/both", "/both", names=names)
+        assert not both.outputs
+
+
+def test_other_ports_may_be_connected_to_themselves(names: LocalNames) -> None:
+    with BufferedPort("/both", strict=True, names=names) as both:
+        both.connect("/both")
+        for number in range(600):
+            assert both.write([number]) == 1
+        assert [both.read(timeout=5).value[0] for _ in range(600)] == [*range(600)]

@@ -28,7 +28,7 @@ from yarpy.errors import (
 from yarpy.link.handshake import find_carrier, greet
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
-from yarpy.names.address import is_loopback
+from yarpy.names.address import is_local, is_loopback
 from yarpy.port import probe, refusal
 from yarpy.port.disconnecting import close_output
 from yarpy.port.hub import Hub
@@ -130,6 +130,11 @@ def dial(hub: Hub, wanted: Contact) -> CarrierSpec:
     contact = hub.registration.locate(wanted)
     if contact is None:
         raise UnknownName(f'no port "{wanted.name}" is registered')
+    if hub.mailbox.blocks and contact.port == hub.port and is_local(contact.host):
+        raise NotAllowed(
+            f'"{hub.name}" cannot be connected to itself: a write waits until it is read, and both '
+            "would be done here; a BufferedPort() or a callback reads meanwhile"
+        )
     target = wanted.label
     with hub.dialling.alone(target):
         hub.crew.repair.give_up(hub, target)

@@ -11,7 +11,7 @@ import logging
 import threading
 from collections.abc import Callable
 from queue import Empty, SimpleQueue
-from typing import Final, TypeAlias
+from typing import ClassVar, Final, TypeAlias
 
 from yarpy.errors import PortClosed, YarpError
 from yarpy.link.inbound import Inbound
@@ -26,6 +26,8 @@ _STOP: Final = object()
 
 class Mailbox:
     """The common part: a queue of tokens that wakes readers, and its stop and go."""
+
+    blocks: ClassVar[bool] = False  # a sender waits until its message was read
 
     def __init__(self) -> None:
         self.stopped = False
@@ -229,6 +231,8 @@ class Rendezvous(Mailbox):
     `held` is changed by single dictionary operations only, by the thread itself and by who finds
     it gone.
     """
+
+    blocks = True
 
     def put(self, link: Inbound, message: Message) -> None:
         offer = Offer(link, message)
