@@ -195,3 +195,32 @@ def test_other_ports_may_be_connected_to_themselves(names: LocalNames) -> None:
         for number in range(600):
             assert both.write([number]) == 1
         assert [both.read(timeout=5).value[0] for _ in range(600)] == [*range(600)]
+
+
+@pytest.mark.parametrize("carrier", ["unix_stream", "local"])
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (
+            b"* Error. Protocol not found.\r\n* Hello.\r\n",
+            r'answers "\* Error. Protocol not found."',
+        ),
+        (b"", "the peer hung up; it does not take this carrier"),
+    ],
+)
+def test_peer_that_does_not_come_to_the_meeting_place(
+    answer: bytes, words: str, carrier: str, names: LocalNames
+) -> None:
+    """Nobody waits there until the time is over."""
+    with socket.create_server(("127.0.0.1", 0)) as peer, Port("/out", names=names) as out:
+
+        def serve() -> None:
+            sock, _ = peer.accept()
+            with sock:
+                sock.recv(1000)
+                sock.sendall(answer)
+
+        threading.Thread(target=serve, daemon=True).start()
+        with pytest.raises(RemoteProtocolError, match=words):
+            out.connect(f"/127.0.0.1:{peer.getsockname()[1]}", carrier)
+        assert not out.outputs

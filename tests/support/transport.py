@@ -6,7 +6,7 @@ has hung up, or (`open_ended`) is silent.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from yarpy.link.driver import Driver
 from yarpy.wire.stream import Buffer
@@ -31,7 +31,7 @@ class ScriptTransport:
         self.port = 0
         self.tos = 0
 
-    def ready(self) -> None:
+    def ready(self, look: Callable[[], object] | None = None) -> None:
         """Nothing to wait for."""
 
     def recv_into(self, view: memoryview) -> int:

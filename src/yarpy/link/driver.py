@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 from typing import Any, Final, TypeVar
 
-from yarpy.errors import LinkClosed, LocalProtocolError, Timeout, YarpError
+from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.transports.base import Transport
 from yarpy.transports.datagram import open_mcast, open_udp
 from yarpy.transports.inproc import InprocTransport, open_inproc
@@ -29,6 +29,8 @@ SOON: Final = 200e-6
 LOOKING: Final = 120e-6
 FIRST_PENALTY: Final = 32
 LAST_PENALTY: Final = 512
+# C++ hangs up before it comes to the place where the two ends meet.
+LATE: Final = 0.5  # seconds for it to come all the same
 _CORES: Final = os.cpu_count() or 1
 
 
@@ -187,12 +189,28 @@ class Driver:
         else:
             self.stream.feed_object(item[0])
 
+    def _watch(self) -> Callable[[], None]:
+        """What to call while the two ends look for each other elsewhere. It raises
+        RemoteProtocolError once the peer refuses over the connection on which they have met."""
+        stream, hung_up = self.stream, 0.0
+
+        def look() -> None:
+            nonlocal hung_up
+            if not hung_up and self.try_fill():
+                if stream.waiting:
+                    raise RemoteProtocolError(f'the peer answers "{_first_line(stream)}"')
+                hung_up = time.monotonic()
+            if hung_up and time.monotonic() - hung_up > LATE:
+                raise RemoteProtocolError("the peer hung up; it does not take this carrier")
+
+        return look
+
     def _perform(self, effect: object, deadline: float | None) -> Any:
         transport = self.transport
         if isinstance(effect, Switch):
             self.flush()
             handle = effect.handle
-            handle.ready()
+            handle.ready(self._watch())
             transport.close()
             self.transport, self.stream = handle, effect.stream
             self._objects = handle if isinstance(handle, InprocTransport) else None
@@ -215,6 +233,13 @@ class Driver:
             if effect.kind == "inproc":
                 return open_inproc(effect.listen, local, remote)
         raise LocalProtocolError(f"{effect} is not something a connection can do")
+
+
+def _first_line(stream: ByteStream) -> str:
+    """What a peer has said, for people."""
+    start = bytes(stream.buffer[stream.head : stream.head + 200])
+    text = start.partition(b"\n")[0].decode("utf-8", "replace")
+    return "".join(c for c in text if c.isprintable())[:80]
 
 
 def closed(error: OSError) -> YarpError:

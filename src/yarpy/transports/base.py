@@ -11,7 +11,7 @@ import select
 import socket
 import struct
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from yarpy.wire.stream import Buffer
@@ -34,8 +34,11 @@ class Transport(Protocol):
     def port(self) -> int:
         """The number the peer needs to find us, 0 if none."""
 
-    def ready(self) -> None:
-        """Called once before the first byte: a listening end waits for its peer here."""
+    def ready(self, look: Callable[[], object] | None = None) -> None:
+        """Called once before the first byte: the two ends wait for each other here.
+
+        `look` is called now and then meanwhile; it raises when the peer will not come.
+        """
 
     def recv_into(self, view: memoryview) -> int:
         """Wait for bytes; 0 is the end. Raises BlockingIOError when a time limit is over."""
@@ -85,7 +88,7 @@ class SocketTransport:
     def port(self) -> int:
         return 0
 
-    def ready(self) -> None:
+    def ready(self, look: Callable[[], object] | None = None) -> None:
         """Sockets that were accepted or connected are ready."""
 
     def recv_into(self, view: memoryview) -> int:

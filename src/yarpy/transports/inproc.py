@@ -7,13 +7,15 @@ this process are in the meeting place, so a stranger's greeting finds nobody.
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from queue import Empty, SimpleQueue
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.transports.base import Address
 
 PATIENCE = 5.0  # seconds for the two ends to meet
+LOOK = 0.01  # seconds between looks whether the other end still means to come
 _END = object()
 
 
@@ -57,11 +59,20 @@ class InprocTransport:
         self._joined.set()
         peer._joined.set()
 
-    def ready(self) -> None:
+    def ready(self, look: Callable[[], object] | None = None) -> None:
         """Wait until the other end has come. Raises TimeoutError if it does not."""
-        if not self._joined.wait(PATIENCE):
+        deadline = time.monotonic() + PATIENCE
+        try:
+            while not self._joined.wait(LOOK):
+                if time.monotonic() > deadline:
+                    raise TimeoutError(
+                        "no port of this process answered; the carrier local needs one"
+                    )
+                if look is not None:
+                    look()
+        except BaseException:
             MEETING.find((self.local[1], self.remote[1]))
-            raise TimeoutError("no port of this process answered; the carrier local needs one")
+            raise
 
     def receive(self, wait: bool = True) -> tuple[object] | None:
         """The next object in a one-element tuple; () is never sent; None is the end."""

@@ -10,6 +10,7 @@ import os
 import socket
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from yarpy.errors import LocalProtocolError
@@ -65,7 +66,7 @@ class UnixTransport(TcpTransport):
     def remote(self) -> Address:
         return self._path, 0
 
-    def ready(self) -> None:
+    def ready(self, look: Callable[[], object] | None = None) -> None:
         if self._listen:
             listener = self.sock
             try:
@@ -84,6 +85,8 @@ class UnixTransport(TcpTransport):
                 except (FileNotFoundError, ConnectionRefusedError):
                     if time.monotonic() > deadline:
                         raise
+                    if look is not None:
+                        look()
                     time.sleep(0.01)  # the other side is about to listen
         self._recv_into = self.sock.recv_into
 
