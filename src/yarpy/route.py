@@ -34,7 +34,7 @@ section 6.1.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 _PASSWORD = re.compile(r"\+password\.[^+\s]*?(?=\+|:/|\s|$)")
@@ -47,6 +47,7 @@ Monitors: TypeAlias = tuple[tuple[str, tuple[str, ...]], ...]
 class CarrierSpec:
     """What a carrier string says. `text` is for everybody, `whole` has the password too.
 
+    `own`: this program asked for it, and not somebody on the network.
     `base` is the protocol, `tokens` what is added to it. `send` and `recv` are the monitors at
     either end. `log` is the value of `+log`: such a connection hears what a port is told, not what
     it writes.
@@ -59,6 +60,7 @@ class CarrierSpec:
     log: str | None
     text: str
     whole: str
+    own: bool = field(default=False, compare=False)
 
     def value(self, key: str) -> str | None:
         """The value of the first `+key.value`, or None.
@@ -76,7 +78,7 @@ class CarrierSpec:
 
     def plus(self, *tokens: str) -> CarrierSpec:
         """The same carrier with something more added to it."""
-        return parse_carrier("+".join((self.whole, *tokens)))
+        return replace(parse_carrier("+".join((self.whole, *tokens))), own=self.own)
 
     def __str__(self) -> str:
         return self.text

@@ -109,10 +109,15 @@ def test_events(
         "    PortMonitor.setConstraint('not e_ball')\n    return true\nend\n",
     }
     for name, text in scripts.items():
-        (tmp_path / name).write_text(text)
-    monkeypatch.chdir(tmp_path)
+        place = tmp_path / "contexts" / "demo" / name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(text)
+    monkeypatch.setenv("YARP_DATA_HOME", str(tmp_path))
+    monkeypatch.setenv("YARPY_SCRIPTS", "network")
     for name in ("ball", "line"):
-        assert peer.do(f"connect('/{name}', 'tcp+recv.portmonitor+type.{kind}+file.{name}')")
+        assert peer.do(
+            f"connect('/{name}', 'tcp+recv.portmonitor+type.{kind}+context.demo+file.{name}')"
+        )
     wait_until(lambda: len(eye.inputs) == 2)
     names = "/line", "/ball", "/line", "/ball"
     assert passes(peer, heard, *names) == ["/line", "/ball", "/ball"]

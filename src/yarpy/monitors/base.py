@@ -96,6 +96,7 @@ class Place:
     all of the connection's. `limit` is the largest message in bytes that the port takes: nothing
     may grow beyond it in here either. `names` finds other ports: the name client of this one.
     `look` tells where a file may be, by its name and the contexts of robot and program that count.
+    `foreign`: somebody on the network asked for the monitor, not the program that has the port.
     """
 
     source: str
@@ -108,6 +109,7 @@ class Place:
     limit: int = DEFAULT_LIMIT
     names: Any = None
     look: Callable[[str, Sequence[str]], Iterable[Path]] = _here
+    foreign: bool = False
 
     def __str__(self) -> str:
         if self.source == self.target:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Any, Self
 
 from yarpy.carriers.http.page import Pages
 from yarpy.contact import Contact
+from yarpy.data.property import Property
 from yarpy.errors import PortClosed
 from yarpy.port import connecting, disconnecting
 from yarpy.port.connection import Connection
 from yarpy.port.event import ConnectionEvent
 from yarpy.port.hub import Hub
+from yarpy.port.monitoring import Side
 from yarpy.wire.message import Message
 
 
@@ -110,6 +112,18 @@ class BasePort:
         `yarpy.Page`.
         """
         self._hub.callbacks.on_page = callback
+
+    def attach(self, side: Side, parameters: Mapping[str, Any]) -> None:
+        """Let a monitor ride on all that goes "in" or "out", instead of the one that did.
+
+        `{"monitor": NAME, ...}` says which and with what parameters; without a name it is a script,
+        `{"type": "python", "file": "gate"}`. Raises UnknownPlugin, LocalProtocolError.
+        """
+        self._hub.monitoring.attach(side, Property(parameters), own=True)
+
+    def detach(self, side: Side) -> None:
+        """Let nothing ride on it any more."""
+        self._hub.monitoring.detach(side)
 
     def interrupt(self) -> None:
         """Stop reading and writing: who waits in `read` gets PortClosed; connections stay."""

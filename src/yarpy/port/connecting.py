@@ -50,7 +50,7 @@ def connect(hub: Hub, target: str, carrier: str, timeout: float | None) -> None:
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
         try:
-            dial(hub, wanted)
+            dial(hub, wanted, own=True)
             return
         except YarpError as error:
             # A camera locks those out who try a wrong password again and again.
@@ -120,13 +120,15 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
 # -- one attempt ----------------------------------------------------------------------------------
 
 
-def dial(hub: Hub, wanted: Contact) -> CarrierSpec:
+def dial(hub: Hub, wanted: Contact, own: bool = False) -> CarrierSpec:
     """Connect `hub` to the destination `wanted`, once; an existing connection to it is replaced.
+
+    `own`: its program says so, not somebody on the network.
 
     Raises UnknownName, NoNameServer, UnknownPlugin, NotAllowed, LinkClosed, LoginRefused,
     LocalProtocolError, RemoteProtocolError, PortClosed.
     """
-    spec = parse_carrier(wanted.carrier or "tcp")
+    spec = replace(parse_carrier(wanted.carrier or "tcp"), own=own)
     contact = hub.registration.locate(wanted)
     if contact is None:
         raise UnknownName(f'no port "{wanted.name}" is registered')

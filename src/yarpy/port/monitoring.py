@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import Literal, Protocol, TypeAlias
 
 from yarpy.config.resource import Search
 from yarpy.data.bottle import Bottle
@@ -23,6 +23,7 @@ from yarpy.monitors.chain import Chain, from_carrier, make
 from yarpy.names.base import NameClient
 from yarpy.route import Route
 
+Side: TypeAlias = Literal["in", "out"]  # of a port
 DEFAULT = "portmonitor"  # the monitor that is attached when none is named
 
 
@@ -74,7 +75,14 @@ class Monitoring:
         group = Group() if sending else self.group
         end = route.source, route.target, route.carrier, sending
         names = self._port.service()
-        return Place(*end, group=group, limit=self._port.limit, names=names, look=_look)
+        return Place(
+            *end,
+            group=group,
+            limit=self._port.limit,
+            names=names,
+            look=_look,
+            foreign=not route.spec.own,
+        )
 
     def _joined(self, own: Chain | None) -> Chain | None:
         if own is None or self.input is None:
@@ -83,11 +91,11 @@ class Monitoring:
 
     # -- the port itself --------------------------------------------------------------------------
 
-    def attach(self, side: Literal["in", "out"], parameters: Property) -> None:
+    def attach(self, side: Side, parameters: Property, own: bool = False) -> None:
         """Let a monitor ride on the port; it replaces the one that did. Raises as `make`.
 
         `(monitor NAME)` among the parameters says which, else it is a portmonitor; the others are
-        its own.
+        its own. `own`: the program says so, not somebody on the network.
         """
         name = self._port.name
         tokens = tuple(_token(parameters, key) for key in parameters if key != "monitor")
@@ -96,19 +104,20 @@ class Monitoring:
             tokens=tokens,
             shared=tokens,
             group=Group(),
+            foreign=not own,
         )
         fresh = Chain([make(str(parameters.get("monitor", DEFAULT)), place)], str(place))
         self.detach(side)
         self._set(side, fresh)
 
-    def detach(self, side: Literal["in", "out"]) -> None:
+    def detach(self, side: Side) -> None:
         """Let nothing ride on the port any more."""
         old = self.input if side == "in" else self.output
         self._set(side, None)
         if old is not None:
             old.close()
 
-    def _set(self, side: Literal["in", "out"], chain: Chain | None) -> None:
+    def _set(self, side: Side, chain: Chain | None) -> None:
         if side == "out":
             self.output = chain
             return
@@ -118,7 +127,7 @@ class Monitoring:
 
     # -- parameters -------------------------------------------------------------------------------
 
-    def chain(self, side: Literal["in", "out"], name: str) -> Chain | None:
+    def chain(self, side: Side, name: str) -> Chain | None:
         """The chain of the connection from or to `name`, or the port's own if that is its name."""
         if name == self._port.name:
             return self.input if side == "in" else self.output

@@ -444,6 +444,36 @@ def test_modules_beside_the_script(tmp_path: Path) -> None:
     assert LuaScript(tmp_path / "a.lua", text.encode(), Control()).accept(message())
 
 
+REACHES = [
+    "io.open('/etc/hostname')", "os.execute('true')", "os.getenv('HOME')", "os.remove('x')",
+    "os.tmpname()", "require('io').lines('/etc/hostname')", "require('os').rename('a', 'b')",
+    "dofile('/etc/hostname')", "loadfile('/etc/hostname')()", "require('../helper')",
+    "require('/etc/hostname')", "require('a.b')", "package.searchpath('a', '?')",
+    "package.path.x = 1", "require('package').searchers[2]('helper')",
+    "string.find = function() return 1 end require('../helper')",
+    "string.find = function() return 1 end string.gsub = string.find require('x/../../helper')",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("body", REACHES)
+def test_disk_and_programs_are_out_of_reach(tmp_path: Path, body: str) -> None:
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    (tmp_path / "helper.lua").write_text("return { word = 'helped' }")
+    text = f"PortMonitor.accept = function() {body} return true end"
+    script = LuaScript(inner / "a.lua", text.encode(), Control())
+    with pytest.raises(ScriptError):
+        script.accept(message())
+
+
+def test_owner_may_let_scripts_have_all_of_lua(tmp_path: Path) -> None:
+    (tmp_path / "x").write_text("seen")
+    text = f"PortMonitor.accept = function() return io.open('{tmp_path}/x'):read() == 'seen' end"
+    assert LuaScript(tmp_path / "a.lua", text.encode(), Control(), system=True).accept(message())
+    text = "PortMonitor.accept = function() return os.time() > 0 and os.clock() >= 0 end"
+    assert LuaScript(tmp_path / "a.lua", text.encode(), Control()).accept(message())
+
+
 # -- errors and limits ----------------------------------------------------------------------------
 
 

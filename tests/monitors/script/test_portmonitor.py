@@ -309,6 +309,15 @@ def names() -> yarpy.LocalNames:
     return yarpy.LocalNames()
 
 
+@pytest.fixture
+def app(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a context, whose scripts the network may ask for."""
+    monkeypatch.setenv("YARPY_SCRIPTS", "network")
+    found = folder / "data" / "contexts" / "app"
+    found.mkdir(parents=True)
+    return found
+
+
 GATE = {
     "python": """
 level = 1
@@ -352,18 +361,18 @@ ENDINGS = {"python": "py", "lua": "lua"}
 
 
 @pytest.fixture(params=["python", "lua"])
-def kind(request: pytest.FixtureRequest, folder: Path) -> str:
-    """The language of the scripts `gate` in this folder."""
+def kind(request: pytest.FixtureRequest, app: Path) -> str:
+    """The language of the scripts `gate` of the context."""
     if request.param == "lua":
         pytest.importorskip("lupa.lua54", reason='Lua is missing: pip install "yarpy[lua]"')
-    (folder / f"gate.{ENDINGS[request.param]}").write_text(GATE[request.param])
+    (app / f"gate.{ENDINGS[request.param]}").write_text(GATE[request.param])
     return str(request.param)
 
 
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "udp", "unix_stream", "local", "text_ack"])
 def test_both_ends(names: yarpy.LocalNames, kind: str, carrier: str) -> None:
     with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
-        one = f"portmonitor+type.{kind}+file.gate"
+        one = f"portmonitor+type.{kind}+context.app+file.gate"
         out.connect("/in", f"{carrier}+send.{one}+recv.{one}")
         mine = ("hi",)
         for value, passes in ((mine, True), (["drop"], False), (["ho", [2.5]], True)):
@@ -380,10 +389,10 @@ def test_calls_and_settings(names: yarpy.LocalNames, kind: str) -> None:
         yarpy.RpcServer("/server", lambda m: m.value, names=names),
         yarpy.RpcClient(names=names) as client,
     ):
-        client.connect("/server", f"tcp+send.portmonitor+type.{kind}+file.gate")
+        client.connect("/server", f"tcp+send.portmonitor+type.{kind}+context.app+file.gate")
         assert client.call("hi") == ["hi", 1, "replied"]
     with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
-        out.connect("/in", f"tcp+recv.portmonitor+type.{kind}+file.gate")
+        out.connect("/in", f"tcp+recv.portmonitor+type.{kind}+context.app+file.gate")
 
         def admin(*words: object) -> object:
             return network.admin("/in", *words, names=names)
@@ -401,14 +410,16 @@ def test_calls_and_settings(names: yarpy.LocalNames, kind: str) -> None:
 def test_attached_to_a_port(names: yarpy.LocalNames, kind: str) -> None:
     with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
         out.connect("/in")
-        text = f"(type {kind}) (file gate)"
+        text = f"(type {kind}) (file gate) (context app)"
         assert network.admin("/in", "atch", "in", text, names=names) == [Vocab("ok")]
         assert network.admin("/out", "atch", "out", text, names=names) == [Vocab("ok")]
         assert out.write(["drop"]) == 0
         assert out.write(["hi"]) == 1
         assert in_.read(timeout=5).value == ["hi", 1, 1]
         assert network.admin("/in", "get", "in", "/in", names=names) == [[["level", 1]]]
-        reply = network.admin("/in", "atch", "in", f"(type {kind}) (file nosuch)", names=names)
+        reply = network.admin(
+            "/in", "atch", "in", f"(type {kind}) (file nosuch) (context app)", names=names
+        )
         assert reply[0] == Vocab("fail")
         assert '"nosuch"' in reply[1]
         out.write(["ho"])  # the one before stays
@@ -419,12 +430,12 @@ def test_attached_to_a_port(names: yarpy.LocalNames, kind: str) -> None:
 
 
 def test_without_a_script_there_is_no_connection(
-    names: yarpy.LocalNames, caplog: pytest.LogCaptureFixture
+    names: yarpy.LocalNames, app: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.WARNING)
     with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
-        for carrier in ("tcp+recv.portmonitor+type.python+file.gone",
-                        "tcp+send.portmonitor+type.python+file.gone"):  # fmt: skip
+        for carrier in ("tcp+recv.portmonitor+type.python+context.app+file.gone",
+                        "tcp+send.portmonitor+type.python+context.app+file.gone"):  # fmt: skip
             with pytest.raises(yarpy.LinkClosed):
                 out.connect("/in", carrier)
         assert (out.outputs, in_.inputs) == ([], [])
@@ -461,20 +472,20 @@ def until(step: Callable[[], object], condition: Callable[[], bool]) -> None:
 
 @pytest.mark.parametrize(("ball_kind", "line_kind"), [("python", "lua"), ("lua", "python")])
 def test_arbitration_by_events(
-    names: yarpy.LocalNames, folder: Path, ball_kind: str, line_kind: str
+    names: yarpy.LocalNames, app: Path, ball_kind: str, line_kind: str
 ) -> None:
     """The ball inhibits the line for half a second, whatever language either speaks."""
     pytest.importorskip("lupa.lua54", reason='Lua is missing: pip install "yarpy[lua]"')
     for name, kind in (("ball", ball_kind), ("line", line_kind)):
-        (folder / f"{name}.{ENDINGS[kind]}").write_text(ARBITRATION[name][kind])
+        (app / f"{name}.{ENDINGS[kind]}").write_text(ARBITRATION[name][kind])
     heard: list[Message] = []
     with (
         yarpy.Port("/in", callback=heard.append, names=names) as in_,
         yarpy.Port("/ball", names=names) as ball,
         yarpy.Port("/line", names=names) as line,
     ):
-        ball.connect("/in", f"tcp+recv.portmonitor+type.{ball_kind}+file.ball")
-        line.connect("/in", f"tcp+recv.portmonitor+type.{line_kind}+file.line")
+        ball.connect("/in", f"tcp+recv.portmonitor+type.{ball_kind}+context.app+file.ball")
+        line.connect("/in", f"tcp+recv.portmonitor+type.{line_kind}+context.app+file.line")
         wait_until(lambda: len(in_.inputs) == 2)
         of_line = next(link for link in in_.inputs if link.source == "/line")
         line.write(["line"])
@@ -485,17 +496,17 @@ def test_arbitration_by_events(
         until(lambda: line.write(["late"]), lambda: bool(heard[-1].value == ["late"]))
 
 
-def test_others_of_the_port_are_triggered(names: yarpy.LocalNames, folder: Path) -> None:
+def test_others_of_the_port_are_triggered(names: yarpy.LocalNames, app: Path) -> None:
     """Recorded with C++: A waits for e_go, which its `trig` sets when B sends."""
-    python(folder, "def trig(): portmonitor.set_event('e_test_go', 60)\n", "a.py")
-    python(folder, "x = 1\n", "b.py")
+    python(app, "def trig(): portmonitor.set_event('e_test_go', 60)\n", "a.py")
+    python(app, "x = 1\n", "b.py")
     with (
         yarpy.BufferedPort("/in", strict=True, names=names) as in_,
         yarpy.Port("/a", names=names) as a,
         yarpy.Port("/b", names=names) as b,
     ):
-        a.connect("/in", "tcp+recv.portmonitor+type.python+file.a+constraint.e_test_go")
-        b.connect("/in", "tcp+recv.portmonitor+type.python+file.b")
+        a.connect("/in", "tcp+recv.portmonitor+type.python+context.app+file.a+constraint.e_test_go")
+        b.connect("/in", "tcp+recv.portmonitor+type.python+context.app+file.b")
         a.write(["a1"])
         wait_until(lambda: any(link.stats["drops"] for link in in_.inputs))
         b.write(["b1"])
@@ -504,12 +515,12 @@ def test_others_of_the_port_are_triggered(names: yarpy.LocalNames, folder: Path)
         assert in_.read(timeout=5).value == ["a2"]
 
 
-def test_timer_of_a_script_ends_with_its_connection(names: yarpy.LocalNames, folder: Path) -> None:
+def test_timer_of_a_script_ends_with_its_connection(names: yarpy.LocalNames, app: Path) -> None:
     text = "def create(options): portmonitor.setTrigInterval(0.01)\ncount = 0\n"
-    python(folder, f"{text}def trig():\n    global count; count += 1\n"
+    python(app, f"{text}def trig():\n    global count; count += 1\n"
                    "def getparam(): return {'count': count}\n")  # fmt: skip
     with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
-        out.connect("/in", "tcp+recv.portmonitor+type.python+file.gate")
+        out.connect("/in", "tcp+recv.portmonitor+type.python+context.app+file.gate")
 
         def count() -> int:
             reply = network.admin("/in", "get", "in", "/out", names=names)
@@ -529,3 +540,83 @@ def timers() -> list[str]:
 def no_timers() -> Iterator[None]:
     yield
     wait_until(lambda: not timers(), what="no timer is left")
+
+
+# -- what the network may ask for -----------------------------------------------------------------
+
+WRITES = "from pathlib import Path\nPath({path!r}).write_text('ran')\n"
+
+
+@pytest.fixture
+def ran(folder: Path) -> Path:
+    """What a script makes that ran; the script lies everywhere that somebody might try."""
+    made = folder / "ran"
+    contexts = folder / "data" / "contexts"
+    for place in (folder, contexts, contexts / "app", contexts / "app" / "deeper", folder / "data"):
+        place.mkdir(parents=True, exist_ok=True)
+        python(place, WRITES.format(path=str(made)), "evil.py")
+    return made
+
+
+@pytest.mark.parametrize("setting", ["", "system", "network"])
+@pytest.mark.parametrize("end", ["recv", "send", "atch"])
+def test_scripts_of_the_network_run_if_the_owner_says_so(
+    names: yarpy.LocalNames, ran: Path, monkeypatch: pytest.MonkeyPatch, setting: str, end: str
+) -> None:
+    monkeypatch.setenv("YARPY_SCRIPTS", setting)
+    with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
+        if end == "atch":
+            text = "(type python) (file evil) (context app)"
+            reply = network.admin("/in", "atch", "in", text, names=names)
+            refused = reply[0] == Vocab("fail")
+        else:
+            carrier = f"tcp+{end}.portmonitor+type.python+context.app+file.evil"
+            reply = network.admin("/out", "add", "/in", carrier, names=names)
+            refused = reply[0] == -1
+        assert refused == (setting != "network"), reply
+        assert ran.exists() == (setting == "network")
+        if refused and end != "recv":
+            assert "YARPY_SCRIPTS=network" in reply.to_text()
+        assert in_.closed == out.closed is False
+
+
+@pytest.mark.parametrize(
+    ("file", "context"),
+    [
+        ("evil", ""),
+        ("evil.py", ""),
+        ("../evil", "app"),
+        ("deeper/evil", "app"),
+        ("evil", ".."),
+        ("evil", "app/.."),
+        ("evil", "."),
+        ("{folder}/evil", ""),
+        ("{folder}/evil.py", "app"),
+        ("evil", "{folder}"),
+    ],
+)
+def test_network_names_files_of_contexts_alone(
+    names: yarpy.LocalNames, folder: Path, ran: Path, monkeypatch: pytest.MonkeyPatch,
+    file: str, context: str,
+) -> None:  # fmt: skip
+    monkeypatch.setenv("YARPY_SCRIPTS", "network")
+    words = ["type", "python"], ["file", file.format(folder=folder)]
+    with yarpy.Port("/in", names=names):
+        given = [*words, ["context", context.format(folder=folder)]] if context else [*words]
+        reply = network.admin("/in", "atch", "in", *given, names=names)
+        assert reply[0] == Vocab("fail")
+        assert "never by a path" in reply[1]
+    assert not ran.exists()
+
+
+def test_program_may_attach_what_it_likes(names: yarpy.LocalNames, ran: Path, folder: Path) -> None:
+    with yarpy.Port("/in", names=names) as in_:
+        in_.attach("in", {"type": "python", "file": str(folder / "evil.py")})
+        assert ran.exists()
+        in_.detach("in")
+        ran.unlink()
+        with yarpy.Port("/out", names=names) as out:
+            out.connect("/in", "tcp+send.portmonitor+type.python+file.evil")
+        assert ran.exists()
+        with pytest.raises(yarpy.LocalProtocolError, match="nosuch"):
+            in_.attach("in", {"type": "python", "file": "nosuch"})

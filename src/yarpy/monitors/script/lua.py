@@ -154,6 +154,7 @@ class LuaScript:
         control: Control,
         limit: int = LIMIT,
         memory: int = MEMORY,
+        system: bool = False,
     ) -> None:
         self._path = path
         self._host = _Host(control)
@@ -168,7 +169,8 @@ class LuaScript:
         self._lua = lua
         folder = b"%s/?.lua;" % _data(str(path.parent))
         lua.globals()[b"package"][b"path"] = folder + lua.globals()[b"package"][b"path"]
-        run, fail = self._load("sandbox", limit)
+        # Without `system` scripts find nothing outside of Lua but their own folder's modules.
+        run, fail = self._load("sandbox", limit, None if system else _data(str(path.parent)))
         kit = self._load("element", lua.table_from(self._host.given()), fail)
         for name in ("value", "list", "number", "image"):
             self._load(name, kit)

@@ -18,6 +18,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -28,6 +29,7 @@ from yarpy.monitors import chain
 from yarpy.monitors.base import DROP, Place, read_token
 from yarpy.monitors.monitor_list import Series, places
 from yarpy.monitors.script.control import Control
+from yarpy.monitors.script.permission import SYSTEM, granted
 from yarpy.monitors.script.script import Load, Script, ScriptError, Watch, find_script, read_script
 from yarpy.wire.message import Message
 
@@ -210,7 +212,7 @@ def _lua(place: Place) -> Load:
     from yarpy.monitors.script.lua import LuaScript, lupa
 
     lupa()  # before the file is looked for: it is the first thing to be had
-    return LuaScript
+    return partial(LuaScript, system=granted(SYSTEM))
 
 
 _LANGUAGES: Final = {

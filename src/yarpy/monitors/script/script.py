@@ -16,6 +16,7 @@ from yarpy.data.property import Property
 from yarpy.errors import LocalProtocolError
 from yarpy.monitors.base import Place
 from yarpy.monitors.script.control import Control
+from yarpy.monitors.script.permission import look_for
 from yarpy.wire.message import Message
 
 PATIENCE: Final = 0.5  # seconds between two looks at a file
@@ -60,12 +61,11 @@ Load = Callable[[Path, bytes, Control], Script]
 def find_script(place: Place, name: str, context: str, endings: Sequence[str]) -> Path:
     """The file of a script, found as configuration files are.
 
-    Raises LocalProtocolError, which tells where it may be put.
+    Raises LocalProtocolError, which tells where it may be put, or that it must not run.
     """
-    contexts = [context] if context else []
     looked: list[Path] = []
     for ending in endings:
-        for path in place.look(name + ending, contexts):
+        for path in look_for(place, name + ending, context):
             if path.is_file():
                 return path.absolute()
             looked.append(path)

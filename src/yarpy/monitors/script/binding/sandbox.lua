@@ -5,14 +5,14 @@
 -- which no pcall survives. Python is out of reach.
 -- What runs inside a single function of Lua's own library is not counted, memory is (by lupa).
 
-local LIMIT = ...
+local LIMIT, FOLDER = ... -- a FOLDER: all that there is of the disk are its modules
 local STEP = 1000
 
 local create, resume, yield = coroutine.create, coroutine.resume, coroutine.yield
 local sethook, traceback, getinfo = debug.sethook, debug.traceback, debug.getinfo
 local pcall, error, type, tostring, select = pcall, error, type, tostring, select
 local rawget, rawsetmetatable, load, loadfile = rawget, setmetatable, load, loadfile
-local pack, unpack = table.pack, table.unpack
+local pack, unpack, find = table.pack, table.unpack, string.find
 
 local used = 0
 local DONE = {}
@@ -103,6 +103,33 @@ package.loadlib = nil
 package.cpath = ""
 python = nil
 package.loaded.python = nil
+
+if FOLDER then
+    local loaded = package.loaded
+    os = { time = os.time, clock = os.clock, date = os.date, difftime = os.difftime }
+    io, dofile, _G.loadfile = nil, nil, nil
+    loaded.io, loaded.os, loaded.package = nil, os, nil
+    package = { loaded = loaded }
+
+    function require(name)
+        local made = loaded[name]
+        if made == nil then
+            if type(name) ~= "string" or not find(name, "^[%w_]+$") then
+                fail("a module has a plain name, and lies beside the script")
+            end
+            local chunk, problem = loadfile(FOLDER .. "/" .. name .. ".lua", "t")
+            if not chunk then
+                fail("module '" .. name .. "' not found beside the script: " .. problem)
+            end
+            made = chunk(name)
+            if made == nil then
+                made = true
+            end
+            loaded[name] = made
+        end
+        return made
+    end
+end
 
 -- -- running ------------------------------------------------------------------------------------
 

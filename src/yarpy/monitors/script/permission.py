@@ -1,0 +1,54 @@
+"""Which scripts may run: `YARPY_SCRIPTS`, in the environment of the program that has the port.
+
+    (nothing)   those that the program itself asked for (Port.connect, Port.attach)
+    network     those too that the network asks for: a sender's carrier string, `add` and `atch`
+    system      Lua scripts have all of Lua: io, os, require of any file
+
+Rules: who asks over the network names a file of a context's folder, where the owner of the machine
+has put it, and nothing else: no path, no `..`. A script in Python may do whatever its program may.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Final
+
+from yarpy.errors import LocalProtocolError
+from yarpy.monitors.base import Place
+
+SETTING: Final = "YARPY_SCRIPTS"
+NETWORK: Final = "network"
+SYSTEM: Final = "system"
+
+
+def granted(word: str) -> bool:
+    """Whether the setting has this word."""
+    return word in os.environ.get(SETTING, "").replace(",", " ").split()
+
+
+def look_for(place: Place, file: str, context: str) -> Iterator[Path]:
+    """Where a script may be. Raises LocalProtocolError if it must not run, whatever it is."""
+    if not place.foreign:
+        return iter(place.look(file, [context] if context else []))
+    if not granted(NETWORK):
+        raise LocalProtocolError(
+            f"scripts that the network asks for do not run here: start the program that has this "
+            f"port with {SETTING}=network, or let it attach the script itself (Port.attach)"
+        )
+    if not context or not (_is_plain(file) and _is_plain(context)):
+        raise LocalProtocolError(
+            "over the network a script is named by a file of a context, +context.NAME+file.NAME, "
+            f'and never by a path: not "{file}" of "{context}"'
+        )
+    return _in_context(place.look(file, [context]), context, file)
+
+
+def _in_context(paths: Iterable[Path], context: str, file: str) -> Iterator[Path]:
+    """Those of the paths that lie in a folder of the context."""
+    return (path for path in paths if path.parts[-3:] == ("contexts", context, file))
+
+
+def _is_plain(name: str) -> bool:
+    return name not in ("", ".", "..") and not any(c in name for c in "/\\:\0")
