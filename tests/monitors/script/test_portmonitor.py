@@ -436,7 +436,7 @@ def test_without_a_script_there_is_no_connection(
     with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
         for carrier in ("tcp+recv.portmonitor+type.python+context.app+file.gone",
                         "tcp+send.portmonitor+type.python+context.app+file.gone"):  # fmt: skip
-            with pytest.raises(yarpy.LinkClosed):
+            with pytest.raises(yarpy.LocalProtocolError):
                 out.connect("/in", carrier)
         assert (out.outputs, in_.inputs) == ([], [])
     assert caplog.text.count('no script "gone" or "gone.py"') >= 1
