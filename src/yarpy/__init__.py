@@ -17,10 +17,10 @@ __version__ = "0.1.0"
 
 _WHERE = {
     "Port": "yarpy.port.port",
-    "BufferedPort": "yarpy.port.buffered",
+    "BufferedPort": "yarpy.port.port",
     "RpcServer": "yarpy.port.rpc",
     "RpcClient": "yarpy.port.rpc",
-    "ConnectionEvent": "yarpy.port.event",
+    "ConnectionEvent": "yarpy.port.connection",
     "Message": "yarpy.wire.message",
     "Page": "yarpy.carriers.http.page",
     "Contact": "yarpy.contact",
@@ -111,8 +111,8 @@ if TYPE_CHECKING:
     from yarpy.network.connection import ping as ping
     from yarpy.network.connection import query as query
     from yarpy.network.connection import wait_for as wait_for
-    from yarpy.port.buffered import BufferedPort as BufferedPort
-    from yarpy.port.event import ConnectionEvent as ConnectionEvent
+    from yarpy.port.connection import ConnectionEvent as ConnectionEvent
+    from yarpy.port.port import BufferedPort as BufferedPort
     from yarpy.port.port import Port as Port
     from yarpy.port.rpc import RpcClient as RpcClient
     from yarpy.port.rpc import RpcServer as RpcServer

@@ -29,7 +29,7 @@ from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
 from yarpy.port.connection import Connection
 from yarpy.port.mailbox import Mailbox
-from yarpy.port.reader import ReadingPort
+from yarpy.port.port import MessagePort
 from yarpy.wire.message import Answer, Message
 
 P = TypeVar("P", bound=BasePort)
@@ -257,7 +257,7 @@ class _Port(plain.Port):
         spin: bool = False,
         **options: Any,
     ) -> None:
-        ReadingPort.__init__(self, open_hub(name, mailbox, names, **options), spin)
+        MessagePort.__init__(self, open_hub(name, mailbox, names, **options), spin)
 
 
 class _Arrival:

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from yarpy.link.counter import Counter
+from yarpy.link.counter import KEEP, Counter, Past
 
 
 def test_regular_messages_have_a_period_and_no_jitter() -> None:
@@ -60,3 +60,15 @@ def test_numbers_by_name() -> None:
     assert set(found) == {
         *("messages", "bytes", "drops", "period", "jitter", "latency", "since", "rate"),
     }
+
+
+def test_sums_over_links_that_are_over() -> None:
+    past = Past()
+    assert past.as_dict() == {"messages": 0, "bytes": 0, "drops": 0}
+    counters = [Counter(messages=1, bytes=10, drops=2) for _ in range(3 * KEEP)]
+    for counter in counters:
+        past.add(counter, 1)
+    expected = {"messages": 3 * KEEP, "bytes": 30 * KEEP, "drops": 9 * KEEP}
+    assert past.as_dict() == expected
+    counters[-1].drops += 5  # what waited is dropped later
+    assert past.as_dict()["drops"] == 9 * KEEP + 5

@@ -18,8 +18,7 @@ from yarpy.errors import (
 )
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.base import BasePort
-from yarpy.port.buffered import BufferedPort
-from yarpy.port.port import Port
+from yarpy.port.port import BufferedPort, Port
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.wire.message import Message
 

@@ -11,7 +11,7 @@ from yarpy.carriers.http.page import Page
 from yarpy.errors import LinkClosed
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.callbacks import Callbacks
-from yarpy.port.event import ConnectionEvent
+from yarpy.port.connection import ConnectionEvent
 from yarpy.port.port import Port
 from yarpy.port.registration import Registration
 from yarpy.wire.message import Message

@@ -21,8 +21,7 @@ from yarpy.errors import (
 )
 from yarpy.nameserver.local import LocalNames
 from yarpy.port import connecting
-from yarpy.port.buffered import BufferedPort
-from yarpy.port.port import Port
+from yarpy.port.port import BufferedPort, Port
 from yarpy.port.rpc import RpcServer
 
 CASES = [

@@ -13,9 +13,8 @@ from support.wait import wait_until
 import yarpy
 from yarpy.nameserver.local import LocalNames
 from yarpy.port import keepalive
-from yarpy.port.buffered import BufferedPort
 from yarpy.port.keepalive import Link, Pulse
-from yarpy.port.port import Port
+from yarpy.port.port import BufferedPort, Port
 from yarpy.wire.message import Packet
 
 OTHER = """

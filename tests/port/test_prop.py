@@ -13,8 +13,7 @@ from yarpy import network
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.nameserver.local import LocalNames
-from yarpy.port.buffered import BufferedPort
-from yarpy.port.port import Port
+from yarpy.port.port import BufferedPort, Port
 from yarpy.port.rpc import RpcClient, RpcServer
 
 

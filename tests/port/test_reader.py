@@ -13,8 +13,7 @@ from support.wait import wait_until
 from yarpy import network
 from yarpy.errors import PortClosed, Timeout
 from yarpy.nameserver.local import LocalNames
-from yarpy.port.buffered import BufferedPort
-from yarpy.port.port import Port
+from yarpy.port.port import BufferedPort, Port
 from yarpy.port.rpc import RpcClient
 from yarpy.wire.message import Message
 

@@ -15,7 +15,7 @@ from typing import Generic, TypeVar
 from yarpy.devices.closeable import Closeable
 from yarpy.errors import Timeout, YarpError
 from yarpy.names.base import NameClient
-from yarpy.port.buffered import BufferedPort
+from yarpy.port.port import BufferedPort
 from yarpy.wire.message import Message
 
 T = TypeVar("T")

@@ -1,15 +1,20 @@
-"""Counters: how one link is doing, always on.
+"""Counters: how one link is doing, always on, and what those that are over have carried.
 
 Rules: cheap enough to update for every message; no locks (one thread at a time carries a link's
-messages, readers may see a number that is one message old). Times in seconds.
+messages, readers may see a number that is one message old). Times in seconds. Of a link that is
+over its counter is kept, not the link, which holds on to buffers.
 """
 
 from __future__ import annotations
 
+import threading
 import time
+from collections import deque
 from dataclasses import asdict, dataclass
+from typing import Final
 
 _SMOOTHING = 1 / 16  # the gain RFC 3550 uses for jitter
+KEEP: Final = 64  # counters of links that are over and may still change a little
 
 
 @dataclass(slots=True)
@@ -62,3 +67,36 @@ class Counter:
         found = asdict(self)
         del found["last"]
         return {**found, "rate": self.rate}
+
+
+class Past:
+    """Sums of `messages`, `bytes` and `drops` over connections that have ended.
+
+    The last counters may still change, when what waited unread is dropped later; older ones are
+    added up for good.
+    """
+
+    def __init__(self) -> None:
+        self._sums = [0, 0, 0]
+        self._last: deque[tuple[Counter, int]] = deque()
+        self._lock = threading.Lock()  # connections end in threads of their own
+
+    def add(self, counter: Counter, lost: int = 0) -> None:
+        """A connection is over; `lost` are drops that its counter does not know."""
+        with self._lock:
+            self._last.append((counter, lost))
+            if len(self._last) > KEEP:
+                self._sums = _sum(self._sums, *self._last.popleft())
+
+    def as_dict(self) -> dict[str, int]:
+        """The sums by name."""
+        with self._lock:
+            sums = self._sums
+            for counter, lost in self._last:
+                sums = _sum(sums, counter, lost)
+        return dict(zip(("messages", "bytes", "drops"), sums, strict=True))
+
+
+def _sum(sums: list[int], counter: Counter, lost: int) -> list[int]:
+    messages, size, drops = sums
+    return [messages + counter.messages, size + counter.bytes, drops + counter.drops + lost]

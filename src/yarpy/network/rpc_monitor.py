@@ -23,7 +23,7 @@ from yarpy.errors import DecodeError, LocalProtocolError, YarpError
 from yarpy.monitors.base import Place
 from yarpy.port.assembly import open_hub
 from yarpy.port.mailbox import Latest
-from yarpy.port.writer import Writer
+from yarpy.port.port import MessagePort
 from yarpy.wire.message import Message
 
 _BEHIND = 1000  # copies
@@ -39,7 +39,7 @@ class RpcMonitor:
         self._sent = self._drops = 0
         self._copies: queue.Queue[Bottle | None] = queue.Queue(_BEHIND)
         hub = open_hub(f"{place.source}/monitor", Latest(), place.names, register=False)
-        self._port = Writer(hub)
+        self._port = MessagePort(hub)
         try:
             self._port.connect(place.text("monitor", "/monitor"))
         except YarpError:

@@ -17,7 +17,7 @@ import time
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.monitors.base import Place
-from yarpy.port.buffered import BufferedPort
+from yarpy.port.port import BufferedPort
 from yarpy.wire.message import Message, Packet
 
 _PERIOD = 1.0  # seconds

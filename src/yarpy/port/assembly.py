@@ -12,7 +12,7 @@ from typing import Final
 from yarpy.config.configuration import port_number
 from yarpy.names.base import NameClient
 from yarpy.port import admin, command, disconnecting, fork, reconnect
-from yarpy.port.event import ConnectionEvent
+from yarpy.port.connection import ConnectionEvent
 from yarpy.port.hub import Crew, Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.registration import Registration

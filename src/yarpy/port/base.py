@@ -12,8 +12,7 @@ from yarpy.contact import Contact
 from yarpy.data.property import Property
 from yarpy.errors import PortClosed
 from yarpy.port import connecting, disconnecting
-from yarpy.port.connection import Connection
-from yarpy.port.event import ConnectionEvent
+from yarpy.port.connection import Connection, ConnectionEvent
 from yarpy.port.hub import Hub
 from yarpy.port.monitoring import Side
 from yarpy.wire.message import Message

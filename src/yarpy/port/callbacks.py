@@ -10,7 +10,7 @@ import logging
 from collections.abc import Callable, Mapping
 
 from yarpy.carriers.http.page import Page, Pages
-from yarpy.port.event import ConnectionEvent
+from yarpy.port.connection import ConnectionEvent
 from yarpy.port.registration import Registration
 from yarpy.wire.message import Message
 

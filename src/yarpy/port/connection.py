@@ -1,8 +1,14 @@
-"""Connection: what a user sees of a link in `port.inputs` and `port.outputs`."""
+"""Connection: what a user sees of a link in `port.inputs` and `port.outputs`, and hears of one that
+comes or goes.
+
+Rules: the texts of events are those C++ YARP logs. Transient clients (`admin`, tools without a name
+that begins with a slash) are not reported.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from yarpy.link.inbound import Inbound
@@ -65,3 +71,27 @@ class Connection:
 
     def __repr__(self) -> str:
         return f"<Connection {self.source} -> {self.target} ({self.carrier})>"
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectionEvent:
+    """`incoming`: into the port or out of it; `created`: it came or it went; `reason` says why."""
+
+    incoming: bool
+    created: bool
+    source: str
+    target: str
+    carrier: str
+    reason: str = ""
+
+    def __str__(self) -> str:
+        verb = {
+            (True, True): "Receiving input",
+            (True, False): "Removing input",
+            (False, True): "Sending output",
+            (False, False): "Removing output",
+        }[self.incoming, self.created]
+        text = f"{verb} from {self.source} to {self.target}"
+        if self.created:
+            text += f" using {self.carrier}"
+        return f"{text} ({self.reason})" if self.reason else text

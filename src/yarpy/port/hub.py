@@ -21,6 +21,7 @@ from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.errors import NoNameServer, PortClosed, RemoteProtocolError, YarpError
+from yarpy.link.counter import Past
 from yarpy.link.driver import Driver
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
@@ -28,11 +29,10 @@ from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.port import probe
 from yarpy.port.callbacks import Callbacks
+from yarpy.port.connection import ConnectionEvent
 from yarpy.port.dialling import Dialling
-from yarpy.port.event import ConnectionEvent
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.monitoring import Monitoring
-from yarpy.port.past import Past
 from yarpy.port.reception import Reception
 from yarpy.port.registration import Registration
 from yarpy.route import Route

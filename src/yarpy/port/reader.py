@@ -1,20 +1,14 @@
-"""Reading ports: the loop over what comes in, out of the mailbox or straight from the socket.
-
-The mailbox is always right. Direct reading is a shortcut for the case that matters most, a loop
-around one connection: it saves waking a second thread for every message.
-"""
+"""Reader: what a port does in `read` - takes from the mailbox, or straight from the socket."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 
-from yarpy.errors import PortClosed, Timeout
+from yarpy.errors import Timeout
 from yarpy.link.inbound import Inbound
 from yarpy.link.turn import SILENCE
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Latest
-from yarpy.port.writer import Writer
 from yarpy.wire.message import Message
 
 # A reader that comes back within this many seconds may read the socket itself.
@@ -22,39 +16,6 @@ _QUICK = 0.005
 # One that wants the newest and works longer than this between messages leaves reading to the link's
 # thread, which drops what is old and keeps no sender waiting.
 _NEWEST_QUICK = 0.001
-
-
-class ReadingPort(Writer):
-    """A port that is read from. Subclasses choose the mailbox, which is the reading policy."""
-
-    def __init__(self, hub: Hub, spin: bool) -> None:
-        super().__init__(hub)
-        self._mailbox = hub.mailbox
-        self._reader = Reader(hub, spin)
-
-    def read(self, timeout: float | None = None) -> Message:
-        """The next message, waiting for one if needed.
-
-        Raises Timeout after `timeout` seconds, PortClosed if the port is closed or interrupted.
-        """
-        return self._reader.read(timeout)
-
-    def poll(self) -> Message | None:
-        """A message that is already there, or None."""
-        return self._reader.poll()
-
-    @property
-    def waiting(self) -> int:
-        """Messages that came and were not read yet."""
-        return self._mailbox.waiting
-
-    def __iter__(self) -> Iterator[Message]:
-        """Messages until the port is closed or interrupted."""
-        try:
-            while True:
-                yield self.read()
-        except PortClosed:
-            return
 
 
 class Reader:

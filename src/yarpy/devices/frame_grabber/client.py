@@ -27,7 +27,7 @@ from yarpy.devices.frame_grabber.interface import FEATURES
 from yarpy.devices.frame_grabber.responder import BUSES, MODES
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.names.base import NameClient
-from yarpy.port.buffered import BufferedPort
+from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcClient
 
 #: Seconds that an answer or an image may take.

@@ -27,7 +27,7 @@ from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError
 from yarpy.names.base import NameClient
-from yarpy.port.buffered import BufferedPort
+from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcServer
 from yarpy.wire.message import Message
 

@@ -14,9 +14,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.errors import PortClosed
 from yarpy.nameserver.local import LocalNames
-from yarpy.port.buffered import BufferedPort
-from yarpy.port.port import Port
-from yarpy.port.writer import Writer, envelope_of
+from yarpy.port.port import BufferedPort, MessagePort, Port, envelope_of
 from yarpy.wire.message import Message
 
 ENVELOPES = [
@@ -46,7 +44,7 @@ class Counting:
 
 
 @pytest.mark.parametrize("kind", [Port, BufferedPort])
-def test_twenty_readers_cost_one_encoding(kind: type[Writer], names: LocalNames) -> None:
+def test_twenty_readers_cost_one_encoding(kind: type[MessagePort], names: LocalNames) -> None:
     carriers = ["tcp", "fast_tcp", "udp", "mcast", "unix_stream"] * 4
     heard: list[str] = []
     with kind("/out", names=names) as out, ExitStack() as stack:  # type: ignore[call-arg]

@@ -6,23 +6,8 @@ import pytest
 from support.patience import patience
 from support.wait import wait_until
 
-from yarpy.link.counter import Counter
 from yarpy.nameserver.local import LocalNames
-from yarpy.port.buffered import BufferedPort
-from yarpy.port.past import KEEP, Past
-from yarpy.port.port import Port
-
-
-def test_sums() -> None:
-    past = Past()
-    assert past.as_dict() == {"messages": 0, "bytes": 0, "drops": 0}
-    counters = [Counter(messages=1, bytes=10, drops=2) for _ in range(3 * KEEP)]
-    for counter in counters:
-        past.add(counter, 1)
-    expected = {"messages": 3 * KEEP, "bytes": 30 * KEEP, "drops": 9 * KEEP}
-    assert past.as_dict() == expected
-    counters[-1].drops += 5  # what waited is dropped later
-    assert past.as_dict()["drops"] == 9 * KEEP + 5
+from yarpy.port.port import BufferedPort, Port
 
 
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text", "unix_stream"])
