@@ -10,9 +10,12 @@ from __future__ import annotations
 from typing import Final
 
 from yarpy.data.image import QUANTUM, Image
+from yarpy.data.limit import limits
 from yarpy.errors import DecodeError
 
 QUALITY: Final = 75  # of libjpeg, and so of C++ YARP
+
+MAX_SCANS: Final = 64  # walks over all pixels that one file may ask for; progressive ones have ten
 
 _HEAD_SIZE: Final = 60  # of an Image on the wire
 _SOI: Final = b"\xff\xd8"
@@ -50,7 +53,8 @@ def encode(image: Image, quality: int = QUALITY) -> bytes:
 def decode(data: bytes | bytearray | memoryview, limit: int = 1 << 30) -> memoryview:
     """The wire form of the picture (what `Image.from_wire` takes): mono if grey, else rgb.
 
-    DecodeError if it is no JPEG, is damaged or cut off, or has more than `limit` bytes of pixels.
+    DecodeError if it is no JPEG, is damaged or cut off, or has more bytes of pixels than `limit` or
+    YARPY_MAX_PICTURE.
     """
     import numpy as np
     import simplejpeg
@@ -59,10 +63,14 @@ def decode(data: bytes | bytearray | memoryview, limit: int = 1 << 30) -> memory
         height, width, colours, _ = simplejpeg.decode_jpeg_header(data)
         depth = 1 if str(colours).lower().startswith("gr") else 3
         row = -(-width * depth // QUANTUM) * QUANTUM
+        limit = min(limit, limits().picture)
         if row * height > limit:
             raise DecodeError(
-                f"a JPEG of {width} times {height} pixels; the limit is {limit} bytes"
+                f"a JPEG of {width} times {height} pixels; the limit is {limit} bytes (the port's, "
+                "or YARPY_MAX_PICTURE)"
             )
+        if bytes(data).count(b"\xff\xda") > MAX_SCANS:
+            raise DecodeError(f"a JPEG of more than {MAX_SCANS} scans")
         wire = bytearray(_HEAD_SIZE + row * height)
         pixels = np.ndarray((height, width, depth), "u1", wire, _HEAD_SIZE, (row, depth, 1))
         shades = "GRAY" if depth == 1 else "RGB"

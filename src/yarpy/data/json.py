@@ -19,6 +19,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final, Literal, TypeAlias
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.limit import limits
 from yarpy.data.text import plain_text
 from yarpy.data.value import MAX_DEPTH, Vocab, fits
 from yarpy.errors import DecodeError
@@ -48,13 +49,16 @@ def from_json(text: str | bytes | bytearray | memoryview) -> Any:
     """
     import json
 
-    data = text if isinstance(text, str) else bytes(text)
     try:
-        if not isinstance(data, str):
-            data = data.decode("utf-8")
+        data = text if isinstance(text, str) else bytes(text).decode("utf-8")
+        most = limits().elements
+        if len(data) > most and sum(map(data.count, ",[{")) > most:
+            raise DecodeError(f"JSON of more than {most} elements (YARPY_MAX_ELEMENTS)")
         found = json.loads(data, parse_constant=_no_constant)
     except RecursionError:
         raise DecodeError(f"JSON nested more than {MAX_DEPTH} deep") from None
+    except DecodeError:
+        raise
     except ValueError as error:
         raise DecodeError(f"this is no JSON: {error}") from None
     return _message(found, 0)

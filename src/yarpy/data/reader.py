@@ -17,6 +17,7 @@ from struct import error as struct_error
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.limit import limits
 from yarpy.data.property import Property
 from yarpy.data.value import (
     BLOB,
@@ -42,7 +43,8 @@ from yarpy.data.value import (
 )
 from yarpy.errors import DecodeError, Truncated
 
-#: Messages up to this size are copied once: slicing bytes is much cheaper than slicing views.
+#: Messages up to this size are copied once: slicing bytes is much cheaper than slicing views. Nor
+#: are their elements counted.
 _SMALL: Final = 1 << 16
 
 _read_i32 = Struct("<i").unpack_from
@@ -62,7 +64,7 @@ def read_bottle(view: Buffer) -> Bottle:
     code, count = _read_pair(buffer)
     items = Bottle()
     try:
-        _read_items(buffer, 8, code & UNIT_MASK, count, 0, items)
+        _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, _room(size))
     except struct_error:
         raise Truncated(f"the Bottle goes on beyond its {size} bytes", size + 1) from None
     return items
@@ -75,19 +77,43 @@ def read_leading(buffer: bytes) -> tuple[Bottle, int] | None:
     code, count = _read_pair(buffer)
     items = Bottle()
     try:
-        return items, _read_items(buffer, 8, code & UNIT_MASK, count, 0, items)
+        room = _room(len(buffer))
+        return items, _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room)
     except (struct_error, DecodeError):
         return None
 
 
+def _room(size: int) -> list[int] | None:
+    """How many elements a message of `size` bytes may still have; None if it cannot have too many.
+
+    An element takes a byte on the wire, and forty here."""
+    if size <= _SMALL:
+        return None
+    most = limits().elements
+    return [most] if size > most else None
+
+
 def _read_items(
-    buffer: bytes | memoryview, pos: int, kind: int, count: int, depth: int, items: list[Any]
+    buffer: bytes | memoryview,
+    pos: int,
+    kind: int,
+    count: int,
+    depth: int,
+    items: list[Any],
+    room: list[int] | None,
 ) -> int:
     """Append `count` elements to `items`; gives the position after them."""
     if count <= 0:
         if count < 0:
             raise DecodeError(f"a list with {count} elements at byte {pos - 4}")
         return pos
+    if room is not None:
+        room[0] -= count
+        if room[0] < 0:
+            raise DecodeError(
+                f"a list of more than {limits().elements} elements (YARPY_MAX_ELEMENTS); numbers "
+                "in an array take less"
+            )
     if kind:
         return _read_uniform(buffer, pos, kind, count, items)
     size = len(buffer)
@@ -121,10 +147,11 @@ def _read_items(
             inner = Bottle()
             if tag & DICT:
                 count_in = _read_i32(buffer, pos + 8)[0]
-                pos = _read_items(buffer, pos + 12, word & UNIT_MASK, count_in, depth + 1, inner)
+                unit = word & UNIT_MASK
+                pos = _read_items(buffer, pos + 12, unit, count_in, depth + 1, inner, room)
                 add(Property.from_bottle(inner))
             else:
-                pos = _read_items(buffer, pos + 8, tag & UNIT_MASK, word, depth + 1, inner)
+                pos = _read_items(buffer, pos + 8, tag & UNIT_MASK, word, depth + 1, inner, room)
                 add(inner)
         elif tag == BLOB:
             end = pos + 8 + word

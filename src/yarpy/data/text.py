@@ -11,11 +11,13 @@ and a negative NaN prints as `-nan.0`, because that is what peers do.
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from math import copysign, isfinite, isnan
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.limit import limits
 from yarpy.data.property import text_of
 from yarpy.data.value import (
     MAX_DEPTH,
@@ -39,6 +41,7 @@ _MARK = re.compile(rb'\\.|["(){}]|[, \t\r\n]', re.DOTALL)
 
 #: What makes a text more than words between separators.
 _NESTING = re.compile(rb'[\\"(){}]')
+_WORD = re.compile(rb"[^, \t\r\n]++")
 _SEPARATORS: Final = bytes.maketrans(b",\t\r\n", b"    ")
 
 #: Leading zeros, signs and x, then digits: anything else makes a token a word.
@@ -59,7 +62,7 @@ _QUOTED: Final = str.maketrans({"\n": "\\n", "\r": "\\r", "\0": "\\0", "\\": "\\
 def parse_text(text: str | bytes) -> list[Any]:
     """The elements that a line of text stands for; DecodeError only for hundreds of brackets."""
     data = text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
-    return _parse(data, [max(_FREE_WORK, 8 * len(data))])
+    return _parse(data, [max(_FREE_WORK, 8 * len(data)), limits().elements])
 
 
 def balanced(text: str | bytes) -> bool:
@@ -98,21 +101,27 @@ class Balance:
 
 def _parse(data: bytes, work: list[int]) -> list[Any]:
     # What is inside a list is looked at once more for every list around it. `work` is how many
-    # bytes may still be looked at, so that deep and long text cannot keep us busy for minutes.
+    # bytes may still be looked at, so that deep and long text cannot keep us busy for minutes, and
+    # how many elements may still be made.
     work[0] -= len(data)
     if work[0] < 0:
         raise DecodeError("text with lists too deeply nested for its length")
-    return [_classify(token, work) for token in tokens(data)]
+    found = tokens(data, work[1])
+    work[1] -= len(found)
+    return [_classify(token, work) for token in found]
 
 
-def tokens(data: bytes) -> list[bytes]:
+def tokens(data: bytes, most: int = sys.maxsize) -> list[bytes]:
     """The tokens of a text, still with their quotes, brackets and escapes.
 
-    DecodeError for more than MAX_DEPTH round brackets in each other, whatever they mean.
+    DecodeError for more than MAX_DEPTH round brackets in each other, whatever they mean, and for
+    more than `most` tokens.
     """
+    found: list[bytes] = []
     if _NESTING.search(data) is None:
+        if len(data) > most and sum(1 for _ in _WORD.finditer(data)) > most:
+            raise _too_many()
         return [word for word in data.translate(_SEPARATORS).split(b" ") if word]
-    found = []
     start = 0
     quoted = False
     round_depth = curly_depth = 0
@@ -136,9 +145,15 @@ def tokens(data: bytes) -> list[bytes]:
         elif len(char) == 1 and not round_depth and not curly_depth:
             end = mark.start()
             if end > start:
+                if len(found) >= most:
+                    raise _too_many()
                 found.append(data[start:end])
             start = end + 1
     return found
+
+
+def _too_many() -> DecodeError:
+    return DecodeError(f"a text of more than {limits().elements} elements (YARPY_MAX_ELEMENTS)")
 
 
 def _classify(token: bytes, work: list[int]) -> Any:
@@ -154,7 +169,7 @@ def _classify(token: bytes, work: list[int]) -> Any:
     elif first == b"[":
         return vocab_of(vocab_code(token[1:-1]))
     elif first == b"{":
-        return bytes(map(_byte, tokens(token[1:-1])))
+        return bytes(map(_byte, tokens(token[1:-1], work[1])))
     elif first == b'"':
         return _unescape(token[1:-1])
     word = _unescape(token)

@@ -46,6 +46,19 @@ def test_rows_with_and_without_padding_are_taken() -> None:
     assert (received(DepthZlib, bare.to_bytes()).value.array == depth(2, 3)).all()
 
 
+def test_a_black_image_packs_a_thousandfold_and_passes() -> None:
+    black = Image(np.zeros((1080, 1920), "f4"))
+    assert 900 * len(sent(DepthZlib, black)) < 1080 * 1920 * 4
+    assert through(DepthZlib, black).value == black
+
+
+def test_limit_of_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    data = sent(DepthZlib, Image(depth(48, 64)))
+    monkeypatch.setenv("YARPY_MAX_PICTURE", "10000")
+    with pytest.raises(DecodeError, match="the limit is 10000"):
+        received(DepthZlib, data)
+
+
 @given(st.data())
 def test_damage_is_a_decode_error(data: st.DataObject) -> None:
     wire = damaged(data, sent(DepthZlib, Image(depth(3, 5))))

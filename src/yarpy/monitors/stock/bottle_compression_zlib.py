@@ -13,9 +13,10 @@ import logging
 import zlib
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.limit import limits
 from yarpy.errors import DecodeError
 from yarpy.monitors.base import Place
-from yarpy.monitors.stock.zlib_limit import inflate
+from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.wire.message import Message
 
 log = logging.getLogger("yarpy.monitors")
@@ -41,7 +42,7 @@ class BottleCompressionZlib:
         pair = message.as_(Bottle)
         if len(pair) != 2:
             raise DecodeError(f"expected a size and compressed data, got a list of {len(pair)}")
-        made = inflate(pair[1], pair[0], self._place.limit)
+        made = unpacked(pair[1], pair[0], min(self._place.limit, limits().unpacked))
         self._count(len(made), len(pair[1]))
         return message.replaced(made, binary=True)
 

@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.image import QUANTUM, Image
+from yarpy.data.limit import limits
 from yarpy.errors import DecodeError
 from yarpy.monitors.base import Place
 from yarpy.monitors.stock.picture import picture
-from yarpy.monitors.stock.zlib_limit import inflate
+from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.wire.message import Message
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ class DepthZlib:
                 row = -(-width * _PIXEL // QUANTUM) * QUANTUM
                 if width < 0 or height < 0 or size not in (width * height * _PIXEL, row * height):
                     raise DecodeError(f"{width} times {height} pixels do not take {size} bytes")
-                made = inflate(data, size, self._limit)
+                made = unpacked(data, size, min(self._limit, limits().picture))
                 rows: NDArray[np.float32] = np.frombuffer(made, "<f4")
                 return Image(rows.reshape(height, -1 if size else width)[:, :width], "dec")
         raise DecodeError("these are no compressed depth images: does the sender compress them?")

@@ -11,6 +11,7 @@ import zlib
 from typing import Any, Final
 
 from yarpy.data.image import Image
+from yarpy.data.limit import limits
 from yarpy.errors import DecodeError
 
 #: pixel codes that go into a PNG; Bayer patterns as the grey they are
@@ -37,11 +38,12 @@ def encode(cv2: Any, image: Image) -> bytes:
 def decode(cv2: Any, data: bytes, code: str, limit: int) -> Image:
     """The picture of a PNG file as an image of pixels `code`.
 
-    DecodeError if it is no PNG of such pixels, is damaged, or may have more than `limit` bytes.
+    DecodeError if it is no PNG of such pixels, is damaged, or may have more bytes than `limit` or
+    YARPY_MAX_PICTURE.
     """
     import numpy as np
 
-    _check(data, limit)
+    _check(data, min(limit, limits().picture))
     try:
         array = cv2.imdecode(np.frombuffer(data, "u1"), cv2.IMREAD_UNCHANGED)
         if array is None:
@@ -57,7 +59,10 @@ def _check(data: bytes, limit: int) -> None:
     if not data.startswith(_START + b"\0\0\0\rIHDR"):
         raise DecodeError("no PNG: it begins otherwise")
     if width * height * 8 > limit:  # four channels of 16 bits
-        raise DecodeError(f"a PNG of {width} times {height} pixels; the limit is {limit} bytes")
+        raise DecodeError(
+            f"a PNG of {width} times {height} pixels; the limit is {limit} bytes (the port's, or "
+            "YARPY_MAX_PICTURE)"
+        )
     at = len(_START)
     while at + 12 <= len(data):
         end = at + 12 + int.from_bytes(data[at : at + 4], "big")

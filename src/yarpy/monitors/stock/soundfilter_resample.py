@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from yarpy.data.limit import limits
 from yarpy.data.sound import Sound
 from yarpy.errors import DecodeError
 from yarpy.monitors.base import Place
@@ -30,7 +31,7 @@ class SoundFilterResample:
         self._channel = int(place.number("channel", -1, -1))
         self._gain = place.number("gain_percent", 100.0, 0) / 100
         self._frequency = int(place.number("frequency", 0, 1, _MOST))
-        self._limit = place.limit
+        self._limit = min(place.limit, limits().unpacked)
         if self._frequency:
             self._soxr = needed("soxr", "sound", "soundfilter_resample")
 

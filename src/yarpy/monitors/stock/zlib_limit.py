@@ -1,4 +1,4 @@
-"""zlib data back to what they were, with a size that was announced and a limit.
+"""A limit for zlib: data are unpacked to the size that was announced, and never to more.
 
 Rules: memory is taken for what comes out, not for what somebody announced, and never for more than
 the limit. Whatever is wrong is a DecodeError.
@@ -11,8 +11,8 @@ import zlib
 from yarpy.errors import DecodeError
 
 
-def inflate(data: object, size: object, limit: int) -> bytes:
-    """The `size` bytes that `data` were compressed from. Raises DecodeError."""
+def unpacked(data: object, size: object, limit: int) -> bytes:
+    """The `size` bytes that `data` were compressed from, at most `limit`. Raises DecodeError."""
     if not isinstance(data, bytes) or not isinstance(size, int):
         raise DecodeError(
             "these are no compressed data: does the same monitor ride on the sender's end?"
