@@ -18,8 +18,9 @@ $(VENV)/.ready: $(VENV)/.base
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[$(EXTRA)]'
 	@touch $@
 
+# This computer alone reaches it; make demo DEMO=--lan lets others of the network see and move it.
 demo: $(VENV)/.base
-	$(BIN)/yarpy demo
+	$(BIN)/yarpy demo $(DEMO)
 
 # Two at a time, each with whole files: most tests wait for something. What is quick comes first, so
 # that a mistake in it is known within a minute.

@@ -34,6 +34,7 @@ from yarpy.port.assembly import open_hub
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
+from yarpy.transports.bind import listening_host
 from yarpy.transports.tcp import is_taken
 from yarpy.wire.message import Lines, Message, Packet
 
@@ -196,7 +197,8 @@ class NameServer:
         known = carriers.names()
         answer(Bottle(["set", self.name, "offers", *known]))
         answer(Bottle(["set", self.name, "accepts", *known]))
-        answer(Bottle(["set", self.name, "ips", *local_addresses()]))
+        bound = listening_host()
+        answer(Bottle(["set", self.name, "ips", *([bound] if bound else local_addresses())]))
         answer(Bottle(["set", self.name, "process", os.getpid()]))
         answer(Bottle(["register", "fallback", "mcast", GROUP, default_port(os.environ)]))
         answer(Bottle(["set", self.name, "nameserver", "true"]))

@@ -36,6 +36,7 @@ from yarpy.port.monitoring import Monitoring
 from yarpy.port.reception import Reception
 from yarpy.port.registration import Registration
 from yarpy.route import Route
+from yarpy.transports.bind import reach
 from yarpy.wire.message import Message
 from yarpy.wire.stream import DEFAULT_LIMIT
 
@@ -157,7 +158,8 @@ class Hub:
             self.registration.forget()
             raise
         self.crew.repair.watch(self)
-        log.info("Port %s active at %s", self.name, f"tcp://{self.contact.address}/")
+        where = f"tcp://{self.contact.address}/"
+        log.info("Port %s active at %s, reached %s", self.name, where, reach())
 
     # -- connections in ---------------------------------------------------------------------------
 

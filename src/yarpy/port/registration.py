@@ -20,6 +20,7 @@ from yarpy.names.default import DEFAULT, secret
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.port.probe import is_alive
 from yarpy.registry import carriers
+from yarpy.transports.bind import SETTING, listening_host
 
 log = logging.getLogger("yarpy.port")
 
@@ -58,6 +59,7 @@ class Registration:
                 "0 for any free one"
             )
         names = self.names if self.registered else None
+        bound = listening_host()
         if names is not None and names.allocates and not port:
             self._refuse_taken(names)
             contact = names.register(self.name, type_=self.type or None)
@@ -67,21 +69,17 @@ class Registration:
                 self.port = listen(contact.port)
             except OSError:
                 # Somebody who never asked the name server listens on that number.
-                self.port = listen(0)
+                self.port = self._listen(listen, 0)
                 contact = names.register(
                     self.name, "tcp", contact.host, self.port, self.type or None
                 )
+            if bound and contact.host != bound:  # where the name server sees us nobody listens
+                contact = names.register(self.name, "tcp", bound, self.port, self.type or None)
         else:
             if names is not None:
                 self._refuse_taken(names)
-            try:
-                self.port = listen(port)
-            except OSError as error:
-                raise AddressError(
-                    f'"{self.name}" cannot listen on TCP port {port} ({error.strerror}); '
-                    "choose another number, or 0 for any free one"
-                ) from error
-            where = host or ("127.0.0.1" if names is not None else outward_address())
+            self.port = self._listen(listen, port)
+            where = host or bound or ("127.0.0.1" if names is not None else outward_address())
             if names is not None:
                 contact = names.register(self.name, "tcp", where, self.port, self.type or None)
             else:
@@ -90,6 +88,18 @@ class Registration:
         self.contact = contact
         self.name = contact.name
         self._has_name = names is not None
+
+    def _listen(self, listen: Callable[[int], int], port: int) -> int:
+        try:
+            return listen(port)
+        except OSError as error:
+            bound = listening_host()
+            where = f" of {SETTING}={bound}" if bound else ""
+            raise AddressError(
+                f'"{self.name}" cannot listen on TCP port {port}{where} ({error.strerror}); '
+                "choose another number, or 0 for any free one"
+                + (f", and an address of this computer for {SETTING}" if bound else "")
+            ) from error
 
     def tell(self) -> None:
         """The port is open: tell the name service what we are, and that we listen."""
@@ -118,7 +128,8 @@ class Registration:
         known = [*carriers.names()]
         names.set(self.name, "offers", *known)
         names.set(self.name, "accepts", *known)
-        names.set(self.name, "ips", *local_addresses())
+        bound = listening_host()
+        names.set(self.name, "ips", *([bound] if bound else local_addresses()))
         names.set(self.name, "process", os.getpid())
         names.announce(self.name)
 

@@ -14,6 +14,7 @@ import sys
 from collections.abc import Sequence
 
 from yarpy.transports.base import MSG_DONTWAIT, Address, SocketTransport
+from yarpy.transports.bind import listening_host
 from yarpy.transports.pace import Pace
 from yarpy.wire.stream import Buffer
 
@@ -109,7 +110,7 @@ class DatagramTransport(SocketTransport):
             # An unconnected UDP socket does not notice a shutdown: an empty datagram wakes it.
             try:
                 with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as waker:
-                    waker.sendto(b"", ("127.0.0.1", self.port))
+                    waker.sendto(b"", (listening_host() or "127.0.0.1", self.port))
             except OSError:
                 pass
 
@@ -122,7 +123,7 @@ def open_udp(listen: bool, local: Address, remote: Address, port: int) -> Datagr
     sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         if listen:
-            sock.bind(("", 0))
+            sock.bind((listening_host(), 0))
             return DatagramTransport(sock)
         try:
             sock.bind(("", local[1]))

@@ -2,7 +2,7 @@
 
 Rules: TCP_NODELAY always (messages are sent whole); a peer that vanishes without a word, by a cut
 cable or a power failure, is noticed within half a minute; the listening socket takes every local
-address.
+address, or the one that `bind` says.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Final
 
 from yarpy.errors import AddressError
 from yarpy.transports.base import Address, SocketTransport
+from yarpy.transports.bind import listening_host
 
 CONNECT_TIMEOUT = 10.0  # seconds, as C++ YARP
 
@@ -61,22 +62,23 @@ def is_taken(port: int) -> bool:
 
 
 class TcpListener:
-    """A listening socket on all IPv4 addresses, `port` 0 for any free number.
+    """A listening socket on all IPv4 addresses, or the one of YARPY_BIND; `port` 0 for any number.
 
     `wait` watches it together with connections that have not said anything yet.
     """
 
-    def __init__(self, port: int = 0, host: str = "") -> None:
+    def __init__(self, port: int = 0) -> None:
         self.sock = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         try:
             if sys.platform != "win32":
                 self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            self.sock.bind((host, port))
+            self.sock.bind((listening_host(), port))
             self.sock.listen(1024)
         except OSError:
             self.sock.close()
             raise
         self.sock.setblocking(False)
+        self._host: str = self.sock.getsockname()[0]
         self.port: int = self.sock.getsockname()[1]
         self._closed = False
 
@@ -114,7 +116,8 @@ class TcpListener:
             # Not every system lets a listening socket be shut down: a call from us wakes it as
             # well.
             try:
-                socket.create_connection(("127.0.0.1", self.port), 1.0).close()
+                host = "127.0.0.1" if self._host == "0.0.0.0" else self._host
+                socket.create_connection((host, self.port), 1.0).close()
             except OSError:
                 pass
 

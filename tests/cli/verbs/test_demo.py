@@ -148,3 +148,19 @@ def test_number_of_the_page_is_taken(lonely: CommandLine):
 
 def test_nothing_is_written_to_the_configuration(demo: Process, lonely: CommandLine):
     assert not (lonely.home / "config").exists()
+
+
+@pytest.mark.parametrize("options", [[], ["--lan"]])
+def test_others_reach_it_only_when_asked(lonely: CommandLine, options: list[str]):
+    with lonely.start("demo", *options) as process:
+        process.wait_line("Ctrl-C ends it all", timeout=PATIENCE)
+        for word in ("open this", "req=get+encs"):
+            [number] = re.findall(r":(\d+)/", line(process, word))
+            try:
+                socket.create_connection(("127.0.0.2", int(number)), 5.0).close()  # not 127.0.0.1
+                reached = True
+            except ConnectionRefusedError:
+                reached = False
+            assert reached == bool(options)
+        process.signal(signal.SIGINT)
+        assert process.wait(PATIENCE) == 0

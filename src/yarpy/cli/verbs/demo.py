@@ -2,6 +2,7 @@
 
     --seconds N    end by itself
     --no-browser   open no browser
+    --lan          let the other computers of this network see and move the robot too
 
 It prints what to try, with curl, with netcat, with yarpy, with C++ YARP. The numbers of its ports
 are 10000 and those behind it, or any free ones if somebody has those. Nothing is written to the
@@ -64,12 +65,16 @@ Ctrl-C ends it all.
 @click.command()
 @click.option("--seconds", type=click.FloatRange(min=0.0), metavar="N", help="End by itself.")
 @click.option("--no-browser", is_flag=True, help="Open no browser.")
-def command(seconds: float | None, no_browser: bool) -> int:
+@click.option("--lan", is_flag=True, help="Let other computers see and move the robot too.")
+def command(seconds: float | None, no_browser: bool, lan: bool) -> int:
     """Show what yarpy does: a simulated robot, in a browser and everywhere else."""
     from yarpy.sim.robot import NAME, Robot, icub_head
+    from yarpy.transports.bind import SETTING
     from yarpy.views.panel import Panel
 
     log.show(logging.WARNING)
+    if not lan:
+        os.environ.setdefault(SETTING, "local")
     try:
         with (
             _name_server() as server,
@@ -112,6 +117,7 @@ def _page(server: yarpy.NameServer) -> yarpy.Port:
 
 def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port) -> str:
     from yarpy.names.address import is_loopback, outward_address
+    from yarpy.transports.bind import listening_host
 
     rpc = server.client.query(f"{robot.name}/head/rpc:i")
     assert rpc is not None
@@ -121,7 +127,7 @@ def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port) -> str:
         robot=robot.name,
         bare=robot.name.strip("/"),
         page=f"http://{page.address}/",
-        phone="" if is_loopback(outward) else phone,
+        phone="" if is_loopback(outward) or listening_host() else phone,
         server=server.address,
         where=server.address.replace(":", " "),
         rpc=rpc.address,

@@ -68,6 +68,7 @@ def decide(
     """Where to serve, from the options and what is stored. Raises AddressError when they differ."""
     from yarpy.config.configuration import Server, default_port, server_file
     from yarpy.names.address import is_local, outward_address
+    from yarpy.transports.bind import listening_host
 
     stored = next((server for server in found.servers if server.mode == "yarp"), None)
     path = server_file(found.directory, found.namespace)
@@ -78,7 +79,7 @@ def decide(
         port = port or stored.port
         if not host and (read or is_local(stored.host)):
             host = stored.host
-    host = host or outward_address()
+    host = host or listening_host() or outward_address()
     wanted = Server(host, port or default_port(environment), "yarp", found.namespace)
     if not is_local(host):
         note = f"{host} is no address of this computer; others will look for the server there"
@@ -171,6 +172,7 @@ class Scribe:
     metavar="DIR",
     help="Show the files of a directory at /web/.",
 )
+@click.option("--local", is_flag=True, help="Let nobody but this computer reach it.")
 @click.option("--silent", is_flag=True, help="Print warnings and errors only.")
 @click.option("--verbose", is_flag=True, help="Print all that is logged.")
 def command(
@@ -182,6 +184,7 @@ def command(
     write: bool,
     read: bool,
     web: str | None,
+    local: bool,
     silent: bool,
     verbose: bool,
 ) -> int:
@@ -189,9 +192,12 @@ def command(
     import logging
 
     from yarpy.config.configuration import configuration
+    from yarpy.transports.bind import SETTING
 
     level = logging.WARNING if silent else logging.DEBUG if verbose else logging.INFO
     log.show(level)
+    if local:
+        os.environ[SETTING] = "local"
     found = configuration(os.environ)
     place = decide(found, ip=ip, socket=socket, read=read, write=write)
     if place.note:
@@ -215,6 +221,8 @@ def _serve(
 ) -> None:
     """Serve until a signal comes."""
     from yarpy.config.configuration import write_server
+    from yarpy.names.address import is_loopback
+    from yarpy.transports.bind import listening_host
 
     assert callable(say)
     say(f"yarpy name server {yarpy.__version__}")
@@ -231,7 +239,7 @@ def _serve(
             portdb=None if portdb == MEMORY else Path(portdb),
             subdb=None if subdb == MEMORY else Path(subdb),
             cautious=cautious,
-            discoverable=True,
+            discoverable=not is_loopback(listening_host()),
             web=web,
         )
     except AddressError as error:
