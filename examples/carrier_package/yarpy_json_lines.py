@@ -28,7 +28,7 @@ class JsonLines(Carrier):
         yield from ()
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
-        self.introduce((yield from stream.read_line(1000)).decode(errors="replace").strip())
+        self.route.introduce((yield from stream.read_line(1000)).decode(errors="replace").strip())
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         item = {"data": packet.value, "envelope": packet.envelope.decode()}

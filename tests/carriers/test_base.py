@@ -100,9 +100,9 @@ def test_bytes_that_nobody_knows(first: bytes) -> None:
 
 def test_route_of_the_acceptor_is_filled_in() -> None:
     carrier = Tcp(Route("", "/target", "tcp", 21602))
-    carrier.introduce("/w (recv foo) (x)")
+    carrier.route.introduce("/w (recv foo) (x)")
     assert carrier.route == Route("/w", "/target", "tcp+recv.foo+x", 21602)
-    assert carrier.sender() == framing.encode_name("/w (recv foo) (x)")
+    assert carrier.route.specifier == "/w (recv foo) (x)"
 
 
 def test_people_are_told_nothing_on_binary_carriers() -> None:

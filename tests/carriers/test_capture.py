@@ -266,7 +266,7 @@ def messages_written(capture: Capture) -> list[Message]:
     written = b"".join(s.data for s in capture.steps[3:] if s.sender == "b")
     if carrier.acks:  # of the word `r`
         ack = End()
-        carrier.encode_ack(ack.stream)
+        carrier.encode_ack(ack.stream, 1)
         written = written.removeprefix(ack.take())
     end.feed(written)
     assert len(found) == 4

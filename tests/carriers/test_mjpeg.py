@@ -183,7 +183,7 @@ def test_wishes_of_a_browser() -> None:
         end.begin(speaker.welcome(end.stream, b"GET /?ac"))
         end.feed(query + b" HTTP/1.1\r\nHost: x\r\n\r\n")
         assert end.done
-        assert (speaker.quality, speaker.interval, speaker.route.carrier) == (
+        assert (speaker.quality, speaker.delivery.interval, speaker.route.carrier) == (
             quality,
             interval,
             carrier,
@@ -224,7 +224,7 @@ def asked_by_browser(query: bytes) -> tuple[End, Mjpeg]:
 def test_a_snapshot_is_one_jpeg() -> None:
     end, speaker = asked_by_browser(b"tion=snapshot&quality=90")
     for _ in range(2):
-        assert speaker.finished or speaker.prepare(Packet(COLOUR, b"7 1.25"))
+        assert speaker._done or speaker.prepare(Packet(COLOUR, b"7 1.25"))
         speaker.encode(end.stream, Packet(COLOUR, b"7 1.25"))
     head, _, data = end.take().partition(b"\r\n\r\n")
     assert head.startswith(b"HTTP/1.1 200 OK\r\nContent-Type: image/jpeg\r\n")
@@ -265,7 +265,7 @@ def test_wishes_travel_between_ports() -> None:
     talk.greet()
     assert said(talk.traffic, "initiator").startswith(b"GET /?action=stream&quality=20&rate=5 ")
     assert isinstance(talk.accepting, Mjpeg)
-    assert (talk.accepting.quality, talk.accepting.interval) == (20, 0.2)
+    assert (talk.accepting.quality, talk.accepting.delivery.interval) == (20, 0.2)
 
 
 def test_one_compression_for_all_of_one_quality(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -88,7 +88,7 @@ def test_reply_is_a_line_or_lines() -> None:
     carrier, stream = NameSer(Route("", "/root", "name_ser")), ByteStream()
     carrier.encode_reply(stream, [Vocab("ok"), "echo"])
     carrier.encode_reply(stream, Lines(["registration name /a", "*** end of message"]))
-    carrier.encode_ack(stream)
+    carrier.encode_ack(stream, 1)
     assert b"".join(stream.take_output()) == (
         b"[ok] echo\r\nregistration name /a\r\n*** end of message\r\n"
     )

@@ -19,6 +19,7 @@ from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
+from yarpy.carriers.base import Limits
 from yarpy.carriers.xmlrpc import XmlRpc
 from yarpy.data.value import Vocab
 from yarpy.wire.message import Packet
@@ -195,7 +196,7 @@ def test_reader_that_does_not_respond(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """The second message waited for the first one's response for ever."""
-    monkeypatch.setattr(XmlRpc, "confirmation", 0.05)
+    monkeypatch.setattr(XmlRpc, "limits", Limits(ack_timeout=0.05))
     names, server = yarpy.LocalNames(), Silent()
     names.register("/mute", "xmlrpc", *server.listener.getsockname())
     with yarpy.Port("/out", names=names) as out:
@@ -214,7 +215,7 @@ def test_reader_that_does_not_respond(
 def test_reader_that_responds_again_is_waited_for_again(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(XmlRpc, "confirmation", 0.05)
+    monkeypatch.setattr(XmlRpc, "limits", Limits(ack_timeout=0.05))
     names, server = yarpy.LocalNames(), Silent()
     names.register("/slow", "xmlrpc", *server.listener.getsockname())
     with yarpy.Port("/out", names=names) as out:
@@ -231,7 +232,7 @@ def test_reader_that_responds_again_is_waited_for_again(
 
 
 def test_buffered_writer_goes_on_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(XmlRpc, "confirmation", 0.05)
+    monkeypatch.setattr(XmlRpc, "limits", Limits(ack_timeout=0.05))
     names, server = yarpy.LocalNames(), Silent()
     names.register("/mute", "xmlrpc", *server.listener.getsockname())
     with yarpy.BufferedPort("/out", names=names) as out:

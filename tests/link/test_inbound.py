@@ -15,6 +15,7 @@ from support.inbound import Owner, linked, message, served
 from support.transport import scripted
 from support.wait import wait_until
 
+from yarpy.carriers.base import Limits
 from yarpy.carriers.tcp import Tcp
 from yarpy.carriers.text import TextAck
 from yarpy.data.bottle import Bottle
@@ -27,7 +28,9 @@ from yarpy.link.inbound import Inbound
 from yarpy.route import Route
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
+from yarpy.wire.message import QUIT as QUIT_COMMAND
 from yarpy.wire.message import Message
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 ACK = framing.ACK
@@ -322,9 +325,15 @@ class Brief(TextAck):
     """A carrier that is done after one message, and has little patience."""
 
     name = "brief"
-    patience = 0.05
+    limits = Limits(idle_timeout=0.05)
+    finished = False
 
-    def encode_ack(self, stream: ByteStream) -> None:
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        if self.finished:
+            return Message(QUIT_COMMAND)
+        return (yield from super().decode(stream))
+
+    def encode_ack(self, stream: ByteStream, count: int) -> None:
         if not self.finished:
             stream.write(b"bye\r\n")
         self.finished = True
@@ -338,7 +347,7 @@ def test_finished_carrier_ends_without_waiting_for_the_peer() -> None:
     assert owner.ended == [("", True)]
 
 
-def test_silence_beyond_the_carriers_patience_ends_quietly(
+def test_silence_beyond_the_carriers_limit_ends_quietly(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     near, far = socket.socketpair()

@@ -10,6 +10,7 @@ from support.outbound import connected, link_on, open_link, read_messages, total
 from support.transport import scripted
 from support.wait import wait_until
 
+from yarpy.carriers.base import Delivery
 from yarpy.carriers.tcp import FastTcp, Tcp
 from yarpy.carriers.text import TextAck
 from yarpy.carriers.udp import Udp
@@ -283,8 +284,7 @@ class Shown(FastTcp):
     """A carrier for people who look on: they miss messages rather than hold a writer up."""
 
     name = "shown"
-    lossy = True
-    backlog = 4
+    delivery = Delivery(lossy=True, backlog=4)
 
 
 def test_stalled_reader_of_a_lossy_carrier_costs_its_writer_nothing() -> None:

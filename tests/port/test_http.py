@@ -17,6 +17,7 @@ import pytest
 from support.wait import wait_until
 
 import yarpy
+from yarpy.carriers.base import Limits
 from yarpy.carriers.http.carrier import Http
 from yarpy.carriers.xmlrpc import XmlRpc
 from yarpy.link import handshake
@@ -230,7 +231,7 @@ def test_ten_who_send_too_slowly_block_nobody(
     echo: yarpy.RpcServer, monkeypatch: pytest.MonkeyPatch, beginning: bytes
 ) -> None:
     for carrier in (Http, XmlRpc):
-        monkeypatch.setattr(carrier, "hurry", 0.5)
+        monkeypatch.setattr(f"{carrier.__module__}.TIME", 0.5)
     slow = []
     for _ in range(10):
         sock = socket.create_connection(("127.0.0.1", echo.contact.port), FAST)
@@ -261,7 +262,7 @@ def test_time_for_a_request_begins_with_it(
     echo: yarpy.RpcServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Not when the last one was answered, with or without the port."""
-    monkeypatch.setattr(Http, "hurry", 0.5)
+    monkeypatch.setattr("yarpy.carriers.http.carrier.TIME", 0.5)
     connection = client(echo)
     for target in ("/?req=x", "/favicon.ico", "/?req=x"):
         assert get(connection, target)[0] in (200, 204)
@@ -281,7 +282,7 @@ def test_time_for_a_request_begins_with_it(
 def test_connection_that_says_nothing_more_ends(
     echo: yarpy.RpcServer, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(Http, "patience", 0.1)
+    monkeypatch.setattr(Http, "limits", Limits(idle_timeout=0.1))
     connection = client(echo)
     assert get(connection, "/?req=x")[0] == 200
     assert connection.sock is not None

@@ -77,7 +77,7 @@ def serve(end: End, served: Served, answer: Answer, port: int = 0, host: str = "
         elif message.key not in ("q", "r"):
             carrier.encode_lines(stream, answer(message))
         if carrier.acks:
-            carrier.encode_ack(stream)
+            carrier.encode_ack(stream, 1)
         if message.key in ("q", "r"):
             served.reversed = message.key == "r"
             return
@@ -113,7 +113,7 @@ def read(end: End, carrier: Carrier, count: int, found: list[Message]) -> Steps[
     while len(found) < count:
         found.append((yield from carrier.decode(end.stream)))
         if carrier.acks:
-            carrier.encode_ack(end.stream)
+            carrier.encode_ack(end.stream, 1)
 
 
 def messages_of(capture: Capture) -> tuple[Carrier, list[Message]]:

@@ -44,8 +44,10 @@ class Shy(Plain):
 class Nameless(Plain):
     """Forgets who dialled."""
 
-    def introduce(self, text: str) -> None:
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[Carrier | None]:
+        yield from super().welcome(stream, first)
         self.route.source = "somebody"
+        return None
 
 
 class Impatient(Plain):
@@ -106,7 +108,7 @@ class SilentAck(Tcp):
     def matches(cls, value: int) -> bool:
         return value == cls.code
 
-    def encode_ack(self, stream: ByteStream) -> None:
+    def encode_ack(self, stream: ByteStream, count: int) -> None:
         pass
 
 

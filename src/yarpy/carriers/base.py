@@ -14,10 +14,9 @@ The initiator of a *push* carrier sends the data; of a pull carrier (`push = Fal
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import ClassVar, TypeAlias
+from dataclasses import dataclass
+from typing import ClassVar
 
-from yarpy.carriers.http.page import Page
 from yarpy.data import codec
 from yarpy.route import Route
 from yarpy.wire import framing
@@ -30,8 +29,31 @@ PAGE = "page"  # what follows the port command `*` when a browser asks
 ASKS_FOR_KEY = "perhaps it asks for a key that this side has not (auth.conf)"
 
 
-#: a page of the port's program by path and arguments
-Shown: TypeAlias = Callable[[str, Mapping[str, str]], Page | None]
+@dataclass(frozen=True, slots=True)
+class Delivery:
+    """How messages leave.
+
+    lossy: who reads too slowly misses messages; its writer never waits. backlog: messages that may
+    wait for such a reader. interval: seconds between its messages, at least. coalesces: small
+    messages of a burst may leave in one send.
+    """
+
+    lossy: bool = False
+    backlog: int = 0
+    interval: float = 0.0
+    coalesces: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a peer has time for, in seconds; None: as long as it takes.
+
+    idle_timeout: an accepted peer may be silent. ack_timeout: for an acknowledgement; messages then
+    go one at a time. (For the time of a message see the effect `Within`.)
+    """
+
+    idle_timeout: float | None = None
+    ack_timeout: float | None = None
 
 
 class Carrier:
@@ -48,31 +70,16 @@ class Carrier:
     acks: bool = False  # the receiver confirms each message
     replies: ClassVar[bool] = True
     spelling: Spelling = "binary"  # what `encode` uses of a packet
-    escapes: ClassVar[bool] = True  # messages begin with a port command, so admin works
     foreign: ClassVar[bool] = False  # whom we dial may know nothing of YARP, nor of its keys
     introduces: ClassVar[bool] = True  # who dials says its name, and what its carrier string adds
-    gathers: ClassVar[bool] = True  # small messages of a burst may leave in one send
     connectionless: ClassVar[bool] = False  # closing must be told to the peer some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
-    confirmation: ClassVar[float | None] = None  # seconds for an acknowledgement, one at a time
-    patience: ClassVar[float | None] = None  # seconds an accepted peer may be silent
-    hurry: ClassVar[float | None] = None  # seconds for a message from its first byte to its last
-    lossy: bool = False  # who reads too slowly misses messages; its writer never waits
-    backlog: int = 0  # messages that may wait for such a reader
-    interval: float = 0.0  # seconds between the messages of a lossy connection, at least
-    instead: type[Carrier] | None = None  # set by `welcome`: who is to welcome this peer
-    listens: bool = False  # `listen` is to be run while the link sends
-    holding: bool = False  # bytes of the next message were already taken from the stream
-    midway: bool = False  # a message has begun to come and must hurry
-    structured: bool = False  # the peer wants values, not lines for a person to read
-    finished: bool = False  # everything was said: the link ends without waiting for the peer
+    delivery: Delivery = Delivery()
+    limits: ClassVar[Limits] = Limits()
 
     def __init__(self, route: Route) -> None:
         self.route = route
-        self.accepted = False  # whether the peer dialled us; set by the link
-        self.pages: Shown | None = None  # what the program shows to browsers; set by the port
         self.lost = 0
-        self.successor: Carrier | None = None  # who goes on when the peer turns to reading
 
     @classmethod
     def recognises(cls, first: bytes) -> int:
@@ -83,24 +90,20 @@ class Carrier:
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         """The initiator's opening: magic, who we are, the peer's answer."""
-        stream.write(self.magic + self.sender())
+        stream.write(self.magic + framing.encode_name(self.route.specifier))
         return
         yield
 
-    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
-        """The acceptor's answer; `first` are the eight bytes, already read."""
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[Carrier | None]:
+        """The acceptor's answer; `first` are the eight bytes, already read.
+
+        Where they did not tell enough: whose connection it is instead, to welcome the peer anew.
+        """
         magic = self.recognises(first)
         if 0 < magic < MAGIC_SIZE:
             stream.unread(MAGIC_SIZE - magic)  # they belong to the name
-        self.introduce((yield from framing.read_name(stream)))
-
-    def sender(self) -> bytes:
-        """Our name and modifiers as the binary carriers write them."""
-        return framing.encode_name(self.route.specifier)
-
-    def introduce(self, text: str) -> None:
-        """Take the name and modifiers that the peer gave itself."""
-        self.route.introduce(text)
+        self.route.introduce((yield from framing.read_name(stream)))
+        return None
 
     # -- messages ---------------------------------------------------------------------------------
 
@@ -109,7 +112,7 @@ class Carrier:
 
         False: this message is not for this protocol; it is dropped, and counted.
         """
-        packet.own(self.spelling)
+        packet.snapshot(self.spelling)
         return True
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
@@ -117,30 +120,34 @@ class Carrier:
         stream.write(*framing.encode(packet))
 
     def parse(self, stream: ByteStream) -> Message | None:
-        """A message that is already in the stream's buffer, if it can be had without waiting."""
+        """A message that is already in the stream's buffer, if it can be had without waiting.
+
+        With this shortcut, `decode` begins when bytes have come that it cannot read; else at once.
+        """
         return None
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
-        """Read one message."""
+        """Read one message. `Message(QUIT)` is the end, `Message("r")` makes the peer a reader: its
+        payload is the carrier that goes on, or empty for this one."""
         return (yield from framing.read_message(stream))
 
     def encode_quit(self, stream: ByteStream) -> None:
         """Write the message that ends the connection in good order, if there is one."""
         stream.write(framing.QUIT)
 
-    def hear_out(self, stream: ByteStream) -> Steps[None]:
+    def drain(self, stream: ByteStream) -> Steps[None]:
         """Without acknowledgements: read what the peer says until it hangs up, after our goodbye.
 
-        For protocols whose peers may have said something that nobody read. Who closes a TCP
-        connection with unread bytes destroys what he has sent himself.
+        For peers that may have said something which nobody read: closing with unread input resets
+        the connection and loses our last output.
         """
         return
         yield
 
-    def listen(self, stream: ByteStream) -> Steps[None]:
-        """Deal with what a reader says while we send to it; returns when it wants no more."""
-        return
-        yield
+    def listen(self, stream: ByteStream) -> Steps[None] | None:
+        """Deal with what a reader says while we send to it, until it wants no more; None: nothing
+        is expected of it."""
+        return None
 
     # -- what comes back --------------------------------------------------------------------------
 
@@ -159,14 +166,9 @@ class Carrier:
         """A reply that is already in the stream's buffer, if it can be had without waiting."""
         return None
 
-    def encode_ack(self, stream: ByteStream) -> None:
-        """Write the acknowledgement of a message."""
-        stream.write(framing.ACK)
-
-    def encode_acks(self, stream: ByteStream, count: int) -> None:
-        """Write several acknowledgements."""
-        for _ in range(count):
-            self.encode_ack(stream)
+    def encode_ack(self, stream: ByteStream, count: int) -> None:
+        """Write `count` acknowledgements."""
+        stream.write(framing.ACK * count)
 
     def parse_acks(self, stream: ByteStream, most: int) -> int:
         """Take up to `most` acknowledgements that have already come; returns how many."""
@@ -204,9 +206,6 @@ class Indexed(Carrier):
     parse = staticmethod(framing.parse_plain)
     parse_reply = staticmethod(framing.parse_reply)
 
-    def encode_acks(self, stream: ByteStream, count: int) -> None:
-        stream.write(framing.ACK * count)
-
     def parse_acks(self, stream: ByteStream, most: int) -> int:
         count = min(most, stream.waiting // len(framing.ACK))
         if not count or not stream.buffer.startswith(framing.ACK * count, stream.head):
@@ -215,7 +214,8 @@ class Indexed(Carrier):
         return count
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        stream.write(framing.number(framing.BASE + self.code) + self.sender())
+        name = framing.encode_name(self.route.specifier)
+        stream.write(framing.number(framing.BASE + self.code) + name)
         return
         yield
 

@@ -6,7 +6,7 @@ no end in the meeting place, so it is refused instead of waited for.
 
 from __future__ import annotations
 
-from yarpy.carriers.base import Carrier
+from yarpy.carriers.base import Carrier, Delivery
 from yarpy.wire.effects import Open, Switch
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.steps import Steps
@@ -19,7 +19,7 @@ class Local(Carrier):
     name = "local"
     magic = b"LOCALITY"
     spelling = "object"
-    gathers = False
+    delivery = Delivery(coalesces=False)
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         handle = yield Open("inproc", listen=False)

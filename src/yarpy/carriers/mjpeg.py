@@ -20,10 +20,10 @@ camera that wants a password is dialled once more, with the answer that login.py
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
-from yarpy.carriers.base import Carrier
+from yarpy.carriers.base import Carrier, Delivery
 from yarpy.carriers.http.chunk import Chunks
 from yarpy.carriers.http.header import CHALLENGES, MAX_LINE, read_headers
 from yarpy.carriers.http.login import refusal, take_login
@@ -65,11 +65,8 @@ class Mjpeg(Carrier):
     magic = b"GET /?ac"
     push = False
     replies = False
-    escapes = False
     foreign = True
-    gathers = False
-    lossy = True
-    backlog = 1
+    delivery = Delivery(lossy=True, backlog=1, coalesces=False)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
@@ -78,6 +75,7 @@ class Mjpeg(Carrier):
         self._past_mark = False  # that line has begun: its end is next
         self._once = False  # one picture is asked for, not a stream
         self._asked = False  # the answer begins with the first message
+        self._done = False  # everything was sent
         self._shared = b""  # a header of the answer
         self._chunks: Chunks | None = None  # what a camera's server has put the pictures into
 
@@ -102,7 +100,7 @@ class Mjpeg(Carrier):
             self.quality = wishes.quality
             self.route.spec = self.route.spec.plus(f"quality.{self.quality}")
         if wishes.rate:
-            self.interval = 1 / wishes.rate
+            self.delivery = replace(self.delivery, interval=1 / wishes.rate)
             self.route.spec = self.route.spec.plus(f"rate.{wishes.rate:g}")
         # Scripts of other pages may look too, as they may at everything that ports show.
         self._shared = b"Access-Control-Allow-Origin: *\r\n" if "origin" in headers else b""
@@ -119,13 +117,13 @@ class Mjpeg(Carrier):
         return head.removesuffix(b"\r\n") + self._shared + b"\r\n" + body
 
     def prepare(self, packet: Packet) -> bool:
-        if self.finished:
+        if self._done:
             raise LinkClosed("the picture that was asked for was sent")
         return bool(self._frame(packet)) or self._asked
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         frame = self._frame(packet)
-        if self.finished:
+        if self._done:
             return  # it waited behind the picture that was asked for
         if not self._asked:
             stream.write(*frame)
@@ -134,12 +132,12 @@ class Mjpeg(Carrier):
         if not frame:
             name = self.route.source
             stream.write(self._plain(404, f"{name} sends no pictures; what it sends is at /r"))
-            self.finished = True
+            self._done = True
         elif self._once:
             size = ("Content-Length", str(len(frame[1])))
             head = response_head(200, (("Content-Type", "image/jpeg"), size, *_LAST))
             stream.write(head.removesuffix(b"\r\n") + self._shared + b"\r\n", frame[1])
-            self.finished = True
+            self._done = True
         else:
             stream.write(_ANSWER + self._shared + b"\r\n" + _BOUNDARY, *frame)
 
@@ -230,7 +228,6 @@ class Mjpeg(Carrier):
         if chunks is None:
             return (yield from self._read_picture(stream))
         message = yield from chunks.through(stream, self._read_picture(chunks.inner))
-        self.holding = chunks.inner.waiting > 0
         return message
 
     def _read_picture(self, stream: ByteStream) -> Steps[Message]:

@@ -24,7 +24,6 @@ class NameSer(Carrier):
     name = "name_ser"
     magic = b"NAME_SER"
     spelling = "text"
-    escapes = False
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
@@ -57,5 +56,5 @@ class NameSer(Carrier):
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         return Message(CALL, (yield from stream.read_line(MAX_LINE)), spelling="text")
 
-    def encode_ack(self, stream: ByteStream) -> None:
+    def encode_ack(self, stream: ByteStream, count: int) -> None:
         """No acknowledgements."""

@@ -36,7 +36,7 @@ class Text(Carrier):
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
         line = yield from stream.read_line(framing.MAX_NAME)
-        self.introduce(line.decode("utf-8", "replace"))
+        self.route.introduce(line.decode("utf-8", "replace"))
         stream.write(f"Welcome {self.route.source}".encode() + _END)
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
@@ -54,7 +54,7 @@ class Text(Carrier):
     def encode_quit(self, stream: ByteStream) -> None:
         stream.write(b"q" + _END)
 
-    def hear_out(self, stream: ByteStream) -> Steps[None]:
+    def drain(self, stream: ByteStream) -> Steps[None]:
         while True:  # the welcome, and what else the peer says
             yield from stream.read_line(MAX_LINE)
 
@@ -69,8 +69,8 @@ class Text(Carrier):
         line = yield from read_text(stream, min(stream.limit, MAX_LINE))
         return None if line == b"<ACK>" else Message("d", line, spelling="text")
 
-    def encode_ack(self, stream: ByteStream) -> None:
-        stream.write(b"<ACK>" + _END)
+    def encode_ack(self, stream: ByteStream, count: int) -> None:
+        stream.write((b"<ACK>" + _END) * count)
 
     def expect_ack(self, stream: ByteStream) -> Steps[None]:
         line = yield from stream.read_line(MAX_LINE)

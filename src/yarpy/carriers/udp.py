@@ -7,7 +7,7 @@ counted. A datagram can be forged by anybody: none ends a connection, and none i
 
 from __future__ import annotations
 
-from yarpy.carriers.base import Indexed
+from yarpy.carriers.base import Delivery, Indexed
 from yarpy.errors import RemoteProtocolError, YarpError
 from yarpy.route import Route
 from yarpy.wire import framing
@@ -23,7 +23,7 @@ class Datagrams(Indexed):
 
     replies = False
     connectionless = True
-    gathers = False
+    delivery = Delivery(coalesces=False)
     datagram_size = MAX_DATAGRAM
 
     def __init__(self, route: Route) -> None:

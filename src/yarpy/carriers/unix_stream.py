@@ -30,7 +30,8 @@ class UnixStream(Carrier):
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         self.acks = "ack" in self.route.spec.tokens
-        stream.write((b"UNIX_ACK" if self.acks else b"UNIX_STR") + self.sender())
+        magic = b"UNIX_ACK" if self.acks else b"UNIX_STR"
+        stream.write(magic + framing.encode_name(self.route.specifier))
         handle = yield Open("unix", listen=False)
         yield Switch(handle, ByteStream(stream.limit))
 
@@ -61,8 +62,8 @@ class UnixStream(Carrier):
             return None
         return Message("d", (yield from framing.read_payload(stream)))
 
-    def encode_ack(self, stream: ByteStream) -> None:
-        stream.write(_ACK)
+    def encode_ack(self, stream: ByteStream, count: int) -> None:
+        stream.write(_ACK * count)
 
     def expect_ack(self, stream: ByteStream) -> Steps[None]:
         answer = yield from stream.read_exact(4)

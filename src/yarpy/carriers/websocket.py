@@ -16,9 +16,10 @@ from __future__ import annotations
 
 import os
 from base64 import b64encode
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from yarpy.carriers.base import Carrier
+from yarpy.carriers.base import Carrier, Delivery
 from yarpy.carriers.http.header import MAX_LINE, read_headers
 from yarpy.carriers.http.origin import not_ours, origins_of
 from yarpy.carriers.http.refusal import refuse
@@ -55,14 +56,14 @@ class WebSocket(Carrier):
     name = "websocket"
     magic = b"GET /?ws"
     introduces = False
-    gathers = False
-    backlog = 8
+    delivery = Delivery(backlog=8, coalesces=False)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self.json = False
         self.enveloped = False
         self.pixels = False
+        self._page = False  # the peer is a page, which we have answered
         self._masks = False  # who dials masks what it sends
         self._key = CALL
         self._frames: FrameDecoder | None = None
@@ -128,7 +129,8 @@ class WebSocket(Carrier):
         if offered:
             answer += f"Sec-WebSocket-Protocol: {JSON if self.json else offered[0]}\r\n"
         stream.write(answer.encode("latin-1") + b"\r\n")
-        self.lossy = self.listens = True
+        self.delivery = replace(self.delivery, lossy=True)
+        self._page = True
         self._begin(stream)
 
     def _begin(self, stream: ByteStream) -> None:
@@ -151,7 +153,7 @@ class WebSocket(Carrier):
         if self.json:
             self._as_json(packet)
         else:
-            packet.own("binary")
+            packet.snapshot("binary")
         return True
 
     def _as_json(self, packet: Packet) -> bytes:
@@ -189,18 +191,16 @@ class WebSocket(Carrier):
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         return Message(CALL, (yield from self._through(stream, framing.read_payload(self._bytes))))
 
-    def listen(self, stream: ByteStream) -> Steps[None]:
+    def listen(self, stream: ByteStream) -> Steps[None] | None:
+        return self._listen(stream) if self._page else None
+
+    def _listen(self, stream: ByteStream) -> Steps[None]:
         """While we write: answer pings, and return when the page says goodbye."""
         while True:
             yield from self._next_payload(stream)
             self._rest = memoryview(b"")
             if self._ended:
                 return
-
-    @property
-    def holding(self) -> bool:  # type: ignore[override]
-        frames = self._frames
-        return bool(self._rest or self._bytes.waiting or (frames and len(frames.buffer)))
 
     def _read_message(self) -> Steps[Message]:
         command = yield from framing.read_command(self._bytes)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.carriers.base import MAGIC_SIZE, Carrier, Delivery, Limits
 from yarpy.carriers.http.header import MAX_LINE, read_headers
 from yarpy.carriers.http.message import CONTINUE, MAX_BODY, MAX_HEAD, next_event
 from yarpy.carriers.http.origin import not_ours, origins_of
@@ -24,13 +24,15 @@ from yarpy.data import codec, xmlrpc
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.route import Route
-from yarpy.wire.message import ADMIN, CALL, Message, Packet
+from yarpy.wire.effects import Within
+from yarpy.wire.message import ADMIN, CALL, QUIT, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 if TYPE_CHECKING:
     import h11
 
+TIME: Final = 60.0  # seconds for a call from its first byte to its last
 NOT_UNDERSTOOD: Final = -32700  # the fault of a body that is no XML-RPC
 ROS: Final = frozenset(("publisherUpdate", "requestTopic", "getPid", "getBusInfo"))
 
@@ -47,13 +49,13 @@ class XmlRpc(Carrier):
     magic = b"POST /RP"
     acks = True
     foreign = True
-    gathers = False
-    confirmation = 5.0
-    hurry = 60.0
+    delivery = Delivery(coalesces=False)
+    limits = Limits(ack_timeout=5.0)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self._terse = False  # the call came from a ROS node
+        self._finished = False  # everything was said
         self._last = False  # the peer wants no more calls on this connection
         self._owed = False  # a call waits for its response
         self._confirmed = False  # the response to our call was read with its reply
@@ -66,34 +68,35 @@ class XmlRpc(Carrier):
 
     # -- the server -------------------------------------------------------------------------------
 
-    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[Carrier | None]:
         self.route.source = "rpc"
         stream.unread(len(first))
         if first == self.magic:
-            return
+            return None
         while not (head := _head(stream)) and stream.waiting < MAX_HEAD:
             yield from stream.more(stream.waiting + 1)
         if not _brings_xml(head):
             from yarpy.carriers.http.carrier import Http
 
-            self.instead = Http
             stream.head += len(first)
+            route = self.route
+            return Http(Route("", route.target, Http.name, route.port, route.host))
+        return None
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
-        while True:
+        while not self._finished:
             yield from stream.more(1)
             if stream.buffer[stream.head] in b"\r\n":
                 stream.head += 1
                 continue  # between two calls
-            self.midway = True
+            yield Within(TIME)
             try:
                 body = yield from self._read_body(stream)
             except Timeout:
                 stream.write(_RESPONSE.format(status="408 Request Timeout", size=0).encode())
-                self.finished = True
+                self._finished = True
                 raise
-            finally:
-                self.midway = False
+            yield Within(None)
             try:
                 call = xmlrpc.decode_call(memoryview(body))
             except DecodeError as error:
@@ -104,6 +107,7 @@ class XmlRpc(Carrier):
             key = ADMIN if self._terse else CALL
             self._owed = True
             return Message(key, b"".join(map(bytes, codec.encode(call))))
+        return Message(QUIT)
 
     def _read_body(self, stream: ByteStream) -> Steps[bytearray]:
         """The body of a call, whose head is nobody's but h11's to judge."""
@@ -152,12 +156,12 @@ class XmlRpc(Carrier):
         stream.write(_RESPONSE.format(status="200 OK", size=len(body)).encode() + body)
         self._owed = False
         if self._last or self._terse:
-            self.finished = True
+            self._finished = True
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
         self._respond(stream, xmlrpc.encode_answer(value, self._terse))
 
-    def encode_ack(self, stream: ByteStream) -> None:
+    def encode_ack(self, stream: ByteStream, count: int) -> None:
         if self._owed:
             self._respond(stream, xmlrpc.encode_nothing())
 

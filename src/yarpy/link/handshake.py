@@ -145,12 +145,8 @@ def welcome(
         raise RemoteProtocolError(f"no carrier begins with the bytes {first!r}")
     reached = _reached(transport)
     carrier = kind(Route("", target, kind.name, port, reached))
-    carrier.accepted = True
-    driver.run(carrier.welcome(driver.stream, first), deadline)
-    if carrier.instead is not None:  # the first bytes alone did not tell
-        carrier = carrier.instead(Route("", target, carrier.instead.name, port, reached))
-        carrier.accepted = True
-        driver.run(carrier.welcome(driver.stream, first), deadline)
+    while (other := driver.run(carrier.welcome(driver.stream, first), deadline)) is not None:
+        carrier = other  # the first bytes alone did not tell
     return driver, carrier
 
 

@@ -11,6 +11,7 @@ import threading
 import time
 from typing import TYPE_CHECKING, Any, Protocol
 
+from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
 from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.link.driver import Driver
@@ -20,7 +21,6 @@ from yarpy.qos import Sched
 from yarpy.wire.message import CALL, DATA, QUIT, Message
 
 if TYPE_CHECKING:
-    from yarpy.carriers.base import Carrier
     from yarpy.link.counter import Counter
     from yarpy.monitors.chain import Chain
     from yarpy.route import Route
@@ -62,6 +62,7 @@ class Inbound:
         self.receiver = Receiver(driver, carrier)
         self.counter: Counter = self.receiver.counter
         self.turn = Turn()
+        self.successor = carrier  # who goes on when the peer turns to reading
         self.thread: threading.Thread | None = None
         self.sched = Sched()  # what somebody asked for; -1: nothing
         self.tos = 0
@@ -82,13 +83,13 @@ class Inbound:
     def serve(self) -> None:
         """Read until the connection ends. Runs in the link's own thread."""
         reason = ""
-        patience = self.carrier.patience
-        limited = patience is not None
+        idle_timeout = self.carrier.limits.idle_timeout
+        limited = idle_timeout is not None
         try:
             while not self._quit and not self._reversed:
                 with self.turn.lock:
                     if limited:
-                        self.receiver.limit(patience)
+                        self.receiver.limit(idle_timeout)
                     limited = self._read_on()
                 if limited:
                     self.turn.park(lambda: self.receiver.question is not None)
@@ -96,13 +97,13 @@ class Inbound:
             reason = str(error)
         except YarpError as error:
             reason = f"{error}"
-            if patience is None or not isinstance(error, Timeout):
-                self._tell(error)  # silence beyond a carrier's patience is nobody's fault
+            if idle_timeout is None or not isinstance(error, Timeout):
+                self._tell(error)  # silence beyond a carrier's limit is nobody's fault
         except BaseException as error:  # a callback's sys.exit() too ends this link, and no more
             reason = f"{type(error).__name__}: {error}"
             log.exception("%s: connection %s fails on a defect", self.owner.name, self.route)
         if self._reversed:
-            self.receiver.limit(patience)
+            self.receiver.limit(idle_timeout)
             self.owner.reverse(self)
             return
         self.receiver.finish()
@@ -151,6 +152,8 @@ class Inbound:
             self._quit = True
         elif message.key == "r":
             self._reversed = True
+            if isinstance(message.payload, Carrier):
+                self.successor = message.payload
         else:
             return self.owner.command(self, message)
         return None

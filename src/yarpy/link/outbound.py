@@ -48,7 +48,7 @@ class Outbound:
         self.active = True  # of the multicast links of a port only one sends
         self.thread: threading.Thread | None = None
         self._due = 0.0  # when the carrier's interval is over
-        self._listening: Steps[None] | None = None
+        self._listening: Steps[None] | None = carrier.listen(driver.stream)
         self._queue: Background | None = None
 
     @property
@@ -65,7 +65,7 @@ class Outbound:
         WINDOW acknowledgements behind; where the carrier is lossy it never blocks, and the message
         may be dropped instead. Raises LinkClosed.
         """
-        if self.carrier.lossy:
+        if self.carrier.delivery.lossy:
             if self.sender.broken:
                 raise self.sender.gone()
             return self.try_send(packet)
@@ -75,7 +75,7 @@ class Outbound:
                 return False
             packet = passed
         if self._queue is not None:
-            packet.own(self.carrier.spelling)  # what cannot be sent is the writer's error
+            packet.snapshot(self.carrier.spelling)  # what cannot be sent is the writer's error
             if not self._queue.wait_put(packet):
                 raise self.sender.gone()
             return True
@@ -90,9 +90,9 @@ class Outbound:
         if self.sender.unacknowledged and not self.sender.caught_up():
             self.counter.drops += 1
             return False
-        queue, carrier = self._queue, self.carrier
+        queue, carrier, delivery = self._queue, self.carrier, self.carrier.delivery
         assert queue is not None
-        if carrier.lossy and not (queue.has_room(carrier.backlog) and self._timely()):
+        if delivery.lossy and not (queue.has_room(delivery.backlog) and self._timely()):
             self.counter.drops += 1  # before anything is made of a message that does not go
             return False
         if self.chain is not None:
@@ -103,7 +103,7 @@ class Outbound:
         if not carrier.prepare(packet):
             self.counter.drops += 1
             return False
-        return queue.put(packet, carrier.backlog)
+        return queue.put(packet, delivery.backlog)
 
     def _pass(self, chain: Chain, packet: Packet) -> Packet | None:
         """What the monitors make of a packet; None, and counted, if one drops it."""
@@ -117,7 +117,7 @@ class Outbound:
         now = time.perf_counter()
         if now < self._due:
             return False
-        self._due = max(self._due + self.carrier.interval, now)
+        self._due = max(self._due + self.carrier.delivery.interval, now)
         return True
 
     def start_background(self) -> None:
@@ -125,7 +125,7 @@ class Outbound:
         with self.sender.lock:
             if self._queue is None and not self.broken:
                 transport = self.driver.transport
-                if self.carrier.lossy and isinstance(transport, TcpTransport):
+                if self.carrier.delivery.lossy and isinstance(transport, TcpTransport):
                     transport.limit_unsent(UNSENT)  # else the kernel is the growing queue
                 self._queue = Background(self.sender.send, self.counter)
                 self.thread = threading.Thread(
@@ -211,10 +211,10 @@ class Outbound:
     def wait_acknowledged(self, timeout: float | None = None) -> None:
         """Wait until the peer has taken every message, unless it may miss some. Raises Timeout,
         LinkClosed."""
-        if self.carrier.lossy:
+        if self.carrier.delivery.lossy:
             return
         if timeout is None:
-            timeout = self.carrier.confirmation
+            timeout = self.carrier.limits.ack_timeout
         deadline = None if timeout is None else time.monotonic() + timeout
         self._take_lock(timeout)
         try:
@@ -244,15 +244,15 @@ class Outbound:
         """Whether the peer has hung up, found out without sending anything."""
         if self.sender.unacknowledged:
             self.sender.caught_up()  # acknowledgements that nobody read hide the end behind them
-        if self.carrier.listens:
-            self._listen()
+        if self._listening is not None:
+            self._listen(self._listening)
         if not self.broken and self.driver.transport.ended():
             self.driver.transport.interrupt()  # frees who is stuck in sending
             with self.sender.lock:
                 self.sender.give_up()
         return self.broken
 
-    def _listen(self) -> None:
+    def _listen(self, steps: Steps[None]) -> None:
         """Let the protocol deal with what the reader said meanwhile."""
         if not self.sender.lock.acquire(blocking=False):
             return  # next time
@@ -260,13 +260,11 @@ class Outbound:
             if self.broken:
                 return
             driver = self.driver
-            if self._listening is None:
-                self._listening = self.carrier.listen(driver.stream)
-                next(self._listening)
+            next(steps)
             for _ in range(LISTEN_MOST):
                 if not driver.try_fill():
                     break
-                next(self._listening)
+                next(steps)
             driver.transport.limit_waiting(LISTEN_PATIENCE)
             driver.flush()
             driver.transport.limit_waiting(None)
@@ -302,7 +300,7 @@ class Outbound:
                         self.sender.unacknowledged += 1
                         self.sender.collect(wait=True, all_=True, deadline=deadline)
                     else:
-                        driver.run(self.carrier.hear_out(driver.stream), deadline)
+                        driver.run(self.carrier.drain(driver.stream), deadline)
             except (YarpError, OSError):
                 lost = max(self.sender.unacknowledged - 1, 0)
                 self.counter.messages -= lost

@@ -10,19 +10,20 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
-from yarpy.errors import RemoteProtocolError, Timeout, YarpError
+from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.counter import Counter
 from yarpy.link.driver import Driver
-from yarpy.wire.message import CALL, QUIT, Answer, Message
+from yarpy.wire.effects import Show, Within
+from yarpy.wire.message import CALL, Answer, Message
 from yarpy.wire.stream import LARGE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
-    from yarpy.carriers.base import Carrier
     from yarpy.route import Route
-    from yarpy.wire.steps import Steps
+    from yarpy.wire.steps import Effect, Steps
 
 MAX_UNSENT_ACKS = 64
 
@@ -35,27 +36,36 @@ class Receiver:
         self.carrier = carrier
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
-        self._steps: Steps[Message] | None = None
-        self._wait: float | None = None  # seconds that each wait for bytes may take
-        self._begun = 0.0  # when a message that must hurry began to come; 0: none has
-        self._unsent_acks = 0
+        self.page: Callable[[str, Mapping[str, str]], object] = (
+            _no_page  # the program's, for `Show`
+        )
         self.question: Answer | None = None  # is open: nothing is read before it is answered
+        self._steps: Steps[Message] | None = None
+        self._parses = type(carrier).parse is not Carrier.parse
+        self._wait: float | None = None  # seconds that each wait for bytes may take
+        self._due = 0.0  # when a message that has begun must have come; 0: none has
+        self._unsent_acks = 0
 
     # -- reading ----------------------------------------------------------------------------------
 
     def advance(self, deadline: float | None) -> Message:
         """The next message. Raises Timeout (what came is kept), LinkClosed."""
-        driver = self.driver
-        carrier = self.carrier
+        driver, carrier = self.driver, self.carrier
         message = None
-        if self._steps is None and (driver.stream.waiting or carrier.holding):
-            message = carrier.parse(driver.stream)
-            if message is None:
+        if self._steps is None:
+            come = driver.stream.waiting
+            if come:
+                message = carrier.parse(driver.stream)
+            elif self._unsent_acks and not self._parses:
+                self.send_acks()
+            if message is None and (come or not self._parses):
                 self._steps = carrier.decode(driver.stream)
         while message is None:
             if self._steps is not None:
                 try:
-                    next(self._steps)
+                    effect = next(self._steps)
+                    while effect is not None:
+                        effect = self._steps.send(self._perform(effect))
                 except StopIteration as stop:
                     self._steps = None
                     message = stop.value
@@ -65,26 +75,32 @@ class Receiver:
                     raise
             if self._unsent_acks or driver.stream.pending:
                 self.send_acks()
-            if carrier.finished:
-                message = Message(QUIT)
-                break
-            if carrier.hurry is None:
-                driver.fill(deadline)
+            if self._due:
+                self._fill_in_time(deadline)
             else:
-                self._fill_in_time(carrier.hurry, deadline)
+                driver.fill(deadline)
             if self._steps is None:
                 message = carrier.parse(driver.stream)
                 if message is None:  # there is a part of it, or the end; `decode` says which
                     self._steps = carrier.decode(driver.stream)
-        if self._begun:
-            self._forget_hurry()
+        if self._due:
+            self._hurry(None)
         self.count(message)
         return message
 
     @property
     def waiting(self) -> bool:
-        """Whether some of the next message has come already."""
-        return bool(self.driver.stream.waiting) or self.carrier.holding
+        """Whether some of the next message may have come already."""
+        held = self._steps is None and not self._parses
+        return held or bool(self.driver.stream.waiting)
+
+    def _perform(self, effect: Effect) -> object:
+        if isinstance(effect, Within):
+            self._hurry(effect.seconds)
+            return None
+        if isinstance(effect, Show):
+            return self.page(effect.path, effect.fields)
+        raise LocalProtocolError(f"{effect} is nothing that a message can ask for")
 
     def count(self, message: Message) -> None:
         """Number a message, and name its sender."""
@@ -93,15 +109,17 @@ class Receiver:
         counter.count(time.perf_counter())
         counter.bytes = self.driver.bytes_in
 
-    def _fill_in_time(self, hurry: float, deadline: float | None) -> None:
-        """Wait for more bytes, but for a message that has begun no longer than it may take."""
-        if not self.carrier.midway:
-            self._forget_hurry()
-            self.driver.fill(deadline)
-            return
-        now = time.monotonic()
-        self._begun = self._begun or now
-        left = self._begun + hurry - now
+    def _hurry(self, seconds: float | None) -> None:
+        """A message has begun and has so many seconds; None: nothing has."""
+        if seconds is not None:
+            self._due = time.monotonic() + seconds
+        elif self._due:
+            self._due = 0.0
+            self.limit(self._wait)
+
+    def _fill_in_time(self, deadline: float | None) -> None:
+        """Wait for more bytes of a message, but no longer than it may take."""
+        left = self._due - time.monotonic()
         try:
             if left <= 0:
                 raise Timeout("the peer is too slow")
@@ -110,17 +128,11 @@ class Receiver:
             self.driver.fill(deadline)
         except Timeout as error:
             steps = self._steps
-            if steps is not None and time.monotonic() > self._begun + hurry - 0.01:
+            if steps is not None and time.monotonic() > self._due - 0.01:
                 self._steps = None
                 self.driver.tell_late(steps, error)
                 raise RemoteProtocolError("the peer sends a message too slowly") from error
             raise
-
-    def _forget_hurry(self) -> None:
-        """Nothing has begun to come: wait as long as usual."""
-        if self._begun:
-            self._begun = 0.0
-            self.limit(self._wait)
 
     def limit(self, seconds: float | None) -> None:
         """Let each wait for bytes take so long."""
@@ -150,7 +162,7 @@ class Receiver:
             # Without any answer a caller waits for ever; one in C++ takes the acknowledgement for
             # it. A person at a text prompt, a name service, and a page are told nothing rather than
             # that.
-            if self.carrier.spelling != "text" and not self.carrier.lossy:
+            if self.carrier.spelling != "text" and not self.carrier.delivery.lossy:
                 self._reply(Bottle())
                 return
         if self.carrier.acks:
@@ -180,7 +192,7 @@ class Receiver:
         elif answered is not None:
             carrier.encode_lines(stream, answered)
         if carrier.acks:
-            carrier.encode_ack(stream)
+            carrier.encode_ack(stream, 1)
         self.driver.flush()
 
     def _reply(self, value: object) -> None:
@@ -189,13 +201,13 @@ class Receiver:
         self.carrier.encode_reply(stream, value)  # a TypeError leaves the question open
         self.question = None
         if self.carrier.acks:
-            self.carrier.encode_ack(stream)
+            self.carrier.encode_ack(stream, 1)
         self.driver.flush()
 
     def send_acks(self) -> None:
         """Acknowledge what was held back, and send what else was written."""
         if self._unsent_acks:
-            self.carrier.encode_acks(self.driver.stream, self._unsent_acks)
+            self.carrier.encode_ack(self.driver.stream, self._unsent_acks)
             self._unsent_acks = 0
         self.driver.flush()
 
@@ -210,5 +222,9 @@ class Receiver:
     def _owe_acks(self) -> None:
         """Put acknowledgements that were held back in front of what is written next."""
         if self._unsent_acks:
-            self.carrier.encode_acks(self.driver.stream, self._unsent_acks)
+            self.carrier.encode_ack(self.driver.stream, self._unsent_acks)
             self._unsent_acks = 0
+
+
+def _no_page(path: str, fields: Mapping[str, str]) -> None:
+    """No program shows anything."""

@@ -76,8 +76,8 @@ class Sender:
         carrier, driver = self.carrier, self.driver
         now = time.perf_counter()
         try:
-            if self.unacknowledged and carrier.confirmation is not None:
-                self._confirm(carrier.confirmation)
+            if self.unacknowledged and carrier.limits.ack_timeout is not None:
+                self._confirm(carrier.limits.ack_timeout)
             elif self.unacknowledged and (
                 now - self._ahead_since > WINDOW_SECONDS
                 or driver.bytes_out - self._ahead_from > WINDOW_BYTES
@@ -90,7 +90,7 @@ class Sender:
             elif self._rush < BURST:
                 self._rush += 1
                 self._flush_at_once(now)
-            elif carrier.gathers and packet.small:
+            elif carrier.delivery.coalesces and packet.small:
                 self._gather(now)
             else:
                 self.flush()
@@ -234,7 +234,7 @@ class Sender:
             return True  # sending finds out, and says so
         finally:
             self.lock.release()
-        limit = self.carrier.confirmation
+        limit = self.carrier.limits.ack_timeout
         late = limit is not None and time.perf_counter() - self._ahead_since > limit
         if self.unacknowledged and late and limit is not None and not self._mute:
             self._fall_mute(limit)

@@ -36,7 +36,7 @@ from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
 from yarpy.transports.bind import listening_host
 from yarpy.transports.tcp import is_taken
-from yarpy.wire.message import Lines, Message, Packet
+from yarpy.wire.message import JSON, Lines, Message, Packet
 
 if TYPE_CHECKING:
     from yarpy.names.discovery import Responder
@@ -155,7 +155,7 @@ class NameServer:
         peer = link.driver.transport.remote[0]
         if is_loopback(peer):
             peer = self.host  # a program of this host: others reach it as they reach us
-        structured = link.carrier.structured
+        structured = message.text == JSON
         if structured:  # as C++ says it behind a command that came by HTTP
             reply = self.service.answer([*message.as_(Bottle), Bottle(["format", "json"])], peer)
         elif message.spelling == "text":

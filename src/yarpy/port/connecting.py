@@ -170,7 +170,7 @@ def _check(hub: Hub, spec: CarrierSpec) -> None:
 
 def _asks(link: Outbound) -> bool:
     """Whether an output is one that questions go to; not those of loggers and onlookers."""
-    return not link.log and not link.carrier.lossy
+    return not link.log and not link.carrier.delivery.lossy
 
 
 def open_output(hub: Hub, contact: Contact, target: str, spec: CarrierSpec) -> None:

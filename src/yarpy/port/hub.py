@@ -164,11 +164,11 @@ class Hub:
     # -- connections in ---------------------------------------------------------------------------
 
     def run_input(self, driver: Driver, carrier: Carrier) -> None:
-        """Serve an open connection as an input, in this thread, until it ends.
+        """Serve a connection that we accepted as an input, in this thread, until it ends.
 
-        If we accepted it and it is a pull carrier, it is an output instead: who dialled receives.
+        With a pull carrier it is an output instead: who dialled receives.
         """
-        if not carrier.push and carrier.route.target == self.name and carrier.accepted:
+        if not carrier.push:
             self._serve_reader(driver, carrier)
             return
         link = Inbound(self, driver, carrier)
@@ -184,7 +184,7 @@ class Hub:
     def take_input(self, link: Inbound) -> None:
         """Make an open connection one of our inputs, to be served next. Raises PortClosed, and as
         monitors do that cannot start; the connection is closed then."""
-        link.carrier.pages = self.callbacks.page
+        link.receiver.page = self.callbacks.page
         try:
             self.monitoring.incoming(link)
         except YarpError:
@@ -256,7 +256,7 @@ class Hub:
     def reverse(self, link: Inbound) -> None:
         """The peer at the other end wants to read: its connection becomes an output of ours."""
         self._forget_input(link)
-        self._serve_reader(link.driver, link.carrier.successor or link.carrier)
+        self._serve_reader(link.driver, link.successor)
 
     def _serve_reader(self, driver: Driver, carrier: Carrier) -> None:
         """Make a connection that somebody else opened an output of ours."""

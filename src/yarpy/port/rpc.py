@@ -176,7 +176,7 @@ class RpcClient(BasePort):
         """The connection to the server: the one there is, if it lives, else a new one."""
         target, carrier = self._target, self._carrier
         for link in self._hub.outputs:
-            if link.carrier.lossy:
+            if link.carrier.delivery.lossy:
                 continue  # somebody looks on
             if not link.ended():
                 return link
@@ -186,7 +186,7 @@ class RpcClient(BasePort):
         if target:
             super().connect(target, carrier)
             for link in self._hub.outputs:
-                if not link.carrier.lossy:
+                if not link.carrier.delivery.lossy:
                     return link
             raise LinkClosed(f'"{target}" went away at once')
         raise LocalProtocolError(

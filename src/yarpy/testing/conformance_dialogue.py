@@ -178,7 +178,7 @@ class DialogueConformance(ConformanceCase):
         for count in (1, 2, 5):
             for _ in range(count):
                 talk.send(self.values[0])
-            writing.encode_acks(receiver.stream, count)
+            writing.encode_ack(receiver.stream, count)
             talk.pump()
             taken = reading.parse_acks(sender.stream, count - 1)
             assert 0 <= taken < count, f"{taken} acknowledgements were taken at once"

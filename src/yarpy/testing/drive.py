@@ -18,7 +18,7 @@ from yarpy import registry
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
 from yarpy.link.handshake import recognise
 from yarpy.route import Route
-from yarpy.wire.effects import Group, Open, Switch
+from yarpy.wire.effects import Group, Open, Show, Switch, Within
 from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.steps import Effect, Steps
 from yarpy.wire.stream import DEFAULT_LIMIT, Buffer, ByteStream, DatagramStream, ObjectStream
@@ -124,6 +124,8 @@ class End:
         if isinstance(effect, Open):
             self.opened.append(effect)
             return Handle(effect)
+        if isinstance(effect, Show | Within):
+            return None  # no pages, and all the time in the world
         assert isinstance(effect, Switch)
         self.stream = effect.stream
         return None
@@ -199,13 +201,13 @@ class Dialogue:
         end, carrier = self._answering()
         carrier.encode_reply(end.stream, value)
         if carrier.acks:
-            carrier.encode_ack(end.stream)
+            carrier.encode_ack(end.stream, 1)
         return self._answered()
 
     def acknowledge(self, replied: bool = False) -> Message | None:
         """Acknowledge the last message. `replied`: its sender waits for a reply, in vain."""
         end, carrier = self._answering()
-        carrier.encode_ack(end.stream)
+        carrier.encode_ack(end.stream, 1)
         if replied:
             return self._answered()
         asker, asking = self.sender
@@ -226,7 +228,8 @@ class Dialogue:
         if kind is None:
             raise AssertionError(f"no carrier recognises the bytes {first!r}")
         self.accepting = kind(Route("", self.target, kind.name, TCP_PORT))
-        yield from self.accepting.welcome(end.stream, first)
+        while (other := (yield from self.accepting.welcome(end.stream, first))) is not None:
+            self.accepting = other
 
     def _accepted(self) -> Carrier:
         if self.accepting is None:

@@ -3,11 +3,12 @@
 Rules: plain values, no behaviour. `None` asks for more bytes; everything else is listed here. A
 connection greets over TCP; carriers that move elsewhere (UDP, multicast, Unix sockets, in-process)
 `Open` the new place, tell the peer about it, and `Switch` onto it. One that has to ask once more a
-peer that hangs up opens `tcp`.
+peer that hangs up opens `tcp`. `Within` and `Show` are for `decode` alone.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,3 +42,21 @@ class Switch(Effect):
 @dataclass(frozen=True, slots=True)
 class Group(Effect):
     """Ask for the multicast group of the sending port; the driver sends back `(address, port)`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Within(Effect):
+    """A message has begun to come: it has `seconds` to its end, or raises Timeout inside `decode`.
+
+    None: nothing has begun any more. The end of `decode` says so too.
+    """
+
+    seconds: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Show(Effect):
+    """Ask the port's program for its page at `path`; the driver sends back a Page, or None."""
+
+    path: str
+    fields: Mapping[str, str]

@@ -26,6 +26,8 @@ CALL: Final = "d"  # data, the sender reads a reply
 ADMIN: Final = "a"
 QUIT: Final = "q"
 
+JSON: Final = "json"  # the asker wants values that programs can read, not lines for a person
+
 #: What encoding raises for a value that cannot be sent: an odd type, a number too large, a list too
 #: deep.
 UNSENDABLE: Final = (TypeError, ValueError, OverflowError)
@@ -99,7 +101,7 @@ class Packet:
             self._blocks = codec.encode(self.value)
         return self._blocks
 
-    def own(self, spelling: Spelling) -> None:
+    def snapshot(self, spelling: Spelling) -> None:
         """Encode now, into memory of our own: the message leaves later, its writer goes on."""
         if spelling == "text":
             _ = self.line
@@ -185,7 +187,7 @@ class Message:
         self.payload = payload
         self.envelope = envelope
         self.spelling = spelling
-        self.text = text  # what followed the key of a port command: a destination, a word
+        self.text = text  # what followed a port command; behind data, the form of the answer: JSON
         self.source = ""
         self.answer: Answer | None = None  # set by the link of a question
         self._value: object = _UNSET

@@ -17,13 +17,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.capture import CAPTURES, load_capture
-from support.steps import chop
+from support.steps import chop, finish
 from support.transport import ScriptTransport
 
 import yarpy
 from yarpy import registry
 from yarpy.carriers.base import Carrier
-from yarpy.carriers.http.carrier import Http
+from yarpy.carriers.http.carrier import TIME, Http
 from yarpy.carriers.http.message import MAX_BODY, MAX_HEAD
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
@@ -33,7 +33,8 @@ from yarpy.link.handshake import recognise
 from yarpy.link.inbound import Inbound
 from yarpy.route import Route
 from yarpy.testing import CarrierConformance
-from yarpy.wire.message import Lines, Message, Packet
+from yarpy.wire.effects import Show, Within
+from yarpy.wire.message import QUIT, Lines, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream, run
 
@@ -86,7 +87,6 @@ def serve(
     driver = Driver(transport)  # type: ignore[arg-type]
     driver.eager = False
     carrier = Http(Route("", name, "http", 0, host))
-    carrier.accepted = True
     owner = Owner(answer)
     try:
         first = bytes(driver.run(driver.stream.read_exact(8)))
@@ -419,25 +419,25 @@ def test_request_that_does_not_come_is_told_so(begun: bytes) -> None:
         stream.head = 8
     else:
         steps = carrier.decode(stream)
-    assert next(steps) is None
-    assert carrier.midway == begun.startswith(b"POST")
+    asked = list(iter(lambda: next(steps), None))  # what it yields before it wants more bytes
+    assert asked == ([Within(TIME)] if begun.startswith(b"POST") else [])
     with pytest.raises(Timeout):
         steps.throw(Timeout("late"))
     found = responses(b"".join(map(bytes, stream.take_output())), "POST")[0]
     assert (found[0], found[1]["connection"]) == (408, "close")
-    assert carrier.finished
+    assert finish(carrier.decode(stream)).key == QUIT
 
 
-def test_midway_is_only_within_a_request() -> None:
+def test_request_has_limited_time_from_its_first_byte_to_its_last() -> None:
     carrier, stream = Http(Route("", "/x", "http")), ByteStream()
     wire = b"GET /favicon.ico HTTP/1.1\r\nHost: x\r\n\r\n"
     stream.feed(wire)
     steps = carrier.decode(stream)
-    assert next(steps) is None  # answered without the port; waits for another
-    assert not carrier.midway
+    asked = list(iter(lambda: next(steps), None))
+    assert asked == [Within(TIME), Within(None), Show("/favicon.ico", {})]
+    assert stream.pending  # answered without the port; waits for another
     stream.feed(b"G")
-    assert next(steps) is None
-    assert carrier.midway
+    assert next(steps) == Within(TIME)
 
 
 def test_end_when_the_peer_wants_it() -> None:
@@ -614,9 +614,9 @@ def test_pictures_are_told_of_and_sent_whole_to_who_asks() -> None:
 
 def test_readers_miss_messages_rather_than_hold_the_writer_up() -> None:
     carrier, _ = reader(b"GET /r HTTP/1.1\r\nHost: x\r\n\r\n")
-    assert carrier.lossy
+    assert carrier.delivery.lossy
     assert not carrier.acks
-    assert carrier.backlog
+    assert carrier.delivery.backlog
 
 
 def test_stream_ends_in_good_order() -> None:

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
-from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.carriers.base import MAGIC_SIZE, Carrier, Delivery, Limits
 from yarpy.carriers.http.client import ENVELOPE, HttpClient
 from yarpy.carriers.http.message import (
     CONTINUE,
@@ -44,6 +44,7 @@ from yarpy.carriers.http.response import (
 )
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.route import Route
+from yarpy.wire.effects import Show, Within
 from yarpy.wire.message import CALL, QUIT, Lines, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
@@ -54,7 +55,7 @@ if TYPE_CHECKING:
     from yarpy.carriers.http.request import Form, Request, Wish
 
 DRAIN: Final = 1 << 20  # bytes of a refused body that are read, so that the refusal arrives
-PATIENCE: Final = 60.0  # seconds a connection may be idle, and a request may take to come
+TIME: Final = 60.0  # seconds a connection may be idle, and a request may take to come
 
 _METHODS: Final = (b"GET /", b"POST /", b"HEAD /", b"OPTIONS ", b"PUT /", b"DELETE /", b"PATCH /")
 
@@ -67,9 +68,8 @@ class Http(Carrier):
     spelling = "text"
     acks = True
     foreign = True
-    gathers = False
-    patience = PATIENCE
-    hurry = PATIENCE
+    delivery = Delivery(coalesces=False)
+    limits = Limits(idle_timeout=TIME)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
@@ -79,6 +79,7 @@ class Http(Carrier):
         self._headers: Mapping[str, str] = {}
         self._head_only = False
         self._modern = False  # HTTP/1.1, which knows chunks
+        self._finished = False  # everything was said
         self._stays = False  # the connection stays open for another one
         self._wish: Wish | None = None  # what is being answered
         self._taken = 0  # messages that were handed on, and those that are acknowledged
@@ -111,17 +112,16 @@ class Http(Carrier):
             raise
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
-        while not self.finished:
+        while not self._finished:
             if self._streaming:  # the reply to the last message has begun something endless
-                self.holding = False
                 return Message("r")
             if self._wish is not None:
                 self._answer_nothing(stream)  # the next request waits already
                 continue
             request = yield from self._read_request(stream)
-            wish = self._understood(stream, request) if request is not None else None
-            if self.successor is not None:
-                return Message("r")
+            wish = (yield from self._understood(stream, request)) if request is not None else None
+            if isinstance(wish, Carrier):
+                return Message("r", wish)
             if wish is None:
                 continue
             self._taken += 1
@@ -129,7 +129,6 @@ class Http(Carrier):
                 self._begin_reading(stream, wish)
                 return Message("r")
             self._wish = wish
-            self.structured = wish.form == "json"
             return wish.message(_envelope(self._headers))
         return Message(QUIT)
 
@@ -143,7 +142,7 @@ class Http(Carrier):
         self._head_only = self._modern = self._stays = False
         talk = h11.Connection(h11.SERVER, max_incomplete_event_size=MAX_HEAD)
         yield from stream.more(1)
-        self.midway = True
+        yield Within(TIME)
         body = bytearray()
         refusal = 413, f"a body has at most {MAX_BODY} bytes"
         try:
@@ -175,7 +174,7 @@ class Http(Carrier):
             raise
         if not isinstance(event, h11.EndOfMessage):
             yield from self._refuse(stream, *refusal)
-        self.midway = False
+        yield Within(None)
         rest, _ = talk.trailing_data
         stream.unread(len(rest))  # of the next request
         target = head.target.decode("latin-1")
@@ -205,8 +204,9 @@ class Http(Carrier):
                 stream.head = stream.tail
         raise RemoteProtocolError(f"HTTP {status}: {text}")
 
-    def _understood(self, stream: ByteStream, request: Request) -> Wish | None:
-        """What is wanted of the port; None if the request is answered without it."""
+    def _understood(self, stream: ByteStream, request: Request) -> Steps[Wish | Carrier | None]:
+        """What is wanted of the port; None if the request is answered without it, a carrier if the
+        rest is for that one to do."""
         from yarpy.carriers.http.request import Refusal, page_asked, read_wish
 
         if self.origins.turns_away(self._headers, self.route.host):
@@ -219,10 +219,9 @@ class Http(Carrier):
             self._respond(stream, NO_SUCH_METHOD)
             return None
         if request.method == "GET" and request.target.startswith("/?action="):
-            self._show_pictures(stream, request.target)
-            return None
-        asked = page_asked(request) if self.pages is not None else None
-        page = self.pages(*asked) if asked and self.pages is not None else None
+            return self._show_pictures(stream, request.target)
+        asked = page_asked(request)
+        page = (yield Show(*asked)) if asked else None
         if page is not None:
             self._respond(stream, self._responder.shown(page))
             return None
@@ -254,7 +253,6 @@ class Http(Carrier):
             if response.endless:
                 self._wish = None
                 self._begin_stream(stream, "guest", response)
-                self.holding = True
             else:
                 self._respond(stream, response)
         except (TypeError, ValueError, YarpError):
@@ -267,9 +265,9 @@ class Http(Carrier):
             said = self._responder.said(self._wish, Lines(lines), self._host)
             self._respond(stream, said)
 
-    def encode_ack(self, stream: ByteStream) -> None:
+    def encode_ack(self, stream: ByteStream, count: int) -> None:
         """The response to a message that the port did not reply to."""
-        self._acked += 1
+        self._acked += count
         if self._wish is not None and self._acked >= self._taken:
             self._answer_nothing(stream)
 
@@ -292,7 +290,7 @@ class Http(Carrier):
         last = []
         if not self._stays:
             last.append(("Connection", "close"))
-            self.finished = True
+            self._finished = True
         try:
             head = response.head(*last)
         except LocalProtocolError as error:
@@ -313,13 +311,13 @@ class Http(Carrier):
     def _begin_stream(self, stream: ByteStream, form: Form, response: Response) -> None:
         """The beginning of a response that does not end; the connection becomes an output."""
         self._streaming, self._form = True, form
-        self.acks, self.lossy, self.backlog = False, True, 16
+        self.acks, self.delivery = False, Delivery(lossy=True, backlog=16, coalesces=False)
         way = ("Transfer-Encoding", "chunked") if self._modern else ("Connection", "close")
         stream.write(response.head(way))
         if response.body:
             self._write_part(stream, response.body)
 
-    def _show_pictures(self, stream: ByteStream, target: str) -> None:
+    def _show_pictures(self, stream: ByteStream, target: str) -> Carrier | None:
         """A browser asks for MJPEG on a connection that it has used for a page before."""
         from yarpy.carriers.mjpeg import Mjpeg, read_wishes
 
@@ -327,11 +325,11 @@ class Http(Carrier):
             wishes = read_wishes(target)
         except ValueError as error:
             self._respond(stream, complaint(400, str(error)))
-            return
+            return None
         old = self.route
-        self.successor = mjpeg = Mjpeg(Route("", old.target, "mjpeg", old.port, old.host))
-        mjpeg.accepted = True
+        mjpeg = Mjpeg(Route("", old.target, "mjpeg", old.port, old.host))
         mjpeg.begin(stream, wishes, self._headers)
+        return mjpeg
 
     def prepare(self, packet: Packet) -> bool:
         if not self._streaming:

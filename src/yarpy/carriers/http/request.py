@@ -24,7 +24,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.json import Outer, from_json
 from yarpy.errors import DecodeError
 from yarpy.wire import framing
-from yarpy.wire.message import ADMIN, CALL, DATA, Message, Spelling
+from yarpy.wire.message import ADMIN, CALL, DATA, JSON, Message, Spelling
 
 Form: TypeAlias = Literal["page", "json", "text", "none", "events", "guest"]
 
@@ -79,7 +79,10 @@ class Wish:
 
     def message(self, envelope: str = "") -> Message:
         """The message for the port."""
-        return Message(self.key, self.payload, envelope, self.spelling, self.text)
+        text = self.text
+        if self.form == "json" and self.key in (DATA, CALL):
+            text = JSON  # a name service gives its answer as values then
+        return Message(self.key, self.payload, envelope, self.spelling, text)
 
 
 @dataclass(frozen=True, slots=True)
