@@ -41,6 +41,27 @@ def test_we_wire_their_ports(peer: CppProgram) -> None:
         yarpy.connect("/cpp/out", "/cpp/in", "tpc")
 
 
+def test_what_their_ports_do_not_do_is_refused(peer: CppProgram) -> None:
+    peer.do(TWO_PORTS)
+    with pytest.raises(yarpy.UnknownPlugin, match="refused: Cannot connect to shmem://cpp/in; no"):
+        yarpy.connect("/cpp/out", "/cpp/in", "shmem")
+    with yarpy.Port("/ours/out"), yarpy.Port("/ours/in"):
+        for source, target in (
+            ("/cpp/out", "/cpp/in"),
+            ("/cpp/out", "/ours/in"),
+            ("/ours/out", "/cpp/in"),
+        ):
+            with pytest.raises(
+                yarpy.NotAllowed, match=r'"/cpp/\w+" is a port of C\+\+ YARP.*use tcp'
+            ):
+                yarpy.connect(source, target, "http")
+        with pytest.raises(
+            yarpy.YarpError, match="Cannot connect to unix_stream://cpp/in: the peer"
+        ):
+            yarpy.connect("/ours/out", "/cpp/in", "unix_stream")
+    assert peer.do("source.getOutputCount()") == 0
+
+
 def test_we_ask_their_ports(peer: CppProgram) -> None:
     peer.do(TWO_PORTS)
     contact = yarpy.query("/cpp/out")

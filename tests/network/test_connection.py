@@ -168,6 +168,25 @@ def test_what_cannot_be_connected(names: LocalNames) -> None:
         assert not network.is_connected("/none", "/in", names=names)
 
 
+@pytest.mark.parametrize("carrier", ["shmem", "rossrv", "tpc"])
+def test_what_the_ends_can_do_is_for_them_to_say(carrier: str, names: LocalNames) -> None:
+    """Who asks need not have the carrier; a refusal says so, since it may be a slip of the pen."""
+    with Port("/out", names=names) as out, Port("/in", names=names):
+        out.connect("/in")
+        with pytest.raises(UnknownPlugin, match=f"refused: Cannot connect to {carrier}://in: no"):
+            network.connect("/out", "/in", carrier, names=names)
+        assert [link.carrier for link in out.outputs] == ["tcp"]  # the one that there is stays
+
+
+def test_carriers_of_others_that_the_receiver_dials(names: LocalNames) -> None:
+    with (
+        Port("/out", names=names),
+        Port("/in", names=names),
+        pytest.raises(UnknownPlugin, match="refused: Cannot connect to tcpros://out: no"),
+    ):
+        network.connect("/out", "/in", "tcpros", names=names)
+
+
 def test_waiting_for_both_ports(names: LocalNames) -> None:
     ports: list[Port] = []
 

@@ -159,6 +159,23 @@ def test_attached_to_a_port(names) -> None:
         assert in_.read(timeout=5).value == ["ha", "first"]
 
 
+def test_monitor_of_a_port_is_told_one_name(names) -> None:
+    """As in C++: the other end is whoever is connected."""
+    places: list[Place] = []
+    registry.monitors.add("told", lambda place: places.append(place) or object())
+    try:
+        with yarpy.Port("/in", names=names) as in_:
+            for side in ("in", "out"):
+                assert admin(in_, "atch", side, "(monitor told)") == [Vocab("ok")]
+    finally:
+        registry.monitors.remove("told")
+    assert [(p.source, p.target, p.carrier, p.sending) for p in places] == [
+        ("", "/in", "", False),
+        ("/in", "", "", True),
+    ]
+    assert [str(place) for place in places] == ["input of /in", "output of /in"]
+
+
 def test_attaching_what_does_not_start_says_why(names) -> None:
     with yarpy.Port("/in", names=names) as in_:
         for parameters, text in (

@@ -104,11 +104,16 @@ REFUSED = [
     "prop set /in (sched)",
     "prop set /in (sched ((policy NOSUCH)))",
     "prop set /in (sched ((policy 1) (priority high)))",
-    "prop set /in",
     "prop set /none (qos ((tos 12)))",
     "prop set /out (process)",
-    "prop set /out",
 ]
+
+
+@pytest.mark.parametrize("words", ["/in", "/in 5", "/in (x 1)", "/out", "/out (x 1)", "/none", ""])
+def test_nothing_asked_for_is_granted_as_in_cpp(words: str, names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names):
+        out.connect("/in")
+        assert admin(names, "/out", f"prop set {words}") == [Vocab("ok")]
 
 
 @pytest.mark.parametrize("command", REFUSED)

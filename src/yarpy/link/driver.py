@@ -210,7 +210,11 @@ class Driver:
         if isinstance(effect, Switch):
             self.flush()
             handle = effect.handle
-            handle.ready(self._watch())
+            try:
+                handle.ready(self._watch())
+            except BaseException:
+                handle.close()
+                raise
             transport.close()
             self.transport, self.stream = handle, effect.stream
             self._objects = handle if isinstance(handle, InprocTransport) else None

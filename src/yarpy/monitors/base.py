@@ -91,10 +91,11 @@ def _here(name: str, contexts: Sequence[str]) -> Iterable[Path]:
 class Place:
     """Where a monitor sits: on messages from `source` to `target`, at one end of the connection.
 
-    `carrier` is the whole carrier string. A monitor of a port rather than of a connection has the
-    port's name in both places and no carrier. `tokens` are the monitor's own parameters, `shared`
-    all of the connection's. `limit` is the largest message in bytes that the port takes: nothing
-    may grow beyond it in here either. `names` finds other ports: the name client of this one.
+    `carrier` is the whole carrier string. A monitor of a port rather than of a connection
+    has an empty name where there is no peer, and no carrier. `tokens` are the monitor's own
+    parameters, `shared` all of the connection's. `limit` is the largest message in bytes that the
+    port takes: nothing may grow beyond it in here either. `names` finds other ports: the name
+    client of this one.
     `look` tells where a file may be, by its name and the contexts of robot and program that count.
     `foreign`: somebody on the network asked for the monitor, not the program that has the port.
     """
@@ -112,8 +113,8 @@ class Place:
     foreign: bool = False
 
     def __str__(self) -> str:
-        if self.source == self.target:
-            return f"{'output' if self.sending else 'input'} of {self.source}"
+        if not self.carrier:
+            return f"output of {self.source}" if self.sending else f"input of {self.target}"
         return f"{self.source} -> {self.target}"
 
     def find(self, key: str) -> str | Bottle | None:

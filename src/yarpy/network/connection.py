@@ -19,9 +19,11 @@ from yarpy.errors import (
     AddressError,
     LinkClosed,
     LocalProtocolError,
+    NotAllowed,
     RemoteProtocolError,
     Timeout,
     UnknownName,
+    UnknownPlugin,
 )
 from yarpy.link.handshake import find_carrier
 from yarpy.names.base import NameClient
@@ -97,7 +99,7 @@ class Pairing:
             if self.spec.base != fixed.base:
                 raise LocalProtocolError(f"conflict between {self.spec} and {fixed}")
             self.spec = fixed.plus(*self.spec.tokens)
-        self.pull = not find_carrier(self.spec.base).push
+        self.pull = _pulls(self.spec.base)
         self.here, self.there = here, there
         asked = there if self.pull else here
         if not _competent(asked):
@@ -105,6 +107,8 @@ class Pairing:
                 f'neither "{source}" nor "{target}" can be asked to make this connection: '
                 f"a {asked.carrier} endpoint takes no YARP commands"
             )
+        if self.spec.base == "http" and not probe.is_ours(asked):
+            raise NotAllowed(refusal.NO_HTTP.format(asked.name or asked.address))
         self.asked = asked
         self.peer = (from_ if self.pull else to).label
         # Perhaps a camera, which does not understand us: its watcher is asked first.
@@ -177,6 +181,16 @@ def _competent(contact: Contact) -> bool:
     return parse_carrier(contact.carrier).base not in _FOREIGN
 
 
+def _pulls(base: str) -> bool:
+    """Whether the receiver is the one that dials. What the ends can do is for them to say: a
+    carrier that only they have is known by its name."""
+    try:
+        return not find_carrier(base).push
+    except UnknownPlugin:
+        return base in _PULLED
+
+
+_PULLED = frozenset({"h264", "tcpros"})
 _FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http"})
 
 
@@ -193,8 +207,6 @@ def connect(
     `source` or `target` may be `topic://name`. With `timeout`, wait for ports that are not there
     yet. Raises UnknownName, UnknownPlugin, LinkClosed, LoginRefused, LocalProtocolError (refused).
     """
-    if carrier:
-        find_carrier(parse_carrier(carrier).base)
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
         try:
@@ -217,7 +229,12 @@ def _connect(source: str, target: str, carrier: str | None, names: NameClient | 
     if reply and reply[0] == 0:
         return text
     way = f'"{masked(source)}" -> "{masked(target)}" over {pairing.spec}'
-    raise refusal.error(text, way)
+    error = refusal.error(text, way)
+    try:
+        find_carrier(pairing.spec.base)
+    except UnknownPlugin as unheard:  # so it may be a slip of the pen
+        raise UnknownPlugin(f"{error}; {unheard}") from error
+    raise error
 
 
 def _decorated(text: str, carrier: str) -> str:

@@ -12,6 +12,7 @@ import time
 from dataclasses import replace
 from typing import Final
 
+from yarpy.carriers.base import Carrier
 from yarpy.contact import Contact, parse_contact
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -137,6 +138,9 @@ def dial(hub: Hub, wanted: Contact, own: bool = False) -> CarrierSpec:
             f'"{hub.name}" cannot be connected to itself: a write waits until it is read, and both '
             "would be done here; a BufferedPort() or a callback reads meanwhile"
         )
+    kind = find_carrier(spec.base)
+    if kind.name == "http" and contact.name and not probe.is_ours(contact, secret_=hub.key):
+        raise NotAllowed(refusal.NO_HTTP.format(contact.name))
     target = wanted.label
     with hub.dialling.alone(target):
         hub.crew.repair.give_up(hub, target)
@@ -144,14 +148,13 @@ def dial(hub: Hub, wanted: Contact, own: bool = False) -> CarrierSpec:
             for old in hub.outputs:
                 if old.route.target == target:
                     close_output(hub, old)
-        _check(hub, spec)
+        _check(hub, kind, spec)
         open_output(hub, contact, target, spec)
     return spec
 
 
-def _check(hub: Hub, spec: CarrierSpec) -> None:
+def _check(hub: Hub, kind: type[Carrier], spec: CarrierSpec) -> None:
     """Refuse what this port does not do, or this carrier."""
-    kind = find_carrier(spec.base)
     if spec.log not in (None, "in"):
         raise NotAllowed(f"Logger configured as log.{spec.log}, but only log.in is supported")
     if kind.push and spec.log is None:

@@ -97,10 +97,10 @@ class Monitoring:
         `(monitor NAME)` among the parameters says which, else it is a portmonitor; the others are
         its own. `own`: the program says so, not somebody on the network.
         """
-        name = self._port.name
+        route = Route(self._port.name, "", "") if side == "out" else Route("", self._port.name, "")
         tokens = tuple(_token(parameters, key) for key in parameters if key != "monitor")
         place = replace(
-            self._place(Route(name, name, ""), sending=side == "out"),
+            self._place(route, sending=side == "out"),
             tokens=tokens,
             shared=tokens,
             group=Group(),

@@ -99,6 +99,12 @@ def answers(contact: Contact, timeout: float = TIMEOUT) -> bool:
     return bool(reply) and plain_text(reply[0]) in ("ver", "dict")
 
 
+def is_ours(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = None) -> bool:
+    """Whether a port is one of yarpy, not of C++ YARP. Raises as `ask`."""
+    reply = ask(contact, [Vocab("stat")], timeout=timeout, secret_=secret_)
+    return not reply or reply[0] != Vocab("fail")
+
+
 def _lines(
     contact: Contact, command: str, name: str, timeout: float, secret_: bytes | None
 ) -> list[str]:

@@ -79,6 +79,8 @@ def get_peer(hub: Hub, name: str) -> Bottle | None:
 
 def set_self(hub: Hub, request: Bottle) -> bool:
     """`(process ((priority N) (policy P)))`: every thread of the process."""
+    if request.group("process") is None:
+        return True
     group = _group(request, "process")
     if group is None:
         return False
@@ -92,30 +94,26 @@ def set_self(hub: Hub, request: Bottle) -> bool:
 def set_peer(hub: Hub, name: str, request: Bottle) -> bool:
     """`(sched ((priority N) (policy P))) (qos ((priority HIGH))) (monitor ((KEY VALUE)))` on the
     first connection."""
+    wanted = [key for key in ("sched", "qos", "monitor") if request.group(key) is not None]
     links = _links(hub, name)
     if not links:
-        return False
+        return not wanted
     link = links[0]
-    done = False
-    wanted = request.group("sched")
-    if wanted is not None:
+    if "sched" in wanted:
         group = _group(request, "sched")
         if group is None:
             return False
         grant_sched(link, _sched(group, Sched()))
-        done = True
-    if request.group("qos") is not None:
+    if "qos" in wanted:
         group = _group(request, "qos")
         if group is None:
             return False
         grant_tos(link, _tos(group))
-        done = True
-    if request.group("monitor") is not None:
+    if "monitor" in wanted:
         group, chain = _group(request, "monitor"), _chain(link)
         if group is None or chain is None or not chain.configure(Property.from_bottle(group)):
             return False
-        done = True
-    return done
+    return True
 
 
 def _chain(link: Inbound | Outbound) -> Chain | None:

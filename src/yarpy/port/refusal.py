@@ -35,6 +35,12 @@ _TABLE: Final[tuple[tuple[type[YarpError], str, type[YarpError]], ...]] = (
 )
 
 
+# To C++ YARP, http is for browsers: such a connection is made, and carries nothing.
+NO_HTTP: Final = (
+    '"{}" is a port of C++ YARP, which exchanges nothing with other ports over http: use tcp'
+)
+
+
 def line(error: YarpError, to: str) -> str:
     """What to answer when connecting to `to` fails with `error`. The first row that fits counts."""
     form = next(form for kind, form, _ in _TABLE if isinstance(error, kind))
