@@ -5,7 +5,9 @@ The screenshots in tests/output are for people to look at.
 
 from __future__ import annotations
 
+import re
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -85,7 +87,8 @@ def test_page_of_a_port(browser: Browser, port: yarpy.RpcServer, dark: bool, pho
     page = browser.open(f"http://{port.address}/", dark=dark, phone=phone)
     look = f"port_{'dark' if dark else 'light'}_{'phone' if phone else 'desk'}"
     assert page.title() == "/head/rpc:i - yarp port"
-    assert "There is an input connection from web to /head/rpc:i using http" in text(page)
+    shows(page, "no connections with other ports")
+    shows(page, "it takes messages and sends none by itself")
     assert fits(page)
     field_and_button = page.locator("form").first.bounding_box()
     assert field_and_button and field_and_button["height"] < 60, "they stand below each other"
@@ -93,7 +96,7 @@ def test_page_of_a_port(browser: Browser, port: yarpy.RpcServer, dark: bool, pho
     field = page.get_by_label("message")
     field.fill("get encs")
     page.get_by_role("button", name="send data").click()
-    assert "[is] encs (0.0 45.0 0.0)" in text(page)
+    shows(page, "[is] encs (0.0 45.0 0.0)")
     assert field.input_value() == "get encs"  # to be said again, a little differently
     field.fill("set pos 1 45")
     field.press("Enter")
@@ -118,21 +121,73 @@ def test_links_of_the_page(browser: Browser, port: yarpy.RpcServer) -> None:
     shows(page, "Reverse connection")
     page.get_by_role("link", name="help").click()
     shows(page, "you said")
-    page.get_by_role("link", name="connections").click()
-    shows(page, "There is an input")
+    page.get_by_role("link", name="port", exact=True).click()
+    shows(page, "no connections with other ports")
 
 
 def test_page_that_reads(browser: Browser, names: LocalNames) -> None:
     with yarpy.Port("/out", names=names) as port:
         page = browser.open(f"http://{port.address}/", phone=True)
-        page.get_by_role("link", name="read").click(no_wait_after=True)
+        page.get_by_role("link", name="messages").click()
         assert port.wait_for_outputs(timeout=PATIENCE)
         with repeating(lambda number: port.write([number, "two words", EVIL])):
             shows(page, '9 "two words"')
+            rows = page.locator("#messages code").all_inner_texts()
+            found = [int(row.partition(" ")[0]) for row in rows]
+            assert found == sorted(found, reverse=True), "the newest is not the first"
+            page.get_by_role("button", name="Pause").click()
+            wait_until(lambda: not port.outputs, PATIENCE, "who pauses costs nothing")
+            count = page.locator("#messages li").count()
+            page.wait_for_timeout(300)
+            assert page.locator("#messages li").count() == count
         assert EVIL in text(page).replace('\\"', '"')
         assert page.evaluate("window.hacked") is None
         assert fits(page)
         browser.picture(page, "port_read_phone")
+
+
+def test_page_of_a_port_that_sends_numbers(browser: Browser, names: LocalNames) -> None:
+    with yarpy.Port("/head/state", names=names) as port, yarpy.Port("/in", names=names) as other:
+        port.connect("/in")
+        page = browser.open(f"http://{port.address}/", dark=True)
+        shows(page, "it has sent nothing since this page was opened")
+
+        def write(number: int) -> None:
+            port.write([0.5 * number, ["speed", 7], EVIL, [[1, 2], time.time()]])
+
+        with repeating(write):
+            page.locator("#flow .plot").wait_for()
+            names_ = page.locator(".legend .name")
+            wait_until(lambda: names_.all_inner_texts() == ["0", "2 speed", "4", "5"], PATIENCE)
+            shows(page, "to /in")
+            page.locator(".tree code", has_text="onerror").wait_for()
+            browser.picture(page, "port_numbers_dark", whole=True)
+        page.locator("#state", has_text="nothing new").wait_for()
+        page.locator("#flow.still").wait_for()
+        assert page.evaluate("window.hacked") is None
+        assert other.inputs
+        browser.excuse("ERR_|Failed to load")
+        port.close()
+        page.locator("#state", has_text="the port does not answer").wait_for()
+        page.close()
+
+
+def test_page_of_a_port_that_sends_pictures(browser: Browser, names: LocalNames) -> None:
+    with yarpy.Port("/cam", names=names) as port:
+        for path in ("", "r"):
+            page = browser.open(f"http://{port.address}/{path}", phone=path == "r")
+            with repeating(lambda number: port.write(colour("red"), yarpy.Stamp(number, 0.5))):
+                wait_until(lambda: width(page) == 64, PATIENCE)  # noqa: B023
+                page.locator("#state", has_text=re.compile("image 64 . 48 rgb")).wait_for()
+                assert fits(page)
+                browser.picture(page, f"port_camera{path}")
+            page.close()
+
+
+def width(page: Page) -> int:
+    script = "document.querySelector('#flow canvas')?.width ?? 0"
+    found: int = page.evaluate(script)
+    return found
 
 
 def test_nothing_that_is_shown_is_markup(browser: Browser, names: LocalNames) -> None:
@@ -145,7 +200,7 @@ def test_nothing_that_is_shown_is_markup(browser: Browser, names: LocalNames) ->
         shows(page, "onerror")
         assert page.get_by_label("message").input_value().count(EVIL) == 2
         page.goto(f"http://{port.address}/{EVIL}")
-        assert page.locator("script").count() == 0
+        assert page.locator("script").count() == 1  # ours
         assert page.evaluate("window.hacked") is None
 
 

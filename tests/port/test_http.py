@@ -77,7 +77,7 @@ def test_bodies_and_pages(echo: yarpy.RpcServer) -> None:
 def test_script_in_a_name(names: LocalNames) -> None:
     with yarpy.Port("/<script>alert(1)</script>", names=names) as port:
         connection = client(port)
-        assert "<script" not in get(connection, "/")[1]
+        assert get(connection, "/")[1].count("<script") == 1  # ours
         assert "&lt;script&gt;" in get(connection, "/")[1]
         connection.close()
 

@@ -9,6 +9,7 @@ import re
 import pytest
 
 import yarpy
+from yarpy.carriers.http.asset import KINDS
 from yarpy.views.asset import asset, jsonpage, page_of
 
 
@@ -19,12 +20,14 @@ def test_a_program_has_its_page_and_what_the_page_loads(program: str) -> None:
     assert page.kind.startswith("text/html")
     loaded = re.findall(r'(?:src|href)="(/[\w.]+)"', str(page.body))
     assert f"/{program}.js" in loaded
+    assert 'href="/*/style.css"' in str(page.body)
     for path in loaded:
         found = page_of(program, path)
         assert found is not None, path
         assert found.kind.startswith(("text/javascript", "text/css"))
         imported = re.findall(r'from "\./([\w.]+)"', str(found.body))
         assert all(page_of(program, f"/{name}") for name in imported)
+        assert {*re.findall(r'from "/\*/([\w.]+)"', str(found.body))} <= {*KINDS}
     # Nothing written into the page runs, and nothing comes from elsewhere.
     policy = re.search(r'Content-Security-Policy" content="([^"]+)"', str(page.body))
     assert policy is not None

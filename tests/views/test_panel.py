@@ -138,13 +138,13 @@ def test_names_that_nobody_keeps() -> None:
 def test_what_the_page_loads(url: str) -> None:
     with urllib.request.urlopen(url, timeout=PATIENCE) as answer:
         page = answer.read().decode()
-    files = re.findall(r'(?:src|href)="/([\w.]+)"', page)
-    assert {"panel.js", "panel.css", "style.css"} <= {*files}
+    files = re.findall(r'(?:src|href)="/([\w.*/]+)"', page)
+    assert {"panel.js", "panel.css", "*/style.css"} <= {*files}
     for name in files:
         with urllib.request.urlopen(url + name, timeout=PATIENCE) as answer:
             assert answer.status == 200
-            files += {*re.findall(r'from "./([\w.]+)"', answer.read().decode())} - {*files}
-    assert {"common.js", "panel_camera.js", "horizon.js"} <= {*files}
+            files += {*re.findall(r'from "\.?/([\w.*/]+)"', answer.read().decode())} - {*files}
+    assert {"*/common.js", "panel_camera.js", "horizon.js"} <= {*files}
     policy = re.search(r'Content-Security-Policy" content="([^"]+)"', page)
     assert policy is not None and "unsafe" not in policy[1]
 
@@ -231,6 +231,7 @@ def test_dark_and_on_a_phone(
 
 
 def test_joints_that_slide_or_have_no_limits(browser: Browser, names: yarpy.YarpNameClient) -> None:
+    browser.excuse("ERR_|Failed to load")  # when the robot goes before the page
     axes = [Axis("rail", -400.0, 400.0, kind="prismatic"), Axis("wheel", -1e6, 1e6)]
     parts = Parts({"base": Board(Body([Joint(axis) for axis in axes]))})
     with (

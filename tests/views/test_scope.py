@@ -242,7 +242,7 @@ def test_range_of_the_axis(browser: Browser) -> None:
 
 # The seconds of a plot of 20 s in which something is drawn, of messages at these times.
 DRAWN = """async (times) => {
-    const {Plot} = await import("/plot.js");
+    const {Plot} = await import("/*/plot.js");
     const canvas = document.createElement("canvas");
     canvas.style = "width: 1000px; height: 200px";
     document.body.prepend(canvas);

@@ -336,26 +336,14 @@ def read_wishes(target: str) -> Wishes:
     """
     from urllib.parse import parse_qsl
 
+    from yarpy.carriers.http.request import number_of
+
     query = target.partition("?")[2]
     found = dict(parse_qsl(query, keep_blank_values=True)) if query.count("&") < 20 else {}
     action = found.get("action", "stream")
     if action not in ("stream", "snapshot"):
         raise ValueError(f"action is stream or snapshot, not {action[:40]!r}")
-    quality = _number("quality", found, 1, 100)
+    quality = number_of("quality", found, 1, 100)
     if quality != int(quality):
         raise ValueError("quality is a whole number from 1 to 100")
-    return Wishes(action == "snapshot", int(quality), _number("rate", found, 0.001, 1000))
-
-
-def _number(name: str, fields: Mapping[str, str], least: float, most: float) -> float:
-    """The number that a field holds, 0 where there is no such field. Raises ValueError."""
-    text = fields.get(name)
-    if text is None:
-        return 0.0
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not least <= value <= most:
-        raise ValueError(f"{name} is a number from {least:g} to {most:g}, not {text[:40]!r}")
-    return value
+    return Wishes(action == "snapshot", int(quality), number_of("rate", found, 0.001, 1000))

@@ -1,8 +1,8 @@
 """Files of web pages that come with the package: `asset("view.html")` is a Page.
 
-Rules: a page is files beside this module, its scripts and styles are files too and nothing is
-loaded from elsewhere. Names, numbers and complaints reach a page as JSON and are put into it as
-text, so that nothing needs to be escaped.
+Rules: a page is files beside this module, its scripts and styles are files too, also those at `/*/`
+that every port has, and nothing is loaded from elsewhere. Names, numbers and complaints reach a
+page as JSON and are put into it as text, so that nothing needs to be escaped.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ _KINDS: Final = {
     "css": "text/css; charset=utf-8",
     "js": "text/javascript; charset=utf-8",
 }
-_SHARED: Final = ("style.css", "common.js", "live.js", "plot.js")
 
 
 @cache
@@ -31,11 +30,11 @@ def asset(name: str) -> yarpy.Page:
 
 
 def page_of(program: str, path: str) -> yarpy.Page | None:
-    """The page of a program, `PROGRAM.html` with `PROGRAM.js`, and what all pages share."""
+    """The page of a program: `PROGRAM.html` with `PROGRAM.js`."""
     if path == "/":
         return asset(f"{program}.html")
-    name = path.removeprefix("/")
-    return asset(name) if name in (f"{program}.js", *_SHARED) else None
+    name = f"{program}.js"
+    return asset(name) if path == f"/{name}" else None
 
 
 def jsonpage(value: Any) -> yarpy.Page:

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 PATIENCE = 4.0  # seconds for an answer, a bit less than the page has
 
 _FILES = (
-    *("panel.css", "style.css", "panel.js", "panel_camera.js", "panel_curve.js", "panel_joint.js"),
-    *("panel_port.js", "panel_sensor.js", "common.js", "live.js", "plot.js", "horizon.js"),
+    *("panel.css", "panel.js", "panel_camera.js", "panel_curve.js", "panel_joint.js"),
+    *("panel_port.js", "panel_sensor.js", "horizon.js"),
 )
 
 

@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yarpy.carriers.http.port_page import page, stream_head, stream_line
+from yarpy.carriers.http.port_page import page, reader
 
 
 class Seen(HTMLParser):
@@ -23,7 +23,7 @@ class Seen(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.tags.append((tag, dict(attrs)))
-        if tag not in ("input", "meta"):
+        if tag not in ("input", "meta", "link"):
             self.open.append(tag)
 
     def handle_endtag(self, tag: str) -> None:
@@ -41,22 +41,24 @@ EVIL = '<script>alert("1")</script>&amp;\'"'
 
 def test_everything_is_escaped() -> None:
     seen = Seen(page(f"/{EVIL}", [EVIL, f"+ {EVIL} ${EVIL}"], EVIL, EVIL))
-    assert not seen.all("script")
+    assert [one["src"] for one in seen.all("script")] == ["/*/port.js"]
     assert not seen.open
     assert seen.text.count("<script>") == 5  # title, heading, line, command and its argument
     assert EVIL in [item.get("value") for item in seen.all("input")]
-    assert not Seen(stream_head(EVIL) + stream_line(EVIL)).all("script")
+    seen = Seen(reader(EVIL))
+    assert len(seen.all("script")) == 1
+    assert seen.text.count("<script>") == 2
 
 
 def test_page_has_what_people_need() -> None:
     data = page("/cam", ["This is /cam at tcp://h:1/", "", "two"], "last one")
     seen = Seen(data)
     assert data.startswith(b"<!DOCTYPE html>")
-    assert {item["href"] for item in seen.all("a")} == {"/", "/data=help", "/?", "/r"}
+    assert {item["href"] for item in seen.all("a")} == {"/*", "/data=help", "/?", "/r"}
     assert {"name": "viewport", "content": "width=device-width,initial-scale=1"} in seen.all("meta")
-    assert b"prefers-color-scheme:dark" in data
+    assert [one["href"] for one in seen.all("link")] == ["/*/style.css", "/*/port.css"]
     form = seen.all("form")
-    assert form == [{"method": "post", "action": "/form"}]
+    assert form == [{"id": "ask", "method": "post", "action": "/form"}]
     assert seen.all("input")[0]["value"] == "last one"
     assert b"<pre>This is /cam at tcp://h:1/\n\ntwo\n</pre>" in data
     assert len(data) < 3000
@@ -96,7 +98,6 @@ def test_commands_are_forms() -> None:
 
 def test_bytes_that_are_no_text_are_shown_as_such() -> None:
     assert "\ufffd".encode() in page("/x", ["\udcff"])
-    assert stream_line("a \udcff") == "a \ufffd\r\n".encode()
 
 
 ANY = st.text(st.characters(codec=None), max_size=20)

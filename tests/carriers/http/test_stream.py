@@ -17,7 +17,6 @@ FORMS: list[tuple[Form, object, bytes, bytes]] = [
     ("events", [1], b"7\ndata: evil\r\0", b"id: 7data: evil\ndata: [1]\n\n"),
     ("json", ["a", 1], b"7 1.25", b'["a", 1]\n'),
     ("text", ["a", 1], b"7 1.25", b"a 1\r\n"),
-    ("page", ["<b>"], b"", b"&quot;&lt;b&gt;&quot;\r\n"),
     ("guest", [["web", "<b>"]], b"", b"<b>"),
     ("guest", [["web", b"\xff"]], b"", b"\xff"),
     ("guest", [["web"]], b"", b"(web)\r\n"),
@@ -55,7 +54,6 @@ def test_pictures() -> None:
     facts = b'{"type": "image", "width": 64, "height": 48, "pixel": "rgb"}'
     assert part(packet, "json", False) == facts + b"\n"
     assert len(part(packet, "json", True)) > 48 * 64 * 4
-    assert part(packet, "page", False) == b"image 64 x 48 rgb (see /?action=stream)\r\n"
 
 
 def test_what_a_program_put_under_web() -> None:

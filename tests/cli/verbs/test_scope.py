@@ -60,7 +60,7 @@ def test_it_waits_for_whoever_connects(cli, names):
         b.write([7])
         wait_until(lambda: told(url)["sources"], PATIENCE)
         assert told(url)["sources"][0]["name"] == "/sc/b"
-        for path in ("", "scope.js", "plot.js", "style.css", "common.js"):
+        for path in ("", "scope.js", "*/plot.js", "*/style.css", "*/common.js"):
             with urllib.request.urlopen(f"{url}{path}", timeout=PATIENCE) as answer:
                 assert answer.status == 200
 

@@ -47,7 +47,7 @@ def test_images_of_a_port(cli, names):
         a, b = status(url)["pictures"]
         assert (a["name"], a["width"], a["pixel"]) == ("/vw/a", 6, "mono")
         assert (b["name"], b["sources"], b["frames"]) == ("/vw/b", [], 0)
-        for path in ("", "view.js", "style.css", "common.js"):
+        for path in ("", "view.js", "*/style.css", "*/common.js"):
             with urllib.request.urlopen(f"{url}{path}", timeout=PATIENCE) as answer:
                 assert answer.status == 200
         process.signal(signal.SIGINT)

@@ -238,6 +238,8 @@ class Http(Carrier):
         elif self._head_only and (wish.acts or wish.key == "r"):
             # Asking for a head must change nothing, so there is no reply to tell the length of.
             self._respond(stream, bare(wish))
+        elif (wish.key, wish.form) == ("r", "page"):
+            self._respond(stream, self._responder.reader())
         else:
             return wish
         return None
@@ -306,6 +308,8 @@ class Http(Carrier):
     def _begin_reading(self, stream: ByteStream, wish: Wish) -> None:
         """Answer `/r`: everything that the port writes, from now on."""
         self._pixels = wish.pixels
+        if wish.rate:
+            self.interval = 1 / wish.rate
         self._begin_stream(stream, wish.form, self._responder.reading(wish))
 
     def _begin_stream(self, stream: ByteStream, form: Form, response: Response) -> None:

@@ -1,8 +1,8 @@
 """The page that a port shows to browsers, as text.
 
-Rules: plain HTML with one small style sheet, no script, nothing loaded from elsewhere. Whatever
-came from a port or a message is escaped here. Lines of a name server become links, lines of its
-help (those that begin with `+`) become forms, as in C++ (core-4 7.4).
+Rules: plain HTML that can be used without its script too, which adds what flows; nothing is loaded
+from elsewhere. Whatever came from a port or a message is escaped here. Lines of a name server
+become links, lines of its help (those that begin with `+`) become forms, as in C++ (core-4 7.4).
 """
 
 from __future__ import annotations
@@ -21,27 +21,6 @@ _NAME_SERVER = re.compile(
 _ARGUMENT = re.compile(r"\[?\$([A-Za-z0-9_]+)\]?")
 _HOST = re.compile(r"[A-Za-z0-9.\-]+|\[[0-9A-Fa-f:.]+\]")
 
-STYLE: Final = """
-:root{color-scheme:light dark;--line:#8884;--link:#06c;--soft:#8882}
-@media(prefers-color-scheme:dark){:root{--link:#7bf}}
-*{box-sizing:border-box}
-body{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:0 auto;padding:1rem}
-h1{font-size:1.4rem;margin:.2rem 0;overflow-wrap:anywhere}
-nav{display:flex;flex-wrap:wrap;gap:.3rem 1.2rem;padding:.4rem 0}
-nav{border-bottom:1px solid var(--line)}
-a{color:var(--link)}
-form{display:flex;flex-wrap:wrap;gap:.5rem;margin:1rem 0;align-items:center}
-input{font:inherit;padding:.4rem .6rem;border:1px solid var(--line);border-radius:.4rem;min-width:0}
-input[name=data]{flex:1 1 12rem}
-pre{background:var(--soft);padding:.8rem;border-radius:.4rem}
-pre{white-space:pre-wrap;overflow-wrap:anywhere}
-ul{list-style:none;padding:0}
-li{display:flex;flex-wrap:wrap;align-items:baseline;gap:0 1rem}
-li{padding:.35rem 0;border-bottom:1px solid var(--line)}
-li>:first-child{flex:1;overflow-wrap:anywhere}
-small{opacity:.7}
-""".strip().replace("\n", "")  # fmt: skip
-
 
 def page(name: str, lines: Sequence[str], shown: str = "", host: str = "") -> bytes:
     """The page of the port `name` with the `lines` that it answered.
@@ -49,19 +28,15 @@ def page(name: str, lines: Sequence[str], shown: str = "", host: str = "") -> by
     shown: what the form's field holds. host: how the browser calls this computer; links to the
     loopback go there.
     """
-    parts = [_head(name), _question(shown), *_body(lines, host), "</body></html>\n"]
+    parts = [_head(name, "port"), _question(shown), *_body(lines, host), _END]
     return _bytes("".join(parts))
 
 
-def stream_head(name: str) -> bytes:
-    """The page on which messages follow one another; what comes next is `stream_line`s."""
-    # Browsers begin to show a page once some of it has come.
-    return _bytes(f"{_head(name)}<p>Reading data from port...</p>\n<!--{' ' * 1024}-->\n<pre>\n")
-
-
-def stream_line(text: str) -> bytes:
-    """One message on that page."""
-    return _bytes(escape(text) + "\r\n")
+def reader(name: str) -> bytes:
+    """The page of what the port writes, message by message."""
+    text = "text</a>, this page needs JavaScript"
+    plain = f'<noscript><p><a href="/r?format=text">As {text}.</p></noscript>\n'
+    return _bytes(f'{_head(name, "messages")}{plain}<ol id="messages"></ol>\n{_END}')
 
 
 def _bytes(text: str) -> bytes:
@@ -73,21 +48,28 @@ def _bytes(text: str) -> bytes:
     return text.encode("utf-8", "replace")
 
 
-def _head(name: str) -> str:
+_END: Final = "</main></body></html>\n"
+
+
+def _head(name: str, view: str) -> str:
     title = escape(name)
     return (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
-        f"<title>{title} - yarp port</title><style>{STYLE}</style></head>\n<body>"
-        f"<small>yarp port</small><h1>{title}</h1>\n"
-        '<nav><a href="/">connections</a><a href="/data=help">help</a>'
-        '<a href="/?">commands</a><a href="/r">read</a></nav>\n'
+        f"<title>{title} - yarp port</title>"
+        '<link rel="stylesheet" href="/*/style.css"><link rel="stylesheet" href="/*/port.css">'
+        '<script type="module" src="/*/port.js"></script></head>\n'
+        f'<body data-view="{view}"><header><h1>{title}</h1>'
+        '<p id="state" class="soft" role="status">yarp port</p>'
+        '<nav><a href="/*">port</a><a href="/r">messages</a>'
+        '<a href="/data=help">help</a><a href="/?">commands</a></nav></header>\n'
+        '<main id="port"><section id="flow" hidden></section>\n'
     )
 
 
 def _question(shown: str) -> str:
     return (
-        '<form method="post" action="/form">'
+        '<form id="ask" method="post" action="/form">'
         f'<input name="data" value="{escape(shown)}" placeholder="a message, such as: help" '
         'aria-label="message" autocapitalize="off" autocomplete="off" spellcheck="false">'
         '<input type="submit" value="send data"></form>\n'

@@ -4,6 +4,7 @@
     /?data=help   /data=help       a message, answered with the page
     /set/pos/0                     a message of the words of the path, answered as text
     /  /?  /r  /?cmd=...           the port itself: its connections, its help, reading, any command
+    /*  /*/port.js                 the port's own page in any case, and the files that pages share
 
 Rules: pure functions of method, target, headers and body. `$name` in `req` and `data` is replaced
 by the argument of that name. Nothing is added to a message that its sender did not say, where C++
@@ -18,6 +19,7 @@ from dataclasses import dataclass
 from typing import Any, Final, Literal, TypeAlias
 
 from yarpy.carriers.base import PAGE
+from yarpy.carriers.http.asset import KINDS, PREFIX, asset
 from yarpy.carriers.http.message import TEXT
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
@@ -60,8 +62,8 @@ class Request:
 class Wish:
     """A message or port command (`key`, as in Message), and how to answer it.
 
-    shown: what the page's form shows again. pixels: who reads wants pictures whole. acts: it may
-    change something.
+    shown: what the page's form shows again. pixels: who reads wants pictures whole. rate: messages
+    a second that it wants at most; 0: all. acts: it may change something.
     """
 
     key: str
@@ -72,6 +74,7 @@ class Wish:
     outer: Outer = "auto"
     shown: str = ""
     pixels: bool = False
+    rate: float = 0.0
 
     @property
     def acts(self) -> bool:
@@ -111,17 +114,18 @@ def _read(request: Request) -> Wish | Refusal:
         if path not in ("", "form"):
             return Refusal(404, "post to /form")
         return _posted(request, fields)
+    if path.startswith(PREFIX):
+        name = path.removeprefix(PREFIX)
+        kind = KINDS.get(name)
+        return Refusal(200, asset(name), kind) if kind else Refusal(404, "there is no such file")
     if path == "web/main.css":  # what the pages of C++ ports want of their name server
-        from yarpy.carriers.http.port_page import STYLE
-
-        return Refusal(200, STYLE, "text/css")
+        return Refusal(200, asset("main.css"), "text/css")
     if path.startswith("favicon"):
         return Refusal(204)
     if path.startswith(_HABITS):
         return Refusal(404, "a port has no such thing")
     if path == "r":
-        asked = query.split("&")
-        return Wish("r", _reading_form(request, fields, asked), pixels="pixels" in asked)
+        return _reading(request, fields, query)
     if not fields.keys() & {"cmd", "req", "data"}:
         if path in ("", "form", "data"):
             key = "?" if mark and path == "" else "*"
@@ -140,6 +144,8 @@ def page_asked(request: Request) -> tuple[str, dict[str, str]] | None:
     path, mark, query = _parts(request.target)
     whole = path + mark + query
     if request.method not in ("GET", "HEAD") or whole == "?" or path == "r" or "=" in path:
+        return None
+    if path == "*" or path.startswith(PREFIX):
         return None
     try:
         fields = read_fields(query)
@@ -286,7 +292,7 @@ def _command(request: Request, fields: Mapping[str, str]) -> Wish | Refusal:
         payload = rest.encode("utf-8", "surrogateescape")
         return Wish(command.key, form, payload, outer=_outer(fields), shown=rest)
     if command.key == "r":
-        return Wish("r", _reading_form(request, fields, []))
+        return _reading(request, fields, "")
     if command.key == "q":
         return _one()
     text = PAGE if command.key == "*" else command.text
@@ -320,6 +326,31 @@ def _form(request: Request, fields: Mapping[str, str], default: Form) -> Form:
     if default == "text" and _likes(request, "application/json"):
         return "json"
     return default
+
+
+def _reading(request: Request, fields: Mapping[str, str], query: str) -> Wish | Refusal:
+    """`/r`: everything that the port writes, or `rate` messages a second at most."""
+    asked = query.split("&")
+    try:
+        rate = number_of("rate", fields, 0.001, 1000)
+    except ValueError as error:
+        return Refusal(400, str(error))
+    form = _reading_form(request, fields, asked)
+    return Wish("r", form, pixels="pixels" in asked, rate=rate)
+
+
+def number_of(name: str, fields: Mapping[str, str], least: float, most: float) -> float:
+    """The number that a field holds, 0 where there is no such field. Raises ValueError."""
+    text = fields.get(name)
+    if text is None:
+        return 0.0
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not least <= value <= most:
+        raise ValueError(f"{name} is a number from {least:g} to {most:g}, not {text[:40]!r}")
+    return value
 
 
 def _reading_form(request: Request, fields: Mapping[str, str], asked: list[str]) -> Form:

@@ -38,9 +38,10 @@ _COMMON: Final = [
 ]
 _TYPES: Final = {"page": HTML, "json": JSON, "text": TEXT, "events": "text/event-stream"}
 _ALLOW: Final = ("Allow", "GET, HEAD, POST, OPTIONS")
-# Our own page needs neither scripts nor anything from elsewhere.
+# Our own page needs nothing from elsewhere; what came in a message can be no script of it.
 _PAGE_POLICY: Final = (
-    "default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; base-uri 'none'"
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+    "img-src 'self' blob:; form-action 'self'; base-uri 'none'"
 )
 # A page that a program made: its scripts run, but not as those of the port's own pages.
 _GUEST_POLICY: Final = (
@@ -138,14 +139,16 @@ class Responder:
 
     def reading(self, wish: Wish) -> Response:
         """The beginning of everything that the port writes from now on."""
-        from yarpy.carriers.http.port_page import stream_head
         from yarpy.carriers.http.stream import KINDS
 
-        kind = KINDS[wish.form]
-        if wish.form == "page":
-            body = stream_head(self.route.target)
-            return Response(200, kind, body, [self._policy()], endless=True)
-        return Response(200, kind, b": reading\n\n" if wish.form == "events" else b"", endless=True)
+        body = b": reading\n\n" if wish.form == "events" else b""
+        return Response(200, KINDS[wish.form], body, endless=True)
+
+    def reader(self) -> Response:
+        """The page that shows what the port writes, message by message."""
+        from yarpy.carriers.http.port_page import reader
+
+        return Response(200, HTML, reader(self.route.target), [self._policy()])
 
     def shown(self, page: Page) -> Response:
         """A page that the port's program shows beside those of the port."""

@@ -3,7 +3,6 @@
     events    id: 7 1.25 LF data: [1, 2] LF LF      for JavaScript's EventSource
     json      [1, 2] LF
     text      1 2 CR LF
-    page      1 2 CR LF, escaped                    below the head of a page
     guest     what the program put under `web`      see core-4 7.5
 
 Rules: each form of a message is made once, however many read it. Of a picture only size and kind
@@ -14,13 +13,12 @@ from __future__ import annotations
 
 from typing import Final
 
-from yarpy.carriers.http.message import HTML, TEXT
+from yarpy.carriers.http.message import TEXT
 from yarpy.carriers.http.request import Form
 from yarpy.data.bottle import Bottle
 from yarpy.wire.message import Packet
 
 KINDS: Final[dict[str, str]] = {
-    "page": HTML,
     "text": TEXT,
     "json": "application/x-ndjson",
     "events": "text/event-stream",
@@ -47,25 +45,12 @@ def _made(packet: Packet, form: Form, pixels: bool) -> bytes:
         envelope = packet.envelope.translate(None, b"\r\n\0")
         mark = b"id: " + envelope + b"\n" if envelope else b""
         return mark + b"data: " + text + b"\n\n"
-    if form == "page":
-        from yarpy.carriers.http.port_page import stream_line
-
-        return stream_line(_readable(packet))
     if form == "guest":
         value = packet.value
         guest = web_of(value) if isinstance(value, (list, tuple)) else None
         if guest is not None:
             return guest
     return packet.line + b"\r\n"
-
-
-def _readable(packet: Packet) -> str:
-    from yarpy.data.image import Image
-
-    value = packet.value
-    if isinstance(value, Image):
-        return f"image {value.width} x {value.height} {value.code} (see /?action=stream)"
-    return packet.line.decode("utf-8", "surrogateescape")
 
 
 def web_of(value: list[object] | tuple[object, ...]) -> bytes | None:

@@ -1,6 +1,6 @@
 // An artificial horizon: roll and pitch as a pilot sees them.
 
-import {say} from "./common.js";
+import {say} from "/*/common.js";
 
 const RANGE = 45; // degrees of pitch from the middle to the edge
 

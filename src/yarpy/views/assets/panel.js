@@ -1,7 +1,7 @@
 // A robot: what its cameras see, where its joints are and are to go, what its sensors feel.
 // The page talks to the ports of the robot, in HTTP.
 
-import {ask, part, pause, say, seconds} from "./common.js";
+import {ask, part, pause, say, seconds} from "/*/common.js";
 import {Camera} from "./panel_camera.js";
 import {drawn} from "./panel_curve.js";
 import {Board, gaze, stop, tryJoints, trying} from "./panel_joint.js";

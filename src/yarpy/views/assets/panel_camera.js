@@ -1,7 +1,7 @@
 // A camera of the robot: its pictures as they come, and a click on one that turns the head there.
 
-import {copyOf, part, rate, say, seconds} from "./common.js";
-import {Live, OLD} from "./live.js";
+import {copyOf, part, rate, say, seconds} from "/*/common.js";
+import {Live, OLD} from "/*/live.js";
 import {gaze} from "./panel_joint.js";
 import {call, short, url} from "./panel_port.js";
 

@@ -1,8 +1,8 @@
 // Curves of the last seconds, a plot for what belongs together.
 
-import {copyOf, part, say} from "./common.js";
+import {copyOf, part, say} from "/*/common.js";
 import {short} from "./panel_port.js";
-import {Plot, colour} from "./plot.js";
+import {Plot, colour} from "/*/plot.js";
 
 const WINDOW = 10; // seconds of a curve
 

@@ -1,9 +1,9 @@
 // The joints of the robot: a board of sliders for each part that moves.
 
-import {copyOf, part, pause, press, say} from "./common.js";
+import {copyOf, part, pause, press, say} from "/*/common.js";
 import {Curves} from "./panel_curve.js";
 import {call, listen, robot, short, url} from "./panel_port.js";
-import {colour} from "./plot.js";
+import {colour} from "/*/plot.js";
 
 const ASK = 100; // ms between two questions to a port that sends no events
 const SEND = 60; // ms between two targets while a slider is dragged

@@ -1,6 +1,6 @@
 // The sensors of the robot: curves of what they feel, a horizon for which way is up.
 
-import {copyOf, part, say} from "./common.js";
+import {copyOf, part, say} from "/*/common.js";
 import {Horizon} from "./horizon.js";
 import {Curves, drawn} from "./panel_curve.js";
 import {listen, robot, short} from "./panel_port.js";

@@ -1,7 +1,7 @@
 // Numbers as curves: the program is asked for what is new, and what is seen is drawn again.
 
-import {ask, copyOf, part, pause, press, rate, say, several} from "./common.js";
-import {Plot, colour, dashes, nearest, search} from "./plot.js";
+import {ask, copyOf, part, pause, press, rate, say, several} from "/*/common.js";
+import {Plot, colour, dashes, nearest, search} from "/*/plot.js";
 
 const LOOK = 33; // ms between questions to the program, and between drawings
 const KEPT = 20000; // messages of each source

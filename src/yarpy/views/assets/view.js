@@ -1,7 +1,7 @@
 // Pictures side by side, and what there is to tell of each.
 
-import {ask, copyOf, fileName, part, pause, press, rate, save, say, seconds, several} from "./common.js";
-import {Live, OLD} from "./live.js";
+import {ask, copyOf, fileName, part, pause, press, rate, save, say, seconds, several} from "/*/common.js";
+import {Live, OLD} from "/*/live.js";
 
 const LOOK = 500; // ms between questions to the program
 

@@ -1,7 +1,7 @@
 // Pictures as they come: the stream of JPEG files of a port, drawn on a canvas as fast as this
 // browser can. A stream that ends, or says nothing for long, is asked for again.
 
-import {pause} from "./common.js";
+import {pause} from "/*/common.js";
 
 export const OLD = 2; // seconds after which a picture is old
 const LOOK = 500; // ms between looks at a stream, and between attempts
