@@ -21,7 +21,7 @@ def with_names_of_our_own() -> None:
 
 
 def with_addresses() -> None:
-    # An empty name is not registered. `port=10050` would be a number to tell others beforehand.
+    # An empty name is not registered. `tcp_port=10050` would be a number to tell others beforehand.
     with yarpy.Port("") as writer, yarpy.Port("") as reader:
         writer.connect(f"/{reader.address}")
         writer.write(f"to {reader.address.split(':')[0]}, without any name")

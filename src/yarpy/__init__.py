@@ -27,6 +27,7 @@ _WHERE = {
     "Qos": "yarpy.qos",
     "NameServer": "yarpy.nameserver.server",
     "LocalNames": "yarpy.nameserver.local",
+    "NameClient": "yarpy.names.base",
     "YarpNameClient": "yarpy.names.client",
     "Bottle": "yarpy.data.bottle",
     "Property": "yarpy.data.property",
@@ -100,6 +101,7 @@ if TYPE_CHECKING:
     from yarpy.errors import UnknownName as UnknownName
     from yarpy.errors import UnknownPlugin as UnknownPlugin
     from yarpy.errors import YarpError as YarpError
+    from yarpy.names.base import NameClient as NameClient
     from yarpy.names.client import YarpNameClient as YarpNameClient
     from yarpy.nameserver.local import LocalNames as LocalNames
     from yarpy.nameserver.server import NameServer as NameServer

@@ -50,12 +50,12 @@ class Port:
         name: str,
         *,
         names: NameClient | None = None,
-        port: int = 0,
+        tcp_port: int = 0,
         queue: int = 256,
         latest: bool = False,
         **options: Any,
     ) -> None:
-        self._arguments: dict[str, Any] = {"names": names, "port": port, **options}
+        self._arguments: dict[str, Any] = {"names": names, "tcp_port": tcp_port, **options}
         self._name = name
         self._limit = 1 if latest else max(1, queue)
         self._latest = latest

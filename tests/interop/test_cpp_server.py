@@ -18,7 +18,7 @@ def listing(programs: CppYarp) -> str:
 
 
 def test_registration(cpp_names: CppYarp) -> None:
-    with yarpy.Port("/ours", type_="yarp/image") as port:
+    with yarpy.Port("/ours", port_type="yarp/image") as port:
         host, _, number = port.address.partition(":")
         line = f"registration name /ours ip {host} port {number} type tcp\n"
         assert line in listing(cpp_names)
@@ -46,7 +46,7 @@ def test_names_that_the_server_makes(cpp_names: CppYarp) -> None:
 def test_a_number_of_ones_own(cpp_names: CppYarp) -> None:
     with yarpy.Port("") as probe:
         number = probe.contact.port
-    with yarpy.Port("/mine", port=number) as port:
+    with yarpy.Port("/mine", tcp_port=number) as port:
         assert port.contact.port == number
         assert cpp_names.run("exists", "/mine").returncode == 0
 
@@ -96,7 +96,7 @@ def server(cpp: CppYarp) -> Iterator[CppYarp]:
 def test_ports_register_again(cpp: CppYarp, server: CppYarp) -> None:
     """A new server that knows nothing: our ports tell it all, nobody has to do anything."""
     assert server.server_process is not None
-    with yarpy.Port("/a", type_="yarp/vector") as a, yarpy.RpcServer("/b", lambda m: m.value):
+    with yarpy.Port("/a", port_type="yarp/vector") as a, yarpy.RpcServer("/b", lambda m: m.value):
         reader = yarpy.BufferedPort("/c", strict=True)
         a.connect("/c")
         addresses = {name: yarpy.query(name) for name in ("/a", "/b", "/c")}

@@ -26,7 +26,7 @@ def test_client_of_a_cpp_server(cpp_server: CppYarp) -> None:
     with client_of(cpp_server) as names:
         assert names.register("/x") == Contact("tcp", "/x", "127.0.0.1", first)
         assert names.register("/y", "udp", "10.0.0.1", 5) == Contact("udp", "/y", "10.0.0.1", 5)
-        assert names.register("/t", type_="yarp/image").port == first + 1
+        assert names.register("/t", port_type="yarp/image").port == first + 1
         assert names.get("/t", "type") == ["yarp/image"]
         assert names.register("...").name == "/tmp/port/1"
         group = names.register("...", "mcast")

@@ -32,12 +32,12 @@ def test_number_of_the_environment_is_taken_unless_one_is_given(
     hub = open_hub("/here", Latest(), names)
     assert hub.port == number
     hub.close()
-    hub = open_hub("/here", Latest(), names, port=other)
+    hub = open_hub("/here", Latest(), names, tcp_port=other)
     assert hub.port == other
     hub.close()
 
 
 def test_hub_that_cannot_listen_is_not_registered(names: LocalNames) -> None:
     with pytest.raises(AddressError, match="below 65536"):
-        open_hub("/here", Latest(), names, port=70000)
+        open_hub("/here", Latest(), names, tcp_port=70000)
     assert names.query("/here") is None

@@ -36,7 +36,7 @@ from yarpy.wire import framing
 
 
 def test_open_port_is_registered_and_says_what_it_is(names: LocalNames) -> None:
-    with Port("/here", names=names, type_="bottle") as port:
+    with Port("/here", names=names, port_type="bottle") as port:
         contact = names.query("/here")
         assert contact == Contact("tcp", "/here", "127.0.0.1", port.contact.port)
         assert "tcp" in names.get("/here", "offers")

@@ -44,7 +44,7 @@ def may_schedule() -> bool:
 
 
 def test_what_a_port_says_of_itself(names: LocalNames) -> None:
-    with Port("/it", names=names, type_="image") as port:
+    with Port("/it", names=names, port_type="image") as port:
         reply = admin(names, "/it", "prop get /it")
         sched = group(reply, "sched")
         assert sched["tid"] in {t.native_id for t in threading.enumerate()}

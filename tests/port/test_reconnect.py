@@ -194,9 +194,9 @@ def test_a_closed_reader_is_not_dialled_again_under_the_same_name() -> None:
 
 def test_a_connection_to_an_address_comes_back_without_any_name_server(number: int) -> None:
     place = free_port()
-    with yarpy.Port("", port=free_port()) as writer:
+    with yarpy.Port("", tcp_port=free_port()) as writer:
         for turn in range(2):
-            with yarpy.BufferedPort("", port=place) as reader:
+            with yarpy.BufferedPort("", tcp_port=place) as reader:
                 if turn == 0:
                     writer.connect(f"/127.0.0.1:{place}")
                 # Until it is found out, what is written goes the way of the lost connection.

@@ -92,10 +92,10 @@ def test_name_of_something_else_that_listens_there_is_taken_over(names: LocalNam
 
 def test_chosen_number(names: LocalNames) -> None:
     number = free_port()
-    with Port("/here", names=names, port=number) as port:
+    with Port("/here", names=names, tcp_port=number) as port:
         assert port.contact.port == number
         with pytest.raises(AddressError, match=f"cannot listen on TCP port {number}"):
-            Port("/there", names=names, port=number)
+            Port("/there", names=names, tcp_port=number)
     assert names.query("/there") is None
 
 
@@ -140,7 +140,10 @@ def test_name_server_that_has_no_numbers_left() -> None:
         with pytest.raises(AddressError, match=r'refused "/second": .*ran out of port numbers'):
             Port("/second")
         assert server.client.query("/second") is None
-        with Port("/third", port=free_port()) as third, Port("/first2", port=free_port()) as out:
+        with (
+            Port("/third", tcp_port=free_port()) as third,
+            Port("/first2", tcp_port=free_port()) as out,
+        ):
             out.connect("/third")
             out.write([1])
             assert third.read(timeout=5).value == [1]
@@ -214,7 +217,7 @@ def test_port_that_cannot_be_opened_leaves_nothing_behind(call: str) -> None:
 @pytest.mark.parametrize("number", [-1, 65536])
 def test_number_that_no_port_can_have(number: int, names: LocalNames) -> None:
     with pytest.raises(AddressError, match="below 65536"):
-        Port("/here", names=names, port=number)
+        Port("/here", names=names, tcp_port=number)
 
 
 def test_port_can_be_asked_before_it_knows_that_it_is_registered(

@@ -409,3 +409,20 @@ def test_a_question_that_comes_while_the_server_still_opens_is_answered():
     with RpcServer("/server", echo, names=names):
         asking.join(5)
     assert answers == [[1, 2]]
+
+
+def test_servers_and_clients_hear_of_connections(names: LocalNames) -> None:
+    heard: list[str] = []
+    with RpcServer(
+        "/server", lambda m: m.value, names=names, on_connection=lambda e: heard.append(str(e))
+    ):
+        RpcClient(
+            "/server", name="/client", names=names, on_connection=lambda e: heard.append(str(e))
+        ).close()
+        wait_until(lambda: len(heard) == 4)
+    assert sorted(heard) == [
+        "Receiving input from /client to /server using tcp",
+        "Removing input from /client to /server",
+        "Removing output from /client to /server",
+        "Sending output from /client to /server using tcp",
+    ]

@@ -305,3 +305,12 @@ def test_what_was_written_before_a_goodbye_arrives(carrier: str, names: LocalNam
         out.disconnect("/in")
         got = [in_.read(timeout=20).value[0] for _ in range(count)]
         assert got == list(range(count))
+
+
+@pytest.mark.parametrize("stamp", [5, 1.5, [1, 2], object])
+def test_stamp_that_is_none_is_told_so_even_when_nobody_listens(
+    stamp: object, names: LocalNames
+) -> None:
+    """`write([1], 5)`, where `write([1, 5])` was meant."""
+    with Port("/out", names=names) as port, pytest.raises(TypeError, match=r"write\(\[1, 2\]\)"):
+        port.write([1], stamp)  # type: ignore[arg-type]

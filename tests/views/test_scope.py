@@ -49,7 +49,7 @@ def bench(browser: Browser | None, *args: Any, number: int = 0, **options: Any) 
     """The pages close before the ports do: they would complain that nobody answers."""
     names = yarpy.LocalNames()
     scope = Scope(*args, **options)
-    with yarpy.Port("/scope", names=names, port=number, callback=scope.take) as port:
+    with yarpy.Port("/scope", names=names, tcp_port=number, callback=scope.take) as port:
         scope.serve(port)
         found = Bench(scope, names, port)
         with found.stack:

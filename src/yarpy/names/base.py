@@ -33,7 +33,7 @@ class NameClient(Protocol):
         carrier: str | None = None,
         host: str | None = None,
         port: int | None = None,
-        type_: str | None = None,
+        port_type: str | None = None,
     ) -> Contact:
         """Put `name` in and learn the complete contact; what is None the service fills in.
 

@@ -124,15 +124,15 @@ class YarpNameClient:
         carrier: str | None = None,
         host: str | None = None,
         port: int | None = None,
-        type_: str | None = None,
+        port_type: str | None = None,
     ) -> Contact:
         words: list[str | int] = ["register", name]
-        extra = (carrier, host or self.own_host or None, port or None, type_ or None)
+        extra = (carrier, host or self.own_host or None, port or None, port_type or None)
         if any(item is not None for item in extra):
             words += [carrier or "...", extra[1] or "..."]
             words.append(port or -1)  # what C++ sends for "any"
-            if type_:
-                words.append(type_)
+            if port_type:
+                words.append(port_type)
         lines = self.command(*words)
         contact = parse_registration(lines[0]) if lines else None
         if contact is None:

@@ -38,12 +38,14 @@ class SeveralNames:
         carrier: str | None = None,
         host: str | None = None,
         port: int | None = None,
-        type_: str | None = None,
+        port_type: str | None = None,
     ) -> Contact:
-        contact = self.clients[0].register(name, carrier, host, port, type_)
+        contact = self.clients[0].register(name, carrier, host, port, port_type)
         for client in self.clients[1:]:
             try:
-                client.register(contact.name, contact.carrier, contact.host, contact.port, type_)
+                client.register(
+                    contact.name, contact.carrier, contact.host, contact.port, port_type
+                )
             except (NoNameServer, AddressError) as error:
                 _warn('"%s" is not registered everywhere: %s', contact.name, error)
         return contact

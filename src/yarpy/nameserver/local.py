@@ -31,7 +31,7 @@ class LocalNames:
         carrier: str | None = None,
         host: str | None = None,
         port: int | None = None,
-        type_: str | None = None,
+        port_type: str | None = None,
     ) -> Contact:
         if not port and carrier not in ("mcast", "topic"):
             raise AddressError(
@@ -40,7 +40,7 @@ class LocalNames:
             )
         with self._lock:
             return self._store.register(
-                name, carrier or "", host or "", port or 0, type_ or "", "127.0.0.1"
+                name, carrier or "", host or "", port or 0, port_type or "", "127.0.0.1"
             )
 
     def unregister(self, name: str) -> None:

@@ -98,7 +98,7 @@ class NameServer:
     ) -> None:
         pages = Folder(web) if web is not None else None
         desk = _Desk()
-        self._hub = open_hub(name, desk, None, port=port, host=host, register=False)
+        self._hub = open_hub(name, desk, None, tcp_port=port, host=host, register=False)
         self.host = host
         self.port = self._hub.port
         self.client = client_of(Server(host, self.port))

@@ -26,23 +26,23 @@ def open_hub(
     mailbox: Mailbox,
     names: NameClient | None = None,
     *,
-    port: int = 0,
+    tcp_port: int = 0,
     host: str = "",
-    type_: str = "",
+    port_type: str = "",
     admits_outputs: bool = True,
     rpc: bool = False,
     limit: int = DEFAULT_LIMIT,
     on_connection: Callable[[ConnectionEvent], None] | None = None,
     register: bool = True,
 ) -> Hub:
-    """A hub that listens and is registered; parameters as `Hub` and `Registration`. `port` 0 is any
-    free TCP port, or the one that the environment names for this port.
+    """A hub that listens and is registered; parameters as `Hub` and `Registration`. `tcp_port` 0 is
+    any free one, or the one that the environment names for this port.
 
     Raises AddressError (name unusable, name or port in use), NoNameServer.
     """
     fork.prepare()
     hub = Hub(
-        Registration(name, names, type_, register),
+        Registration(name, names, port_type, register),
         mailbox,
         CREW,
         admits_outputs=admits_outputs,
@@ -50,5 +50,5 @@ def open_hub(
         limit=limit,
     )
     hub.callbacks.on_connection = on_connection
-    hub.open(port or port_number(hub.name, os.environ), host)
+    hub.open(tcp_port or port_number(hub.name, os.environ), host)
     return hub

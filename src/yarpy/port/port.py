@@ -68,10 +68,11 @@ class MessagePort(BasePort):
         hub = self._hub
         if hub.closing or hub.interrupted:
             self._check_open()
+        envelope = envelope_of(stamp) if stamp is not None else b""
         outputs = hub.outputs
         if not outputs:
             return 0
-        packet = Packet(value, envelope_of(stamp) if stamp is not None else b"")
+        packet = Packet(value, envelope)
         if hub.monitoring.output is not None:
             passed = hub.monitoring.output.send(packet)
             if passed is None:
@@ -114,7 +115,8 @@ class Port(MessagePort):
 
     name: begins with `/`; `...` asks the name server for one; "" opens an unregistered port.
     names: a name client, None for the default (see `yarpy.NameServer`, `yarpy.LocalNames`).
-    port: the TCP port number, 0 to let the name server or the system choose.
+    tcp_port: the number to listen on, 0 to let the name server or the system choose.
+    port_type: what the port says it takes or sends, for those who look it up (`yarp/image`).
     callback: called with each message in its connection's thread, instead of `read`.
     spin: readers ask the socket again and again instead of sleeping: the lowest latency, one core.
     limit: the largest message accepted, in bytes.
@@ -126,8 +128,8 @@ class Port(MessagePort):
         name: str,
         *,
         names: NameClient | None = None,
-        port: int = 0,
-        type_: str = "",
+        tcp_port: int = 0,
+        port_type: str = "",
         callback: Callable[[Message], None] | None = None,
         spin: bool = False,
         limit: int = DEFAULT_LIMIT,
@@ -139,8 +141,8 @@ class Port(MessagePort):
                 name,
                 mailbox,
                 names,
-                port=port,
-                type_=type_,
+                tcp_port=tcp_port,
+                port_type=port_type,
                 limit=limit,
                 on_connection=on_connection,
             ),
@@ -162,11 +164,11 @@ class BufferedPort(MessagePort):
     def __init__(
         self,
         name: str,
-        strict: bool = False,
         *,
+        strict: bool = False,
         names: NameClient | None = None,
-        port: int = 0,
-        type_: str = "",
+        tcp_port: int = 0,
+        port_type: str = "",
         callback: Callable[[Message], None] | None = None,
         spin: bool = False,
         limit: int = DEFAULT_LIMIT,
@@ -179,8 +181,8 @@ class BufferedPort(MessagePort):
             name,
             mailbox,
             names,
-            port=port,
-            type_=type_,
+            tcp_port=tcp_port,
+            port_type=port_type,
             limit=limit,
             on_connection=on_connection,
         )
@@ -207,9 +209,14 @@ class BufferedPort(MessagePort):
 
 def envelope_of(stamp: Stamp | str | bytes) -> bytes:
     """The envelope's bytes: a Stamp's text, or any one-line text up to its first control
-    character."""
+    character. Raises TypeError for anything else."""
     if isinstance(stamp, Stamp):
         return stamp.to_text().encode()
+    if not isinstance(stamp, str | bytes):
+        raise TypeError(
+            f"a stamp is a yarpy.Stamp or a line of text, not {stamp!r}; a message is one "
+            "object, several go into a list: write([1, 2])"
+        )
     data = stamp.encode() if isinstance(stamp, str) else stamp
     for index, byte in enumerate(data):
         if byte < 0x20 or byte >= 0x80:

@@ -32,8 +32,8 @@ class Registration:
     Raises AddressError (name unusable), NoNameServer.
     """
 
-    def __init__(self, name: str, names: NameClient | None, type_: str, register: bool) -> None:
-        self.type = type_
+    def __init__(self, name: str, names: NameClient | None, port_type: str, register: bool) -> None:
+        self.type = port_type
         self.port = 0
         self.contact: Contact
         self.group_name = ""  # the temporary name of our multicast group
@@ -62,7 +62,7 @@ class Registration:
         bound = listening_host()
         if names is not None and names.allocates and not port:
             self._refuse_taken(names)
-            contact = names.register(self.name, type_=self.type or None)
+            contact = names.register(self.name, port_type=self.type or None)
             self.name = contact.name
             self._has_name = True
             try:

@@ -14,6 +14,7 @@ from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
+from yarpy.port.connection import ConnectionEvent
 from yarpy.port.mailbox import Callback, Mailbox
 from yarpy.wire.message import CALL, UNSENDABLE, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
@@ -28,7 +29,8 @@ class RpcServer(BasePort):
 
     The handler runs in the connection's thread, so calls of different clients run side by side;
     with `lock` one at a time. What it raises is answered as `[fail] "reason"` and logged. It may
-    also call `message.reply(...)` itself. Other parameters as `Port`.
+    also call `message.reply(...)` itself. Without `register` no name service hears of it. Other
+    parameters as `Port`.
     """
 
     def __init__(
@@ -37,10 +39,11 @@ class RpcServer(BasePort):
         handler: Handler,
         *,
         names: NameClient | None = None,
-        port: int = 0,
-        type_: str = "",
+        tcp_port: int = 0,
+        port_type: str = "",
         lock: bool = False,
         limit: int = DEFAULT_LIMIT,
+        on_connection: Callable[[ConnectionEvent], None] | None = None,
         register: bool = True,
     ) -> None:
         self._handler = handler
@@ -51,10 +54,11 @@ class RpcServer(BasePort):
                     name,
                     Callback(self._answer, lock),
                     names,
-                    port=port,
-                    type_=type_,
+                    tcp_port=tcp_port,
+                    port_type=port_type,
                     admits_outputs=False,
                     limit=limit,
+                    on_connection=on_connection,
                     register=register,
                 )
             )
@@ -117,11 +121,22 @@ class RpcClient(BasePort):
         name: str = "",
         carrier: str = "tcp",
         names: NameClient | None = None,
-        port: int = 0,
+        tcp_port: int = 0,
         limit: int = DEFAULT_LIMIT,
+        on_connection: Callable[[ConnectionEvent], None] | None = None,
     ) -> None:
         mailbox: Mailbox = Callback(lambda message: None)
-        super().__init__(open_hub(name, mailbox, names, port=port, rpc=True, limit=limit))
+        super().__init__(
+            open_hub(
+                name,
+                mailbox,
+                names,
+                tcp_port=tcp_port,
+                rpc=True,
+                limit=limit,
+                on_connection=on_connection,
+            )
+        )
         self._target = ""
         self._carrier = carrier
         if target:

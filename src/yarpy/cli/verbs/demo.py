@@ -108,7 +108,7 @@ def _page(server: yarpy.NameServer) -> yarpy.Port:
 
     for number in (server.port + 1, 0):
         try:
-            return yarpy.Port("/demo", callback=forget, names=server.client, port=number)
+            return yarpy.Port("/demo", callback=forget, names=server.client, tcp_port=number)
         except yarpy.AddressError:
             if not number:
                 raise

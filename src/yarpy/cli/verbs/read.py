@@ -101,7 +101,7 @@ class Printer:
 @click.option("--trim", type=int, metavar="N", help="Print only the first N characters.")
 @click.option("--once", is_flag=True, help="End after one message.")
 @click.option("--json", "as_json", is_flag=True, help="Print each message as a JSON object.")
-@click.option("--type", "type_", default="", help="The type that the port says it takes.")
+@click.option("--type", "port_type", default="", help="The type that the port says it takes.")
 def command(
     port: str,
     words: tuple[str, ...],
@@ -109,7 +109,7 @@ def command(
     trim: int | None,
     once: bool,
     as_json: bool,
-    type_: str,
+    port_type: str,
 ) -> int:
     """Open PORT and print what arrives. Each REMOTE is asked to send to it.
 
@@ -119,7 +119,7 @@ def command(
     wish = parse_words(words)
     printer = Printer(envelope or wish.envelope, trim or wish.trim, as_json)
     try:
-        with open_reader(port, type_) as reader:
+        with open_reader(port, port_type) as reader:
             for remote in wish.remotes:
                 try:
                     hear_from(reader, remote)
@@ -134,11 +134,11 @@ def command(
     return 0
 
 
-def open_reader(name: str, type_: str = "") -> yarpy.BufferedPort:
+def open_reader(name: str, port_type: str = "") -> yarpy.BufferedPort:
     """A port that keeps every message. Raises AddressError with the hint that C++ gives."""
 
     try:
-        return open_port(yarpy.BufferedPort, name, strict=True, type_=type_)
+        return open_port(yarpy.BufferedPort, name, strict=True, port_type=port_type)
     except yarpy.AddressError as error:
         if name == ANY or not name.startswith("/") or not yarpy.exists(name):
             raise

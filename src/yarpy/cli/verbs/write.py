@@ -80,20 +80,20 @@ class _Repeater(threading.Thread):
     help="Send the last line again every S seconds.",
 )  # fmt: skip
 @click.option("--wait-connect", is_flag=True, help="Wait for a connection before the first line.")
-@click.option("--type", "type_", default="", help="The type that the port says it sends.")
+@click.option("--type", "port_type", default="", help="The type that the port says it sends.")
 def command(
     port: str,
     words: tuple[str, ...],
     verbatim: bool,
     period: float | None,
     wait_connect: bool,
-    type_: str,
+    port_type: str,
 ) -> int:
     """Open PORT and send it the lines of standard input, to each REMOTE and whoever connects."""
 
     verbatim = verbatim or "verbatim" in words
     try:
-        with open_port(yarpy.Port, port, type_=type_, callback=_ignore) as writer:
+        with open_port(yarpy.Port, port, port_type=port_type, callback=_ignore) as writer:
             for remote in words:
                 if remote != "verbatim":
                     send_to(writer, remote)
