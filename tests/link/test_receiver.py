@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import socket
 import threading
+import time
 
 import pytest
-from support.inbound import Owner, message, served
+from support.inbound import Owner, linked, message, served
 from support.transport import scripted
+from support.wait import wait_until
 
 from yarpy.carriers.tcp import FastTcp, Tcp
-from yarpy.carriers.text import TextAck
+from yarpy.carriers.text import Text, TextAck
 from yarpy.data.bottle import Bottle
-from yarpy.errors import LinkClosed
+from yarpy.errors import LinkClosed, Timeout
 from yarpy.link.driver import Driver
 from yarpy.link.inbound import Inbound
 from yarpy.link.receiver import MAX_UNSENT_ACKS
 from yarpy.route import Route
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
+from yarpy.wire.effects import Open, Show, Within
+from yarpy.wire.message import QUIT as QUIT_COMMAND
 from yarpy.wire.message import Message
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
@@ -124,3 +128,65 @@ def test_what_is_written_while_reading_leaves_before_waiting() -> None:
         far.sendall(b"two\r\n")
         thread.join(5)
         assert not thread.is_alive()
+
+
+# ------------------------------------------------------------------------------------- effects
+
+
+class Asking(Text):
+    """A carrier that asks for what its lines name."""
+
+    name = "asking"
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        while True:
+            word = (yield from stream.read_line()).decode()
+            if word == "slow":
+                yield Within(0.05)
+                try:
+                    yield from stream.read_line()
+                except Timeout:
+                    stream.write(b"too late\r\n")
+                    raise
+                yield Within(None)
+            elif word == "page":
+                stream.write(f"{yield Show('/x', {'a': '1'})}\r\n".encode())
+            elif word == "tcp":
+                yield Open("tcp", listen=False)
+            else:
+                return Message(QUIT_COMMAND)
+
+
+def test_message_that_takes_too_long_is_told_so() -> None:
+    with linked(Asking) as (near, _, owner):
+        near.sendall(b"slow\r\n")
+        assert near.recv(100) == b"too late\r\n"
+        wait_until(lambda: owner.ended)
+        assert owner.ended == [("the peer sends a message too slowly", False)]
+
+
+def test_time_of_a_message_ends_with_it() -> None:
+    with linked(Asking) as (near, link, owner):
+        near.sendall(b"slow\r\nbut here\r\n")
+        wait_until(lambda: link.driver.bytes_in > 10)
+        time.sleep(0.15)
+        assert owner.ended == []
+        near.sendall(b"quit\r\n")
+        wait_until(lambda: owner.ended)
+        assert owner.ended == [("", True)]
+
+
+def test_page_of_the_program_is_asked_for() -> None:
+    with linked(Asking) as (near, link, _):
+        near.sendall(b"page\r\n")
+        assert near.recv(100) == b"None\r\n"
+        link.receiver.page = lambda path, fields: f"{path} {fields['a']}"
+        near.sendall(b"page\r\n")
+        assert near.recv(100) == b"/x 1\r\n"
+
+
+def test_message_cannot_ask_for_another_connection() -> None:
+    with linked(Asking) as (near, _, owner):
+        near.sendall(b"tcp\r\n")
+        wait_until(lambda: owner.ended)
+        assert "nothing that a message can ask for" in owner.ended[0][0]

@@ -2,7 +2,9 @@
 
 Rules: a carrier is a state machine over a ByteStream - generators, no sockets, threads or clock.
 Its facts are class attributes; each method has a default that does what the plain binary carriers
-do, so a carrier overrides only what is different about it. The link drives it, in this order:
+do, so a carrier overrides only what is different about it. What it wants of the world it yields as
+an effect (`wire/effects.py`), and what it tells is a message: it leaves no flags for others to look
+at. The link drives it, in this order:
 
     initiator                       acceptor
     greet                     ->    (magic chosen) welcome

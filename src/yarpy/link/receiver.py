@@ -84,7 +84,7 @@ class Receiver:
                 if message is None:  # there is a part of it, or the end; `decode` says which
                     self._steps = carrier.decode(driver.stream)
         if self._due:
-            self._hurry(None)
+            self._allow(None)
         self.count(message)
         return message
 
@@ -96,7 +96,7 @@ class Receiver:
 
     def _perform(self, effect: Effect) -> object:
         if isinstance(effect, Within):
-            self._hurry(effect.seconds)
+            self._allow(effect.seconds)
             return None
         if isinstance(effect, Show):
             return self.page(effect.path, effect.fields)
@@ -109,7 +109,7 @@ class Receiver:
         counter.count(time.perf_counter())
         counter.bytes = self.driver.bytes_in
 
-    def _hurry(self, seconds: float | None) -> None:
+    def _allow(self, seconds: float | None) -> None:
         """A message has begun and has so many seconds; None: nothing has."""
         if seconds is not None:
             self._due = time.monotonic() + seconds
