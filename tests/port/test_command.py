@@ -70,6 +70,15 @@ def test_description_lists_every_connection(names: LocalNames) -> None:
         )
 
 
+def test_name_that_is_too_long_is_told_so(names: LocalNames) -> None:
+    with Port("/in", names=names) as in_:
+        with socket.create_connection(("127.0.0.1", in_.contact.port)) as sock:
+            sock.settimeout(5)
+            sock.sendall(b"CONNECT " + b"x" * 3000 + b"\r\n")
+            assert sock.makefile("rb").read() == b"* Error. A name has at most 1000 bytes.\r\n"
+        assert in_.inputs == []
+
+
 def test_port_without_outputs(names: LocalNames) -> None:
     with RpcServer("/server", lambda m: None, names=names) as server, Port("/in", names=names):
         assert command.connect(server._hub, "/in") == (False, "Outputs not allowed")

@@ -12,6 +12,7 @@ import pytest
 from support.port import free_port
 from support.wait import wait_until
 
+import yarpy
 from yarpy.contact import Contact
 from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed, Timeout, YarpError
@@ -55,6 +56,22 @@ def web(sock: socket.socket) -> None:
 
 def hang_up(sock: socket.socket) -> None:
     pass
+
+
+def test_whose_port_it_is(names: LocalNames) -> None:
+    with Port("/it", names=names) as port:
+        assert probe.is_ours(port.contact)
+    with impostor(cpp) as contact:
+        assert not probe.is_ours(contact)
+
+
+def cpp(sock: socket.socket) -> None:
+    """What a port of C++ says to words that it does not know."""
+    file = sock.makefile("rb")
+    sock.sendall(b"Welcome " + file.readline()[8:])
+    while file.readline():
+        sock.sendall(b'[fail] "send [help] for list of valid commands"\r\n<ACK>\r\n')
+        file.readline()
 
 
 def test_port_answers(names: LocalNames) -> None:
@@ -136,3 +153,76 @@ def test_endless_description_ends() -> None:
 
     with impostor(talk) as contact:
         assert len(probe.describe(contact, timeout=5)) == 10_000
+
+
+# -- a caller ----------------------------------------------------------------------------------
+
+
+def test_asks_again_and_again_over_one_connection(names: LocalNames) -> None:
+    sources = []
+
+    def answer(message):
+        sources.append(message.source)
+        return ["ok", *message.value]
+
+    with (
+        yarpy.RpcServer("/server", answer, names=names) as server,
+        probe.Caller(server.contact) as caller,
+    ):
+        first = caller.ask(["add", 1, 2], timeout=5)
+        second = caller.ask(["x"], timeout=5)
+        assert first is not None and first.value == ["ok", "add", 1, 2]
+        assert second is not None and second.value == ["ok", "x"]
+        assert sources == ["anon_rpc", "anon_rpc"]
+        assert [link.source for link in server.inputs] == ["anon_rpc"]
+
+
+def test_has_the_name_it_is_given_and_any_carrier_with_replies(names: LocalNames) -> None:
+    with (
+        yarpy.RpcServer("/server", lambda message: [message.source], names=names) as server,
+        probe.Caller(server.contact, "/me", carrier="text_ack") as caller,
+    ):
+        reply = caller.ask(["who"], timeout=5)
+        assert reply is not None and reply.value == ["/me"]
+
+
+def test_asks_the_administrative_side(names: LocalNames) -> None:
+    with (
+        yarpy.RpcServer("/server", lambda message: ["data"], names=names) as server,
+        probe.Caller(server.contact, admin=True) as caller,
+    ):
+        reply = caller.ask([yarpy.Vocab("ver")], timeout=5)
+        assert reply is not None and reply.value == ["ver", 1, 2, 3]
+
+
+def test_closing_ends_the_connection_in_good_order(names: LocalNames) -> None:
+    reports = []
+    with yarpy.Port("/reader", names=names, callback=lambda message: None) as port:
+        port.on_connection(reports.append)
+        caller = probe.Caller(port.contact, "/me")
+        assert port.wait_for_inputs(timeout=5)
+        caller.close()
+        wait_until(lambda: len(reports) == 2)
+        assert (reports[-1].created, reports[-1].reason) == (False, "")
+
+
+def test_a_carrier_without_replies_is_refused(names: LocalNames) -> None:
+    with (
+        yarpy.RpcServer("/server", lambda message: [], names=names) as server,
+        pytest.raises(yarpy.LocalProtocolError, match="udp"),
+    ):
+        probe.Caller(server.contact, carrier="udp")
+
+
+def test_nobody_to_call() -> None:
+    with pytest.raises(yarpy.LinkClosed):
+        probe.Caller(yarpy.Contact("tcp", "/gone", "127.0.0.1", 1), timeout=2)
+
+
+def test_a_port_that_goes_away_is_an_error_of_ours(names: LocalNames) -> None:
+    server = yarpy.RpcServer("/server", lambda message: ["ok"], names=names)
+    caller = probe.Caller(server.contact)
+    assert caller.ask([1], timeout=5) is not None
+    server.close()
+    with pytest.raises(yarpy.LinkClosed):
+        caller.ask([2], timeout=5)

@@ -35,7 +35,11 @@ class Text(Carrier):
         yield
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
-        line = yield from stream.read_line(framing.MAX_NAME)
+        try:
+            line = yield from stream.read_line(framing.MAX_NAME)
+        except RemoteProtocolError:
+            stream.write(f"* Error. A name has at most {framing.MAX_NAME} bytes.".encode() + _END)
+            raise
         self.route.introduce(line.decode("utf-8", "replace"))
         stream.write(f"Welcome {self.route.source}".encode() + _END)
 

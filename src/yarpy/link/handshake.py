@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from typing import Final
 
 from yarpy import registry
 from yarpy.carriers.auth import prove_acceptor, prove_initiator
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
 from yarpy.contact import Contact
-from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout, UnknownPlugin
+from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout, UnknownPlugin, YarpError
 from yarpy.link.driver import Driver
 from yarpy.route import Route
 from yarpy.transports.tcp import TcpTransport, dial
@@ -145,8 +146,13 @@ def welcome(
         raise RemoteProtocolError(f"no carrier begins with the bytes {first!r}")
     reached = _reached(transport)
     carrier = kind(Route("", target, kind.name, port, reached))
-    while (other := driver.run(carrier.welcome(driver.stream, first), deadline)) is not None:
-        carrier = other  # the first bytes alone did not tell
+    try:
+        while (other := driver.run(carrier.welcome(driver.stream, first), deadline)) is not None:
+            carrier = other  # the first bytes alone did not tell
+    except RemoteProtocolError:
+        with suppress(YarpError):
+            driver.flush()  # what the protocol says to that
+        raise
     return driver, carrier
 
 

@@ -1,26 +1,30 @@
-"""Questions to a port over a short text connection, as every YARP tool asks them.
+"""Questions to a port from outside, as every YARP tool asks them: one by one over short text
+connections, or by a Caller, again and again over one.
 
-Rules: one connection per question, un-rooted sender names (so that nobody is displaced), a time
-limit always. Source: core-3 sections 5.1, 6.3, 6.4.
+Rules: whoever asks has no port of its own; un-rooted sender names, so that nobody is displaced; a
+time limit always. Source: core-3 sections 5.1, 6.3, 6.4.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from types import TracebackType
+from typing import Final, Self
 
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import YarpError
+from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.link.driver import Driver
-from yarpy.link.handshake import greet
+from yarpy.link.handshake import find_carrier, greet
 from yarpy.link.outbound import Outbound
 from yarpy.names.default import secret
-from yarpy.route import Route
-from yarpy.wire.message import Packet
+from yarpy.route import Route, parse_carrier
+from yarpy.wire.message import ADMIN, CALL, Message, Packet
 
+ANONYMOUS: Final = "anon_rpc"  # the name C++ tools give themselves
 TIMEOUT = 3.0  # seconds; a port that lives answers in milliseconds
 
 
@@ -131,3 +135,50 @@ def _until_ack(driver: Driver, timeout: float) -> list[str]:
 
 def _deadline(timeout: float) -> float:
     return time.monotonic() + timeout
+
+
+class Caller:
+    """One connection to the port at `contact` for questions and answers, dialled when made.
+
+    With `admin` they are administrative ones (`[ver]`, `[list] [in]` ...). Raises LinkClosed,
+    Timeout, UnknownPlugin, LocalProtocolError (a carrier without replies). Not for several threads
+    at once.
+    """
+
+    def __init__(
+        self,
+        contact: Contact,
+        name: str = ANONYMOUS,
+        *,
+        carrier: str = "tcp",
+        admin: bool = False,
+        timeout: float = 10.0,
+    ) -> None:
+        if not find_carrier(parse_carrier(carrier).base).replies:
+            raise LocalProtocolError(f'"{carrier}" carries no replies; call over tcp')
+        route = Route(name, contact.name or f"/{contact.address}", carrier, contact.port)
+        driver, speaker = greet(contact, route, key=secret(), timeout=timeout)
+        self._link = Outbound(driver, speaker)
+        self._key = ADMIN if admin else CALL
+
+    def ask(self, question: object, timeout: float | None = None) -> Message | None:
+        """The answer to `question`, None if the port gives none.
+
+        Raises Timeout, LinkClosed; after either, this caller is of no more use.
+        """
+        return self._link.call(Packet(question, key=self._key), timeout)
+
+    def close(self) -> None:
+        """Say goodbye and hang up."""
+        self._link.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()

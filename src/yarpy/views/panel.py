@@ -19,7 +19,7 @@ import yarpy
 from yarpy.contact import Contact
 from yarpy.names.address import is_loopback
 from yarpy.names.client import YarpNameClient
-from yarpy.port.caller import Caller
+from yarpy.port.probe import Caller
 from yarpy.views.asset import asset, jsonpage
 
 if TYPE_CHECKING:

@@ -25,7 +25,7 @@ from yarpy.cli.stderr import complain
 from yarpy.errors import LinkClosed, UnknownName, YarpError
 
 if TYPE_CHECKING:
-    from yarpy.port.caller import Caller
+    from yarpy.port.probe import Caller
 
 PAUSES: Final = (0.2, 0.6, 1.2)  # seconds before each attempt to reach a target that went away
 COMMANDS: Final = "*** Available commands:"
@@ -67,7 +67,7 @@ class Target:
     def _dial(self) -> Caller:
         from yarpy.contact import parse_contact
         from yarpy.network.connection import find
-        from yarpy.port.caller import ANONYMOUS, Caller
+        from yarpy.port.probe import ANONYMOUS, Caller
 
         carrier = parse_contact(self._port).carrier or "tcp"
         name = self._name or ANONYMOUS
