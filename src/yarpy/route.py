@@ -37,6 +37,9 @@ import re
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
+from yarpy.errors import RemoteProtocolError
+from yarpy.log import readable
+
 _PASSWORD = re.compile(r"\+password\.[^+\s]*?(?=\+|:/|\s|$)")
 
 #: monitors in their order: the name of each, and the parameters that follow it
@@ -177,8 +180,12 @@ class Route:
     def introduce(self, specifier: str) -> None:
         """Take source and additions from what the sender says of itself.
 
-        Of each group only the first two words survive, as in C++.
+        Of each group only the first two words survive, as in C++. RemoteProtocolError for what no
+        port can be called: a name is shown to people, here and by the name server.
         """
+        if readable(specifier) != specifier:
+            shown = readable(specifier[:80])
+            raise RemoteProtocolError(f'control characters in the name of the peer: "{shown}"')
         self.source, _, rest = specifier.partition(" ")
         added = []
         for token in _split_groups(rest):

@@ -259,3 +259,12 @@ def test_any_bytes_are_messages_or_our_errors(data: bytes, piece: int) -> None:
                 stream.feed_eof() if part is None else stream.feed(part)
     except YarpError:
         pass  # ours, at the latest when the bytes end
+
+
+@pytest.mark.parametrize("name", ["/a\x1b]0;title\x07", "/a (log in\x9b)", "/\u202egnp"])
+def test_a_name_that_a_terminal_would_obey(name: str) -> None:
+    for kind, first in ((Text, b"CONNECT "), (TextAck, b"CONNACK ")):
+        carrier = kind(Route("", "/in"))
+        stream = ByteStream()
+        with pytest.raises(RemoteProtocolError, match="control characters"):
+            run(carrier.welcome(stream, first), stream, [name.encode() + b"\r\n"])

@@ -1,6 +1,7 @@
 """Values as JSON."""
 
 import json
+import sys
 
 import pytest
 
@@ -33,3 +34,13 @@ def test_one_object_is_one_line(capsys):
     print_json({"text": "two\nlines", "list": [1]})
     print_line("x")
     assert capsys.readouterr().out == '{"text": "two\\nlines", "list": [1]}\nx\n'
+
+
+def test_a_terminal_is_told_nothing_that_it_would_obey(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    print_line("name \x1b[2J\tend")
+    assert capsys.readouterr().out == "name \x1b[2J\tend\n"
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    print_line("name \x1b[2J\tend")
+    assert capsys.readouterr().out == "name \\x1b[2J\tend\n"

@@ -59,3 +59,7 @@ def test_any_line_parses_or_not(line: str) -> None:
     contact = parse_registration(line)
     assert contact is None or 0 <= contact.port <= 65535
     assert "\n" not in plain(line)
+
+
+def test_a_name_that_a_terminal_would_obey_is_no_registration() -> None:
+    assert parse_registration("registration name /a\x1b[2J ip h port 1 type tcp") is None

@@ -290,3 +290,12 @@ def test_fast_and_small_at_ten_thousand_names() -> None:
     per_query = (time.perf_counter() - start) / 1000
     assert per_query < 20e-6, "a query looks one name up and nothing else"
     assert len(list(store.contacts("/module7"))) == 200
+
+
+@pytest.mark.parametrize("word", ["/a\x1b[2J", "/a\nb", "/\u202egnp", "/\x9b"])
+def test_names_that_a_terminal_would_obey(word: str) -> None:
+    store = NameStore()
+    for fields in ((word, "tcp", "h", 1), ("/a", word, "h", 1), ("/a", "tcp", word, 1)):
+        with pytest.raises(AddressError, match="no control characters"):
+            store.register(*fields)
+    assert store.query("/a") is None

@@ -14,6 +14,7 @@ from typing import Any
 
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
+from yarpy.log import readable
 
 
 def jsonable(value: Any) -> Any:
@@ -43,5 +44,7 @@ def print_json(value: Any) -> None:
 def print_line(text: str) -> None:
     """One line on standard output, flushed: whoever reads a pipe sees it at once."""
     out = sys.stdout
+    if out.isatty():  # a terminal would obey what is in it; a program gets it as it is
+        text = readable(text, keep="\n\t")
     out.write(text + "\n")
     out.flush()

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from yarpy.cli.output import print_json, print_line
 from yarpy.cli.signals import Interrupted
+from yarpy.log import readable
 from yarpy.network.traffic import End, Flow, flows
 from yarpy.route import parse_carrier
 
@@ -175,6 +176,7 @@ def layout(
 
     As many columns as `width` characters hold; all of them if it is None and `wide`.
     """
+    rows = [tuple(map(readable, row)) for row in rows]
     cells = [tuple(column.title for column in COLUMNS), *rows]
     widths = [max(len(row[n]) for row in cells) for n in range(len(COLUMNS))]
     shown = [n for n, column in enumerate(COLUMNS) if wide or not column.wide]

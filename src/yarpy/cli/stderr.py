@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import click
 
+from yarpy.log import readable
+
 
 def complain(text: str) -> None:
     """Say on standard error what went wrong."""
     label = click.style("error:", fg="red", bold=True)
-    click.echo(f"{label} {' '.join(text.split())}", err=True)
+    click.echo(f"{label} {readable(' '.join(text.split()))}", err=True)
 
 
 def warn(text: str) -> None:
     """Say on standard error what may surprise."""
     label = click.style("warning:", fg="yellow", bold=True)
-    click.echo(f"{label} {' '.join(text.split())}", err=True)
+    click.echo(f"{label} {readable(' '.join(text.split()))}", err=True)

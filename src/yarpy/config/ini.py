@@ -157,9 +157,9 @@ class _Reader:
                 raise OSError(f"included through {DEEPEST} other files")
             self.read(path, parents)
         except OSError as error:
-            import logging
+            from yarpy.log import logger
 
-            logging.getLogger("yarpy.names").warning("cannot read from %s (%s)", path, error)
+            logger("yarpy.names").warning("cannot read from %s (%s)", path, error)
         self._section = None
 
     def _expand(self, line: str) -> str:
@@ -175,9 +175,9 @@ class _Reader:
 
         expanded = _VARIABLE.sub(value, line)
         if left < 0:
-            import logging
+            from yarpy.log import logger
 
-            logging.getLogger("yarpy.names").warning(
+            logger("yarpy.names").warning(
                 "the variables in a line make it longer than %d characters: those that go beyond "
                 "count as empty (%.60s)",
                 LONGEST,

@@ -40,9 +40,9 @@ def _read(*texts: str) -> Limits:
         if text.isascii() and text.isdigit() and len(text) < 19:
             given[field] = int(text)
         elif text:
-            import logging
+            from yarpy.log import logger
 
-            logging.getLogger("yarpy").warning(
+            logger("yarpy").warning(
                 "%s=%.40r is no number and does not count: give bytes or elements in digits",
                 name,
                 text,

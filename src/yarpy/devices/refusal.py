@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import logging
 import time
 from typing import Final
 
 from yarpy.errors import YarpError
+from yarpy.log import logger
 
-log = logging.getLogger("yarpy.devices")
+log = logger("yarpy.devices")
 
 #: The same complaint is logged again after this many seconds.
 QUIET: Final = 5.0

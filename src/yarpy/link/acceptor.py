@@ -7,16 +7,16 @@ thousand file numbers and nothing else. When those run out, the longest silent o
 from __future__ import annotations
 
 import errno
-import logging
 import socket
 import threading
 import time
 from collections.abc import Callable
 from typing import Final
 
+from yarpy.log import logger
 from yarpy.transports.tcp import TcpListener
 
-log = logging.getLogger("yarpy.link")
+log = logger("yarpy.link")
 
 MAX_SILENT: Final = 4096
 _FULL: Final = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)

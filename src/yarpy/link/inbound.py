@@ -6,7 +6,6 @@ message to the port, unless the port's reader has a lease to read the socket its
 
 from __future__ import annotations
 
-import logging
 import threading
 import time
 from typing import TYPE_CHECKING, Any, Protocol
@@ -17,6 +16,7 @@ from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.link.driver import Driver
 from yarpy.link.receiver import Receiver
 from yarpy.link.turn import SILENCE, Turn
+from yarpy.log import logger
 from yarpy.qos import Sched
 from yarpy.wire.message import CALL, DATA, QUIT, Message
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from yarpy.monitors.chain import Chain
     from yarpy.route import Route
 
-log = logging.getLogger("yarpy.link")
+log = logger("yarpy.link")
 
 
 class Owner(Protocol):

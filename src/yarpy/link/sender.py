@@ -8,7 +8,6 @@ short timer sends what a writer leaves behind.
 
 from __future__ import annotations
 
-import logging
 import threading
 import time
 from typing import TYPE_CHECKING, Final
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.link.background import GATHER_SECONDS, Sweeper
 from yarpy.link.counter import Counter
+from yarpy.log import logger
 from yarpy.wire.message import UNSENDABLE, Packet
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from yarpy.route import Route
     from yarpy.wire.steps import Steps
 
-log = logging.getLogger("yarpy.link")
+log = logger("yarpy.link")
 
 # How far a sender may be ahead of acknowledgements: so many messages, bytes, seconds. A slow reader
 # thus holds its sender up, as it does in C++, instead of getting old data.

@@ -7,7 +7,6 @@ line; the connection lives.
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,11 +16,12 @@ from yarpy import registry
 from yarpy.data import codec
 from yarpy.data.property import Property
 from yarpy.errors import LocalProtocolError, YarpError
+from yarpy.log import logger
 from yarpy.monitors.base import DROP, FAILURES, Group, Place
 from yarpy.route import CarrierSpec
 from yarpy.wire.message import Message, Packet
 
-log = logging.getLogger("yarpy.monitors")
+log = logger("yarpy.monitors")
 
 _MOST_TOLD: Final = 16  # different complaints of one chain that are logged
 _PLAIN: Final = frozenset((list, tuple, dict))  # what Python has for Bottles and Properties

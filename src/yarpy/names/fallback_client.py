@@ -15,9 +15,9 @@ from yarpy.names.base import Contacts, NameClient, Strings
 
 
 def _warn(message: str, *arguments: object) -> None:
-    import logging  # 5 ms that most programs need not spend at import
+    from yarpy.log import logger  # late: most programs have nothing to warn of
 
-    logging.getLogger("yarpy.names").warning(message, *arguments)
+    logger("yarpy.names").warning(message, *arguments)
 
 
 class SeveralNames:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 
 from yarpy.contact import Contact
+from yarpy.log import readable
 
 PREFIX = "NAME_SERVER "
 END = "*** end of message"
@@ -45,7 +46,7 @@ def parse_registration(line: str) -> Contact | None:
         return None
     name, host, number, carrier = match.groups()
     port = int(number)
-    if not 0 <= port <= 65535:
+    if not 0 <= port <= 65535 or readable(line.strip()) != line.strip():
         return None
     return Contact(carrier.strip(), name, host, port)
 

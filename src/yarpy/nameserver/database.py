@@ -124,9 +124,9 @@ class Database:
             try:
                 self.save()
             except AddressError as error:
-                import logging
+                from yarpy.log import logger
 
-                logging.getLogger("yarpy.names").error("%s", error)
+                logger("yarpy.names").error("%s", error)
                 self._closing.wait(RETRY)
 
 

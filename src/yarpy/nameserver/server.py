@@ -6,7 +6,6 @@ done by a few worker threads, in order for each pair of ports, so that no comman
 
 from __future__ import annotations
 
-import logging
 import os
 import threading
 import time
@@ -21,6 +20,7 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
 from yarpy.link.inbound import Inbound
+from yarpy.log import logger
 from yarpy.names.address import is_loopback, local_addresses
 from yarpy.names.default import DEFAULT, client_of
 from yarpy.nameserver.collector import Collector
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from yarpy.names.discovery import Responder
     from yarpy.nameserver.database import Database
 
-log = logging.getLogger("yarpy.name_server")
+log = logger("yarpy.name_server")
 
 WORKERS: Final = 4
 GROUP: Final = "224.2.1.1"

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 from yarpy.contact import Contact
 from yarpy.errors import AddressError
+from yarpy.log import readable
 from yarpy.nameserver.pool import Pool
 
 TEMPORARY = "/tmp/port/"
@@ -297,6 +298,9 @@ class NameStore:
         for word in words:
             if len(_bytes(word)) > self.limits.name_bytes:
                 raise AddressError(f"a name is at most {self.limits.name_bytes} bytes long")
+            if readable(word) != word:
+                shown = readable(word[:80])
+                raise AddressError(f'a name has no control characters (name given: "{shown}")')
 
     def _complete(self, name: str, carrier: str, host: str, port: int, peer: str) -> Contact:
         """Allocate what the request left open; when that fails nothing stays allocated."""

@@ -7,7 +7,6 @@ alike.
 
 from __future__ import annotations
 
-import logging
 import os
 import random
 from collections.abc import Sequence
@@ -18,13 +17,14 @@ from yarpy.data.property import Property
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
+from yarpy.log import logger
 from yarpy.port import command, disconnecting
 from yarpy.port.hub import Hub
 from yarpy.port.prop import get_peer, get_self, set_peer, set_self
 from yarpy.port.report import report
 from yarpy.wire.message import Message
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 _OK = Vocab("ok")
 _FAIL = Vocab("fail")

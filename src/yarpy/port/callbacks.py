@@ -6,15 +6,15 @@ costs one connection at most.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Mapping
 
 from yarpy.carriers.http.page import Page, Pages
+from yarpy.log import logger
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.registration import Registration
 from yarpy.wire.message import Message
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 
 class Callbacks:

@@ -6,11 +6,10 @@ Rules: the lines are those of C++ YARP (core-1 section 7).
 
 from __future__ import annotations
 
-import logging
-
 from yarpy.contact import parse_contact
 from yarpy.errors import YarpError
 from yarpy.link.inbound import Inbound
+from yarpy.log import logger
 from yarpy.port import refusal
 from yarpy.port.connecting import dial
 from yarpy.port.disconnecting import disconnect_input, disconnect_output
@@ -18,7 +17,7 @@ from yarpy.port.hub import Hub
 from yarpy.route import masked
 from yarpy.wire.message import Message
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 HELP = (
     "This is a YARP port.  Here are the commands it responds to:",

@@ -25,6 +25,7 @@ from yarpy.link.counter import Past
 from yarpy.link.driver import Driver
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
+from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.port import probe
@@ -40,7 +41,7 @@ from yarpy.transports.bind import reach
 from yarpy.wire.message import Message
 from yarpy.wire.stream import DEFAULT_LIMIT
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 # Inputs over datagrams that a port has at most: each costs a thread and a socket here, and whoever
 # asked for it nothing, since no connection is left that would end with its program.

@@ -10,7 +10,6 @@ long. Runs in the thread of `repair`, which mends what has died; what lapsed jus
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable, Iterable
 from typing import Final
@@ -22,10 +21,11 @@ from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed, YarpError
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
+from yarpy.log import logger
 from yarpy.port import probe
 from yarpy.port.hub import Hub
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 SOON: Final = 0.4  # seconds from a sign of life, or a bad one, to the next question
 LATER: Final = 1.6  # ... while all that is heard are good answers

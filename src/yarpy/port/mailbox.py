@@ -7,7 +7,6 @@ that comes is dropped, and readers get PortClosed, until `resume`.
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections.abc import Callable
 from queue import Empty, SimpleQueue
@@ -15,9 +14,10 @@ from typing import ClassVar, Final, TypeAlias
 
 from yarpy.errors import PortClosed, YarpError
 from yarpy.link.inbound import Inbound
+from yarpy.log import logger
 from yarpy.wire.message import Message
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 FIFO_BYTES: Final = 1 << 28  # what a strict reader may be behind before its senders have to wait
 

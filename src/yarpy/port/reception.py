@@ -6,7 +6,6 @@ comes before the port knows its own name waits for that.
 
 from __future__ import annotations
 
-import logging
 import socket
 import threading
 import time
@@ -17,10 +16,11 @@ from yarpy.errors import YarpError
 from yarpy.link.acceptor import Acceptor
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import welcome
+from yarpy.log import logger
 from yarpy.port.registration import Registration
 from yarpy.transports.tcp import TcpTransport
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 
 class Reception:

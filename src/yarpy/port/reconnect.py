@@ -9,7 +9,6 @@ connection of its own.
 
 from __future__ import annotations
 
-import logging
 import socket
 import threading
 import time
@@ -21,6 +20,7 @@ from yarpy.data.value import Vocab
 from yarpy.errors import LoginRefused, YarpError
 from yarpy.link.handshake import find_carrier
 from yarpy.link.outbound import Outbound
+from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
@@ -29,7 +29,7 @@ from yarpy.port.hub import Hub
 from yarpy.port.keepalive import Link, Pulse
 from yarpy.route import Route
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 TICK: Final = 0.1  # seconds between looks at what is broken
 CALM: Final = 0.5  # seconds between looks when nothing is

@@ -7,13 +7,13 @@ closes.
 
 from __future__ import annotations
 
-import logging
 import os
 from collections.abc import Callable
 
 from yarpy.config.configuration import port_name
 from yarpy.contact import Contact, check_name
 from yarpy.errors import AddressError, NoNameServer, YarpError
+from yarpy.log import logger
 from yarpy.names.address import local_addresses, outward_address
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
@@ -22,7 +22,7 @@ from yarpy.port.probe import is_alive
 from yarpy.registry import carriers
 from yarpy.transports.bind import SETTING, listening_host
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 
 class Registration:

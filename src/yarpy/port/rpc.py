@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -11,6 +10,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, YarpError
 from yarpy.link.outbound import Outbound
+from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
@@ -19,7 +19,7 @@ from yarpy.port.mailbox import Callback, Mailbox
 from yarpy.wire.message import CALL, UNSENDABLE, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
 
-log = logging.getLogger("yarpy.port")
+log = logger("yarpy.port")
 
 Handler = Callable[[Message], object]
 

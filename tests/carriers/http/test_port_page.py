@@ -116,3 +116,8 @@ def test_any_text_leaves_the_page_whole(name: str, lines: list[str], shown: str,
         "code",
         "small",
     }
+
+
+def test_control_characters_are_seen() -> None:
+    shown = page("/a", ["name \x1b[2J and \u202ereversed"]).decode()
+    assert "name \\x1b[2J and \\u202ereversed" in shown

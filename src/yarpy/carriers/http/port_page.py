@@ -12,6 +12,8 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from typing import Final
 
+from yarpy.log import readable
+
 _REGISTRATION = re.compile(
     r"registration name (?P<name>\S+) ip (?P<host>\S+) port (?P<port>\d+) type (?P<kind>\S+)"
 )
@@ -52,7 +54,7 @@ _END: Final = "</main></body></html>\n"
 
 
 def _head(name: str, view: str) -> str:
-    title = escape(name)
+    title = escape(readable(name))
     return (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width,initial-scale=1">'
@@ -81,7 +83,7 @@ def _body(lines: Sequence[str], host: str) -> Iterator[str]:
     kind = ""
     for line in lines:
         for part in line.split("\n"):
-            part = part.rstrip("\r\0")
+            part = readable(part.rstrip("\r\0"), keep="\t")
             now, text = _rendered(part, host)
             if now != kind:
                 yield _ENDS[kind] + _BEGINS[now]

@@ -12,7 +12,6 @@ count the questions, also those that failed. Extra elements are passed over, as 
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable, Sequence
 from itertools import count
@@ -27,8 +26,9 @@ from yarpy.devices.control_board.board import TARGETS, Board
 from yarpy.devices.control_board.grammar import INTERFACES, PID, PLAIN, Form, Interface, Row
 from yarpy.devices.kind import FLAG, NOTHING, items, number, whole, word
 from yarpy.devices.refusal import Refused
+from yarpy.log import logger
 
-log = logging.getLogger("yarpy.devices")
+log = logger("yarpy.devices")
 
 OK: Final = Vocab("ok")
 IS: Final = Vocab("is")

@@ -12,7 +12,6 @@ Source: controlBoard_nws_yarp of YARP 3.x, protocol 1.9.0.
 
 from __future__ import annotations
 
-import logging
 from contextlib import ExitStack
 from typing import Any, Final
 
@@ -27,12 +26,13 @@ from yarpy.devices.control_board.state import State
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError
+from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort, Port
 from yarpy.port.rpc import RpcServer
 from yarpy.wire.message import Lines, Message
 
-log = logging.getLogger("yarpy.devices")
+log = logger("yarpy.devices")
 
 #: Joints whose encoders were read further apart than this, in seconds, do not make one state.
 APART: Final = 1.0

@@ -13,7 +13,6 @@ YARP 3.x.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Mapping, Sequence
 from reprlib import repr as shown
 from typing import Any, Final
@@ -26,8 +25,9 @@ from yarpy.devices.access import Access
 from yarpy.devices.frame_grabber.interface import FEATURES
 from yarpy.devices.kind import items, number, whole, word
 from yarpy.devices.refusal import Refused
+from yarpy.log import logger
 
-log = logging.getLogger("yarpy.devices")
+log = logger("yarpy.devices")
 
 BUSES: Final = ("unknown", "firewire", "usb")  # the place is the number
 MODES: Final = ("manual", "auto", "unknown")

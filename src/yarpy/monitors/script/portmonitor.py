@@ -15,7 +15,6 @@ that has changed on disk is loaded again; if it then does not start, the one bef
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections.abc import Mapping
 from functools import partial
@@ -25,6 +24,7 @@ from typing import Any, Final
 from yarpy.data.property import Property
 from yarpy.data.text import parse_text
 from yarpy.errors import LocalProtocolError, YarpError
+from yarpy.log import logger
 from yarpy.monitors import chain
 from yarpy.monitors.base import DROP, Place, read_token
 from yarpy.monitors.monitor_list import Series, places
@@ -33,7 +33,7 @@ from yarpy.monitors.script.permission import SYSTEM, granted
 from yarpy.monitors.script.script import Load, Script, ScriptError, Watch, find_script, read_script
 from yarpy.wire.message import Message
 
-log = logging.getLogger("yarpy.monitors")
+log = logger("yarpy.monitors")
 
 _MOST_TOLD: Final = 16  # different complaints that are logged
 _NATIVE: Final = "dll"

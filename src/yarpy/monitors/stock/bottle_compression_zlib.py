@@ -15,11 +15,12 @@ import zlib
 from yarpy.data.bottle import Bottle
 from yarpy.data.limit import limits
 from yarpy.errors import DecodeError
+from yarpy.log import logger
 from yarpy.monitors.base import Place
 from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.wire.message import Message
 
-log = logging.getLogger("yarpy.monitors")
+log = logger("yarpy.monitors")
 
 
 class BottleCompressionZlib:

@@ -18,7 +18,6 @@ As `st`, `bs` and weights come with the connection, 10 stands for 1. While it ru
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable, Iterable
 from math import isfinite
@@ -28,11 +27,12 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.data.text import plain_text
 from yarpy.errors import LocalProtocolError
+from yarpy.log import logger
 from yarpy.monitors.arbitration import Competitor, Contest, Inconsistent, Outcome
 from yarpy.monitors.base import Place
 from yarpy.wire.message import Message
 
-log = logging.getLogger("yarpy.monitors")
+log = logger("yarpy.monitors")
 
 _SCALE: Final = 10.0
 _MOST: Final = 1e9  # larger numbers are mistakes, and would not survive the equations
