@@ -192,6 +192,18 @@ def test_completer_asks_once_and_late():
     assert asked == [1]
 
 
+def test_words_behind_others_are_completed():
+    typed = ""
+    complete = Completer(lambda: ["get encs", "get pos joint", "set pos joint"], lambda: typed)
+    assert [complete("", n) for n in range(3)] == ["get ", "set ", None]
+    typed = "[get] "
+    assert [complete("", n) for n in range(3)] == ["encs ", "pos ", None]
+    typed = "get pos "
+    assert complete("j", 0) == "joint "
+    typed = "get encs 1 2 "
+    assert complete("", 0) is None
+
+
 def test_history_files_are_apart(monkeypatch, tmp_path):
     monkeypatch.setenv("YARP_DATA_HOME", str(tmp_path))
     assert history_file("rpc_/a/b") == tmp_path / "history" / "rpc__a_b"

@@ -141,7 +141,7 @@ def test_a_refusal_says_why() -> None:
     with (
         Scripted(END) as silent,
         YarpNameClient("127.0.0.1", silent.port) as names,
-        pytest.raises(AddressError, match="no reason"),
+        pytest.raises(NoNameServer, match="an ordinary port, not a name server"),
     ):
         names.register("/x")
 

@@ -56,7 +56,8 @@ def _typed(prompt: str, history: str, complete: Complete | None) -> Iterator[str
     path = history_file(history) if history else None
     if readline is not None:
         readline.set_history_length(HISTORY)
-        readline.set_completer(Completer(complete) if complete is not None else None)
+        before = lambda: readline.get_line_buffer()[: readline.get_begidx()]  # noqa: E731
+        readline.set_completer(Completer(complete, before) if complete is not None else None)
         # macOS has another library under the same name, with its own language.
         other = "libedit" in (readline.__doc__ or "")
         readline.parse_and_bind("bind ^I rl_complete" if other else "tab: complete")
@@ -79,16 +80,25 @@ def _typed(prompt: str, history: str, complete: Complete | None) -> Iterator[str
 
 
 class Completer:
-    """What readline calls for the first, second ... word that `text` may become."""
+    """What readline calls for the first, second ... word that `text` may become.
 
-    def __init__(self, words: Complete) -> None:
-        self._words = words
-        self._known: list[str] | None = None
+    `commands` gives lines of one word or several; a word is offered behind those that precede it.
+    """
+
+    def __init__(self, commands: Complete, typed: Callable[[], str] = lambda: "") -> None:
+        self._commands = commands
+        self._typed = typed  # the line before the word at the cursor
+        self._known: list[list[str]] | None = None
 
     def __call__(self, text: str, number: int) -> str | None:
         if self._known is None:
-            self._known = self._words()
-        found = [word for word in self._known if word.startswith(text)]
+            self._known = [command.split() for command in self._commands()]
+        before = [word.strip("[]") for word in self._typed().split()]
+        depth = len(before)
+        words = (
+            line[depth] for line in self._known if len(line) > depth and line[:depth] == before
+        )
+        found = [word for word in dict.fromkeys(words) if word.startswith(text)]
         # Python takes readline's blank behind a completed word away; here it is again.
         return f"{found[number]} " if number < len(found) else None
 

@@ -21,12 +21,19 @@ from typing import Any, Literal, TypeVar
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
-from yarpy.errors import AddressError, LinkClosed, NoNameServer, RemoteProtocolError
+from yarpy.errors import (
+    AddressError,
+    LinkClosed,
+    NoNameServer,
+    RemoteProtocolError,
+    YarpError,
+)
 from yarpy.names.base import Contacts, Strings
 from yarpy.names.registration_line import END, PREFIX, parse_registration
 
 IDLE = 10.0  # seconds after which an unused connection is not trusted any more
 SPARE = 2  # connections kept for the next command
+WHO = 1.0  # seconds to find out what it is that does not answer
 LARGEST = 64 << 20  # bytes of one whole reply
 
 _ACK = "<ACK>"
@@ -136,7 +143,9 @@ class YarpNameClient:
         lines = self.command(*words)
         contact = parse_registration(lines[0]) if lines else None
         if contact is None:
-            reason = lines[0].removeprefix("error ") if lines else "it gave no reason"
+            if not lines:  # a name server gives a reason at least
+                raise self._ordinary()
+            reason = lines[0].removeprefix("error ")
             raise AddressError(f'the name server at {self._where} refused "{name}": {reason}')
         return contact
 
@@ -161,7 +170,10 @@ class YarpNameClient:
 
     def list(self, prefix: str | None = None) -> Contacts:
         lines = self.command("list", prefix) if prefix else self.command("list")
-        return [contact for contact in map(parse_registration, lines) if contact is not None]
+        contacts = [contact for contact in map(parse_registration, lines) if contact is not None]
+        if not contacts and not prefix:  # a name server knows itself at least
+            raise self._ordinary()
+        return contacts
 
     def close(self) -> None:
         with self._lock:
@@ -247,7 +259,7 @@ class YarpNameClient:
             reply = talk(line)
         except TimeoutError as error:
             line.close()
-            raise self._nobody(f"did not answer within {self.timeout:g} s") from error
+            raise self._silent() from error
         except BaseException:
             line.close()
             raise
@@ -300,6 +312,27 @@ class YarpNameClient:
                 self._idle.append(line)
                 return
         line.close()
+
+    def _silent(self) -> NoNameServer:
+        """What is said of a server that accepts and does not answer: perhaps it is none."""
+        found: str | None = None
+        with contextlib.suppress(_Gone, OSError, YarpError):
+            line = self._open("acked")
+            line.connection.settimeout(WHO)
+            try:
+                line.send(b"*\r\n")
+                found = line.line()  # This is /name at tcp://host:port/
+            finally:
+                line.close()
+        if found is not None and found.startswith("This is /"):
+            return self._ordinary(found.split()[2])
+        return self._nobody(f"did not answer within {self.timeout:g} s")
+
+    def _ordinary(self, name: str = "") -> NoNameServer:
+        return NoNameServer(
+            f"what listens at {self._where} is an ordinary port{name and ', ' + name}, not a name "
+            "server; correct YARPY_SERVER, or the file of `yarpy conf`"
+        )
 
     def _nobody(self, reason: str) -> NoNameServer:
         return NoNameServer(

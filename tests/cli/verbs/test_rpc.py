@@ -4,6 +4,7 @@ import pytest
 
 import yarpy
 from yarpy.cli.verbs.rpc import Target, commands_of, many, print_reply
+from yarpy.devices import ControlBoardServer
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +36,23 @@ def test_asks_line_by_line(cli, server_port):
         "Response: [ok] echo (last)\n"
     )
     assert set(server_port.sources) == {"anon_rpc"}
+
+
+def test_help_of_a_control_board(cli, names):
+    """Which wants two words; C++ ones too."""
+
+    class Arm:
+        axis_names = ("elbow",)
+
+        def encoders(self):
+            return [0.0]
+
+    with ControlBoardServer("/rpc/arm", Arm(), names=names):
+        said = cli.run("rpc", "/rpc/arm/rpc:i", input="help\n")
+        assert said.stdout.startswith("Responses:\n  [help] [all]\n")
+        assert "  [get] [encs]\n" in said.stdout
+        with yarpy.RpcClient("/rpc/arm/rpc:i", names=names) as client:
+            assert "get encs" in commands_of(client.call)
 
 
 def test_under_a_name_of_our_own(cli, server_port):

@@ -2,6 +2,11 @@
 
 import json
 
+import pytest
+
+import yarpy
+from yarpy.names import client
+
 
 def test_it_is_there(cli, server):
     said = cli.run("where")
@@ -21,6 +26,20 @@ def test_it_is_not_there(here, monkeypatch):
     assert said.code == 1
     assert "== No valid YARP name server is available.\n" in said.out
     assert "yarp.conf expects it at ip 127.0.0.1 port 1\n" in said.out
+
+
+@pytest.mark.parametrize("words", [("where",), ("name", "list"), ("read", "/where/new")])
+def test_ordinary_port_is_there_instead(here, names, monkeypatch, words):
+    monkeypatch.setattr(client.YarpNameClient.__init__, "__defaults__", (1.0,))  # seconds
+    with (
+        yarpy.BufferedPort("/where/silent", names=names) as silent,
+        yarpy.RpcServer("/where/chatty", lambda message: [], names=names) as chatty,
+    ):
+        for port in (silent, chatty):
+            monkeypatch.setenv("YARPY_SERVER", port.address)
+            said = here(*words)
+            assert said.code == 1
+            assert f"what listens at {port.address} is an ordinary port" in said.err
 
 
 def test_none_is_configured(lone):

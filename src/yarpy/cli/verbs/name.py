@@ -10,7 +10,7 @@ Arguments are values of Bottle text. `register` takes any address, a camera's fo
 Differs from C++: commands that are answered with a Bottle (`bot`, `topic`, `subscribe` ...) print
 it instead of waiting for ever; no empty line behind a registration; `register` claims nothing more
 about the port than its address; no command is `help`.
-Exit codes: 0 answered; 1 `query` finds nothing, or no server.
+Exit codes: 0 answered; 1 `query` finds nothing, the server knows no such command, or no server.
 """
 
 from __future__ import annotations
@@ -21,8 +21,13 @@ import click
 
 import yarpy
 from yarpy.cli.output import print_json, print_line
+from yarpy.cli.stderr import complain
 
 END = "*** end of message"
+#: What is answered with nothing at all, or may be.
+_SILENT = frozenset(
+    {"list", "query", "set", "get", "check", "route", "runners", "gc", "unregister"}
+)
 _BOTTLES = frozenset({"bot", "announce", "subscribe", "unsubscribe", "topic", "untopic", "type"})
 
 
@@ -53,6 +58,11 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
         print_json(client.get(*arguments))
     else:
         lines = client.command(verb, *map(parse_value, arguments))
+        if not lines and verb not in _SILENT:
+            complain(
+                f'the name server does not know "{verb}"; `yarpy name help` lists its commands'
+            )
+            return 1
         if as_json:
             print_json(lines)
         else:

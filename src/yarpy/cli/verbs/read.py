@@ -1,10 +1,11 @@
 """`yarpy read PORT [REMOTE...] [envelope] [trim [N]] [once]`: print what arrives at a port.
 
 Prints each message as a line of Bottle text. An integer and a string are a line that somebody sent
-verbatim: only the string is printed, and the integer 1 ends the reader.
+verbatim: only the string is printed, and the integer 1 ends the reader. Of an image the kind and
+the size are printed; `--json` prints all of it.
 
-Differs from C++: a port that cannot be opened is exit code 1, not 0; standard output holds the
-messages and nothing else, log lines go to standard error.
+Differs from C++: an image is not printed byte by byte; a port that cannot be opened is exit code 1,
+not 0; standard output holds the messages and nothing else, log lines go to standard error.
 Exit codes: 0 also after ^C; 1 the port cannot be opened.
 """
 
@@ -26,7 +27,7 @@ TRIM = 80
 
 
 @dataclass(frozen=True)
-class Wish:
+class Intent:
     """The words behind the port's name, in any order."""
 
     remotes: list[str] = field(default_factory=list)
@@ -35,7 +36,7 @@ class Wish:
     once: bool = False
 
 
-def parse_words(words: Sequence[str]) -> Wish:
+def parse_words(words: Sequence[str]) -> Intent:
     """Read `[REMOTE...] [envelope] [trim [N]] [once]`."""
     remotes: list[str] = []
     found: dict[str, Any] = {}
@@ -48,11 +49,11 @@ def parse_words(words: Sequence[str]) -> Wish:
             found["trim"] = int(rest.pop(0)) if rest and rest[0].isdigit() else TRIM
         else:
             remotes.append(word)
-    return Wish(remotes, **found)
+    return Intent(remotes, **found)
 
 
 class Printer:
-    """Prints messages the way the user wishes."""
+    """Prints messages the way the user wants them."""
 
     def __init__(self, envelope: bool = False, trim: int = 0, as_json: bool = False) -> None:
         self._envelope = envelope
@@ -77,7 +78,7 @@ class Printer:
             return True
         if self._envelope and message.envelope:
             print_line(f"{message.envelope} ")
-        line = bottle[1] if verbatim else bottle.to_text()
+        line = bottle[1] if verbatim else _summary(message) or bottle.to_text()
         print_line(line[: self._trim] if self._trim else line)
         return True
 
@@ -92,6 +93,14 @@ class Printer:
                 complain(f"a message from {message.source} cannot be printed: {error}")
             if once:
                 return
+
+
+def _summary(message: yarpy.Message) -> str:
+    """What an image is and how large; "" for what can be read as text."""
+    value = message.value
+    if not isinstance(value, yarpy.Image):
+        return ""
+    return f"<image {value.code} {value.width}x{value.height}, {len(message.payload)} bytes>"
 
 
 @click.command()
@@ -116,17 +125,17 @@ def command(
     PORT may be `...`, any name that is free.
     """
 
-    wish = parse_words(words)
-    printer = Printer(envelope or wish.envelope, trim or wish.trim, as_json)
+    intent = parse_words(words)
+    printer = Printer(envelope or intent.envelope, trim or intent.trim, as_json)
     try:
         with open_reader(port, port_type) as reader:
-            for remote in wish.remotes:
+            for remote in intent.remotes:
                 try:
                     hear_from(reader, remote)
                 except yarpy.YarpError as error:
                     complain(str(error))
             try:
-                printer.follow(reader, once or wish.once)
+                printer.follow(reader, once or intent.once)
             except Interrupted:
                 click.echo("Interrupting...", err=True)
     except Interrupted:

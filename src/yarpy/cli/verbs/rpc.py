@@ -5,8 +5,8 @@ begins with `[many]` as `Responses:` and one line for each of its elements. No p
 one that is asked sees the name `anon_rpc`, or NAME. With `--client LOCALPORT` there is one, waiting
 for somebody to connect it to a server, and replies are printed bare.
 
-When the target goes away it is asked again, up to three times, a moment apart. At a terminal Tab
-offers the commands that the target's `help` lists.
+When the target goes away it is asked again, up to three times, a moment apart. `help` is asked of
+control boards as they want it asked, `[help] [all]`; at a terminal Tab offers what it lists.
 Exit codes: 0 at the end of input; 1 the target cannot be reached.
 """
 
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 PAUSES: Final = (0.2, 0.6, 1.2)  # seconds before each attempt to reach a target that went away
 COMMANDS: Final = "*** Available commands:"
+HELP: Final = ["help"]
+HELP_ALL: Final = [yarpy.Vocab("help"), yarpy.Vocab("all")]
 
 Ask = Callable[[Any], Any]
 
@@ -83,7 +85,10 @@ def converse(ask: Ask, history: str, label: str = "Response: ") -> None:
         except yarpy.DecodeError as error:
             complain(str(error))
             continue
-        print_reply(ask(question), label)
+        reply = ask(question)
+        if question == HELP and _refused(reply):
+            reply = ask(yarpy.Bottle(HELP_ALL))
+        print_reply(reply, label)
 
 
 def print_reply(reply: Any, label: str = "Response: ") -> None:
@@ -110,11 +115,14 @@ def many(reply: Any) -> list[Any] | None:
 
 
 def commands_of(ask: Ask) -> list[str]:
-    """The words that the target's `help` lists, [] when it has no such list."""
+    """The commands that the target's `help` lists, [] when it has no such list."""
     from yarpy.data.text import plain_text
 
     try:
-        reply = ask(yarpy.Bottle(["help"]))
+        reply = ask(yarpy.Bottle(HELP))
+        if _refused(reply):  # a control board: its lines are the commands
+            found = many(ask(yarpy.Bottle(HELP_ALL))) or []
+            return [plain_text(item).replace("[", "").replace("]", "") for item in found]
     except YarpError:
         return []
     items = many(reply)
@@ -122,6 +130,10 @@ def commands_of(ask: Ask) -> list[str]:
         items = reply[0] if reply and isinstance(reply[0], list) else reply
     words = [plain_text(item) for item in items]
     return words[1:] if words[:1] == [COMMANDS] else []
+
+
+def _refused(reply: Any) -> bool:
+    return bool(reply) and isinstance(reply[0], yarpy.Vocab) and reply[0] in ("nak", "fail")
 
 
 def talk(port: str, name: str = "", admin: bool = False) -> int:

@@ -6,10 +6,16 @@ Exit codes: 0 it answers; 1 it does not, or none is configured.
 from __future__ import annotations
 
 import os
+from typing import TYPE_CHECKING
 
 import click
 
 from yarpy.cli.output import print_json, print_line
+from yarpy.cli.stderr import complain
+from yarpy.errors import NoNameServer
+
+if TYPE_CHECKING:
+    from yarpy.names.client import YarpNameClient
 
 FRAME = "=" * 57
 
@@ -47,7 +53,7 @@ def command(as_json: bool) -> int:
         if not as_json:
             print_line(f"Looking for name server on {server.host}, port number {server.port}")
             print_line("If there is a long delay, try:\n  yarpy conf --clean")
-        alive = client_of(server).alive()
+        alive = _serves(client_of(server))
         code = 0 if alive else code
         if as_json:
             print_json(
@@ -77,3 +83,14 @@ def command(as_json: bool) -> int:
                 )
             )
     return code
+
+
+def _serves(client: YarpNameClient) -> bool:
+    """Whether a name server answers there; what else does is said."""
+    if not client.alive():
+        return False
+    try:
+        return bool(client.list())
+    except NoNameServer as error:
+        complain(str(error))
+        return False
