@@ -13,6 +13,7 @@ TREE = [
     # ours, what else it is
     ("AddressError", ValueError),
     ("UnknownName", LookupError),
+    ("WrongPort", errors.UnknownName),
     ("UnknownPlugin", LookupError),
     ("NoNameServer", ConnectionError),
     ("PortClosed", RuntimeError),

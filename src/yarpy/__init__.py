@@ -55,6 +55,7 @@ _WHERE = {
     "YarpError": "yarpy.errors",
     "AddressError": "yarpy.errors",
     "UnknownName": "yarpy.errors",
+    "WrongPort": "yarpy.errors",
     "UnknownPlugin": "yarpy.errors",
     "NoNameServer": "yarpy.errors",
     "PortClosed": "yarpy.errors",
@@ -100,6 +101,7 @@ if TYPE_CHECKING:
     from yarpy.errors import Truncated as Truncated
     from yarpy.errors import UnknownName as UnknownName
     from yarpy.errors import UnknownPlugin as UnknownPlugin
+    from yarpy.errors import WrongPort as WrongPort
     from yarpy.errors import YarpError as YarpError
     from yarpy.names.base import NameClient as NameClient
     from yarpy.names.client import YarpNameClient as YarpNameClient

@@ -3,6 +3,7 @@
     YarpError
     |-- AddressError (ValueError)        a name, address or carrier string that cannot be used
     |-- UnknownName (LookupError)        no name service knows this port
+    |   `-- WrongPort                    ... or another port has its number by now
     |-- UnknownPlugin (LookupError)      no installed carrier, type, monitor or command of that name
     |-- NoNameServer (ConnectionError)   no name server answers
     |-- PortClosed (RuntimeError)        the port was closed or interrupted meanwhile
@@ -31,6 +32,10 @@ class AddressError(YarpError, ValueError):
 
 class UnknownName(YarpError, LookupError):
     """No name service knows the port."""
+
+
+class WrongPort(UnknownName):
+    """Where a name leads, another port listens: the entry of the name service is out of date."""
 
 
 class UnknownPlugin(YarpError, LookupError):

@@ -142,13 +142,15 @@ def masked(text: str) -> str:
 @dataclass(slots=True, init=False)
 class Route:
     """Who talks to whom over what: one connection. `port` is the accepting side's TCP port,
-    `host` its address, where it was dialled."""
+    `host` its address, where it was dialled. `peer` is what the port that was dialled calls itself,
+    as far as it was asked and can say."""
 
     source: str
     target: str
     spec: CarrierSpec
     port: int
     host: str
+    peer: str = field(compare=False)
 
     def __init__(
         self,
@@ -157,12 +159,14 @@ class Route:
         carrier: str | CarrierSpec = "tcp",
         port: int = 0,
         host: str = "",
+        peer: str = "",
     ) -> None:
         self.source = source
         self.target = target
         self.spec = parse_carrier(carrier) if isinstance(carrier, str) else carrier
         self.port = port
         self.host = host
+        self.peer = peer
 
     @property
     def carrier(self) -> str:

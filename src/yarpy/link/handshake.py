@@ -84,15 +84,7 @@ def greet(
     route.host, route.port = contact.host, contact.port
     carrier = find_carrier(route.spec.base)(route)
     deadline = time.monotonic() + timeout
-    try:
-        transport = dial(contact.host, contact.port, timeout)
-    except TimeoutError as error:
-        raise Timeout(f"{contact.address} does not answer") from error
-    except OSError as error:
-        raise LinkClosed(
-            f"nobody answers at {contact.address} ({error.strerror or error})"
-        ) from error
-    driver = Driver(transport, limit, group)
+    driver = call(contact, timeout, limit, group)
     try:
         if key and (not carrier.foreign or _speaks_first(driver)):
             driver.run(prove_initiator(driver.stream, key), time.monotonic() + PROVING)
@@ -106,6 +98,24 @@ def greet(
         driver.transport.close()
         raise
     return driver, carrier
+
+
+def call(
+    contact: Contact,
+    timeout: float = PATIENCE,
+    limit: int = DEFAULT_LIMIT,
+    group: Callable[[str], tuple[str, int]] | None = None,
+) -> Driver:
+    """Dial `contact`; nothing is said yet. Raises LinkClosed (nobody listens), Timeout."""
+    try:
+        transport = dial(contact.host, contact.port, timeout)
+    except TimeoutError as error:
+        raise Timeout(f"{contact.address} does not answer") from error
+    except OSError as error:
+        raise LinkClosed(
+            f"nobody answers at {contact.address} ({error.strerror or error})"
+        ) from error
+    return Driver(transport, limit, group)
 
 
 def _speaks_first(driver: Driver) -> bool:

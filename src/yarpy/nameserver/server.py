@@ -15,6 +15,7 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING, Final, Self
 
 from yarpy.config.configuration import ROOT, Server, default_port
+from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -22,14 +23,14 @@ from yarpy.errors import YarpError
 from yarpy.link.inbound import Inbound
 from yarpy.log import logger
 from yarpy.names.address import is_loopback, local_addresses
-from yarpy.names.default import DEFAULT, client_of
+from yarpy.names.default import DEFAULT, client_of, secret
 from yarpy.nameserver.collector import Collector
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.folder import Folder
 from yarpy.nameserver.reply import Reply
 from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.topology import Action, Topology
-from yarpy.port import probe
+from yarpy.port import identity, probe
 from yarpy.port.assembly import open_hub
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Mailbox
@@ -254,7 +255,16 @@ class NameServer:
             return
         listed = probe.ask(contact, [Vocab("list"), Vocab("out"), action.destination])
         if not listed:
+            self._confirm(contact)
+            destination = self.service.store.query(action.destination)
+            if destination is not None:
+                self._confirm(destination)
             probe.ask(contact, [Vocab("add"), f"{action.carrier}:/{action.destination}"])
+
+    def _confirm(self, contact: Contact) -> None:
+        """Raise WrongPort if another port listens there than the one of that name."""
+        store = self.service.store
+        identity.confirm(contact, lambda name, key: store.values(name, key) or (), secret())
 
     # -- ending -----------------------------------------------------------------------------------
 

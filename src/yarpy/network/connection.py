@@ -27,11 +27,12 @@ from yarpy.errors import (
 )
 from yarpy.link.handshake import find_carrier
 from yarpy.names.base import NameClient
-from yarpy.names.default import DEFAULT
-from yarpy.port import probe, refusal
+from yarpy.names.default import DEFAULT, secret
+from yarpy.port import identity, probe, refusal
 from yarpy.port.connecting import unknown
 from yarpy.route import masked, parse_carrier
 
+_CONFIRMING = 2.0  # seconds for a port to say its name
 _POLL = 0.05  # seconds between looks while waiting
 
 
@@ -121,6 +122,15 @@ class Pairing:
         except (LinkClosed, Timeout, RemoteProtocolError) as error:
             name = self.target_text if self.pull else self.source_text
             raise LinkClosed(f"Cannot connect to port {name}: {error}") from error
+
+    def confirm(self, names: NameClient) -> None:
+        """Be sure that the ports of these names listen where they are registered, before one of
+        them sends to the other. Raises WrongPort if another port does."""
+        for contact in (self.here, self.there):
+            try:
+                identity.confirm(contact, names.get, secret(), _CONFIRMING)
+            except (LinkClosed, Timeout):
+                pass  # perhaps it can be reached from the other one, if not from here
 
     def existing(self) -> str:
         """The carrier of the connection that exists now, "" if there is none."""
@@ -222,6 +232,7 @@ def _connect(source: str, target: str, carrier: str | None, names: NameClient | 
     if pairing.topical:
         ask_server(names, ["subscribe", _decorated(source, ""), _decorated(target, carrier or "")])
         return "connection to topic added."
+    pairing.confirm(names or DEFAULT.current())
     active = pairing.source if pairing.pull else pairing.target
     address = f"/{active.address}{active.name}" if active.reachable else active.name
     reply = pairing.admin(Vocab("add"), f"{pairing.spec.whole}:/{address}")

@@ -24,13 +24,15 @@ from yarpy.errors import (
     Timeout,
     UnknownName,
     UnknownPlugin,
+    WrongPort,
     YarpError,
 )
+from yarpy.link.driver import Driver
 from yarpy.link.handshake import find_carrier, greet
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.names.address import is_local, is_loopback
-from yarpy.port import probe, refusal
+from yarpy.port import identity, probe, refusal
 from yarpy.port.disconnecting import close_output
 from yarpy.port.hub import Hub
 from yarpy.route import CarrierSpec, Route, masked, parse_carrier
@@ -42,8 +44,11 @@ _POLL: Final = 0.05  # seconds between attempts to reach a port that is not ther
 # -- for programs ---------------------------------------------------------------------------------
 
 
-def connect(hub: Hub, target: str, carrier: str, timeout: float | None) -> None:
-    """Connect `hub` to `target`; see Port.connect."""
+def connect(
+    hub: Hub, target: str, carrier: str, timeout: float | None, lost: Route | None = None
+) -> None:
+    """Connect `hub` to `target`, in place of the connection `lost` that broke, if given; see
+    Port.connect."""
     wanted = parse_contact(target)
     if not wanted.carrier or ":/" not in target:  # what is written in front of a target counts
         wanted = replace(wanted, carrier=carrier)
@@ -51,7 +56,7 @@ def connect(hub: Hub, target: str, carrier: str, timeout: float | None) -> None:
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
         try:
-            dial(hub, wanted, own=True)
+            dial(hub, wanted, lost, own=lost is None or lost.spec.own)
             return
         except YarpError as error:
             # A camera locks those out who try a wrong password again and again.
@@ -65,7 +70,7 @@ def _told(hub: Hub, wanted: Contact, target: str, error: YarpError) -> YarpError
     """The error with what it was about in front."""
     if isinstance(error, UnknownPlugin):
         return error
-    if isinstance(error, UnknownName):
+    if isinstance(error, UnknownName) and not isinstance(error, WrongPort):
         return unknown(target, hub.service())
     if isinstance(error, LoginRefused):
         return LoginRefused(f'"{hub.name}" is not admitted to "{target}": {error}')
@@ -111,6 +116,7 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
     if not find_carrier(parse_carrier(carrier).base).push:
         connect(hub, source, carrier, None)
         return
+    identity.confirm(contact, identity.properties_of(hub.service()), hub.key)
     target = hub.name if hub.registration.registered else f"/{hub.contact.address}"
     reply = probe.ask(contact, ["add", joined(target, carrier)], secret_=hub.key)
     if not reply or reply[0] != 0:
@@ -121,13 +127,14 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
 # -- one attempt ----------------------------------------------------------------------------------
 
 
-def dial(hub: Hub, wanted: Contact, own: bool = False) -> CarrierSpec:
+def dial(hub: Hub, wanted: Contact, lost: Route | None = None, own: bool = False) -> CarrierSpec:
     """Connect `hub` to the destination `wanted`, once; an existing connection to it is replaced.
+    `lost` is one that broke.
 
     `own`: its program says so, not somebody on the network.
 
-    Raises UnknownName, NoNameServer, UnknownPlugin, NotAllowed, LinkClosed, LoginRefused,
-    LocalProtocolError, RemoteProtocolError, PortClosed.
+    Raises UnknownName, WrongPort, NoNameServer, UnknownPlugin, NotAllowed, LinkClosed,
+    LoginRefused, LocalProtocolError, RemoteProtocolError, PortClosed.
     """
     spec = replace(parse_carrier(wanted.carrier or "tcp"), own=own)
     contact = hub.registration.locate(wanted)
@@ -143,13 +150,13 @@ def dial(hub: Hub, wanted: Contact, own: bool = False) -> CarrierSpec:
         raise NotAllowed(refusal.NO_HTTP.format(contact.name))
     target = wanted.label
     with hub.dialling.alone(target):
-        hub.crew.repair.give_up(hub, target)
         if contact.name:
             for old in hub.outputs:
                 if old.route.target == target:
                     close_output(hub, old)
         _check(hub, kind, spec)
-        open_output(hub, contact, target, spec)
+        open_output(hub, contact, target, spec, lost)
+        hub.crew.repair.give_up(hub, target)  # one that broke before is replaced
     return spec
 
 
@@ -176,8 +183,11 @@ def _asks(link: Outbound) -> bool:
     return not link.log and not link.carrier.delivery.lossy
 
 
-def open_output(hub: Hub, contact: Contact, target: str, spec: CarrierSpec) -> None:
-    """Dial `contact` and take the connection in. Raises as `dial`."""
+def open_output(
+    hub: Hub, contact: Contact, target: str, spec: CarrierSpec, lost: Route | None = None
+) -> None:
+    """Dial `contact` and take the connection in; `lost` is the one that it takes the place of.
+    Raises as `dial`."""
     route = Route(hub.name, target, spec, contact.port)
     try:
         chain = hub.monitoring.outgoing(route)
@@ -187,17 +197,15 @@ def open_output(hub: Hub, contact: Contact, target: str, spec: CarrierSpec) -> N
         raise LocalProtocolError(str(error)) from error
     try:
         try:
-            driver, speaker = greet(
-                contact, route, key=hub.key, group=hub.registration.group, limit=hub.limit
-            )
+            driver, speaker = _greet(hub, contact, route, lost)
         except (LinkClosed, Timeout):
             other = _other_address(hub, contact)
             if other is None:
                 raise
-            driver, speaker = greet(
-                other, route, key=hub.key, group=hub.registration.group, limit=hub.limit
-            )
+            driver, speaker = _greet(hub, other, route, lost)
             contact = other
+        if not route.peer and not identity.is_camera(route):
+            identity.learn(contact, route, hub.key)
         if not speaker.push:
             # Who dials a pull carrier is the one that receives.
             route.source, route.target = target, hub.name
@@ -223,6 +231,16 @@ def open_output(hub: Hub, contact: Contact, target: str, spec: CarrierSpec) -> N
         if isinstance(error, YarpError) and not isinstance(error, Timeout):
             raise
         raise LinkClosed(str(error)) from error
+
+
+def _greet(hub: Hub, contact: Contact, route: Route, lost: Route | None) -> tuple[Driver, Carrier]:
+    """Open the connection, once who listens is known to be who is meant."""
+    if lost is not None and lost.peer:
+        identity.confirm_again(contact, lost, hub.key)
+        route.peer = lost.peer
+    else:
+        route.peer = identity.confirm(contact, identity.properties_of(hub.service()), hub.key)
+    return greet(contact, route, key=hub.key, group=hub.registration.group, limit=hub.limit)
 
 
 def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:

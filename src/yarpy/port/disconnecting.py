@@ -6,6 +6,8 @@ The other side is told, so that it does not take the end for a failure and dial 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from yarpy.contact import Contact, parse_contact
 from yarpy.errors import NoNameServer, YarpError
 from yarpy.link.inbound import Inbound
@@ -34,6 +36,7 @@ def close_output(hub: Hub, link: Outbound) -> None:
     if known and link.carrier.connectionless:
         contact = _receiver(hub, link.route.target)
         if contact is not None:
+            contact = replace(contact, name=link.route.peer or contact.name)
             try:
                 probe.drop_input(contact, hub.name, secret_=hub.key)
             except (YarpError, OSError):

@@ -2,30 +2,37 @@
 connections, or by a Caller, again and again over one.
 
 Rules: whoever asks has no port of its own; un-rooted sender names, so that nobody is displaced; a
-time limit always. Source: core-3 sections 5.1, 6.3, 6.4.
+time limit always. Whoever is told to end a connection is asked for its name first, over the same
+line: a number that a name service remembers may be another port's by now. Source: core-3 sections
+5.1, 6.3, 6.4.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Final, Self
 
+from yarpy.carriers.auth import prove_initiator
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import LocalProtocolError, YarpError
+from yarpy.errors import LocalProtocolError, Timeout, WrongPort, YarpError
 from yarpy.link.driver import Driver
-from yarpy.link.handshake import find_carrier, greet
+from yarpy.link.handshake import PROVING, call, find_carrier, greet
 from yarpy.link.outbound import Outbound
 from yarpy.names.default import secret
 from yarpy.route import Route, parse_carrier
 from yarpy.wire.message import ADMIN, CALL, Message, Packet
+from yarpy.wire.steps import Steps
+from yarpy.wire.stream import ByteStream
 
 ANONYMOUS: Final = "anon_rpc"  # the name C++ tools give themselves
 TIMEOUT = 3.0  # seconds; a port that lives answers in milliseconds
+_LONGEST: Final = 4096  # bytes of a line with one name or two in it
 
 
 def ask(
@@ -60,38 +67,71 @@ def describe(
     return _lines(contact, "*", name, timeout, secret_)
 
 
-def drop_input(
-    contact: Contact, source: str, timeout: float = TIMEOUT, secret_: bytes | None = None
-) -> str:
-    """Ask a port to drop what comes from `source`: how connectionless senders say goodbye.
+def who(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = None) -> str:
+    """The name that the port at `contact` gives itself; "" if what listens there cannot say.
 
-    Returns the line it says.
+    Everything is said at once, so that it costs one journey there and back. Raises LinkClosed
+    (nobody listens there), Timeout (it is silent).
     """
-    route = Route("admin", contact.name, "text")
-    driver, _ = greet(contact, route, key=secret() if secret_ is None else secret_, timeout=timeout)
+    deadline = _deadline(timeout)
+    driver = call(contact, timeout)
+    key = secret() if secret_ is None else secret_
     try:
-        driver.stream.write(f"~{source}\r\nq\r\n".encode())
-        driver.flush()
-        driver.run(driver.stream.read_line(), _deadline(timeout))  # the welcome
-        return driver.run(driver.stream.read_line(), _deadline(timeout)).decode("utf-8", "replace")
+        if key:
+            driver.run(prove_initiator(driver.stream, key), min(deadline, _deadline(PROVING)))
+        return driver.run(_introduction(driver.stream), deadline)
+    except Timeout as error:
+        raise Timeout(
+            f"what listens at {contact.address} does not say who it is; its program may be stopped "
+            "or busy"
+        ) from error
+    except (YarpError, OSError):
+        return ""  # no YARP port, or one with another key
     finally:
         driver.transport.close()
 
 
+def _introduction(stream: ByteStream) -> Steps[str]:
+    stream.write(b"CONNACK admin\r\n*\r\n")
+    welcome = yield from stream.read_line(_LONGEST)
+    if not welcome.startswith(b"Welcome"):
+        return ""
+    return _own_name((yield from stream.read_line(_LONGEST)).decode("utf-8", "replace"))
+
+
+def _own_name(line: str) -> str:
+    """The name in the first line of a port's description of itself."""
+    head, _, rest = line.partition("This is ")
+    name, at, _ = rest.rpartition(" at ")
+    return name if at and not head else ""
+
+
+def drop_input(
+    contact: Contact, source: str, timeout: float = TIMEOUT, secret_: bytes | None = None
+) -> list[str]:
+    """Ask a port to drop what comes from `source`: how connectionless senders say goodbye.
+
+    Returns what it says to that. Raises WrongPort if another port listens there.
+    """
+    return _told(contact, f"~{source}", timeout, secret_)
+
+
 def drop_output(
     contact: Contact, target: str, timeout: float = TIMEOUT, secret_: bytes | None = None
-) -> None:
-    """Ask a port to stop sending to `target`; it ends the connection in good order."""
-    _lines(contact, f"!{target}", "admin", timeout, secret_)
+) -> list[str]:
+    """Ask a port to stop sending to `target`; it ends the connection in good order.
+
+    Returns and raises as `drop_input`.
+    """
+    return _told(contact, f"!{target}", timeout, secret_)
 
 
 def is_alive(contact: Contact, key: bytes = b"") -> bool:
-    """Whether the port of that name really listens at that address."""
+    """Whether the port of that name answers at that address."""
     try:
-        lines = _lines(contact, "*", "<ping>", 1.0, key)
-    except (YarpError, OSError):
+        return who(contact, secret_=key) == contact.name
+    except YarpError:
         return False
-    return bool(lines) and lines[0].startswith(f"This is {contact.name} at ")
 
 
 def answers(contact: Contact, timeout: float = TIMEOUT) -> bool:
@@ -109,20 +149,44 @@ def is_ours(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = 
     return not reply or reply[0] != Vocab("fail")
 
 
+def _told(contact: Contact, command: str, timeout: float, secret_: bytes | None) -> list[str]:
+    """Tell the port called `contact.name`, and no other, to do something."""
+    with _text_line(contact, "admin", timeout, secret_) as driver:
+        found = _own_name((_asked(driver, "*", timeout) or [""])[0])
+        if contact.name and found and found != contact.name:
+            raise another_port(contact, contact.name, found)
+        return _asked(driver, command, timeout)
+
+
+def another_port(contact: Contact, wanted: str, found: str) -> WrongPort:
+    """The error for a number that belongs to another port than the one called `wanted`."""
+    found = f'the port "{found}"' if found else "something that does not say its name"
+    hint = f": start the program of {wanted} again" if wanted != f"/{contact.address}" else ""
+    return WrongPort(f'not "{wanted}" listens at {contact.address}, but {found}{hint}')
+
+
 def _lines(
     contact: Contact, command: str, name: str, timeout: float, secret_: bytes | None
 ) -> list[str]:
+    with _text_line(contact, name, timeout, secret_) as driver:
+        return _asked(driver, command, timeout)
+
+
+@contextmanager
+def _text_line(
+    contact: Contact, name: str, timeout: float, secret_: bytes | None
+) -> Iterator[Driver]:
     route = Route(name, contact.name, "text_ack")
     driver, _ = greet(contact, route, key=secret() if secret_ is None else secret_, timeout=timeout)
     try:
-        driver.stream.write(command.encode() + b"\r\n")
-        driver.flush()
-        return list(_until_ack(driver, timeout))
+        yield driver
     finally:
         driver.transport.close()
 
 
-def _until_ack(driver: Driver, timeout: float) -> list[str]:
+def _asked(driver: Driver, command: str, timeout: float) -> list[str]:
+    """The lines that answer a port command."""
+    driver.stream.write(command.encode() + b"\r\n")
     lines: list[str] = []
     deadline = _deadline(timeout)
     while len(lines) < 10_000:

@@ -24,7 +24,7 @@ from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
-from yarpy.port import connecting, disconnecting, probe
+from yarpy.port import connecting, disconnecting, identity, probe
 from yarpy.port.hub import Hub
 from yarpy.port.keepalive import Link, Pulse
 from yarpy.route import Route
@@ -265,7 +265,7 @@ class Repairer:
             contact = hub.registration.locate(parse_contact(peer))
             if contact is None:
                 return False
-            connecting.open_output(hub, contact, peer, route.spec)
+            connecting.open_output(hub, contact, peer, route.spec, route)
             if item in self._lost:
                 way = "from" if item.incoming else "to"
                 log.info("%s: the connection %s %s is back", hub.name, way, peer)
@@ -321,14 +321,30 @@ pending = REPAIR.pending
 
 def output_lost(hub: Hub, route: Route) -> None:
     """An output broke without anybody asking for it."""
-    if route.spec.log is None:
-        REPAIR.add(hub, route, incoming=False)
+    if route.spec.log is not None:
+        return
+    if not identity.has_proof(route):
+        _leave(hub, "to", route.target)
+        return
+    REPAIR.add(hub, route, incoming=False)
 
 
 def input_lost(hub: Hub, route: Route) -> None:
     """An input ended without a goodbye."""
-    if _is_pulled(route) or (route.source.startswith("/") and not _is_address(route.source)):
+    if _is_pulled(route) and not identity.has_proof(route):
+        _leave(hub, "from", route.source)
+    elif _is_pulled(route) or (route.source.startswith("/") and not _is_address(route.source)):
         REPAIR.add(hub, route, incoming=True)
+
+
+def _leave(hub: Hub, way: str, peer: str) -> None:
+    log.warning(
+        "%s: the connection %s %s broke and is not dialled again by itself: what listened there "
+        "did not say its name, so nobody could tell whether it is the same again",
+        hub.name,
+        way,
+        peer,
+    )
 
 
 def _is_address(name: str) -> bool:

@@ -20,6 +20,7 @@ from yarpy.errors import (
     LoginRefused,
     NotAllowed,
     UnknownName,
+    WrongPort,
     YarpError,
 )
 
@@ -27,6 +28,7 @@ from yarpy.errors import (
 # there yet, a camera that still starts, a program that died.
 _TABLE: Final[tuple[tuple[type[YarpError], str, type[YarpError]], ...]] = (
     # our error, the line, what that line means in the answer of another port
+    (WrongPort, "Cannot connect to {to}: {why}", LinkClosed),
     (UnknownName, "Do not know how to connect to {to}", UnknownName),
     (AddressError, "Do not know how to connect to {to}", UnknownName),
     (LoginRefused, "Not admitted to {to}: {why}", LoginRefused),

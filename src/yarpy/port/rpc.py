@@ -12,10 +12,12 @@ from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, YarpError
 from yarpy.link.outbound import Outbound
 from yarpy.log import logger
 from yarpy.names.base import NameClient
+from yarpy.port import connecting
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.mailbox import Callback, Mailbox
+from yarpy.route import Route
 from yarpy.wire.message import CALL, UNSENDABLE, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
 
@@ -139,6 +141,7 @@ class RpcClient(BasePort):
         )
         self._target = ""
         self._carrier = carrier
+        self._last: Route | None = None  # of the last call; the next has to reach the same port
         if target:
             try:
                 self.connect(target, carrier)
@@ -149,6 +152,7 @@ class RpcClient(BasePort):
     def connect(self, target: str, carrier: str = "tcp", timeout: float | None = None) -> RpcClient:
         """Choose the server to ask; see Port.connect."""
         super().connect(target, carrier, timeout)
+        self._last = None
         self._target, self._carrier = target, carrier
         return self
 
@@ -157,7 +161,8 @@ class RpcClient(BasePort):
 
         One argument that is a list, dict or message object is the question itself; otherwise the
         arguments are its elements. Raises Timeout after `timeout` seconds (10 ms accuracy),
-        LinkClosed when the server is gone, LocalProtocolError when no server is connected.
+        LinkClosed when the server is gone, WrongPort when another port listens where it was,
+        LocalProtocolError when no server is connected.
         """
         message = self.ask(
             args[0] if len(args) == 1 and _is_message(args[0]) else Bottle(args), timeout
@@ -189,17 +194,20 @@ class RpcClient(BasePort):
 
     def _link(self) -> Outbound:
         """The connection to the server: the one there is, if it lives, else a new one."""
-        target, carrier = self._target, self._carrier
         for link in self._hub.outputs:
             if link.carrier.delivery.lossy:
                 continue  # somebody looks on
+            self._last = link.route
             if not link.ended():
                 return link
             # The server was restarted, or the last call did not end well.
-            target, carrier = link.route.target, link.route.carrier
             self._hub.drop_output(link, "the server hung up")
+        last = self._last
+        target, carrier = self._target, self._carrier
+        if last is not None:
+            target, carrier = last.target, last.spec.whole
         if target:
-            super().connect(target, carrier)
+            connecting.connect(self._hub, target, carrier, None, last)
             for link in self._hub.outputs:
                 if not link.carrier.delivery.lossy:
                     return link

@@ -1,0 +1,92 @@
+"""Identity: is the port that listens at an address the one whose name led there?
+
+Rules: a name service may remember a number that belongs to another port by now, and a robot's arm
+must not get what was meant for its camera. So who listens is asked for its name before a
+connection to a name is made, and again before a broken one is dialled again. A name that somebody
+entered by hand is an alias or no YARP port at all: it may lead anywhere the first time. An address
+was chosen by whoever wrote it; who listens there is asked afterwards, for the next time.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable
+from typing import Final
+
+from yarpy.contact import Contact
+from yarpy.errors import Timeout, YarpError
+from yarpy.link.handshake import find_carrier
+from yarpy.names.base import NameClient
+from yarpy.port import probe
+from yarpy.route import Route
+
+PATIENCE: Final = 10.0  # seconds; as for a greeting
+
+# What a name service knows of a name: the values of a property.
+Properties = Callable[[str, str], Iterable[object]]
+
+
+def confirm(
+    contact: Contact, properties: Properties | None, key: bytes, timeout: float | None = None
+) -> str:
+    """The name of the port that listens where `contact.name` should; "" if it cannot say.
+
+    Raises WrongPort (another port), LinkClosed (nobody listens), Timeout (it is silent).
+    """
+    if not contact.name or contact.carrier not in ("", "tcp"):
+        return ""
+    try:
+        found = probe.who(contact, timeout or PATIENCE, key)
+    except Timeout:
+        if _by_hand(contact.name, properties):
+            return ""
+        raise
+    if found and found != contact.name and not _by_hand(contact.name, properties):
+        raise probe.another_port(contact, contact.name, found)
+    return found
+
+
+def confirm_again(contact: Contact, route: Route, key: bytes, timeout: float | None = None) -> None:
+    """As `confirm`, for the peer that `route` had before it broke."""
+    found = probe.who(contact, timeout or PATIENCE, key)
+    if found != route.peer:
+        raise probe.another_port(contact, route.peer, found)
+
+
+def has_proof(route: Route) -> bool:
+    """Whether a broken connection may be dialled again by itself: its peer can be asked for its
+    name, or it is a camera, which has none and is sent nothing."""
+    return bool(route.peer) or is_camera(route)
+
+
+def is_camera(route: Route) -> bool:
+    """Whether what comes over such a connection may come from something that is no port."""
+    kind = find_carrier(route.spec.base)
+    return kind.foreign and not kind.push
+
+
+def learn(contact: Contact, route: Route, key: bytes) -> None:
+    """Ask, in a thread of its own, whom a new connection has reached."""
+
+    def ask() -> None:
+        try:
+            route.peer = route.peer or probe.who(contact, PATIENCE, key)
+        except YarpError:
+            pass  # it cannot say
+
+    threading.Thread(target=ask, name=f"yarpy who is {contact.address}", daemon=True).start()
+
+
+def properties_of(names: NameClient | None) -> Properties | None:
+    """What `names` knows of names."""
+    return None if names is None else names.get
+
+
+def _by_hand(name: str, properties: Properties | None) -> bool:
+    """Whether no port told the name service of itself under that name."""
+    if properties is None:
+        return False
+    try:
+        return not list(properties(name, "process"))
+    except YarpError:
+        return False
