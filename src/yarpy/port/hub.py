@@ -96,6 +96,7 @@ class Hub:
     ) -> None:
         self.registration = registration
         self.mailbox = mailbox
+        self.receive: Callable[[Inbound, Message], None] = mailbox.put  # what links call
         self.crew = crew
         self.admits_outputs = admits_outputs
         self.rpc = rpc
@@ -234,9 +235,6 @@ class Hub:
                 old.close()
                 if old.thread is not None and old.thread is not threading.current_thread():
                     old.thread.join(2.0)
-
-    def receive(self, link: Inbound, message: Message) -> None:
-        self.mailbox.put(link, message)
 
     def administer(self, link: Inbound, message: Message) -> Bottle:
         return self.crew.administer(self, message)

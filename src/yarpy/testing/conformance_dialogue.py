@@ -15,7 +15,7 @@ from typing import Any
 from unittest import SkipTest
 
 from yarpy import registry
-from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.carriers.base import MAGIC_SIZE, Carrier, Delivery, Limits
 from yarpy.errors import YarpError
 from yarpy.testing.conformance_case import ENVELOPE, ConformanceCase
 from yarpy.testing.drive import Dialogue, End, Stalled
@@ -39,6 +39,8 @@ class DialogueConformance(ConformanceCase):
         assert ":" not in carrier.name, "`:` ends a carrier"
         assert len(carrier.magic) <= MAGIC_SIZE, f"the magic has more than {MAGIC_SIZE} bytes"
         assert carrier.spelling in ("binary", "text", "object"), carrier.spelling
+        assert isinstance(carrier.delivery, Delivery), f"delivery is {carrier.delivery!r}"
+        assert isinstance(carrier.limits, Limits), f"limits is {carrier.limits!r}"
 
     def test_its_own_greeting_is_recognised(self) -> None:
         """Among all installed carriers the first eight bytes choose this one."""
