@@ -12,8 +12,8 @@ It travels to the other side as a *specifier*: the sender's name, and a group `(
 addition, where every dot has become a space.
 
 Rules: pure. A connection has one `Route`, and that holds the one `CarrierSpec`: nobody looks into
-carrier strings himself. What everybody may see is `text`, without the password. Source: core-3
-section 6.1.
+carrier strings himself. What everybody may see is `text`, without the password. Source: core-1
+sections 1.6, 1.12.
 
     >>> spec = parse_carrier("mjpeg+path.a.b+password.x+y+recv.priority+tc.0.5")
     >>> spec.base, spec.value("path"), spec.text

@@ -241,10 +241,11 @@ def _connect(source: str, target: str, carrier: str | None, names: NameClient | 
         return text
     way = f'"{masked(source)}" -> "{masked(target)}" over {pairing.spec}'
     error = refusal.error(text, way)
-    try:
-        find_carrier(pairing.spec.base)
-    except UnknownPlugin as unheard:  # so it may be a slip of the pen
-        raise UnknownPlugin(f"{error}; {unheard}") from error
+    if isinstance(error, LinkClosed):
+        try:
+            find_carrier(pairing.spec.base)
+        except UnknownPlugin as unheard:  # so it may be a slip of the pen
+            raise UnknownPlugin(f"{error}; {unheard}") from error
     raise error
 
 
