@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 EXTRA ?= test
 
-.PHONY: demo test pure links programs stress check bench clean
+.PHONY: demo test pure links programs stress chaos soak check bench clean
 .NOTPARALLEL: # the stages, in their order
 
 # What yarpy itself needs, told while it comes.
@@ -33,6 +33,15 @@ pure links programs: $(VENV)/.ready
 # The same on a loaded machine, with the patience that this takes.
 stress: $(VENV)/.ready
 	YARPY_TEST_PATIENCE=4 $(BIN)/python tests/support/busy.py $(MAKE) test
+
+# Kills, stops and lies for ten minutes, and the table of docs/reliability.md.
+chaos: $(VENV)/.ready
+	$(BIN)/python tests/chaos/run.py
+
+# An hour, or as long as is said: whether memory and descriptors stay what they are.
+SECONDS ?= 3600
+soak: $(VENV)/.ready
+	$(BIN)/python tests/chaos/soak.py $(SECONDS)
 
 check: $(VENV)/.ready
 	$(BIN)/ruff check .
