@@ -45,7 +45,7 @@ def test_what_their_ports_do_not_do_is_refused(peer: CppProgram) -> None:
     peer.do(TWO_PORTS)
     with pytest.raises(yarpy.UnknownPlugin, match="refused: Cannot connect to shmem://cpp/in; no"):
         yarpy.connect("/cpp/out", "/cpp/in", "shmem")
-    with yarpy.Port("/ours/out"), yarpy.Port("/ours/in"):
+    with yarpy.Port("/ours/out") as ours, yarpy.Port("/ours/in"):
         for source, target in (
             ("/cpp/out", "/cpp/in"),
             ("/cpp/out", "/ours/in"),
@@ -59,6 +59,8 @@ def test_what_their_ports_do_not_do_is_refused(peer: CppProgram) -> None:
             yarpy.YarpError, match="Cannot connect to unix_stream://cpp/in: the peer"
         ):
             yarpy.connect("/ours/out", "/cpp/in", "unix_stream")
+        with pytest.raises(yarpy.NotAllowed, match="the carrier local would crash: use tcp"):
+            ours.connect("/cpp/in", "local")  # and crashed it, before
     assert peer.do("source.getOutputCount()") == 0
 
 

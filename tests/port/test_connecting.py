@@ -196,7 +196,6 @@ def test_other_ports_may_be_connected_to_themselves(names: LocalNames) -> None:
         assert [both.read(timeout=5).value[0] for _ in range(600)] == [*range(600)]
 
 
-@pytest.mark.parametrize("carrier", ["unix_stream", "local"])
 @pytest.mark.parametrize(
     ("answer", "words"),
     [
@@ -208,7 +207,7 @@ def test_other_ports_may_be_connected_to_themselves(names: LocalNames) -> None:
     ],
 )
 def test_peer_that_does_not_come_to_the_meeting_place(
-    answer: bytes, words: str, carrier: str, names: LocalNames
+    answer: bytes, words: str, names: LocalNames
 ) -> None:
     """Nobody waits there until the time is over."""
     with socket.create_server(("127.0.0.1", 0)) as peer, Port("/out", names=names) as out:
@@ -221,5 +220,5 @@ def test_peer_that_does_not_come_to_the_meeting_place(
 
         threading.Thread(target=serve, daemon=True).start()
         with pytest.raises(RemoteProtocolError, match=words):
-            out.connect(f"/127.0.0.1:{peer.getsockname()[1]}", carrier)
+            out.connect(f"/127.0.0.1:{peer.getsockname()[1]}", "unix_stream")
         assert not out.outputs

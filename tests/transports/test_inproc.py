@@ -103,3 +103,14 @@ def test_carries_objects_only() -> None:
     near.set_dscp(8)  # no packets, nothing to do
     near.close()
     far.close()
+
+
+def test_an_end_that_hears_that_nobody_comes_leaves_the_meeting_place() -> None:
+    end = open_inproc(False, NEAR, FAR)
+
+    def look() -> None:
+        raise RemoteProtocolError("not here")
+
+    with pytest.raises(RemoteProtocolError, match="not here"):
+        end.ready(look)
+    assert MEETING.find((NEAR[1], FAR[1])) is None

@@ -148,6 +148,11 @@ def dial(hub: Hub, wanted: Contact, lost: Route | None = None, own: bool = False
     kind = find_carrier(spec.base)
     if kind.name == "http" and contact.name and not probe.is_ours(contact, secret_=hub.key):
         raise NotAllowed(refusal.NO_HTTP.format(contact.name))
+    if kind.name == "local" and not probe.is_ours(contact, secret_=hub.key):
+        raise NotAllowed(
+            f'"{contact.name or contact.address}" is a port of C++ YARP in another program, which '
+            "the carrier local would crash: use tcp"
+        )
     target = wanted.label
     with hub.dialling.alone(target):
         if contact.name:
