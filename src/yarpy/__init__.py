@@ -20,6 +20,7 @@ _WHERE = {
     "BufferedPort": "yarpy.port.port",
     "RpcServer": "yarpy.port.rpc",
     "RpcClient": "yarpy.port.rpc",
+    "Connection": "yarpy.port.connection",
     "ConnectionEvent": "yarpy.port.connection",
     "Message": "yarpy.wire.message",
     "Page": "yarpy.carriers.http.page",
@@ -43,7 +44,7 @@ _WHERE = {
     "FlexImage": "yarpy.data.image",
     "Sound": "yarpy.data.sound",
     "PointCloud": "yarpy.data.pointcloud",
-    "connect": "yarpy.network.connection",
+    "connect": "yarpy.network.remote",
     "disconnect": "yarpy.network.connection",
     "is_connected": "yarpy.network.connection",
     "exists": "yarpy.network.connection",
@@ -108,13 +109,14 @@ if TYPE_CHECKING:
     from yarpy.nameserver.local import LocalNames as LocalNames
     from yarpy.nameserver.server import NameServer as NameServer
     from yarpy.network.connection import admin as admin
-    from yarpy.network.connection import connect as connect
     from yarpy.network.connection import disconnect as disconnect
     from yarpy.network.connection import exists as exists
     from yarpy.network.connection import is_connected as is_connected
     from yarpy.network.connection import ping as ping
     from yarpy.network.connection import query as query
     from yarpy.network.connection import wait_for as wait_for
+    from yarpy.network.remote import connect as connect
+    from yarpy.port.connection import Connection as Connection
     from yarpy.port.connection import ConnectionEvent as ConnectionEvent
     from yarpy.port.port import BufferedPort as BufferedPort
     from yarpy.port.port import Port as Port

@@ -27,7 +27,7 @@ from yarpy.port import port as plain
 from yarpy.port import rpc
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
-from yarpy.port.connection import Connection
+from yarpy.port.connection import PortConnection
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.port import MessagePort
 from yarpy.wire.message import Answer, Message
@@ -121,20 +121,20 @@ class Port:
         return self._port.name if self._port is not None else self._name
 
     @property
-    def inputs(self) -> list[Connection]:
+    def inputs(self) -> list[PortConnection]:
         """The connections that bring messages here."""
         return self.port.inputs
 
     @property
-    def outputs(self) -> list[Connection]:
+    def outputs(self) -> list[PortConnection]:
         """The connections that take messages away."""
         return self.port.outputs
 
     async def connect(
         self, target: str, carrier: str = "tcp", timeout: float | None = None
-    ) -> None:
+    ) -> PortConnection:
         """Send what this port writes to `target`; see `yarpy.Port.connect`."""
-        await asyncio.to_thread(self.port.connect, target, carrier, timeout)
+        return await asyncio.to_thread(self.port.connect, target, carrier, timeout)
 
     async def disconnect(self, target: str) -> bool:
         """End the connections to `target`; whether there were any."""

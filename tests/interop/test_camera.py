@@ -40,7 +40,7 @@ def test_camera_is_seen_comes_back_and_is_let_go() -> None:
     with viewer() as (names, view):
         camera = WebCamera()
         name, port = camera.name, camera.server_port
-        line = network.connect(name, "/view", CARRIER, names=names)
+        line = network.connect(name, "/view", CARRIER, names=names).reply
         assert line == f"Added connection from /view to {CARRIER}:/{name}"
         assert is_the_picture(view.read(timeout=PATIENCE).value)
         (link,) = view.inputs

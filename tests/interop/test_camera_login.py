@@ -76,7 +76,7 @@ def test_digest(
     algorithm: str, qop: str, names: yarpy.LocalNames, view: yarpy.BufferedPort
 ) -> None:
     with camera(algorithm, qop=qop) as server:
-        line = network.connect(server.name, "/view", CARRIER + WORDS, names=names)
+        line = network.connect(server.name, "/view", CARRIER + WORDS, names=names).reply
         assert is_the_picture(view.read(timeout=PATIENCE).value)
         assert server.logins[0] == ""
         assert server.logins[1].startswith("Digest ")

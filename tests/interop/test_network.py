@@ -24,7 +24,7 @@ def test_we_wire_their_ports(peer: CppProgram) -> None:
     assert not yarpy.is_connected("/cpp/out", "/cpp/in")
     assert not yarpy.disconnect("/cpp/out", "/cpp/in")
     for carrier in CARRIERS:
-        text = yarpy.connect("/cpp/out", "/cpp/in", carrier)
+        text = yarpy.connect("/cpp/out", "/cpp/in", carrier).reply
         assert text == f"Added connection from /cpp/out to {carrier}://cpp/in"
         assert yarpy.is_connected("/cpp/out", "/cpp/in")
         assert yarpy.is_connected("/cpp/out", "/cpp/in", carrier)

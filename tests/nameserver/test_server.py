@@ -319,7 +319,7 @@ def test_topic_joins_publishers_and_subscribers() -> None:
         yarpy.Port("/first") as first,
         yarpy.Port("/second") as second,
     ):
-        assert network.connect("/talker", "topic://news") == "connection to topic added."
+        assert network.connect("/talker", "topic://news").reply == "connection to topic added."
         network.connect("topic://news", "/first")
         network.connect("topic://news", "/second")
         assert talker.wait_for_outputs(2, timeout=5)

@@ -110,7 +110,7 @@ def test_connect_and_disconnect(
     source: str, target: str, carrier: str | None, line: str, names: LocalNames
 ) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
-        assert network.connect(source, target, carrier, names=names) == line
+        assert network.connect(source, target, carrier, names=names).reply == line
         assert len(out.outputs) == 1
         assert network.is_connected("/out", "/in", names=names)
         assert network.exists("/out", "/in", names=names)
@@ -239,7 +239,7 @@ def test_endpoint_that_takes_no_commands_constrains_the_carrier(names: LocalName
 
 def test_default_name_server_is_used() -> None:
     with yarpy.NameServer(), yarpy.Port("/out") as out, yarpy.Port("/in") as in_:
-        assert yarpy.connect("/out", "/in") == "Added connection from /out to tcp://in"
+        assert yarpy.connect("/out", "/in").reply == "Added connection from /out to tcp://in"
         assert yarpy.exists("/in")
         assert yarpy.is_connected("/out", "/in")
         assert yarpy.wait_for("/in", timeout=1)
@@ -253,7 +253,7 @@ def test_default_name_server_is_used() -> None:
 
 def test_topics_are_asked_of_the_server() -> None:
     with yarpy.NameServer() as server, yarpy.Port("/out") as out, yarpy.Port("/in"):
-        assert network.connect("/out", "topic://news") == "connection to topic added."
+        assert network.connect("/out", "topic://news").reply == "connection to topic added."
         network.connect("topic://news", "/in", "fast_tcp")
         assert out.wait_for_outputs(timeout=5)
         assert network.disconnect("/out", "topic://news")

@@ -63,8 +63,9 @@ def test_connecting_in_every_spelling(names: LocalNames) -> None:
             (f"tcp://{address}/", "tcp", (f"/{address}/", "tcp")),
             (address, "fast_tcp", (f"/{address}/", "fast_tcp")),
         ):
-            assert out.connect(target, carrier) is out
+            made = out.connect(target, carrier)
             (connection,) = out.outputs
+            assert (made.target, made.carrier) == seen
             assert (connection.target, connection.carrier) == seen
             assert in_.wait_for_inputs(timeout=5)
             out.write([target])
@@ -119,7 +120,7 @@ def test_waiting_for_a_port_that_comes_later(names: LocalNames) -> None:
 
 def test_asking_somebody_to_send_here(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
-        assert in_.listen_to("/out", "fast_tcp") is in_
+        in_.listen_to("/out", "fast_tcp")
         assert [(o.target, o.carrier) for o in out.outputs] == [("/in", "fast_tcp")]
         out.write([1])
         assert in_.read(timeout=5).value == [1]

@@ -376,7 +376,7 @@ def test_logger_hears_questions_and_answers(names: LocalNames) -> None:
         Port("/logger", names=names) as logger,
         Port("/writer", names=names) as writer,
     ):
-        line = network.connect("/server", "/logger", "tcp+log.in", names=names)
+        line = network.connect("/server", "/logger", "tcp+log.in", names=names).reply
         assert line == (
             "Added connection from /server to tcp+log.in://logger; "
             "/server will forward messages and replies (if any) to /logger"

@@ -4,7 +4,6 @@ from yarpy.network.connection import (
     Pairing,
     admin,
     ask_server,
-    connect,
     disconnect,
     exists,
     find,
@@ -13,9 +12,11 @@ from yarpy.network.connection import (
     query,
     wait_for,
 )
+from yarpy.network.remote import RemoteConnection, connect
 
 __all__ = [
     "Pairing",
+    "RemoteConnection",
     "admin",
     "ask_server",
     "connect",

@@ -204,41 +204,41 @@ _PULLED = frozenset({"h264", "tcpros"})
 _FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http"})
 
 
-def connect(
+def join(
     source: str,
     target: str,
     carrier: str | None = None,
     *,
     names: NameClient | None = None,
     timeout: float | None = None,
-) -> str:
-    """Connect two ports; the connected port's own words are returned. An existing one is remade.
-
-    `source` or `target` may be `topic://name`. With `timeout`, wait for ports that are not there
-    yet. Raises UnknownName, UnknownPlugin, LinkClosed, LoginRefused, LocalProtocolError (refused).
+) -> tuple[str, str]:
+    """Have two ports connected: over which carrier, and what the port says that was asked. Raises
+    as `remote.connect`.
     """
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
         try:
-            return _connect(source, target, carrier, names)
+            return _join(source, target, carrier, names)
         except (UnknownName, LinkClosed):
             if deadline is None or time.monotonic() >= deadline:
                 raise
         time.sleep(_POLL)
 
 
-def _connect(source: str, target: str, carrier: str | None, names: NameClient | None) -> str:
+def _join(
+    source: str, target: str, carrier: str | None, names: NameClient | None
+) -> tuple[str, str]:
     pairing = Pairing(source, target, carrier, names)
     if pairing.topical:
         ask_server(names, ["subscribe", _decorated(source, ""), _decorated(target, carrier or "")])
-        return "connection to topic added."
+        return carrier or "tcp", "connection to topic added."
     pairing.confirm(names or DEFAULT.current())
     active = pairing.source if pairing.pull else pairing.target
     address = f"/{active.address}{active.name}" if active.reachable else active.name
     reply = pairing.admin(Vocab("add"), f"{pairing.spec.whole}:/{address}")
     text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
     if reply and reply[0] == 0:
-        return text
+        return str(pairing.spec), text
     way = f'"{masked(source)}" -> "{masked(target)}" over {pairing.spec}'
     error = refusal.error(text, way)
     if isinstance(error, LinkClosed):
@@ -255,7 +255,7 @@ def _decorated(text: str, carrier: str) -> str:
 
 
 def disconnect(source: str, target: str, *, names: NameClient | None = None) -> bool:
-    """End the connection of two ports; False if there was none. Raises as `connect`."""
+    """End the connection of two ports; False if there was none. Raises as `join`."""
     pairing = Pairing(source, target, None, names)
     if pairing.topical:
         ask_server(names, ["unsubscribe", source, target])

@@ -17,10 +17,11 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.property import Property
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import YarpError
+from yarpy.errors import UnknownName, YarpError
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
 from yarpy.network import qos
+from yarpy.network.connection import query
 from yarpy.port import probe
 from yarpy.qos import Qos
 
@@ -96,6 +97,31 @@ def flows(names: NameClient | None = None) -> list[Flow]:
     return [found[key] for key in sorted(found)]
 
 
+def flow(source: str, target: str, names: NameClient | None = None) -> Flow:
+    """The connection `source` -> `target`, asked of these two ports.
+
+    Raises UnknownName when neither knows of it, NoNameServer.
+    """
+    found = Flow(source, target)
+    for name in (source, target):
+        contact = query(name, names)
+        if contact is None or not _answers(contact):
+            continue
+        for from_, to, end in _ask(contact):
+            if (from_, to) != (source, target):
+                continue
+            if name == source:
+                found.sender = end
+            else:
+                found.receiver = end
+    if found.sender is None and found.receiver is None:
+        raise UnknownName(
+            f'neither "{source}" nor "{target}" knows of a connection from the one to the other; '
+            f"`yarpy ping {source}` lists those it has"
+        )
+    return found
+
+
 def _answers(contact: Contact) -> bool:
     return contact.carrier == "tcp" and contact.name.startswith("/") and bool(contact.port)
 
@@ -151,4 +177,4 @@ def _ask_cpp(contact: Contact) -> Iterable[tuple[str, str, End]]:
             yield *ends, End(plain_text(listed.find("carrier", "")), qos=qos_)
 
 
-__all__ = ["End", "Flow", "flows", "read"]
+__all__ = ["End", "Flow", "flow", "flows", "read"]

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from types import TracebackType
 from typing import Any, Self
 
 from yarpy.carriers.http.page import Pages
-from yarpy.contact import Contact
+from yarpy.contact import Contact, parse_contact
 from yarpy.data.property import Property
-from yarpy.errors import PortClosed
+from yarpy.errors import LinkClosed, PortClosed
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
 from yarpy.port import connecting, disconnecting
-from yarpy.port.connection import Connection, ConnectionEvent
+from yarpy.port.connection import ConnectionEvent, PortConnection
 from yarpy.port.hub import Hub
 from yarpy.port.monitoring import Side
+from yarpy.route import masked
 from yarpy.wire.message import Message
 
 
@@ -42,23 +46,19 @@ class BasePort:
         return self._hub.contact.address
 
     @property
-    def inputs(self) -> list[Connection]:
+    def inputs(self) -> list[PortConnection]:
         """The connections that bring messages here."""
-        hub = self._hub
-        return [
-            Connection(link, lambda link=link: disconnecting.close_input(hub, link))  # type: ignore[misc]
-            for link in hub.inputs
-            if _shown(link.route.source)
-        ]
+        return [self._shown(link) for link in self._hub.inputs if link.route.source != "admin"]
 
     @property
-    def outputs(self) -> list[Connection]:
+    def outputs(self) -> list[PortConnection]:
         """The connections that take messages away."""
-        hub = self._hub
-        return [
-            Connection(link, lambda link=link: disconnecting.close_output(hub, link))  # type: ignore[misc]
-            for link in hub.outputs
-        ]
+        return [self._shown(link) for link in self._hub.outputs]
+
+    def _shown(self, link: Inbound | Outbound) -> PortConnection:
+        if isinstance(link, Inbound):
+            return PortConnection(link, partial(disconnecting.close_input, self._hub, link))
+        return PortConnection(link, partial(disconnecting.close_output, self._hub, link))
 
     @property
     def stats(self) -> dict[str, Any]:
@@ -66,25 +66,35 @@ class BasePort:
         over connections that have ended."""
         return self._hub.snapshot()
 
-    def connect(self, target: str, carrier: str = "tcp", timeout: float | None = None) -> Self:
-        """Send what this port writes to `target` (`/name`, `/host:port`) over `carrier`.
+    def connect(
+        self, target: str, carrier: str = "tcp", timeout: float | None = None
+    ) -> PortConnection:
+        """Send what this port writes to `target` (`/name`, `/host:port`) over `carrier`; with a
+        carrier by which the reader dials, such as mjpeg, read from it. Returns the connection.
 
         With `timeout`, wait that many seconds for a port that is not there yet. Raises UnknownName,
         UnknownPlugin (a wrong carrier), LinkClosed (nobody is there), LoginRefused, NotAllowed
         (this port takes no outputs), LocalProtocolError, RemoteProtocolError.
         """
-        connecting.connect(self._hub, target, carrier, timeout)
-        return self
+        hub = self._hub
+        connecting.connect(hub, target, carrier, timeout)
+        peer = parse_contact(target).label
+        for output in reversed(hub.outputs):
+            if output.route.target == peer:
+                return self._shown(output)
+        for link in reversed(hub.inputs):
+            if link.route.source == peer and not link.carrier.push:
+                return self._shown(link)
+        raise LinkClosed(f'"{masked(target)}" went away at once')
 
     def disconnect(self, target: str) -> bool:
         """End what `connect` with this target has made; whether there was anything."""
         return disconnecting.disconnect(self._hub, target)
 
-    def listen_to(self, source: str, carrier: str = "tcp") -> Self:
+    def listen_to(self, source: str, carrier: str = "tcp") -> None:
         """Ask the port `source` to send here. Raises UnknownName, LinkClosed,
         NotAllowed."""
         connecting.subscribe(self._hub, source, carrier)
-        return self
 
     def wait_for_outputs(self, count: int = 1, timeout: float | None = None) -> bool:
         """Wait until at least `count` ports receive what this one writes; False if time is over."""
@@ -163,10 +173,6 @@ class BasePort:
             if hub.inherited:
                 state = "a port of the process that this one was forked from; open one here"
             raise PortClosed(f'"{hub.name}" is {state}')
-
-
-def _shown(name: str) -> bool:
-    return name != "admin"
 
 
 def _wait(condition: Callable[[], bool], timeout: float | None) -> bool:

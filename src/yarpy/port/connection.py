@@ -1,5 +1,4 @@
-"""Connection: what a user sees of a link in `port.inputs` and `port.outputs`, and hears of one that
-comes or goes.
+"""Connections as users see them, and what they hear of one that comes or goes.
 
 Rules: the texts of events are those C++ YARP logs. Transient clients (`admin`, tools without a name
 that begins with a slash) are not reported.
@@ -19,19 +18,56 @@ from yarpy.qos import Qos
 
 
 class Connection:
-    """One connection of a port: who, over what, and how it is doing.
+    """A connection: who sends to whom, over what, and how it is doing.
 
-    `name` is the port at the other end, `carrier` the protocol with its modifiers.
+    `carrier` is the protocol with its modifiers. `port.connect`, `port.outputs` and `port.inputs`
+    give those of a port of this program; `yarpy.connect` gives one of any two ports, which are
+    asked over the network each time.
     """
 
-    __slots__ = ("_close", "_link", "carrier", "source", "target")
+    def __init__(self, source: str, target: str, carrier: str) -> None:
+        self.source = source
+        self.target = target
+        self.carrier = carrier
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        """Counters: `messages`, `bytes`, `drops`, `rate` (1/s), `jitter`, `latency` (s) ..."""
+        raise NotImplementedError
+
+    @property
+    def qos(self) -> Qos:
+        """What the system really does for this connection. Assign a Qos to ask for something.
+
+        Raises LocalProtocolError when the system refuses, telling what it wants; nothing is changed
+        then.
+        """
+        raise NotImplementedError
+
+    @qos.setter
+    def qos(self, wanted: Qos) -> None:
+        raise NotImplementedError
+
+    @property
+    def monitors(self) -> list[str]:
+        """The names of the monitors that ride on it."""
+        raise NotImplementedError
+
+    def close(self) -> None:
+        """End this connection."""
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return f"<Connection {self.source} -> {self.target} ({self.carrier})>"
+
+
+class PortConnection(Connection):
+    """A connection of a port of this program. `name` is the port at the other end."""
 
     def __init__(self, link: Inbound | Outbound, close: Callable[[], None]) -> None:
         self._link = link
         self._close = close
-        self.source = link.route.source
-        self.target = link.route.target
-        self.carrier = link.route.carrier
+        super().__init__(link.route.source, link.route.target, link.route.carrier)
 
     @property
     def name(self) -> str:
@@ -68,9 +104,6 @@ class Connection:
     def close(self) -> None:
         """End this connection."""
         self._close()
-
-    def __repr__(self) -> str:
-        return f"<Connection {self.source} -> {self.target} ({self.carrier})>"
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from yarpy.names.base import NameClient
 from yarpy.port import connecting
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
-from yarpy.port.connection import ConnectionEvent
+from yarpy.port.connection import ConnectionEvent, PortConnection
 from yarpy.port.mailbox import Callback, Mailbox
 from yarpy.route import Route
 from yarpy.wire.message import CALL, UNSENDABLE, Message, Packet
@@ -149,12 +149,14 @@ class RpcClient(BasePort):
                 self.close()
                 raise
 
-    def connect(self, target: str, carrier: str = "tcp", timeout: float | None = None) -> RpcClient:
+    def connect(
+        self, target: str, carrier: str = "tcp", timeout: float | None = None
+    ) -> PortConnection:
         """Choose the server to ask; see Port.connect."""
-        super().connect(target, carrier, timeout)
+        made = super().connect(target, carrier, timeout)
         self._last = None
         self._target, self._carrier = target, carrier
-        return self
+        return made
 
     def call(self, *args: object, timeout: float | None = None) -> Any:
         """Ask, and return the answer's value.

@@ -59,7 +59,7 @@ def command(
     existing = _existing(source, target, carrier)
     if existing:
         print_line(f"Connection found between {source} and {target} using carrier {existing}")
-    print_line(f"Success: {yarpy.connect(source, target, carrier)}")
+    print_line(f"Success: {yarpy.connect(source, target, carrier).reply}")
     return 0
 
 

@@ -1,0 +1,88 @@
+"""RemoteConnection: a connection of any two ports, asked about and changed over the network.
+
+Rules: nothing is remembered but who sends to whom; every question goes to the two ports. C++ ports
+answer all of them but those for numbers, which they do not count.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from yarpy.contact import parse_contact
+from yarpy.names.base import NameClient
+from yarpy.network import qos as remote_qos
+from yarpy.network.connection import disconnect, join
+from yarpy.network.traffic import flow
+from yarpy.port.connection import Connection
+from yarpy.qos import Qos
+
+COUNTED = ("messages", "bytes", "rate", "jitter", "latency")
+
+
+class RemoteConnection(Connection):
+    """A connection of two ports, here or elsewhere. `reply`: what the port said that was asked to
+    make it.
+
+    Its properties raise UnknownName when there is no such connection any more (or none that the
+    ports could tell of, as with a topic), LinkClosed and Timeout when a port does not answer.
+    """
+
+    def __init__(
+        self, source: str, target: str, carrier: str, reply: str, names: NameClient | None
+    ) -> None:
+        super().__init__(source, target, carrier)
+        self.reply = reply
+        self._names = names
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        """Counters of the sender, or of the receiver if that alone counts: `messages`, `bytes`,
+        `rate` (1/s), `jitter`, `latency` (s); `drops` of both. None: nobody counts that."""
+        found = flow(self.source, self.target, self._names)
+        return {**{key: found.measured(key) for key in COUNTED}, "drops": found.drops}
+
+    @property
+    def qos(self) -> Qos:
+        """What the sender's system does for this connection. Assign a Qos to ask for something.
+
+        Raises LocalProtocolError when the port or its system refuses.
+        """
+        return remote_qos.granted(self.source, self.target, self._names)[0]
+
+    @qos.setter
+    def qos(self, wanted: Qos) -> None:
+        remote_qos.grant(self.source, self.target, sender=wanted, names=self._names)
+
+    @property
+    def monitors(self) -> list[str]:
+        """The names of the monitors that ride on it, the sender's first."""
+        found = flow(self.source, self.target, self._names)
+        return [name for end in (found.sender, found.receiver) if end for name in end.monitors]
+
+    def close(self) -> None:
+        """End this connection; nothing happens if it has ended. With a topic the subscription ends:
+        nobody new is connected."""
+        disconnect(self.source, self.target, names=self._names)
+
+
+def connect(
+    source: str,
+    target: str,
+    carrier: str | None = None,
+    *,
+    names: NameClient | None = None,
+    timeout: float | None = None,
+) -> RemoteConnection:
+    """Connect two ports. An existing connection is remade.
+
+    `source` or `target` may be `topic://name`. With `timeout`, wait for ports that are not there
+    yet. Raises UnknownName, UnknownPlugin, LinkClosed, LoginRefused, LocalProtocolError (refused).
+    """
+    used, reply = join(source, target, carrier, names=names, timeout=timeout)
+    return RemoteConnection(_name(source), _name(target), used, reply, names)
+
+
+def _name(text: str) -> str:
+    """How ports call this end; a topic is written as it was."""
+    contact = parse_contact(text)
+    return text if contact.carrier == "topic" else contact.label
