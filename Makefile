@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 EXTRA ?= test
 
-.PHONY: demo test pure links programs stress chaos soak check bench clean
+.PHONY: demo test pure links programs stress fuzz chaos soak check bench clean
 .NOTPARALLEL: # the stages, in their order
 
 # What yarpy itself needs, told while it comes.
@@ -47,6 +47,11 @@ check: $(VENV)/.ready
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+# Strange input for everything that reads, for so long; hours find more. SEED=N does a run again.
+SECONDS ?= 3600
+fuzz: $(VENV)/.ready
+	$(BIN)/python tests/fuzz/run.py $(SECONDS) $(if $(SEED),--seed $(SEED))
 
 bench: $(VENV)/.ready
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[bench]'

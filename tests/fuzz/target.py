@@ -1,0 +1,224 @@
+"""Everything that reads bytes of strangers, with texts and bytes to begin from.
+
+Rules: a target takes bytes, whatever they are, and raises what is in `refusals` or nothing. Those
+of the grammars begin from pieces that are put together at random, those of messages and carriers
+from what C++ YARP was recorded to say (tests/golden). Whoever adds a decoder adds a line here.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from fuzz.grammar import GRAMMARS, REFUSALS
+from support.capture import CAPTURES, load_capture
+from support.vectors import rows
+
+import yarpy
+from yarpy import registry
+from yarpy.data import codec, jpeg
+from yarpy.data.image import Image
+from yarpy.errors import YarpError
+from yarpy.link.handshake import recognise
+from yarpy.monitors.stock import png
+from yarpy.monitors.stock.zlib_limit import unpacked
+from yarpy.names.discovery import respond
+from yarpy.route import Route
+from yarpy.testing import End
+from yarpy.testing.drive import Stalled
+from yarpy.wire.datagram import Assembler
+from yarpy.wire.message import DATA, Packet
+from yarpy.wire.stream import DatagramStream
+
+LIMIT = 1 << 22  # bytes of a message here: what takes more is a finding
+TYPES = (
+    *(yarpy.Bottle, yarpy.Property, yarpy.Vector, yarpy.Image, yarpy.Sound, yarpy.Stamp),
+    *(yarpy.Matrix, yarpy.PointCloud, str, int, float, bool, bytes, yarpy.Vocab, np.ndarray),
+)
+
+
+@dataclass(frozen=True)
+class Target:
+    """`read` is tried; inputs are made of `seeds` that are changed, or of `pieces` in a row."""
+
+    read: Callable[[bytes], Any]
+    seeds: tuple[bytes, ...] = ()
+    pieces: tuple[bytes, ...] = ()
+    refusals: tuple[type[BaseException], ...] = (YarpError,)
+
+
+def _decode_all(data: bytes) -> None:
+    kind = TYPES[data[-1] % len(TYPES)] if data else object
+    for convert in (codec.decode, lambda view: codec.decode_as(view, kind)):
+        try:
+            value = convert(data)
+        except YarpError:
+            continue
+        if isinstance(value, np.ndarray):
+            continue  # not every array that can be read can be sent without saying what it is
+        b"".join(codec.encode(value))
+        codec.encode_text(value)
+
+
+def _walk(data: bytes) -> None:
+    walker = codec.Walker(LIMIT)
+    for end in range(8, len(data) + 1, 7):
+        walker.advance(data[:end])
+        if walker.done:
+            return
+
+
+def _picture(data: bytes) -> None:
+    jpeg.comment(data)
+    extent = jpeg.Extent()
+    extent.advance(bytearray(data[: len(data) // 2]))
+    jpeg.decode(data, LIMIT)
+
+
+def _png(data: bytes) -> None:
+    import cv2
+
+    # The checksums are set right: a damaged file would not come further than to them.
+    fixed, at = bytearray(data), 8
+    while at + 12 <= len(fixed):
+        end = at + 12 + int.from_bytes(fixed[at : at + 4], "big")
+        if end > len(fixed):
+            break
+        fixed[end - 4 : end] = zlib.crc32(fixed[at + 4 : end - 4]).to_bytes(4, "big")
+        at = end
+    png.decode(cv2, bytes(fixed), "rgb", LIMIT)
+
+
+def _unpack(data: bytes) -> None:
+    unpacked(data[4:], int.from_bytes(data[:4], "little", signed=True), LIMIT)
+
+
+def _datagrams(data: bytes) -> None:
+    assembler = Assembler(LIMIT)
+    for at in range(0, len(data), 64):
+        assembler.add(data[at : at + 64])
+
+
+def _accept(data: bytes) -> None:
+    """Whoever dials, in pieces."""
+    end = End(piece=1 + len(data) % 97, limit=LIMIT)
+    end.begin(_serve(end))
+    end.feed(data)
+
+
+def _serve(end: End) -> Any:
+    """What a port does with a connection, reduced to its bytes."""
+    stream = end.stream
+    first = bytes((yield from stream.read_exact(8)))
+    kind = recognise(first)
+    if kind is None:
+        return
+    carrier = kind(Route("", "/r", kind.name, 10002, "127.0.0.1"))
+    while (other := (yield from carrier.welcome(end.stream, first))) is not None:
+        carrier = other
+    for _ in range(100):
+        message = yield from carrier.decode(end.stream)
+        if message.key in ("q", "r"):
+            return
+        if message.key in ("d", "a"):
+            carrier.encode_reply(end.stream, [1, "two"])
+        elif message.key != "D":
+            carrier.encode_lines(end.stream, ["a line"])
+        if carrier.acks:
+            carrier.encode_ack(end.stream, 1)
+
+
+def _dial(name: str) -> Callable[[bytes], None]:
+    """Whoever is dialled: greet, send a message, read what comes for an answer."""
+    kind = registry.carriers.load(name)
+
+    def read(data: bytes) -> None:
+        carrier = kind(Route("/w", "/r", name, 10002, "127.0.0.1"))
+        end = End(piece=1 + len(data) % 97, limit=LIMIT)
+
+        def steps() -> Any:
+            yield from carrier.greet(end.stream)
+            if not carrier.push:
+                while True:
+                    yield from carrier.decode(end.stream)
+            if isinstance(end.stream, DatagramStream):
+                return
+            carrier.encode(end.stream, Packet([1, "two"], key=DATA))
+            while True:
+                yield from carrier.expect_reply(end.stream)
+                if carrier.acks:
+                    yield from carrier.expect_ack(end.stream)
+
+        end.begin(steps())
+        end.feed(data)
+
+    return read
+
+
+def _said(sender: str) -> tuple[bytes, ...]:
+    """What one side said in the recordings, short ones."""
+    found = {
+        load_capture(path.stem).said(sender)
+        for path in sorted(CAPTURES.glob("*.json"))
+        if path.stem != "groups"
+    }
+    return tuple(sorted(said for said in found if 0 < len(said) < 4000))
+
+
+_PIXELS = np.arange(24 * 32 * 3, dtype="u1").reshape(24, 32, 3)
+_MESSAGES = tuple(
+    bytes.fromhex(row["binary"]) for kind in ("bottle", "types") for row in rows(kind)
+)
+_ANSWERS = (
+    b"HTTP/1.1 200 OK\r\nContent-Length: 2\r\n\r\n[]HTTP/1.1 204 No Content\r\n\r\n",
+    b"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n[]\r\n0\r\n\r\n",
+    b'HTTP/1.0 401 No\r\nWWW-Authenticate: Digest realm="a", nonce="b", qop="auth"\r\n\r\n',
+    b"HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace;boundary=b\r\n\r\n--b\r\n"
+    b"Content-Type: image/jpeg\r\n\r\n" + jpeg.encode(Image(_PIXELS)) + b"\r\n--b\r\n",
+    b"HTTP/1.1 101 x\r\nSec-WebSocket-Accept: x\r\n\r\n\x82\x08\x00\x01\x00\x00\x00\x00\x00\x00",
+    b"Welcome /r\r\n(1 two)\r\n<ACK>\r\n",
+)
+
+TARGETS = {
+    **{
+        f"grammar {name}": Target(
+            grammar.read,
+            tuple(begin + piece * 3 + end for begin, piece, end in grammar.shapes),
+            grammar.pieces,
+            REFUSALS,
+        )
+        for name, grammar in GRAMMARS.items()
+    },
+    "messages": Target(_decode_all, _MESSAGES),
+    "walker": Target(_walk, _MESSAGES),
+    "jpeg": Target(
+        _picture, (jpeg.encode(Image(_PIXELS)), jpeg.encode(Image(_PIXELS[..., 0].copy())))
+    ),
+    "zlib": Target(
+        _unpack, tuple(struct.pack("<i", n) + zlib.compress(bytes(n)) for n in (0, 9, 5000))
+    ),
+    "discovery": Target(
+        lambda data: respond(data, str), (b"NAME_SERVER query /root", *_MESSAGES[:9])
+    ),
+    "datagrams": Target(_datagrams, _said("a")[:40]),
+    "accepting": Target(_accept, _said("a"), refusals=(YarpError, Stalled)),
+    **{
+        f"dialling {name}": Target(
+            _dial(name), (*_said("b")[:60], *_ANSWERS), refusals=(YarpError, Stalled)
+        )
+        for name in (
+            *("tcp", "fast_tcp", "text", "text_ack", "http", "xmlrpc", "mjpeg", "websocket"),
+            *("unix_stream", "udp", "mcast", "name_ser"),
+        )
+    },
+}
+try:
+    import cv2
+except ImportError:
+    pass
+else:
+    TARGETS["png"] = Target(_png, (png.encode(cv2, Image(_PIXELS)),))
