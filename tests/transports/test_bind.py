@@ -17,11 +17,11 @@ OUTWARD = [one for one in local_addresses() if "." in one and not is_loopback(on
 @pytest.mark.parametrize(
     ("said", "host", "told"),
     [
-        ("", "", "every computer"),
-        ("all", "", "every computer"),
+        ("", "", "all networks"),
+        ("all", "", "all networks"),
         ("local", "127.0.0.1", "this computer alone"),
         ("127.0.0.2", "127.0.0.2", "this computer alone"),
-        ("192.168.1.7", "192.168.1.7", "at 192.168.1.7 alone"),
+        ("192.168.1.7", "192.168.1.7", "the network of 192.168.1.7 alone"),
     ],
 )
 def test_setting(monkeypatch: pytest.MonkeyPatch, said: str, host: str, told: str) -> None:
@@ -57,7 +57,7 @@ def test_others_reach_what_they_should(
             message = in_.read(timeout=5)
             assert message is not None
             assert message.value == [carrier]
-    told = "by this computer alone" if setting else "by every computer"
+    told = "open to this computer alone" if setting else "open to all networks"
     assert caplog.text.count(told) >= 3
 
 

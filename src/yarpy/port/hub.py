@@ -161,7 +161,7 @@ class Hub:
             raise
         self.crew.repair.watch(self)
         where = f"tcp://{self.contact.address}/"
-        log.info("Port %s active at %s, reached %s", self.name, where, reach())
+        log.info("Port %s active at %s, open to %s", self.name, where, reach())
 
     # -- connections in ---------------------------------------------------------------------------
 

@@ -23,10 +23,8 @@ def listening_host() -> str:
 
 
 def reach() -> str:
-    """From where ports of this program can be reached, for people."""
+    """To whom ports of this program are open, for people."""
     host = listening_host()
     if not host:
-        return f"by every computer of its networks ({SETTING}=local for this one alone)"
-    if host.startswith("127."):
-        return "by this computer alone"
-    return f"at {host} alone"
+        return "all networks"
+    return "this computer alone" if host.startswith("127.") else f"the network of {host} alone"

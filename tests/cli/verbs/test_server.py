@@ -41,7 +41,7 @@ def test_from_nothing(lone, port):
             "Ok. Ready!",
         ]
         assert conf(lone).read_text() == f"127.0.0.1 {port} yarp\n"
-        assert f"[INFO] Port /root active at tcp://127.0.0.1:{port}/, reached by" in process.stderr
+        assert f"[INFO] Port /root active at tcp://127.0.0.1:{port}/, open to all networks" in process.stderr
         assert lone.run("where").returncode == 0
         with lone.start("read", "/server/r", "once") as reader:
             assert lone.run("wait", "/server/r").returncode == 0
@@ -283,7 +283,7 @@ def test_nobody_else_reaches_a_local_one(lone, port):
     with lone.start("server", "--local", "--socket", str(port)) as process:
         process.wait_line("Ready", stream="out")
         assert "IP address: 127.0.0.1" in process.stdout
-        assert "reached by this computer alone" in process.stderr
+        assert "open to this computer alone" in process.stderr
         with pytest.raises(OSError, match="refused"):
             socket.create_connection(("127.0.0.2", port), 2.0)
         socket.create_connection(("127.0.0.1", port), 2.0).close()
