@@ -22,6 +22,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
     "carriers": {
         "tcp": "yarpy.carriers.tcp:Tcp",
         "fast_tcp": "yarpy.carriers.tcp:FastTcp",
+        "tls": "yarpy.carriers.tcp:Tls",
         "udp": "yarpy.carriers.udp:Udp",
         "mcast": "yarpy.carriers.mcast:Mcast",
         "text": "yarpy.carriers.text:Text",

@@ -83,6 +83,14 @@ class CarrierSpec:
         """The same carrier with something more added to it."""
         return replace(parse_carrier("+".join((self.whole, *tokens))), own=self.own)
 
+    def over(self, base: str) -> CarrierSpec:
+        """The same additions to another protocol.
+
+        >>> parse_carrier("http+tls").over("mjpeg").text
+        'mjpeg+tls'
+        """
+        return replace(parse_carrier("+".join((base, *self.tokens))), own=self.own)
+
     def __str__(self) -> str:
         return self.text
 
@@ -194,7 +202,7 @@ class Route:
         added = []
         for token in _split_groups(rest):
             words = _split_groups(token[1:-1]) if token.startswith("(") else [token]
-            if words:
+            if words and words != ["tls"]:  # that is for us to see
                 added.append(".".join(words[:2]))
         if added:
             self.spec = self.spec.plus(*added)

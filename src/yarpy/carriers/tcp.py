@@ -45,3 +45,13 @@ class Tcp(FastTcp):
     @classmethod
     def matches(cls, value: int) -> bool:
         return value % 16 == 3 and bool(value & 128)
+
+
+class Tls(Tcp):
+    """tcp in TLS, for those who dial: `tcp+tls` in one word. Who is dialled sees tcp, in TLS."""
+
+    name = "tls"
+
+    @classmethod
+    def recognises(cls, first: bytes) -> int:
+        return 0

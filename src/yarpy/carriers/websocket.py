@@ -117,7 +117,7 @@ class WebSocket(Carrier):
         origins = origins_of()
         if origins.turns_away(headers, self.route.host):
             yield from refuse(stream, 421, not_ours(headers.get("host", "")))
-        if self.push and not origins.admits(headers):
+        if self.push and not origins.admits(headers, "tls" in self.route.spec.tokens):
             text = "pages of this origin may only read (&read), see YARPY_WEB_ORIGINS"
             yield from refuse(stream, 403, text)
         offered = headers.get("sec-websocket-protocol", "").replace(",", " ").split()

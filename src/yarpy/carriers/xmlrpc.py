@@ -80,7 +80,7 @@ class XmlRpc(Carrier):
 
             stream.head += len(first)
             route = self.route
-            return Http(Route("", route.target, Http.name, route.port, route.host))
+            return Http(Route("", route.target, route.spec.over(Http.name), route.port, route.host))
         return None
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
@@ -148,7 +148,7 @@ class XmlRpc(Carrier):
         origins = origins_of()
         if origins.turns_away(headers, self.route.host):
             yield from refuse(stream, 421, not_ours(headers.get("host", "")), rest=int(size))
-        if not origins.admits(headers):
+        if not origins.admits(headers, "tls" in self.route.spec.tokens):
             text = "pages of this origin may only read, see YARPY_WEB_ORIGINS"
             yield from refuse(stream, 403, text, rest=int(size))
 

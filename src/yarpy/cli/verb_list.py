@@ -84,6 +84,7 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
             "trafficgen /load --bandwidth 100 --size 1",
         ),
         "check": Verb("try whether ports can be opened, found and connected here", "check"),
+        "cert": Verb("make a certificate for TLS", "cert robot.lab 192.168.1.7"),
         "resource": Verb("find configuration files", "resource --from robot.ini"),
         "plugin": Verb(
             "list carriers, types, monitors and commands that are installed", "plugin tcp"

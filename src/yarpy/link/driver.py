@@ -225,9 +225,16 @@ class Driver:
             return self._group(transport.local[0])
         if isinstance(effect, Open):
             local, remote = transport.local, transport.remote
+            host = getattr(transport, "host", None)  # of TLS
             if effect.kind == "tcp":
                 left = CONNECT_TIMEOUT if deadline is None else deadline - time.monotonic()
+                if host:
+                    from yarpy.transports.tls import dial_tls
+
+                    return dial_tls(host, remote[1], max(left, 0.001))
                 return dial(*remote, max(left, 0.001))
+            if host is not None and effect.kind in ("udp", "mcast"):
+                raise LocalProtocolError("TLS protects no datagrams: take tls, or fast_tcp+tls")
             if effect.kind == "udp":
                 return open_udp(effect.listen, local, remote, effect.port)
             if effect.kind == "mcast":

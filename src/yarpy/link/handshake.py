@@ -17,17 +17,28 @@ from yarpy import registry
 from yarpy.carriers.auth import prove_acceptor, prove_initiator
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
 from yarpy.contact import Contact
-from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout, UnknownPlugin, YarpError
+from yarpy.errors import (
+    LinkClosed,
+    LocalProtocolError,
+    RemoteProtocolError,
+    Timeout,
+    UnknownPlugin,
+    YarpError,
+)
 from yarpy.link.driver import Driver
 from yarpy.route import Route
 from yarpy.transports.tcp import TcpTransport, dial
+from yarpy.transports.tls_setting import FIRST_BYTE, WORD, has_certificate, required
 from yarpy.wire.stream import DEFAULT_LIMIT
 
 PATIENCE: Final = 10.0  # seconds for a whole greeting
 PROVING: Final = 2.0  # seconds for the key exchange, as C++
 
+HUNG_UP: Final = -1
+HESITATION: Final = 0.3  # seconds in which a port that has a key looks whether TLS comes
 LISTENING: Final = 1.0  # seconds in which a port that has a key begins to prove it
 
+TLS_ALONE: Final = b"* This port speaks TLS alone: take https, or the carrier tls.\r\n"
 UNKNOWN_PROTOCOL: Final = (
     b"* Error. Protocol not found.\r\n"
     b"* Hello. You appear to be trying to communicate with a YARP Port.\r\n"
@@ -82,9 +93,15 @@ def greet(
     Raises UnknownPlugin, LinkClosed (nobody there, hung up), Timeout, RemoteProtocolError.
     """
     route.host, route.port = contact.host, contact.port
-    carrier = find_carrier(route.spec.base)(route)
+    kind = find_carrier(route.spec.base)
     deadline = time.monotonic() + timeout
-    driver = call(contact, timeout, limit, group)
+    secure = required() or route.spec.base == WORD or WORD in route.spec.tokens
+    if secure and route.spec.base != WORD and WORD not in route.spec.tokens:
+        route.spec = route.spec.plus(WORD)
+    if secure and kind.connectionless:
+        raise LocalProtocolError(f"TLS protects no datagrams: take tls, not {kind.name}")
+    carrier = kind(route)
+    driver = call(contact, timeout, limit, group, secure)
     try:
         if key and (not carrier.foreign or _speaks_first(driver)):
             driver.run(prove_initiator(driver.stream, key), time.monotonic() + PROVING)
@@ -105,10 +122,19 @@ def call(
     timeout: float = PATIENCE,
     limit: int = DEFAULT_LIMIT,
     group: Callable[[str], tuple[str, int]] | None = None,
+    secure: bool = False,
 ) -> Driver:
-    """Dial `contact`; nothing is said yet. Raises LinkClosed (nobody listens), Timeout."""
+    """Dial `contact`; nothing is said yet. `secure`: in TLS, as always where that is required.
+
+    Raises LinkClosed (nobody listens), Timeout, RemoteProtocolError (a certificate that is wrong).
+    """
+    deadline = time.monotonic() + timeout
     try:
-        transport = dial(contact.host, contact.port, timeout)
+        transport: TcpTransport = dial(contact.host, contact.port, timeout)
+        if secure or required():
+            transport = _in_tls(transport, contact.host, deadline)
+    except RemoteProtocolError as error:
+        raise RemoteProtocolError(f"{contact.address}: {error}") from error
     except TimeoutError as error:
         raise Timeout(f"{contact.address} does not answer") from error
     except OSError as error:
@@ -141,8 +167,16 @@ def welcome(
     Raises RemoteProtocolError for bytes that no carrier knows (the peer was told), LinkClosed,
     Timeout.
     """
-    driver = Driver(transport, limit)
     deadline = time.monotonic() + PATIENCE
+    opening = _opening(transport, bool(key), deadline)
+    secure = opening == FIRST_BYTE
+    if secure:
+        transport = _in_tls(transport, "", deadline)
+    elif opening == HUNG_UP:
+        return None
+    elif required():
+        _turn_away(transport)
+    driver = Driver(transport, limit)
     if key:
         driver.run(prove_acceptor(driver.stream, key), time.monotonic() + PROVING)
     try:
@@ -155,7 +189,8 @@ def welcome(
         driver.flush()
         raise RemoteProtocolError(f"no carrier begins with the bytes {first!r}")
     reached = _reached(transport)
-    carrier = kind(Route("", target, kind.name, port, reached))
+    added = f"+{WORD}" if secure else ""
+    carrier = kind(Route("", target, kind.name + added, port, reached))
     try:
         while (other := driver.run(carrier.welcome(driver.stream, first), deadline)) is not None:
             carrier = other  # the first bytes alone did not tell
@@ -164,6 +199,48 @@ def welcome(
             driver.flush()  # what the protocol says to that
         raise
     return driver, carrier
+
+
+def _opening(transport: TcpTransport, speaks_first: bool, deadline: float) -> int:
+    """The first byte of who dialled us, which stays there; 0 if it is not waited for.
+
+    A port with a key has the first word, so it waits for theirs a moment only, and for TLS alone.
+    """
+    if speaks_first and not (has_certificate() or required()):
+        return 0
+    left = max(deadline - time.monotonic(), 0.001)
+    transport.limit_waiting(HESITATION if speaks_first else left)
+    try:
+        return transport.peek()
+    except (BlockingIOError, TimeoutError):
+        if speaks_first:
+            return 0
+        raise Timeout("the peer is silent") from None
+    except OSError:
+        return HUNG_UP
+    finally:
+        transport.limit_waiting(None)
+
+
+def _in_tls(transport: TcpTransport, host: str, deadline: float) -> TcpTransport:
+    """TLS on a new connection. Raises RemoteProtocolError, which says what to do, and Timeout."""
+    from yarpy.transports.tls import explained, secured
+
+    try:
+        return secured(transport, host, deadline)
+    except (BlockingIOError, TimeoutError) as error:
+        raise Timeout("the peer is silent in the middle of TLS") from error
+    except OSError as error:
+        raise RemoteProtocolError(explained(error)) from error
+
+
+def _turn_away(transport: TcpTransport) -> None:
+    """Tell who comes without TLS that this is no good."""
+    try:
+        transport.send([TLS_ALONE])
+    except OSError:
+        pass  # they have gone
+    raise RemoteProtocolError("it came without TLS, which YARPY_TLS requires here")
 
 
 def _reached(transport: TcpTransport) -> str:

@@ -30,6 +30,7 @@ from yarpy.errors import (
 )
 from yarpy.names.base import Contacts, Strings
 from yarpy.names.registration_line import END, PREFIX, parse_registration
+from yarpy.transports.tls_setting import required
 
 IDLE = 10.0  # seconds after which an unused connection is not trusted any more
 SPARE = 2  # connections kept for the next command
@@ -275,6 +276,8 @@ class YarpNameClient:
         try:
             with contextlib.suppress(OSError):
                 connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            if required():
+                line.connection = connection = _in_tls(connection, self.host)
             if self._prepare is not None:
                 self._prepare(connection)
             if kind == "acked":
@@ -373,3 +376,15 @@ def _acknowledged(line: _Line, command: str) -> Bottle:
 def _encode(text: str) -> bytes:
     # A newline inside a string is escaped in Bottle text, so one command is one line.
     return text.encode("utf-8", "surrogateescape")
+
+
+def _in_tls(connection: socket.socket, host: str) -> socket.socket:
+    """The same connection in TLS. Raises RemoteProtocolError."""
+    from yarpy.transports.tls import client_context, explained
+
+    try:
+        return client_context().wrap_socket(connection, server_hostname=host)
+    except TimeoutError:
+        raise
+    except OSError as error:
+        raise RemoteProtocolError(explained(error)) from error

@@ -34,6 +34,11 @@ class TcpTransport(SocketTransport):
                 if hasattr(socket, name):  # not everywhere
                     sock.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
 
+    def peek(self) -> int:
+        """The first byte that comes, which stays there; -1 for the end."""
+        first = self.sock.recv(1, socket.MSG_PEEK)
+        return first[0] if first else -1
+
     def limit_unsent(self, size: int) -> None:
         """Let no more than `size` bytes wait in the kernel for a slow network, where it can."""
         option = getattr(socket, "TCP_NOTSENT_LOWAT", None)

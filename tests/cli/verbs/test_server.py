@@ -41,7 +41,10 @@ def test_from_nothing(lone, port):
             "Ok. Ready!",
         ]
         assert conf(lone).read_text() == f"127.0.0.1 {port} yarp\n"
-        assert f"[INFO] Port /root active at tcp://127.0.0.1:{port}/, open to all networks" in process.stderr
+        assert (
+            f"[INFO] Port /root active at tcp://127.0.0.1:{port}/, open to all networks"
+            in process.stderr
+        )
         assert lone.run("where").returncode == 0
         with lone.start("read", "/server/r", "once") as reader:
             assert lone.run("wait", "/server/r").returncode == 0

@@ -233,7 +233,7 @@ class Http(Carrier):
 
     def _screened(self, stream: ByteStream, wish: Wish) -> Wish | None:
         """The wish, unless it must not come to the port."""
-        if wish.acts and not self.origins.admits(self._headers):
+        if wish.acts and not self.origins.admits(self._headers, "tls" in self.route.spec.tokens):
             self._respond(stream, MAY_NOT_ACT)
         elif self._head_only and (wish.acts or wish.key == "r"):
             # Asking for a head must change nothing, so there is no reply to tell the length of.
@@ -331,7 +331,7 @@ class Http(Carrier):
             self._respond(stream, complaint(400, str(error)))
             return None
         old = self.route
-        mjpeg = Mjpeg(Route("", old.target, "mjpeg", old.port, old.host))
+        mjpeg = Mjpeg(Route("", old.target, old.spec.over("mjpeg"), old.port, old.host))
         mjpeg.begin(stream, wishes, self._headers)
         return mjpeg
 

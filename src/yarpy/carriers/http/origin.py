@@ -28,8 +28,11 @@ class Origins:
         self.listed = listed
         self.hosts = hosts
 
-    def admits(self, headers: Mapping[str, str]) -> bool:
-        """Whether a request comes from such a page, from the port's own, or from no browser."""
+    def admits(self, headers: Mapping[str, str], secure: bool = False) -> bool:
+        """Whether a request comes from such a page, from the port's own, or from no browser.
+
+        `secure`: it came in TLS.
+        """
         if self.listed is None:
             return True
         origin = headers.get("origin")
@@ -42,7 +45,7 @@ class Origins:
             return (
                 origin in self.listed
                 or hostname(origin.partition("://")[2]) in self.hosts
-                or self._is_own(origin, headers.get("host", ""))
+                or self._is_own(origin, headers.get("host", ""), secure)
             )
         site = headers.get("sec-fetch-site")
         if site is not None:
@@ -70,9 +73,10 @@ class Origins:
             return False  # people call computers of a network as they like
         return not self.knows(headers.get("host", ""))
 
-    def _is_own(self, origin: str, host: str) -> bool:
+    def _is_own(self, origin: str, host: str, secure: bool) -> bool:
         """Whether a page is of the port itself."""
-        return origin == f"http://{host.lower()}" and self.knows(host)
+        scheme = "https" if secure else "http"
+        return origin == f"{scheme}://{host.lower()}" and self.knows(host)
 
     @property
     def framing(self) -> str:

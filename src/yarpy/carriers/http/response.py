@@ -158,7 +158,7 @@ class Responder:
 
     def preflight(self, headers: Mapping[str, str]) -> Response:
         """What a page may do here, which its browser asks before it does it."""
-        acting = ", POST" if self.origins.admits(headers) else ""
+        acting = ", POST" if self.origins.admits(headers, "tls" in self.route.spec.tokens) else ""
         allowed = [
             _ALLOW,
             ("Access-Control-Allow-Methods", f"GET, HEAD{acting}"),

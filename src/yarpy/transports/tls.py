@@ -1,0 +1,272 @@
+"""TLS: a TCP connection that nobody on the way can read or change. TLS 1.3 of the standard library.
+
+Rules: an SSL object is for one thread at a time, and no thread waits for the network while it has
+it: so it stands between two buffers in memory, a reader may wait while others send, and records
+leave in the order in which they were made. The peer's certificate is checked, with the name or
+address that was dialled. Errors are OSError, as everywhere in this room.
+"""
+
+from __future__ import annotations
+
+import socket
+import ssl
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+from yarpy.transports.base import MSG_DONTWAIT
+from yarpy.transports.tcp import CONNECT_TIMEOUT, TcpTransport, dial
+from yarpy.transports.tls_setting import folder, mutual
+from yarpy.wire.stream import Buffer
+
+_RAW: Final = 1 << 17  # bytes that are taken from the socket at once
+_PIECE: Final = 1 << 18  # bytes that are encrypted at once
+
+
+class NoCertificate(OSError):
+    """There is none, or it cannot be used; the text says what to do."""
+
+
+class TlsTransport(TcpTransport):
+    """A connected TCP socket with TLS on it, after `shake_hands`.
+
+    `host`: the name or address that we dialled; without it we were dialled.
+    """
+
+    def __init__(self, sock: socket.socket, host: str = "") -> None:
+        super().__init__(sock)
+        self.host = host
+        self._incoming, self._outgoing = ssl.MemoryBIO(), ssl.MemoryBIO()
+        context = client_context() if host else server_context()
+        self._tls = context.wrap_bio(
+            self._incoming, self._outgoing, server_side=not host, server_hostname=host or None
+        )
+        self._lock = threading.Lock()  # of the SSL object
+        self._sending = threading.Lock()
+        self._reading = threading.Lock()
+        self._raw = memoryview(bytearray(_RAW))
+        self._ahead = memoryview(b"")  # read to see whether the peer has gone
+
+    def shake_hands(self, deadline: float) -> None:
+        """The beginning. Raises ssl.SSLError, and BlockingIOError when it takes too long."""
+        try:
+            while True:
+                try:
+                    self._tls.do_handshake()
+                    break
+                except ssl.SSLWantReadError:
+                    self._leave()
+                left = deadline - time.monotonic()
+                if left <= 0:
+                    raise BlockingIOError("the peer is silent")
+                self.limit_waiting(left)
+                if not self._take(super().recv_into(self._raw)):
+                    raise ConnectionResetError("the peer hung up instead of speaking TLS")
+        finally:
+            self._leave()  # also what is wrong, for the peer to read
+            self.limit_waiting(None)
+
+    # -- bytes ------------------------------------------------------------------------------------
+
+    def recv_into(self, view: memoryview) -> int:
+        with self._reading:
+            while (count := self._decrypted(view)) < 0:
+                if not self._take(super().recv_into(self._raw)):
+                    return 0
+            return count
+
+    def try_recv_into(self, view: memoryview) -> int:
+        with self._reading:
+            while (count := self._decrypted(view)) < 0:
+                got = super().try_recv_into(self._raw)
+                if got < 0:
+                    return -1
+                if not self._take(got):
+                    return 0
+            return count
+
+    def send(self, buffers: Sequence[Buffer]) -> None:
+        with self._sending:
+            for piece in _pieces(buffers):
+                with self._lock:
+                    self._tls.write(piece)
+                    records = self._outgoing.read()
+                super().send([records])
+
+    def ended(self) -> bool:
+        if not self._reading.acquire(blocking=False):
+            return False  # somebody reads, and will notice
+        try:
+            if self._ahead:
+                return False
+            store = memoryview(bytearray(1 << 14))
+            while (count := self._decrypted(store)) < 0:
+                try:
+                    got = super().try_recv_into(self._raw)
+                except OSError:
+                    return True
+                if got < 0:
+                    return False
+                if not self._take(got):
+                    return True
+            self._ahead = store[:count]
+            return not count
+        finally:
+            self._reading.release()
+
+    def close(self) -> None:
+        """Say goodbye, if nobody has to wait for it, and hang up."""
+        if self.sock.fileno() >= 0 and self._sending.acquire(blocking=False):
+            try:
+                with self._lock:
+                    try:
+                        self._tls.unwrap()
+                    except ssl.SSLError:
+                        pass  # the peer's goodbye is not waited for
+                    self.sock.send(self._outgoing.read(), MSG_DONTWAIT)
+            except (OSError, ValueError):
+                pass
+            finally:
+                self._sending.release()
+        super().close()
+
+    # -- inside -----------------------------------------------------------------------------------
+
+    def _take(self, count: int) -> int:
+        """So many bytes came from the socket."""
+        with self._lock:
+            self._incoming.write(self._raw[:count])
+        return count
+
+    def _leave(self) -> None:
+        """Send what the SSL object has to say by itself."""
+        records = self._outgoing.read()
+        if records:
+            self.sock.sendall(records)
+
+    def _decrypted(self, view: memoryview) -> int:
+        """Bytes that are there; 0 is the end, -1: more must come first."""
+        if self._ahead:
+            count = min(len(view), len(self._ahead))
+            view[:count] = self._ahead[:count]
+            self._ahead = self._ahead[count:]
+            return count
+        total = 0
+        with self._lock:
+            while total < len(view):
+                try:
+                    got: Any = self._tls.read(len(view) - total, view[total:])
+                except ssl.SSLWantReadError:
+                    return total or -1
+                except ssl.SSLZeroReturnError:
+                    return total
+                if not got:
+                    return total
+                total += got
+        return total
+
+
+def _pieces(buffers: Sequence[Buffer]) -> Iterator[Buffer]:
+    """The same bytes in pieces of a good size: none empty, the small ones in one."""
+    if sum(map(len, buffers)) <= _PIECE:
+        joined = b"".join(buffers)
+        if joined:
+            yield joined
+        return
+    for buffer in buffers:
+        view = memoryview(buffer).cast("B")
+        for start in range(0, len(view), _PIECE):
+            yield view[start : start + _PIECE]
+
+
+def dial_tls(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TlsTransport:
+    """Connect to a port with TLS. Raises OSError: as `dial`, ssl.SSLError, NoCertificate."""
+    deadline = time.monotonic() + timeout
+    return secured(dial(host, port, timeout), host, deadline)
+
+
+def secured(transport: TcpTransport, host: str, deadline: float) -> TlsTransport:
+    """TLS on a connection that is there. `host` empty: we were dialled. Raises as `dial_tls`; the
+    connection is closed then."""
+    try:
+        made = TlsTransport(transport.sock, host)
+        made.shake_hands(deadline)
+    except BaseException:
+        transport.close()
+        raise
+    return made
+
+
+def explained(error: OSError) -> str:
+    """What went wrong with TLS, and what to do."""
+    if isinstance(error, ssl.SSLCertVerificationError):
+        return (
+            f"its certificate is not good: {error.verify_message}. The authority is ca.pem in "
+            f"{folder()}, the names are those of `yarpy cert` there"
+        )
+    if isinstance(error, ssl.SSLError):
+        return f"no TLS: {error.reason or error.strerror or error}"
+    return str(error)
+
+
+# -- certificates ---------------------------------------------------------------------------------
+
+
+def server_context() -> ssl.SSLContext:
+    """For who dials us. Raises NoCertificate."""
+    where = folder()
+    return _server(where, mutual(), _age(where))
+
+
+def client_context() -> ssl.SSLContext:
+    """For whom we dial. Raises NoCertificate."""
+    where = folder()
+    return _client(where, _age(where))
+
+
+def _age(where: Path) -> tuple[float, ...]:
+    """When the files changed, 0 for one that is not there."""
+    names = ("cert.pem", "key.pem", "ca.pem")
+    files = [where / name for name in names]
+    return tuple(file.stat().st_mtime if file.is_file() else 0.0 for file in files)
+
+
+@lru_cache(maxsize=8)
+def _server(where: Path, both: bool, age: tuple[float, ...]) -> ssl.SSLContext:
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.minimum_version = ssl.TLSVersion.TLSv1_3
+    context.num_tickets = 0  # connections last; nobody comes back with a ticket
+    if not _own(context, where, age):
+        raise NoCertificate(f"there is no cert.pem with a key.pem in {where}: `yarpy cert` does it")
+    if both:
+        if not age[2]:
+            raise NoCertificate(f"there is no ca.pem in {where} to check others against")
+        context.load_verify_locations(where / "ca.pem")
+        context.verify_mode = ssl.CERT_REQUIRED
+    return context
+
+
+@lru_cache(maxsize=8)
+def _client(where: Path, age: tuple[float, ...]) -> ssl.SSLContext:
+    authority = str(where / "ca.pem") if age[2] else None
+    try:
+        context = ssl.create_default_context(cafile=authority)
+    except OSError as error:
+        raise NoCertificate(f"{authority} cannot be used: {error}") from error
+    context.minimum_version = ssl.TLSVersion.TLSv1_3
+    _own(context, where, age)
+    return context
+
+
+def _own(context: ssl.SSLContext, where: Path, age: tuple[float, ...]) -> bool:
+    """Give it our certificate, if we have one."""
+    if not (age[0] and age[1]):
+        return False
+    try:
+        context.load_cert_chain(where / "cert.pem", where / "key.pem")
+    except OSError as error:
+        raise NoCertificate(f"cert.pem and key.pem in {where} cannot be used: {error}") from error
+    return True

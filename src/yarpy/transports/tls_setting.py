@@ -1,0 +1,60 @@
+"""What the environment says of TLS: `YARPY_TLS`, and where the certificates are.
+
+    (nothing)   who dials chooses: `+tls`, https and wss are TLS, the rest is plain
+    require     every connection of this program is TLS, to it and from it
+    mutual      and whoever dials it shows a certificate of its authority
+
+The folder `tls` beside the other configuration, or YARPY_TLS_DIR, has `cert.pem` and `key.pem` of
+this computer, and `ca.pem`, the authority that the others are checked against; without that one,
+the system's. `yarpy cert` makes all three.
+
+Rules: apart from `tls`, so that a program without TLS does not load it.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Final
+
+from yarpy.errors import LocalProtocolError
+
+SETTING: Final = "YARPY_TLS"
+FIRST_BYTE: Final = 0x16  # of every TLS connection, and of no other protocol here
+WORD: Final = "tls"  # in a carrier string
+
+
+def required() -> bool:
+    """Whether every connection must be TLS. Raises LocalProtocolError for a setting of no sense."""
+    said = os.environ.get(SETTING, "")
+    if said not in ("", "require", "mutual"):
+        raise LocalProtocolError(f'{SETTING} is "require", "mutual" or nothing, not "{said[:40]}"')
+    return bool(said)
+
+
+def mutual() -> bool:
+    """Whether who dials us must show a certificate."""
+    return os.environ.get(SETTING, "") == "mutual"
+
+
+def folder() -> Path:
+    """Where the certificates are: beside `yarp.conf`."""
+    known = os.environ
+    if known.get("YARPY_TLS_DIR"):
+        return Path(known["YARPY_TLS_DIR"])
+    if "YARP_CONFIG_HOME" in known:
+        return Path(known["YARP_CONFIG_HOME"], "tls")
+    if known.get("XDG_CONFIG_HOME"):
+        return Path(known["XDG_CONFIG_HOME"], "yarp", "tls")
+    if sys.platform == "win32" and known.get("APPDATA"):
+        return Path(known["APPDATA"], "yarp", "config", "tls")
+    home = Path(known.get("HOME") or known.get("USERPROFILE") or os.path.curdir)
+    if sys.platform == "darwin":
+        return home / "Library" / "Preferences" / "yarp" / "tls"
+    return home / ".config" / "yarp" / "tls"
+
+
+def has_certificate() -> bool:
+    """Whether this computer can be dialled with TLS."""
+    return (folder() / "cert.pem").is_file()

@@ -1,0 +1,49 @@
+"""Certificates: made once and anew, for others, private keys kept, judged by openssl."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from yarpy.config.authority import make
+from yarpy.errors import LocalProtocolError
+
+pytest.importorskip("cryptography", reason='certificates: pip install "yarpy[tls]"')
+
+
+def test_authority_is_made_once(tmp_path: Path) -> None:
+    assert make(tmp_path, ["localhost", "127.0.0.1", "fe80::1"])
+    first = (tmp_path / "ca.pem").read_bytes(), (tmp_path / "cert.pem").read_bytes()
+    assert not make(tmp_path, ["localhost"])
+    assert (tmp_path / "ca.pem").read_bytes() == first[0]
+    assert (tmp_path / "cert.pem").read_bytes() != first[1]
+    for name in ("ca-key.pem", "key.pem"):
+        assert (tmp_path / name).stat().st_mode & 0o077 == 0
+    assert {file.name for file in tmp_path.iterdir()} == {
+        *("ca.pem", "ca-key.pem", "cert.pem", "key.pem"),
+    }
+
+
+def test_for_another_computer(tmp_path: Path) -> None:
+    make(tmp_path / "mine", ["localhost"])
+    assert not make(tmp_path / "its", ["robot.lab"], tmp_path / "mine")
+    its = tmp_path / "its"
+    assert not (its / "ca-key.pem").exists()
+    with pytest.raises(LocalProtocolError, match="authority of somebody else"):
+        make(its, ["robot.lab"])
+    if shutil.which("openssl"):
+        line = ["openssl", "verify", "-x509_strict", "-verify_hostname", "robot.lab",
+                "-CAfile", str(its / "ca.pem"), str(its / "cert.pem")]  # fmt: skip
+        done = subprocess.run(line, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+
+
+def test_mistakes(tmp_path: Path) -> None:
+    with pytest.raises(LocalProtocolError, match="no name of a computer"):
+        make(tmp_path, ["r\u00f6bot"])
+    (tmp_path / "ca-key.pem").write_text("no key")
+    with pytest.raises(LocalProtocolError, match="cannot be used"):
+        make(tmp_path, ["robot"])

@@ -1,0 +1,181 @@
+"""TLS on a socket: bytes both ways, at once, in any size; certificates; ends."""
+
+from __future__ import annotations
+
+import socket
+import ssl
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from support.tls import prepare
+
+from yarpy.config.authority import make
+from yarpy.transports.tcp import TcpTransport
+from yarpy.transports.tls import NoCertificate, TlsTransport, explained, secured
+
+SOON = 20.0
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    return prepare(tmp_path, monkeypatch)
+
+
+def pair(host: str = "127.0.0.1") -> tuple[TlsTransport, TlsTransport]:
+    """Both ends; raises what the dialling one does."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        one = socket.create_connection(server.getsockname())
+        other, _ = server.accept()
+    found: list[TlsTransport] = []
+
+    def answer() -> None:
+        try:
+            found.append(secured(TcpTransport(other), "", time.monotonic() + SOON))
+        except OSError:
+            pass
+
+    thread = threading.Thread(target=answer)
+    thread.start()
+    try:
+        return secured(TcpTransport(one), host, time.monotonic() + SOON), *wait(thread, found)
+    finally:
+        thread.join(SOON)
+
+
+def wait(thread: threading.Thread, found: list[TlsTransport]) -> tuple[TlsTransport]:
+    thread.join(SOON)
+    return (found[0],)
+
+
+@pytest.fixture
+def ends() -> Iterator[tuple[TlsTransport, TlsTransport]]:
+    both = pair()
+    yield both
+    for end in both:
+        end.close()
+
+
+def read(end: TlsTransport, size: int) -> bytes:
+    found = bytearray(size)
+    view = memoryview(found)
+    while view:
+        count = end.recv_into(view)
+        assert count, "the end came early"
+        view = view[count:]
+    return bytes(found)
+
+
+@pytest.mark.parametrize("size", [1, 100, 1 << 14, 300_001, 5 << 20])
+def test_bytes_both_ways_at_once(ends: tuple[TlsTransport, TlsTransport], size: int) -> None:
+    data = bytes(range(256)) * (size // 256 + 1)
+    pieces = [data[: size // 3], b"", memoryview(data)[size // 3 : size]]
+    said: list[threading.Thread] = []
+    for end in ends:
+        said.append(threading.Thread(target=end.send, args=(pieces,), daemon=True))
+        said[-1].start()
+    for end in ends:
+        assert read(end, size) == data[:size]
+    for thread in said:
+        thread.join(SOON)
+    assert ends[0].try_recv_into(memoryview(bytearray(9))) == -1
+
+
+def test_many_threads_send_and_one_waits(ends: tuple[TlsTransport, TlsTransport]) -> None:
+    one, other = ends
+    heard: list[bytes] = []
+    reader = threading.Thread(target=lambda: heard.append(read(one, 4)), daemon=True)
+    reader.start()
+    writers = [
+        threading.Thread(target=lambda: [one.send([b"x" * 1000]) for _ in range(200)], daemon=True)
+        for _ in range(4)
+    ]
+    for writer in writers:
+        writer.start()
+    assert read(other, 800_000) == b"x" * 800_000
+    other.send([b"done"])
+    reader.join(SOON)
+    assert heard == [b"done"]
+
+
+def test_end_is_seen(ends: tuple[TlsTransport, TlsTransport]) -> None:
+    one, other = ends
+    assert not one.ended()
+    other.send([b"last"])
+    deadline = time.monotonic() + SOON
+    while not one._ahead and time.monotonic() < deadline:
+        assert not one.ended()
+    other.close()
+    assert not one.ended()  # what came before is still to be read
+    assert read(one, 4) == b"last"
+    while not one.ended():
+        assert time.monotonic() < deadline
+    assert one.recv_into(memoryview(bytearray(4))) == 0
+
+
+def test_waiting_has_a_limit(ends: tuple[TlsTransport, TlsTransport]) -> None:
+    ends[0].limit_waiting(0.05)
+    with pytest.raises(BlockingIOError):
+        ends[0].recv_into(memoryview(bytearray(4)))
+    ends[0].limit_waiting(None)
+    threading.Timer(0.05, ends[0].interrupt).start()
+    assert ends[0].recv_into(memoryview(bytearray(4))) == 0
+
+
+def test_name_that_was_not_meant() -> None:
+    with pytest.raises(ssl.SSLCertVerificationError) as caught:
+        pair("robot.test")
+    assert "robot.test" in explained(caught.value)
+
+
+def test_authority_of_somebody_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    make(tmp_path / "other", ["127.0.0.1"])
+    (tmp_path / "ca.pem").write_bytes((tmp_path / "other" / "ca.pem").read_bytes())
+    with pytest.raises(ssl.SSLCertVerificationError) as caught:
+        pair()
+    assert "ca.pem" in explained(caught.value)
+
+
+def test_without_a_certificate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("YARPY_TLS_DIR", str(tmp_path / "nothing"))
+    with socket.socket() as sock, pytest.raises(NoCertificate, match="yarpy cert"):
+        TlsTransport(sock)
+
+
+@pytest.mark.parametrize("said", [b"GET / HTTP/1.1\r\n\r\n", b"\x16\x03\x01\xff\xff", b""])
+def test_who_speaks_no_tls(said: bytes) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        one = socket.create_connection(server.getsockname())
+        other, _ = server.accept()
+    with one:
+        one.sendall(said)
+        one.shutdown(socket.SHUT_WR)
+        with pytest.raises(OSError, match=r"."):
+            secured(TcpTransport(other), "", time.monotonic() + SOON)
+
+
+def test_silent_one_is_not_waited_for() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        one = socket.create_connection(server.getsockname())
+        other, _ = server.accept()
+    with one, pytest.raises(BlockingIOError):
+        secured(TcpTransport(other), "", time.monotonic() + 0.1)
+
+
+def test_both_show_certificates(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+    monkeypatch.setenv("YARPY_TLS", "mutual")
+    for end in pair():
+        end.close()
+    where = folder / "stranger"
+    where.mkdir()
+    (where / "ca.pem").write_bytes((folder / "ca.pem").read_bytes())
+    context: Callable[[], ssl.SSLContext] = lambda: ssl.create_default_context(  # noqa: E731
+        cafile=str(where / "ca.pem")
+    )
+    monkeypatch.setattr("yarpy.transports.tls.client_context", context)
+    with pytest.raises((ssl.SSLError, IndexError, ConnectionError)):
+        one, _ = pair()
+        if not one.recv_into(memoryview(bytearray(4))):
+            raise ConnectionResetError
