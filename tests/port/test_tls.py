@@ -228,6 +228,6 @@ def test_protocols_that_turn_into_another_stay_in_tls(
     with yarpy.RpcServer("/server", lambda m: m.value, names=names) as server:
         url = f"https://{server.address}/"
         line = ["curl", "-sS", "--noproxy", "*", "--cacert", str(folder / "ca.pem"),
-                "-H", f"Origin: {url[:-1]}", "-d", "data=hello", "-H", "Accept: */*", url]  # fmt: skip
+                "-H", f"Origin: {url[:-1]}", "-d", "data=hello", url]  # fmt: skip
         done = subprocess.run(line, capture_output=True, text=True, timeout=20, check=False)
         assert "hello" in done.stdout, done.stdout + done.stderr
