@@ -83,6 +83,11 @@ class CarrierSpec:
         """The same carrier with something more added to it."""
         return replace(parse_carrier("+".join((self.whole, *tokens))), own=self.own)
 
+    @property
+    def in_tls(self) -> bool:
+        """Whether it asks for TLS."""
+        return self.base == "tls" or "tls" in self.tokens
+
     def over(self, base: str) -> CarrierSpec:
         """The same additions to another protocol.
 

@@ -95,8 +95,8 @@ def greet(
     route.host, route.port = contact.host, contact.port
     kind = find_carrier(route.spec.base)
     deadline = time.monotonic() + timeout
-    secure = required() or route.spec.base == WORD or WORD in route.spec.tokens
-    if secure and route.spec.base != WORD and WORD not in route.spec.tokens:
+    secure = required() or route.spec.in_tls
+    if secure and not route.spec.in_tls:
         route.spec = route.spec.plus(WORD)
     if secure and kind.connectionless:
         raise LocalProtocolError(f"TLS protects no datagrams: take tls, not {kind.name}")

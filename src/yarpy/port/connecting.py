@@ -244,7 +244,8 @@ def _greet(hub: Hub, contact: Contact, route: Route, lost: Route | None) -> tupl
         identity.confirm_again(contact, lost, hub.key)
         route.peer = lost.peer
     else:
-        route.peer = identity.confirm(contact, identity.properties_of(hub.service()), hub.key)
+        known = identity.properties_of(hub.service())
+        route.peer = identity.confirm(contact, known, hub.key, secure=route.spec.in_tls)
     return greet(contact, route, key=hub.key, group=hub.registration.group, limit=hub.limit)
 
 

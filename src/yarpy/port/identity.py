@@ -27,7 +27,11 @@ Properties = Callable[[str, str], Iterable[object]]
 
 
 def confirm(
-    contact: Contact, properties: Properties | None, key: bytes, timeout: float | None = None
+    contact: Contact,
+    properties: Properties | None,
+    key: bytes,
+    timeout: float | None = None,
+    secure: bool = False,
 ) -> str:
     """The name of the port that listens where `contact.name` should; "" if it cannot say.
 
@@ -36,7 +40,7 @@ def confirm(
     if not contact.name or contact.carrier not in ("", "tcp"):
         return ""
     try:
-        found = probe.who(contact, timeout or PATIENCE, key)
+        found = probe.who(contact, timeout or PATIENCE, key, secure)
     except Timeout:
         if _by_hand(contact.name, properties):
             return ""
@@ -48,7 +52,7 @@ def confirm(
 
 def confirm_again(contact: Contact, route: Route, key: bytes, timeout: float | None = None) -> None:
     """As `confirm`, for the peer that `route` had before it broke."""
-    found = probe.who(contact, timeout or PATIENCE, key)
+    found = probe.who(contact, timeout or PATIENCE, key, route.spec.in_tls)
     if found != route.peer:
         raise probe.another_port(contact, route.peer, found)
 
@@ -70,7 +74,7 @@ def learn(contact: Contact, route: Route, key: bytes) -> None:
 
     def ask() -> None:
         try:
-            route.peer = route.peer or probe.who(contact, PATIENCE, key)
+            route.peer = route.peer or probe.who(contact, PATIENCE, key, route.spec.in_tls)
         except YarpError:
             pass  # it cannot say
 

@@ -67,14 +67,21 @@ def describe(
     return _lines(contact, "*", name, timeout, secret_)
 
 
-def who(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = None) -> str:
+def who(
+    contact: Contact,
+    timeout: float = TIMEOUT,
+    secret_: bytes | None = None,
+    secure: bool = False,
+) -> str:
     """The name that the port at `contact` gives itself; "" if what listens there cannot say.
+
+    `secure`: it is asked in TLS.
 
     Everything is said at once, so that it costs one journey there and back. Raises LinkClosed
     (nobody listens there), Timeout (it is silent).
     """
     deadline = _deadline(timeout)
-    driver = call(contact, timeout)
+    driver = call(contact, timeout, secure=secure)
     key = secret() if secret_ is None else secret_
     try:
         if key:
