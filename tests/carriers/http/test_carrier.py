@@ -601,7 +601,7 @@ def test_page_of_messages_asks_for_them_itself() -> None:
 
 def test_how_often_a_reader_wants_messages() -> None:
     carrier, _ = reader(b"GET /r?sse&rate=20 HTTP/1.1\r\nHost: x\r\n\r\n")
-    assert carrier.interval == 0.05
+    assert carrier.delivery.interval == 0.05
     for rate in ("0", "-1", "x", "1e9"):
         _, said = serve(f"GET /r?sse&rate={rate} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
         [(status, _, body)] = responses(said, "GET")

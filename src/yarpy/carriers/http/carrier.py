@@ -308,14 +308,16 @@ class Http(Carrier):
     def _begin_reading(self, stream: ByteStream, wish: Wish) -> None:
         """Answer `/r`: everything that the port writes, from now on."""
         self._pixels = wish.pixels
-        if wish.rate:
-            self.interval = 1 / wish.rate
-        self._begin_stream(stream, wish.form, self._responder.reading(wish))
+        interval = 1 / wish.rate if wish.rate else 0.0
+        self._begin_stream(stream, wish.form, self._responder.reading(wish), interval)
 
-    def _begin_stream(self, stream: ByteStream, form: Form, response: Response) -> None:
+    def _begin_stream(
+        self, stream: ByteStream, form: Form, response: Response, interval: float = 0.0
+    ) -> None:
         """The beginning of a response that does not end; the connection becomes an output."""
         self._streaming, self._form = True, form
-        self.acks, self.delivery = False, Delivery(lossy=True, backlog=16, coalesces=False)
+        self.acks = False
+        self.delivery = Delivery(lossy=True, backlog=16, interval=interval, coalesces=False)
         way = ("Transfer-Encoding", "chunked") if self._modern else ("Connection", "close")
         stream.write(response.head(way))
         if response.body:
