@@ -5,6 +5,7 @@ The screenshots in tests/output are for people to look at.
 
 from __future__ import annotations
 
+import os
 import re
 import threading
 import time
@@ -205,29 +206,37 @@ def test_nothing_that_is_shown_is_markup(browser: Browser, names: LocalNames) ->
 
 
 def test_page_of_the_name_server(browser: Browser) -> None:
+    evil = "/<script>window.hacked=1</script>"
     with yarpy.NameServer() as server, yarpy.RpcServer("/head/rpc:i", head) as port:
         server.client.register("/a/very/long/name" * 5, "tcp", "127.0.0.1", 9)
-        for phone in (False, True):
-            page = browser.open(f"http://{server.address}/", phone=phone, dark=phone)
-            assert fits(page)
-            browser.picture(page, f"names_{'phone' if phone else 'desk'}")
-            if not phone:
-                rights = page.locator("li small").evaluate_all(
-                    "all => all.map(e => Math.round(e.getBoundingClientRect().right))"
-                )
-                assert len(rights) >= 4
-                assert len(set(rights)) == 1, "the addresses do not stand below each other"
-            page.get_by_role("link", name="/head/rpc:i").click()
-            page.wait_for_url(f"http://{port.address}/")
-            assert page.locator("h1").inner_text() == "/head/rpc:i"
-            page.get_by_role("link", name=server.address).click()
-            page.wait_for_url(f"http://{server.address}/")
-            page.get_by_role("link", name="help").click()
-            page.locator("form", has_text="query").get_by_label("portname").fill("/head/rpc:i")
-            browser.picture(page, f"names_help_{'phone' if phone else 'desk'}")
-            page.locator("form", has_text="query").get_by_role("button").click()
-            page.locator("li", has_text="/head/rpc:i").wait_for()
-            assert fits(page)
+        server.client.register(evil, "tcp", 'x"y.invalid', 9)
+        with yarpy.Port("/eye") as eye, yarpy.Port("/brain"):
+            eye.connect("/brain")
+            for phone in (False, True):
+                page = browser.open(f"http://{server.address}/", phone=phone, dark=phone)
+                shows(page, "→ /brain (tcp")
+                shows(page, f"(process {os.getpid()})")
+                shows(page, "gone: nobody listens there")
+                shows(page, "where programs ask for a name server by multicast")
+                assert fits(page)
+                browser.picture(page, f"names_{'phone' if phone else 'desk'}")
+                page.get_by_label("filter").fill("HEAD rpc")
+                wait_until(lambda: page.locator("#ports li").count() == 1, PATIENCE)  # noqa: B023
+                page.get_by_label("filter").fill("")
+                page.get_by_role("link", name="/head/rpc:i").click()
+                page.wait_for_url(f"http://{port.address}/")
+                assert page.locator("h1").inner_text() == "/head/rpc:i"
+                page.get_by_role("link", name=server.address).click()
+                page.wait_for_url(f"http://{server.address}/")
+        # What has gone is no longer there, without anybody asking for the page again.
+        wait_until(lambda: "/eye" not in text(page), PATIENCE)
+        assert page.evaluate("window.hacked") is None
+        page.get_by_role("link", name="help").click()
+        page.locator("form", has_text="query").get_by_label("portname").fill("/head/rpc:i")
+        page.locator("form", has_text="query").get_by_role("button").click()
+        page.locator("li", has_text="/head/rpc:i").wait_for()
+        assert fits(page)
+        page.close()
 
 
 def test_page_that_a_program_made(browser: Browser, names: LocalNames) -> None:

@@ -123,7 +123,7 @@ def test_name_server_shows_files(site: Path) -> None:
             assert status == 404
             assert b"secret" not in body
         assert b"color-scheme" in get("/web/main.css")[2]
-        assert b"<h1>/root</h1>" in get("/")[2]
+        assert b"<h1>/root</h1>" in get("/*")[2]
         connection.request("HEAD", "/web/index.html")
         response = connection.getresponse()
         assert (response.getheader("Content-Length"), response.read()) == ("13", b"")

@@ -81,6 +81,11 @@ class NameService:
             "help": self._help,
         }
 
+    @property
+    def verbs(self) -> frozenset[str]:
+        """The first words of commands."""
+        return frozenset({*self._subscriber, *self._registry, "NAME_SERVER", "bot"})
+
     def answer(self, command: Sequence[Any], peer_host: str = "") -> Reply:
         """The reply to a command that came from `peer_host` ("" when that is not known)."""
         words, nested = without_request(command)

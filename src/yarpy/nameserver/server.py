@@ -27,6 +27,7 @@ from yarpy.names.default import DEFAULT, client_of, secret
 from yarpy.nameserver.collector import Collector
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.folder import Folder
+from yarpy.nameserver.page import NamePage
 from yarpy.nameserver.reply import Reply
 from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.topology import Action, Topology
@@ -97,7 +98,7 @@ class NameServer:
         discoverable: bool = False,
         web: str | Path | None = None,
     ) -> None:
-        pages = Folder(web) if web is not None else None
+        folder = Folder(web) if web is not None else None
         desk = _Desk()
         self._hub = open_hub(name, desk, None, tcp_port=port, host=host, register=False)
         self.host = host
@@ -107,6 +108,7 @@ class NameServer:
         self.service = NameService(
             NameStore(host, self.port, is_taken=self._is_taken), Topology(time.time)
         )
+        self._pages = NamePage(name, self._contacts, self.service.verbs, folder)
         self._database: Database | None = None
         self._responder: Responder | None = None
         self._collector: Collector | None = None
@@ -127,7 +129,7 @@ class NameServer:
             self.close()
             raise
         self._hub.callbacks.lines_for_people = self._page
-        self._hub.callbacks.on_page = pages
+        self._hub.callbacks.on_page = self._pages
         desk.open(self._answer)
 
     @property
@@ -176,8 +178,13 @@ class NameServer:
         if len(words) > 2 and words[0] == "announce" and not words[2] and self._collector:
             self._collector.suspect(plain_text(words[1]))
 
+    def _contacts(self) -> list[Contact]:
+        """Every registration."""
+        with self.service.lock:
+            return list(self.service.store.contacts())
+
     def _page(self) -> list[str]:
-        """Every port, for the page that browsers see."""
+        """Every port, for browsers without JavaScript."""
         return [*self.service.answer(Bottle(["list"])).lines[:-1]]
 
     def _obey(self, command: Bottle) -> None:
@@ -270,6 +277,7 @@ class NameServer:
 
     def close(self) -> None:
         """Stop serving. Registered ports go on, and register again with the next server."""
+        self._pages.close()
         self.client.close()
         self._hub.close()
         for queue in self._queues:

@@ -87,8 +87,8 @@ def flows(names: NameClient | None = None) -> list[Flow]:
     known = [one for one in (names or DEFAULT.current()).list() if _answers(one)]
     found: dict[tuple[str, str], Flow] = {}
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        for port, ends in zip(known, pool.map(_ask, known), strict=True):
-            for source, target, end in ends:
+        for port, told in zip(known, pool.map(ends, known), strict=True):
+            for source, target, end in told:
                 flow = found.setdefault((source, target), Flow(source, target))
                 if source == port.name:
                     flow.sender = end
@@ -126,7 +126,8 @@ def _answers(contact: Contact) -> bool:
     return contact.carrier == "tcp" and contact.name.startswith("/") and bool(contact.port)
 
 
-def _ask(contact: Contact) -> list[tuple[str, str, End]]:
+def ends(contact: Contact) -> list[tuple[str, str, End]]:
+    """The connections of one port, source and target first; none if it does not answer."""
     try:
         reply = probe.ask(contact, ["stat"], timeout=PATIENCE)
         if reply and reply[0] == Vocab("fail"):
@@ -177,4 +178,4 @@ def _ask_cpp(contact: Contact) -> Iterable[tuple[str, str, End]]:
             yield *ends, End(plain_text(listed.find("carrier", "")), qos=qos_)
 
 
-__all__ = ["End", "Flow", "flow", "flows", "read"]
+__all__ = ["End", "Flow", "ends", "flow", "flows", "read"]

@@ -1,0 +1,63 @@
+"""Which ports answer, whose they are, what they are connected to; asked while somebody looks."""
+
+from __future__ import annotations
+
+import os
+import socket
+import threading
+
+from support.wait import patience, wait_until
+
+import yarpy
+from yarpy.contact import Contact
+from yarpy.nameserver.survey import Survey, is_port
+
+
+def test_what_is_told() -> None:
+    with (
+        yarpy.NameServer() as server,
+        yarpy.Port("/out") as out,
+        yarpy.Port("/in"),
+        socket.create_server(("127.0.0.1", 0)) as silent,
+    ):
+        out.connect("/in")
+        with socket.create_server(("127.0.0.1", 0)) as gone:
+            number = gone.getsockname()[1]
+        server.client.register("/gone", "tcp", "127.0.0.1", number)
+        server.client.register("/silent", "tcp", "127.0.0.1", silent.getsockname()[1])
+        contacts = {one.name: one for one in server.client.list()}
+        survey = Survey(lambda: list(contacts.values()))
+        assert survey.told(contacts["/out"]) == {"alive": None}
+        survey.want()
+        wait_until(lambda: survey.told(contacts["/out"])["alive"], patience(10))
+        told = survey.told(contacts["/out"])
+        assert told["process"] == os.getpid()
+        assert told["program"]
+        [link] = told["links"]
+        assert (link["out"], link["peer"], link["carrier"]) == (True, "/in", "tcp")
+        [link] = survey.told(contacts["/in"])["links"]
+        assert (link["out"], link["peer"]) == (False, "/out")
+        assert survey.told(contacts["/gone"]) == {"alive": False}
+        assert survey.told(contacts["/silent"]) == {"alive": None, "silent": True}
+        assert survey.told(contacts["fallback"]) == {"alive": None}
+        # Who took the name since is not known yet.
+        assert survey.told(Contact("tcp", "/out", "127.0.0.1", 1)) == {"alive": None}
+        survey.close()
+        wait_until(lambda: not any(t.name == "yarpy survey" for t in threading.enumerate()))
+
+
+def test_nobody_is_asked_where_nobody_looks() -> None:
+    asked: list[int] = []
+    survey = Survey(lambda: asked.append(1) or [])  # type: ignore[func-returns-value]
+    assert not asked
+    survey.want()
+    survey.want()
+    wait_until(lambda: asked)
+    survey.close()
+
+
+def test_what_can_be_asked() -> None:
+    assert is_port(Contact("tcp", "/x", "h", 1))
+    assert not is_port(Contact("mcast", "/x", "h", 1))
+    assert not is_port(Contact("tcp", "fallback", "h", 1))
+    assert not is_port(Contact("tcp", "/x", "h", 0))
