@@ -123,6 +123,16 @@ def test_robot_that_is_not_there(names: yarpy.YarpNameClient) -> None:
         told = get(f"http://{port.address}/robot")
         assert told["robot"] == "/nobody"
         assert told["boards"] == told["cameras"] == told["sensors"] == []
+        assert told["missing"].startswith("waiting for the robot /nobody: no control board")
+
+
+def test_robots_that_are_there_instead(robot: Robot, names: yarpy.YarpNameClient) -> None:
+    with yarpy.Port("/panel/of/nosuch", names=names) as port:
+        panel = Panel(port, "/nosuch", names)
+        assert "there is /icubSim (yarpy panel /icubSim)" in panel.missing()
+        assert Panel(port, "/icubSim", names).missing() == ""
+    with yarpy.NameServer() as server, yarpy.Port("/panel", names=server.client) as port:
+        assert "`yarpy demo` simulates one" in Panel(port, "/nosuch", server.client).missing()
 
 
 def test_names_that_nobody_keeps() -> None:

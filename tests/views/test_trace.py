@@ -19,6 +19,7 @@ from yarpy.views.trace import (
     Clock,
     Trace,
     flat,
+    leaves_of,
     number_of,
     parse_indices,
 )
@@ -193,3 +194,11 @@ def test_leaves() -> None:
     assert [number_of(leaf) for leaf in (1, 2.5, True, "1", b"", None)] == [
         1, 2.5, 1, None, None, None,
     ]  # fmt: skip
+
+
+def test_times_of_measurements_are_no_curves() -> None:
+    """As an inertial unit sends them; somebody may still choose them."""
+    value = [[[[0.5, 1.5], 1795.25]], [[[9.8], 1795.25], [[8.8], 1795.25]], []]
+    assert [index for index, (_, time) in enumerate(leaves_of(value)) if time] == [2, 4, 6]
+    assert not any(time for _, time in leaves_of([[1.0, 2.0], 3.0]))
+    assert list(flat(value)) == [0.5, 1.5, 1795.25, 9.8, 1795.25, 8.8, 1795.25]

@@ -52,7 +52,7 @@ class Panel:
             return asset("panel.html")
         if path == "/robot":
             try:
-                return jsonpage(self.robot())
+                return jsonpage({**self.robot(), "missing": self.missing()})
             except yarpy.NoNameServer as error:
                 return yarpy.Page(str(error), "text/plain; charset=utf-8", 503)
         name = path.removeprefix("/")
@@ -106,6 +106,27 @@ class Panel:
                 for name in named("/measures:o")
             ],
         }
+
+    def others(self) -> list[str]:
+        """The robots that there are: whose control boards are registered. Raises NoNameServer."""
+        names = {contact.name for contact in self._names.list()}
+        boards = {name.removesuffix("/rpc:i") for name in names if name.endswith("/rpc:i")}
+        found = {board for board in boards if f"{board}/state:o" in names}
+        return sorted({f"/{board.split('/')[1]}" for board in found if board.count("/") > 1})
+
+    def missing(self) -> str:
+        """What is awaited, what there is instead and what to do; "" if the robot is there."""
+        try:
+            told = self.robot()
+            if told["boards"] or told["cameras"]:
+                return ""
+            others = self.others()
+        except yarpy.NoNameServer as error:
+            return str(error)
+        line = f"waiting for the robot {self._robot}: no control board or camera has such a name"
+        if not others:
+            return f"{line}, nor is there another robot; `yarpy demo` simulates one"
+        return f"{line}; there is {', '.join(others)} (yarpy panel {others[0]})"
 
     def _server(self) -> tuple[str, int] | None:
         """Where all ports are listed, if that is a port."""

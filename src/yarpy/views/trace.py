@@ -44,13 +44,14 @@ class Trace:
     def take(self, message: yarpy.Message, now: float) -> None:
         """Keep the numbers of a message that came at `now`, in seconds."""
         try:
-            leaves = list(islice(flat(message.as_(object)), LEAVES))
+            found = list(islice(leaves_of(message.as_(object)), LEAVES))
         except yarpy.DecodeError as error:
             self.refuse(f"a message that cannot be read: {error}")
             return
         self._times.append(now)
+        leaves = [leaf for leaf, _ in found]
         numbers = [number_of(leaf) for leaf in leaves]
-        self._look(leaves, numbers)
+        self._look(leaves, numbers, {index for index, (_, time) in enumerate(found) if time})
         row = [numbers[i] if i < len(numbers) else None for i in self._columns]
         if all(value is None for value in row):
             self.refuse(_described(message, self._chosen))
@@ -65,8 +66,8 @@ class Trace:
         self._empty += 1
         self._complaint = complaint
 
-    def _look(self, leaves: list[Any], numbers: list[float | None]) -> None:
-        """Learn which curves there are and what they are called."""
+    def _look(self, leaves: list[Any], numbers: list[float | None], times: set[int]) -> None:
+        """Learn which curves there are and what they are called; `times` are none."""
         known = set(self._columns)
         self._more = 0
         for index, (leaf, number) in enumerate(zip(leaves, numbers, strict=True)):
@@ -75,7 +76,7 @@ class Trace:
                     self._others[index] = _spelled(leaf)
                 continue
             if index not in known:
-                if self._chosen or len(self._columns) >= CURVES:
+                if self._chosen or index in times or len(self._columns) >= CURVES:
                     self._more += 1
                     continue
                 self._columns.append(index)
@@ -132,11 +133,23 @@ class Clock:
 
 def flat(value: Any) -> Iterator[Any]:
     """The elements of a value and of the lists in it, in order."""
+    return (leaf for leaf, _ in leaves_of(value))
+
+
+def leaves_of(value: Any, depth: int = 0, time: bool = False) -> Iterator[tuple[Any, bool]]:
+    """The elements, each with whether it is the time of a measurement: `(((0.1 9.8) 1795.2) ...)`,
+    as sensors send them, in a list for each kind of sensor."""
     if isinstance(value, (list, tuple, yarpy.Vector)):
-        for item in value:
-            yield from flat(item)
+        timed = (
+            depth > 1
+            and len(value) == 2
+            and isinstance(value[0], (list, tuple, yarpy.Vector))
+            and isinstance(value[1], float)
+        )
+        for place, item in enumerate(value):
+            yield from leaves_of(item, depth + 1, timed and place == 1)
     elif not isinstance(value, (yarpy.Image, yarpy.Sound)):
-        yield value
+        yield value, time
 
 
 def number_of(value: Any) -> float | None:

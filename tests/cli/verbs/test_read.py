@@ -131,6 +131,7 @@ def test_a_name_that_cannot_be_one(here):
 def test_a_remote_that_is_not_there_is_only_told(cli, names):
     with cli.start("read", "/read/h", "/nobody", "once") as process:
         process.wait_line('error: no port "/nobody"', stream="err")
+        process.wait_line("waiting for .*: yarpy connect /PORT /read/h$", stream="err")
         with yarpy.Port("/read/late", names=names) as late:
             late.connect("/read/h")
             late.write(["x"])

@@ -17,6 +17,7 @@ import yarpy
 from yarpy.cli.browser import show_page
 from yarpy.cli.ports import ANY, open_port
 from yarpy.cli.service import server
+from yarpy.cli.stderr import warn
 
 
 @click.command()
@@ -29,7 +30,9 @@ def command(robot: str, name: str, no_browser: bool) -> int:
 
     names = server()
     with open_port(yarpy.Port, name, callback=lambda message: None) as port:
-        Panel(port, robot, names)
+        missing = Panel(port, robot, names).missing()
         show_page(port, not no_browser)
+        if missing:
+            warn(missing)
         threading.Event().wait()
     return 0

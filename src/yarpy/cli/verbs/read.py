@@ -134,6 +134,8 @@ def command(
                     hear_from(reader, remote)
                 except yarpy.YarpError as error:
                     complain(str(error))
+                    note = "waiting for whoever sends here, which this does: yarpy connect /PORT"
+                    click.echo(f"{note} {reader.name}", err=True)
             try:
                 printer.follow(reader, once or intent.once)
             except Interrupted:

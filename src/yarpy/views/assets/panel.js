@@ -12,6 +12,7 @@ const ROUND = 2000; // ms between questions where the robot is
 const SILENT = 2000; // ms without a word of the robot
 
 const cameras = [];
+let missing = ""; // why there is no robot
 const parts = new Map(); // by name: what is shown of the robot
 
 function draw() {
@@ -21,6 +22,7 @@ function draw() {
 
 async function open() {
   const found = await ask("/robot");
+  missing = found ? found.missing : "the program of this page, or the name server, does not answer";
   if (!found?.boards.length && !found?.cameras.length) return null;
   robot.name = found.robot;
   for (const info of found.cameras) {
@@ -75,7 +77,7 @@ async function follow() {
 const state = document.getElementById("state");
 let count;
 while ((count = await open().catch(() => null)) === null) {
-  say(state, "waiting for the robot ...");
+  say(state, missing || "waiting for the robot ...");
   await pause(1000);
 }
 requestAnimationFrame(draw);

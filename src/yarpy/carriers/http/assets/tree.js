@@ -42,8 +42,8 @@ export function line(value, most) {
 }
 
 // Whether a number tells when something was: as sensors do behind their values, or near our time.
-function isTime(value, list, at) {
-  if (Array.isArray(list) && list.length === 2 && at === 1 && Array.isArray(list[0])) return true;
+function isTime(value, list, at, depth) {
+  if (depth > 2 && list.length === 2 && at === 1 && Array.isArray(list[0])) return true;
   return Math.abs(value - Date.now() / 1000) < 86400;
 }
 
@@ -51,19 +51,22 @@ function isTime(value, list, at) {
 export function numbers(value) {
   const found = [];
   let place = 0;
-  const look = (item, name, list, at) => {
+  const look = (item, name, depth, list, at) => {
     if (place > LEAVES) return;
     if (Array.isArray(item)) {
-      item.forEach((one, at) => look(one, typeof item[at - 1] === "string" ? item[at - 1] : "", item, at));
+      item.forEach((one, at) => {
+        const before = item[at - 1];
+        look(one, typeof before === "string" ? before : "", depth + 1, item, at);
+      });
     } else if (typeof item === "object" && item !== null) {
-      for (const [key, one] of Object.entries(item)) look(one, key);
+      for (const [key, one] of Object.entries(item)) look(one, key, depth + 1, [], 0);
     } else {
-      if (typeof item === "number" && !isTime(item, list, at)) {
+      if (typeof item === "number" && !isTime(item, list, at, depth)) {
         found.push([name ? `${place} ${cut(name, 30)}` : `${place}`, item]);
       }
       place++;
     }
   };
-  look(value, "");
+  look(value, "", 0, [], 0);
   return found;
 }
