@@ -107,7 +107,7 @@ def flow(source: str, target: str, names: NameClient | None = None) -> Flow:
         contact = query(name, names)
         if contact is None or not _answers(contact):
             continue
-        for from_, to, end in _ask(contact):
+        for from_, to, end in ends(contact):
             if (from_, to) != (source, target):
                 continue
             if name == source:
