@@ -3,6 +3,7 @@
 import asyncio
 import gc
 import threading
+import urllib.request
 
 import pytest
 
@@ -184,3 +185,114 @@ def test_question_that_everybody_forgot_gets_an_empty_answer():
             assert await asking == []
 
     asyncio.run(main())
+
+
+def test_connections_are_made_awaited_and_told_in_the_loop():
+    async def main():
+        heard: list[str] = []
+        threads: set[int] = set()
+
+        def hear(event: yarpy.ConnectionEvent) -> None:
+            threads.add(threading.get_ident())
+            heard.append(str(event))
+
+        async with aio.Port("/aio/in", on_connection=hear) as reader:
+            async with aio.Port("/aio/out", port_type="yarp/bottle") as writer:
+                assert not await reader.wait_for_inputs(timeout=0.05)
+                await reader.listen_to("/aio/out", "fast_tcp")
+                assert await reader.wait_for_inputs(timeout=10)
+                assert await writer.wait_for_outputs(timeout=10)
+                made = await writer.connect("/aio/in")
+                assert (made.target, made.carrier) == ("/aio/in", "tcp")
+                await writer.write([1])
+                assert await writer.flush(10)
+                assert (await reader.read(timeout=10)).value == [1]
+                assert writer.stats["outputs"][0]["messages"] == 1
+                assert yarpy.query("/aio/out") == writer.contact
+            while len(heard) < 4:
+                await asyncio.sleep(0.01)
+        assert heard[0] == "Receiving input from /aio/out to /aio/in using fast_tcp"
+        assert threads == {threading.get_ident()}
+
+    asyncio.run(asyncio.wait_for(main(), 30))
+
+
+def test_server_answers_from_the_loop_side_by_side(caplog):
+    async def main():
+        both = asyncio.Barrier(2)
+        threads: set[int] = set()
+
+        async def answer(message: yarpy.Message) -> object:
+            threads.add(threading.get_ident())
+            if message.value == ["fail"]:
+                raise ValueError("as it was asked to")
+            async with asyncio.timeout(10):
+                await both.wait()  # the other question is being answered too
+            return ["heard", *message.value]
+
+        async with (
+            aio.RpcServer("/aio/server", answer) as server,
+            aio.RpcClient("/aio/server") as one,
+            aio.RpcClient("/aio/server", name="/aio/two") as two,
+        ):
+            assert await asyncio.gather(one.call("a"), two.call("b")) == [
+                ["heard", "a"],
+                ["heard", "b"],
+            ]
+            assert (await one.call("fail"))[0] == "fail"
+            assert [each.name for each in server.inputs][1] == "/aio/two"
+            assert threads == {threading.get_ident()}
+
+    asyncio.run(asyncio.wait_for(main(), 30))
+    assert "as it was asked to" in caplog.text
+
+
+def test_server_takes_plain_functions_and_closes_over_a_question():
+    async def main():
+        asked = asyncio.Event()
+
+        async def never(message: yarpy.Message) -> object:
+            asked.set()
+            return await asyncio.Event().wait()
+
+        async with (
+            aio.RpcServer("/aio/plain", lambda message: message.value),
+            aio.RpcClient("/aio/plain") as client,
+        ):
+            assert await client.call("x") == ["x"]
+        server = await aio.RpcServer("/aio/slow", never).open()
+        async with aio.RpcClient("/aio/slow") as client:
+            call = asyncio.create_task(client.call("x"))
+            await asked.wait()
+            await server.close()
+            try:
+                assert (await call)[0] == "fail"
+            except yarpy.LinkClosed:
+                pass  # it was closed before its answer had left
+
+    asyncio.run(asyncio.wait_for(main(), 30))
+
+
+def test_administrative_messages_and_pages_are_answered_in_the_loop():
+    async def main():
+        threads: set[int] = set()
+
+        async def answer(message: yarpy.Message) -> object:
+            threads.add(threading.get_ident())
+            return ["mine"]
+
+        async with aio.Port("/aio/asked") as port:
+            port.on_admin(answer)
+            port.on_page(lambda path, fields: f"<h1>{path}</h1>")
+            assert await asyncio.to_thread(yarpy.admin, "/aio/asked", "who") == ["mine"]
+            page = await asyncio.to_thread(
+                urllib.request.urlopen, f"http://{port.contact.address}/x", timeout=10
+            )
+            with page:
+                assert page.read() == b"<h1>/x</h1>"
+            port.on_admin(None)
+            answered = await asyncio.to_thread(yarpy.admin, "/aio/asked", "who")
+            assert answered[0] == "fail"
+        assert threads == {threading.get_ident()}
+
+    asyncio.run(asyncio.wait_for(main(), 30))
