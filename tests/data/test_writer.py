@@ -163,3 +163,8 @@ def test_short_ways_write_what_the_long_way_writes(items):
     long = [type("Sub", (type(i),), {})(i) if type(i) in (int, float) else i for i in items]
     assert b"".join(list_blocks(long)) == short
     assert again.to_bytes() == short
+
+
+def test_what_cannot_be_an_element_is_named_as_one_says_it() -> None:
+    with pytest.raises(TypeError, match=r"^an object cannot be an element"):
+        list_blocks([object()])

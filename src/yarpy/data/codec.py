@@ -47,7 +47,7 @@ from yarpy.data.value import (
 )
 from yarpy.data.vector import Vector
 from yarpy.data.walker import Walker
-from yarpy.data.writer import list_blocks, value_blocks
+from yarpy.data.writer import list_blocks, value_blocks, with_article
 from yarpy.errors import DecodeError
 
 __all__ = [
@@ -98,8 +98,8 @@ def encode(obj: Any) -> Blocks:
         return value_blocks(obj)
     except TypeError:
         raise TypeError(
-            f"a {kind.__name__} cannot be sent; lists, dicts, int, float, str, bool, bytes, Vocab, "
-            "numpy arrays, yarpy.data objects and anything with a method to_wire() can"
+            f"{with_article(kind.__name__)} cannot be sent; lists, dicts, int, float, str, "
+            "bool, bytes, Vocab, numpy arrays, yarpy.data objects and anything with a method to_wire() can"
         ) from None
 
 
@@ -192,7 +192,10 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
         return cast(T, convert(view))
     from_wire = getattr(type_, "from_wire", None)
     if from_wire is not None:
-        return cast(T, from_wire(view))
+        try:
+            return cast(T, from_wire(view))
+        except DecodeError as error:
+            raise _other(type_.__name__, view, error) from error
     if type_ is object or type_ is Any:
         return cast(T, decode(view))
     origin = getattr(type_, "__origin__", None)
@@ -210,7 +213,7 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
             except (ValueError, TypeError, LookupError, OverflowError) as error:
                 if isinstance(error, DecodeError):
                     raise
-                raise DecodeError(f"expected a {type_.__name__}: {error}") from error
+                raise DecodeError(f"expected {with_article(type_.__name__)}: {error}") from error
     raise TypeError(
         f"messages cannot be read as {type_.__name__}; give it a class method from_wire(view)"
     )
@@ -243,6 +246,24 @@ def _wrong(wanted: str, value: Any) -> DecodeError:
     return DecodeError(f"expected {wanted}, got {_describe(Bottle([value]))}")
 
 
+def _other(wanted: str, view: Buffer, error: DecodeError) -> DecodeError:
+    """The error for a message of another type, or `error` if it is a message of none."""
+    try:
+        bottle = read_bottle(view)
+    except DecodeError:
+        return error
+    return DecodeError(f"expected {with_article(wanted)}, got {_describe(bottle)} ({error})")
+
+
+def _to_dict(view: Buffer) -> dict[str, Any]:
+    found = dict(Property.from_bytes(view))
+    if not found:
+        bottle = read_bottle(view)
+        if not all(isinstance(item, (list, dict)) for item in bottle):
+            raise DecodeError(f"expected pairs of key and value, got {_describe(bottle)}")
+    return found
+
+
 def _to_str(view: Buffer) -> str:
     value = _single(view, "a string")
     if isinstance(value, str):
@@ -268,7 +289,7 @@ def _narrow(view: Buffer, kind: type[int]) -> int:
     try:
         return kind(_to_int(view))
     except OverflowError as error:
-        raise DecodeError(f"expected an {kind.__name__}: {error}") from None
+        raise DecodeError(f"expected {with_article(kind.__name__)}: {error}") from None
 
 
 def _to_bool(view: Buffer) -> bool:
@@ -326,7 +347,7 @@ _CONVERTERS: Final[dict[Any, Callable[[Buffer], Any]]] = {
     list: lambda view: list(read_bottle(view)),
     tuple: lambda view: tuple(read_bottle(view)),
     Property: Property.from_bytes,
-    dict: lambda view: dict(Property.from_bytes(view)),
+    dict: _to_dict,
     str: _to_str,
     int: _to_int,
     float: _to_float,

@@ -232,8 +232,8 @@ def _element(value: Any, depth: int) -> tuple[int, _Payload]:
     if hasattr(value, "to_wire") and not isinstance(value, type):
         return _message(value.to_wire())
     raise TypeError(
-        f"a {kind.__name__} cannot be an element of a Bottle; int, float, str, bool, bytes, "
-        "Vocab, lists, dicts, numpy arrays and yarpy.data objects can"
+        f"{with_article(kind.__name__)} cannot be an element of a Bottle; int, float, str, bool, "
+        "bytes, Vocab, lists, dicts, numpy arrays and yarpy.data objects can"
     )
 
 
@@ -303,3 +303,8 @@ def _joined(parts: Sequence[bytes | memoryview]) -> Blocks:
     if run:
         blocks.append(b"".join(run))
     return tuple(blocks)
+
+
+def with_article(name: str) -> str:
+    """`an Image`, `a list`: a type's name as it is said in an error."""
+    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"
