@@ -240,7 +240,7 @@ def test_server_answers_from_the_loop_side_by_side(caplog):
                 ["heard", "b"],
             ]
             assert (await one.call("fail"))[0] == "fail"
-            assert [each.name for each in server.inputs][1] == "/aio/two"
+            assert "/aio/two" in [each.name for each in server.inputs]
             assert threads == {threading.get_ident()}
 
     asyncio.run(asyncio.wait_for(main(), 30))

@@ -99,7 +99,8 @@ def encode(obj: Any) -> Blocks:
     except TypeError:
         raise TypeError(
             f"{with_article(kind.__name__)} cannot be sent; lists, dicts, int, float, str, "
-            "bool, bytes, Vocab, numpy arrays, yarpy.data objects and anything with a method to_wire() can"
+            "bool, bytes, Vocab, numpy arrays, yarpy.data objects and anything with a method "
+            "to_wire() can"
         ) from None
 
 
