@@ -116,6 +116,28 @@ def test_a_killed_reader_is_connected_again(number: int) -> None:
             writer.write(["there"])
 
 
+def test_a_peer_that_hangs_delays_no_other(names: yarpy.LocalNames) -> None:
+    """A stopped program takes connections and answers nothing; others are restored meanwhile."""
+    with yarpy.Port("/out", names=names) as out, yarpy.Port("/other", names=names) as other:
+        hanging = yarpy.BufferedPort("/hanging", names=names)
+        with yarpy.BufferedPort("/in", names=names) as in_:
+            out.connect("/hanging")
+            other.connect("/in")
+            with socket.create_server(("127.0.0.1", 0)) as stopped:
+                names.register("/hanging", "tcp", "127.0.0.1", stopped.getsockname()[1])
+                for link in hanging._hub.inputs:
+                    link.driver.transport.interrupt()
+                stopped.settimeout(RECOVERY)
+                held = stopped.accept()  # it is being dialled, and says nothing
+                before = other._hub.outputs
+                for link in in_._hub.inputs:
+                    link.driver.transport.interrupt()
+                wait_until(lambda: other._hub.outputs not in ((), before), 5.0, "restored")
+                assert not out.outputs, "the other one hangs still"
+                held[0].close()
+            hanging.close()
+
+
 def test_what_was_disconnected_stays_disconnected() -> None:
     with (
         yarpy.NameServer(),
@@ -199,6 +221,8 @@ def test_a_connection_to_an_address_comes_back_without_any_name_server(number: i
             with yarpy.BufferedPort("", tcp_port=place) as reader:
                 if turn == 0:
                     writer.connect(f"/127.0.0.1:{place}")
+                    # Whom it reached is asked afterwards: nobody else is dialled in its place.
+                    wait_until(lambda: writer._hub.outputs[0].route.peer)
                 # Until it is found out, what is written goes the way of the lost connection.
                 wait_until(lambda: writer.write([turn]) and reader.poll())  # noqa: B023
                 for link in reader._hub.inputs:  # as a crash would: without a goodbye

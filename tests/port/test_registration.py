@@ -16,6 +16,7 @@ from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.nameserver.local import LocalNames
 from yarpy.nameserver.server import NameServer
+from yarpy.port import registration
 from yarpy.port.port import Port
 from yarpy.port.probe import is_alive
 
@@ -88,6 +89,18 @@ def test_name_of_something_else_that_listens_there_is_taken_over(names: LocalNam
         names.register("/here", "tcp", "127.0.0.1", other.contact.port)
         with Port("/here", names=names) as port:
             assert names.query("/here") == port.contact
+
+
+def test_name_of_a_program_that_is_busy_stays_its_own(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The system takes the connection, the program is stopped: that is no death."""
+    monkeypatch.setattr(registration, "BUSY", 0.3)
+    with socket.create_server(("127.0.0.1", 0)) as stopped:
+        known = names.register("/here", "tcp", "127.0.0.1", stopped.getsockname()[1])
+        with pytest.raises(AddressError, match=r"does not answer just now.*unregister /here"):
+            Port("/here", names=names)
+        assert names.query("/here") == known
 
 
 def test_chosen_number(names: LocalNames) -> None:

@@ -1,14 +1,16 @@
 """Repair: connections that failed come back, names that a restarted server forgot are told again.
 
 Rules: one daemon thread for the process, started with the first registered port, asleep most of the
-time. What somebody disconnected on purpose stays disconnected; what broke is tried again until it
-works or is given up. A lost output is dialled again by us, and so is a camera; any other lost
-input is asked for again from its sender, once that is back. A name server is watched through a
-connection of its own.
+time; it watches, and what it finds broken is dialled in short-lived threads, one for each target,
+ever more rarely. What somebody disconnected on purpose stays disconnected; what broke is tried
+again until it works or is given up. A lost output is dialled again by us, and so is a camera; any
+other lost input is asked for again from its sender, once that is back. A name server is watched
+through a connection of its own.
 """
 
 from __future__ import annotations
 
+import random
 import socket
 import threading
 import time
@@ -34,6 +36,9 @@ log = logger("yarpy.port")
 TICK: Final = 0.1  # seconds between looks at what is broken
 CALM: Final = 0.5  # seconds between looks when nothing is
 LOCKED: Final = 60.0  # seconds between two logins: cameras lock those out who try too often
+LONGEST: Final = 30.0  # seconds between attempts at something that stays away
+SLOWER: Final = 1.3  # so much longer is each pause than the one before, and up to so much by chance
+ATTEMPTS: Final = 32  # connections that are dialled at the same time
 INPUT_PATIENCE: Final = 60.0  # seconds for a sender that vanished to come back
 
 
@@ -47,6 +52,7 @@ class _Lost:
     since: float = field(default_factory=time.monotonic)
     pause: float = TICK
     due: float = 0.0
+    under_way: bool = False
     seen_gone: bool = False
 
 
@@ -104,8 +110,7 @@ class Repairer:
         `incoming` tells; whether it was being tried again."""
 
         def meant(item: _Lost) -> bool:
-            peer = item.route.source if item.incoming else item.route.target
-            return item.hub is hub and peer == name and incoming in (None, item.incoming)
+            return item.hub is hub and _peer(item) == name and incoming in (None, item.incoming)
 
         with self._lock:
             left = [item for item in self._lost if not meant(item)]
@@ -134,8 +139,7 @@ class Repairer:
                 self._look_at_outputs(hubs)
                 self._pulse.look(hubs)
                 self._look_at_servers(hubs)
-                for item in lost:
-                    self._mend(item)
+                self._attempt(lost)
             except Exception:
                 log.exception("the repair of connections failed; it goes on")
 
@@ -202,10 +206,33 @@ class Repairer:
 
     # -- one connection ---------------------------------------------------------------------------
 
-    def _mend(self, item: _Lost) -> None:
+    def _attempt(self, lost: list[_Lost]) -> None:
+        """Begin what is due, each in a thread of its own: one that hangs delays no other.
+
+        Of those that want the same port, one at a time.
+        """
         now = time.monotonic()
-        if now < item.due or item.hub.closing:
-            return
+        busy = {_peer(item) for item in lost if item.under_way}
+        for item in lost:
+            if len(busy) >= ATTEMPTS:
+                return
+            if now < item.due or item.hub.closing or _peer(item) in busy:
+                continue
+            busy.add(_peer(item))
+            item.under_way = True
+            threading.Thread(
+                target=self._mend, args=(item,), name=f"yarpy dial {_peer(item)}", daemon=True
+            ).start()
+
+    def _mend(self, item: _Lost) -> None:
+        try:
+            self._try_to_mend(item)
+        except Exception:
+            log.exception("%s: reconnecting %s failed", item.hub.name, item.route)
+        finally:
+            item.under_way = False
+
+    def _try_to_mend(self, item: _Lost) -> None:
         done = False
         try:
             if item.incoming:
@@ -224,14 +251,15 @@ class Repairer:
             )
         except (YarpError, OSError):
             pass  # not yet
+        now = time.monotonic()
         if item.incoming and not _is_pulled(item.route) and now - item.since > INPUT_PATIENCE:
             done = True
         if done:
             with self._lock:
                 self._lost = [other for other in self._lost if other is not item]
         else:
-            item.due = now + item.pause
-            item.pause = min(item.pause * 1.5, max(item.pause, CALM))
+            item.due = now + item.pause * random.uniform(1.0, SLOWER)
+            item.pause = min(item.pause * SLOWER, max(item.pause, LONGEST))
 
     def _mend_input(self, item: _Lost) -> bool:
         """Ask the sender, once it lives again, to send to us as before."""
@@ -274,6 +302,10 @@ class Repairer:
             else:
                 disconnecting.disconnect_output(hub, peer)
         return True
+
+
+def _peer(item: _Lost) -> str:
+    return item.route.source if item.incoming else item.route.target
 
 
 def _is_there(item: _Lost) -> bool:

@@ -9,20 +9,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from typing import Final
 
 from yarpy.config.configuration import port_name
 from yarpy.contact import Contact, check_name
-from yarpy.errors import AddressError, NoNameServer, YarpError
+from yarpy.errors import AddressError, LinkClosed, NoNameServer, Timeout, YarpError
 from yarpy.log import logger
 from yarpy.names.address import local_addresses, outward_address
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
 from yarpy.names.fallback_client import SeveralNames
-from yarpy.port.probe import is_alive
+from yarpy.port.probe import who
 from yarpy.registry import carriers
 from yarpy.transports.bind import SETTING, listening_host
 
 log = logger("yarpy.port")
+
+BUSY: Final = 3.0  # seconds for a port that lives to say so
 
 
 class Registration:
@@ -117,7 +120,19 @@ class Registration:
             if isinstance(names, SeveralNames):
                 return  # all but the first may be away, and registering asks that one
             raise
-        if known is not None and known.carrier == "tcp" and is_alive(known, self.key):
+        if known is None or known.carrier != "tcp":
+            return
+        try:
+            found = who(known, BUSY, self.key)
+        except LinkClosed:
+            return  # nobody listens there
+        except Timeout as error:
+            raise AddressError(
+                f'"{self.name}" belongs to a program at {known.address} that does not answer just '
+                "now, perhaps stopped or busy: end it, or take its name out by `yarpy name "
+                f"unregister {self.name}`, or choose another name"
+            ) from error
+        if found == self.name:
             raise AddressError(
                 f'"{self.name}" is in use by a port at {known.address}: close that program, or '
                 "choose another name"
