@@ -192,3 +192,15 @@ def test_a_restart_changes_nothing(
     for command in ("register /new", "register ...", "register /a", "register /n mcast"):
         assert service.answer_text(command, "h").lines == steady.answer_text(command, "h").lines
     database.close()
+
+
+def test_two_servers_on_one_file(tmp_path: Path) -> None:
+    """The second is refused; when the first has ended, or was killed, it may."""
+    ports, rules = tmp_path / "ports.db", tmp_path / "subs.db"
+    first = Database(ports, rules)
+    for second in ((ports, ""), ("", rules), (ports, rules)):
+        with pytest.raises(AddressError, match="another name server keeps its names in"):
+            Database(*second)
+    Database(tmp_path / "other.db").close()
+    first.close()
+    Database(ports, rules).close()

@@ -7,6 +7,7 @@ writes all of it, from a thread of its own. `save` does it at once. What stands 
 
 from __future__ import annotations
 
+import os
 import threading
 from pathlib import Path
 
@@ -32,9 +33,17 @@ class Database:
         *,
         cautious: bool = False,
     ) -> None:
-        """Open or create the files. Raises AddressError for a file that is no such database."""
+        """Open or create the files. Raises AddressError for a file that is no such database, or
+        that another server keeps."""
         self._ports = PortTable(ports, cautious) if _lasts(ports) else None
         self._rules = RuleTables(rules, cautious) if _lasts(rules) else None
+        self._held: list[int] = []
+        try:
+            for path in dict.fromkeys(str(path) for path in (ports, rules) if _lasts(path)):
+                self._held += _held(path)
+        except AddressError:
+            self._let_go()
+            raise
         self._service: NameService | None = None
         # kind -> keys in the order of their changes; guarded by the service's lock
         self._pending: dict[str, dict[str, None]] = {}
@@ -105,12 +114,18 @@ class Database:
                 self._service.store.watch(None)
                 self._service.topology.on_change = None
                 self._service = None
-            for tables in (self._ports, self._rules):
-                if tables is not None:
-                    tables.connection.close()
-            self._ports = self._rules = None
+            self._let_go()
 
     # --- inside
+
+    def _let_go(self) -> None:
+        for tables in (self._ports, self._rules):
+            if tables is not None:
+                tables.connection.close()
+        self._ports = self._rules = None
+        # After SQLite: who closes a file gives up all locks that its process has there.
+        while self._held:
+            os.close(self._held.pop())
 
     def _note(self, kind: str, key: str) -> None:
         self._pending.setdefault(kind, {})[key] = None
@@ -128,6 +143,32 @@ class Database:
 
                 logger("yarpy.names").error("%s", error)
                 self._closing.wait(RETRY)
+
+
+def _held(path: str) -> list[int]:
+    """The file, held for us alone: two servers would write over each other's registrations.
+
+    Raises AddressError if another server holds it. Nothing where the system has no such locks.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        return []
+    try:
+        file = os.open(path, os.O_RDONLY)
+    except OSError:
+        return []  # SQLite has opened it in a way of its own
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(file)
+        raise AddressError(
+            f"another name server keeps its names in {path}: end it, or give each a file of its own"
+        ) from None
+    except OSError:  # a file system without locks
+        os.close(file)
+        return []
+    return [file]
 
 
 def _lasts(path: str | Path) -> bool:
