@@ -1,7 +1,7 @@
 """Acceptor: the thread of a port that takes new connections.
 
 Rules: a connection costs a thread only once it has said something, so a thousand silent ones cost a
-thousand file numbers and nothing else. When those run out, the longest silent one is let go.
+thousand file numbers and nothing else. When those run out, the one silent for longest is closed.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Acceptor:
         self._silent[sock.fileno()] = sock
 
     def _wake(self, sock: socket.socket) -> None:
-        """Serve a connection that has said something; one that only hung up was a sign of life."""
+        """Serve a connection that has sent something; one that only hung up was a probe."""
         try:
             if sock.recv(1, socket.MSG_PEEK):
                 self._start(sock)
@@ -103,7 +103,7 @@ class Acceptor:
             sock.close()
 
     def abandon(self) -> None:
-        """Give back this process's copies of the sockets, in a process without our thread."""
+        """Close this process's copies of the sockets, in a forked process without our thread."""
         self._listener.release()
         for sock in self._silent.values():
             sock.close()

@@ -1,8 +1,8 @@
-"""Sending from other threads than the writer's: a link's own thread, and the one that sweeps up.
+"""Sending from threads other than the writer's: a link's own thread, and the sweeper's.
 
-Rules: they know no link; they are handed what to call, which takes the link's lock for one message
-at a time. The queue of a link's own thread holds one message, so that what is sent is never old; a
-carrier for people may allow a few more.
+Rules: they do not know the link; they are handed a callable, which takes the link's lock for one
+message at a time. The queue of a link's own thread holds one message, so that no stale message is
+sent; a carrier for people may allow a few more.
 """
 
 from __future__ import annotations
@@ -52,8 +52,9 @@ class Background:
         return not self._stopped and (waiting < backlog or not (waiting or self._busy))
 
     def wait_put(self, packet: Packet) -> bool:
-        """Take the packet; wait while an earlier one has not begun to leave. False, and counted,
-        if none leaves any more."""
+        """Take the packet, once an earlier one has begun to leave. False, and counted, if the queue
+        was stopped.
+        """
         with self._changed:
             self._changed.wait_for(lambda: not self._waiting or self._stopped)
             if self._stopped:
@@ -64,7 +65,7 @@ class Background:
             return True
 
     def wait_empty(self, timeout: float | None) -> bool:
-        """Wait until nothing waits or leaves."""
+        """Wait until nothing is queued or being sent."""
         with self._changed:
             return self._changed.wait_for(
                 lambda: self._stopped or not (self._waiting or self._busy), timeout

@@ -1,8 +1,8 @@
-"""Counters: how one link is doing, always on, and what those that are over have carried.
+"""Counters: how one link is doing, always on, and the totals of links that have ended.
 
 Rules: cheap enough to update for every message; no locks (one thread at a time carries a link's
-messages, readers may see a number that is one message old). Times in seconds. Of a link that is
-over its counter is kept, not the link, which holds on to buffers.
+messages, readers may see a number that is one message old). Times in seconds. When a link has
+ended, its counter is kept, not the link, which holds on to buffers.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from typing import Final
 
 _SMOOTHING = 1 / 16  # the gain RFC 3550 uses for jitter
-KEEP: Final = 64  # counters of links that are over and may still change a little
+KEEP: Final = 64  # counters of ended links, which may still change a little
 
 
 @dataclass(slots=True)
@@ -82,7 +82,7 @@ class Past:
         self._lock = threading.Lock()  # connections end in threads of their own
 
     def add(self, counter: Counter, lost: int = 0) -> None:
-        """A connection is over; `lost` are drops that its counter does not know."""
+        """A connection has ended; `lost` are drops that its counter does not include."""
         with self._lock:
             self._last.append((counter, lost))
             if len(self._last) > KEEP:

@@ -1,7 +1,7 @@
 """Driver: pumps a protocol's generators against a transport.
 
 Rules: the only place where bytes go from one to the other, and where foreign errors become ours.
-One thread at a time uses a driver; who that is, is the link's business. No protocol is known here.
+One thread at a time uses a driver; the link decides which. No protocol is known here.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from yarpy.wire.stream import DEFAULT_LIMIT, ByteStream, ObjectStream
 
 T = TypeVar("T")
 
-# Waking a sleeping thread takes some 30 us. When the last wait was about that short, the next bytes
-# are looked for, for a while, before sleeping; each time in vain makes that rarer.
+# Waking a sleeping thread takes some 30 us. When the last wait was about that short, the driver
+# polls for the next bytes for a while before it sleeps; each time in vain makes it poll less often.
 SOON: Final = 200e-6
 LOOKING: Final = 120e-6
 FIRST_PENALTY: Final = 32
 LAST_PENALTY: Final = 512
-# C++ hangs up before it comes to the place where the two ends meet.
-LATE: Final = 0.5  # seconds for it to come all the same
+# C++ hangs up before it comes to the meeting place of the two ends.
+LATE: Final = 0.5  # seconds for it to come after that
 _CORES: Final = os.cpu_count() or 1
 
 
@@ -45,9 +45,9 @@ class Driver:
     ) -> None:
         self.transport = transport
         self.stream = ByteStream(limit)
-        self.eager = _CORES > 1  # whether looking again may beat sleeping
-        self._looks = False  # look again and again for the next bytes instead of sleeping
-        self._skip = 0  # waits to pass before that is tried again
+        self.eager = _CORES > 1  # whether polling may beat sleeping
+        self._looks = False  # poll for the next bytes instead of sleeping
+        self._skip = 0  # waits to pass before polling is tried again
         self._penalty = FIRST_PENALTY
         self.bytes_in = 0
         self.bytes_out = 0
@@ -125,7 +125,7 @@ class Driver:
         except OSError as error:
             if isinstance(error, YarpError):
                 raise
-            count = 0  # a reset is an end: what was not read of it is told by the stream
+            count = 0  # a reset is an end: the stream reports a message that it cut off
         if count:
             self.stream.buffer_updated(count)
             self.bytes_in += count
@@ -133,7 +133,7 @@ class Driver:
             self.stream.feed_eof()
 
     def _sleep(self, buffer: memoryview) -> int:
-        """Let the kernel wake us. If that was soon, looking would have been sooner."""
+        """Let the kernel wake us. If the wait was short, polling would have been faster."""
         started = time.perf_counter()
         count = self.transport.recv_into(buffer)
         if self._skip:
@@ -143,7 +143,7 @@ class Driver:
         return count
 
     def _look(self, buffer: memoryview) -> int:
-        """Ask for bytes until they come; -1 when that takes longer than going to sleep would."""
+        """Poll until bytes come; -1 when that takes longer than going to sleep would."""
         look = self.transport.try_recv_into
         until = time.perf_counter() + LOOKING
         while True:

@@ -1,8 +1,8 @@
-"""The two beginnings of a connection: dialling out, and answering who dialled in.
+"""The two beginnings of a connection: dialling out, and answering a peer that dialled in.
 
 Rules: a greeting has `PATIENCE` seconds. Which protocol an incoming connection speaks is decided
-by its first eight bytes: the longest magic wins. Bytes that nobody knows get a text that a person
-can use. With a key (auth.conf) both sides prove that they know it before anything else; but a
+by its first eight bytes: the longest magic wins. Unknown bytes are answered with a text that helps
+a person. With a key (auth.conf) both sides prove that they know it before anything else; but a
 camera, or another server that is no port, has no key and is silent at first.
 """
 
@@ -35,8 +35,8 @@ PATIENCE: Final = 10.0  # seconds for a whole greeting
 PROVING: Final = 2.0  # seconds for the key exchange, as C++
 
 HUNG_UP: Final = -1
-HESITATION: Final = 0.3  # seconds in which a port that has a key looks whether TLS comes
-LISTENING: Final = 1.0  # seconds in which a port that has a key begins to prove it
+HESITATION: Final = 0.3  # seconds that a port with a key waits to see whether TLS comes
+LISTENING: Final = 1.0  # seconds within which a port with a key begins to prove it
 
 TLS_ALONE: Final = b"* This port speaks TLS alone: take https, or the carrier tls.\r\n"
 UNKNOWN_PROTOCOL: Final = (
@@ -145,7 +145,7 @@ def call(
 
 
 def _speaks_first(driver: Driver) -> bool:
-    """Whether the peer begins, as only ports with a key do."""
+    """Whether the peer speaks first, as only ports with a key do."""
     try:
         driver.run(driver.stream.more(1), time.monotonic() + LISTENING)
     except Timeout:
@@ -193,18 +193,18 @@ def welcome(
     carrier = kind(Route("", target, kind.name + added, port, reached))
     try:
         while (other := driver.run(carrier.welcome(driver.stream, first), deadline)) is not None:
-            carrier = other  # the first bytes alone did not tell
+            carrier = other  # the first bytes alone did not decide it
     except RemoteProtocolError:
         with suppress(YarpError):
-            driver.flush()  # what the protocol says to that
+            driver.flush()  # the protocol's answer to that
         raise
     return driver, carrier
 
 
 def _opening(transport: TcpTransport, speaks_first: bool, deadline: float) -> int:
-    """The first byte of who dialled us, which stays there; 0 if it is not waited for.
+    """The first byte of the peer that dialled us, left unread; 0 if we do not wait for it.
 
-    A port with a key has the first word, so it waits for theirs a moment only, and for TLS alone.
+    A port with a key speaks first, so it waits for a moment only, and only for TLS.
     """
     if speaks_first and not (has_certificate() or required()):
         return 0
@@ -235,7 +235,7 @@ def _in_tls(transport: TcpTransport, host: str, deadline: float) -> TcpTransport
 
 
 def _turn_away(transport: TcpTransport) -> None:
-    """Tell who comes without TLS that this is no good."""
+    """Tell a peer that came without TLS that TLS is required."""
     try:
         transport.send([TLS_ALONE])
     except OSError:
@@ -244,7 +244,7 @@ def _turn_away(transport: TcpTransport) -> None:
 
 
 def _reached(transport: TcpTransport) -> str:
-    """The address of ours that was dialled."""
+    """Our address that the peer dialled."""
     try:
         return transport.local[0]
     except OSError:

@@ -48,7 +48,7 @@ class Owner(Protocol):
         """The peer wants to read: make its connection an output."""
 
     def closed(self, link: Inbound, reason: str, quit_: bool) -> None:
-        """The link has ended. `quit_` tells that it ended in good order."""
+        """The link has ended; in good order if `quit_`."""
 
 
 class Inbound:
@@ -62,9 +62,9 @@ class Inbound:
         self.receiver = Receiver(driver, carrier)
         self.counter: Counter = self.receiver.counter
         self.turn = Turn()
-        self.successor = carrier  # who goes on when the peer turns to reading
+        self.successor = carrier  # the carrier that goes on when the peer becomes a reader
         self.thread: threading.Thread | None = None
-        self.sched = Sched()  # what somebody asked for; -1: nothing
+        self.sched = Sched()  # as requested; -1: nothing was
         self.tos = 0
         self.own_chain: Chain | None = None  # the monitors that ride on it
         self.chain: Chain | None = None  # those, and the port's
@@ -98,8 +98,8 @@ class Inbound:
         except YarpError as error:
             reason = f"{error}"
             if idle_timeout is None or not isinstance(error, Timeout):
-                self._tell(error)  # silence beyond a carrier's limit is nobody's fault
-        except BaseException as error:  # a callback's sys.exit() too ends this link, and no more
+                self._tell(error)  # silence beyond a carrier's idle timeout is no fault
+        except BaseException as error:  # even a callback's sys.exit() ends this link alone
             reason = f"{type(error).__name__}: {error}"
             log.exception("%s: connection %s fails on a defect", self.owner.name, self.route)
         if self._reversed:
@@ -180,7 +180,7 @@ class Inbound:
             return None
         try:
             if receiver.question is not None:
-                return None  # another thread of the program is at it
+                return None  # another thread of the program is answering
             if late and (receiver.waiting or self.driver.try_fill()):
                 turn.end()
             if spin and not receiver.waiting and not self._spin(deadline):
@@ -195,7 +195,7 @@ class Inbound:
                 receiver.limit(SILENCE)
             return None
         except YarpError:
-            pass  # the link's thread meets the same end at once, and tells of it
+            pass  # the link's thread meets the same end at once, and reports it
         finally:
             turn.leave()
         turn.end()
@@ -210,11 +210,11 @@ class Inbound:
         try:
             self.receiver.settle(message)
         except YarpError:
-            pass  # the sender has gone: who reads next meets it
+            pass  # the sender has gone: the next reader meets the same end
         return message
 
     def _take_newest(self, message: Message) -> Message:
-        """Take the last of those that have come already."""
+        """Take the newest of the messages that have come already."""
         receiver, stream = self.receiver, self.driver.stream
         self._take(message)
         try:
@@ -233,11 +233,11 @@ class Inbound:
                 self.counter.drops += 1
                 message = self._take(passed)
         except YarpError:
-            pass  # the sender has gone, or breaks the rules: who reads next meets it
+            pass  # the sender has gone, or breaks the rules: the next reader meets the same
         return message
 
     def _spin(self, deadline: float | None) -> bool:
-        """Ask the socket again and again instead of sleeping; False when the time is over."""
+        """Poll the socket instead of sleeping; False when the time is over."""
         self.receiver.send_acks()
         driver = self.driver
         until = deadline if deadline is not None else time.monotonic() + SILENCE
@@ -249,11 +249,11 @@ class Inbound:
                 return False
 
     def leave(self, message: Message) -> None:
-        """The reader is done with a message: a question that nobody answered is closed."""
+        """The reader is done with a message: an unanswered question is closed."""
         try:
             self.receiver.settle(message)
         except YarpError:
-            pass  # who asked has gone
+            pass  # the asker has gone
         self.turn.stir()
 
     # -- ending -----------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from yarpy.route import Route
     from yarpy.wire.steps import Steps
 
-UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may hold back
+UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may buffer
 LISTEN_MOST: Final = 64  # reads at a time of what a reader says
 LISTEN_PATIENCE: Final = 0.1  # seconds for an answer to what a reader says while we send
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
@@ -40,11 +40,11 @@ class Outbound:
         self.route: Route = carrier.route
         self.sender = Sender(driver, carrier)
         self.counter: Counter = self.sender.counter
-        self.dialled = dialled  # by us; else the reader came to us, and has to come again
-        self.sched = Sched()  # what somebody asked for; -1: nothing
+        self.dialled = dialled  # by us; else the reader dialled us, and has to dial again
+        self.sched = Sched()  # as requested; -1: nothing was
         self.tos = 0
         self.chain: Chain | None = None  # the monitors that ride on it
-        self.log = carrier.route.spec.log is not None  # it hears what the port is told, not writes
+        self.log = carrier.route.spec.log is not None  # gets what the port receives, not writes
         self.active = True  # of the multicast links of a port only one sends
         self.thread: threading.Thread | None = None
         self._due = 0.0  # when the carrier's interval is over
@@ -93,7 +93,7 @@ class Outbound:
         queue, carrier, delivery = self._queue, self.carrier, self.carrier.delivery
         assert queue is not None
         if delivery.lossy and not (queue.has_room(delivery.backlog) and self._timely()):
-            self.counter.drops += 1  # before anything is made of a message that does not go
+            self.counter.drops += 1  # before any work on a message that will not be sent
             return False
         if self.chain is not None:
             passed = self._pass(self.chain, packet)
@@ -126,7 +126,7 @@ class Outbound:
             if self._queue is None and not self.broken:
                 transport = self.driver.transport
                 if self.carrier.delivery.lossy and isinstance(transport, TcpTransport):
-                    transport.limit_unsent(UNSENT)  # else the kernel is the growing queue
+                    transport.limit_unsent(UNSENT)  # else the kernel's buffer is the growing queue
                 self._queue = Background(self.sender.send, self.counter)
                 self.thread = threading.Thread(
                     target=self._run, args=(self._queue,), name=f"yarpy {self.route}", daemon=True
@@ -138,7 +138,7 @@ class Outbound:
             try:
                 schedule(0, self.sched)
             except YarpError:
-                pass  # said when it was asked for; the link sends all the same
+                pass  # reported when it was requested; the link sends without it
         queue.run()
 
     def wait_sent(self, timeout: float | None = None) -> bool:
@@ -243,11 +243,11 @@ class Outbound:
     def ended(self) -> bool:
         """Whether the peer has hung up, found out without sending anything."""
         if self.sender.unacknowledged:
-            self.sender.caught_up()  # acknowledgements that nobody read hide the end behind them
+            self.sender.caught_up()  # unread acknowledgements hide the end behind them
         if self._listening is not None:
             self._listen(self._listening)
         if not self.broken and self.driver.transport.ended():
-            self.driver.transport.interrupt()  # frees who is stuck in sending
+            self.driver.transport.interrupt()  # frees a thread that is stuck in sending
             with self.sender.lock:
                 self.sender.give_up()
         return self.broken
@@ -279,12 +279,12 @@ class Outbound:
             self.driver.transport.limit_waiting(LISTEN_PATIENCE)
             self.driver.flush()
         except YarpError:
-            pass  # nobody is there to hear them
+            pass  # the peer has gone
 
     def close(self, quit_: bool = True) -> None:
         """End the connection: say `q`, wait a moment for its acknowledgement, hang up."""
         if not self.wait_sent(CLOSE_PATIENCE):
-            self.driver.transport.interrupt()  # nothing is taken: free who is stuck in sending
+            self.driver.transport.interrupt()  # free a thread that is stuck in sending
         if self._queue is not None:
             self._queue.stop()
         with self.sender.lock:

@@ -33,7 +33,7 @@ def grant_sched(link: Inbound | Outbound, wanted: Sched) -> None:
         schedule(thread, sched)
     link.sched = sched
     if own and isinstance(link, Inbound):
-        link.turn.end()  # from now on the thread reads, not who happens to want a message
+        link.turn.end()  # from now on the link's thread reads, not the one that wants a message
 
 
 def grant_tos(link: Inbound | Outbound, tos: int) -> None:

@@ -1,8 +1,7 @@
 """Receiver: reads the messages of a connection one after the other, acknowledges and answers them.
 
-Rules: one thread at a time; who that is, `Turn` says. Acknowledgements leave when
-there is nothing more to read at once, so a burst costs one send; and always before what answers a
-later message.
+Rules: one thread at a time; `Turn` says which. Acknowledgements leave when there is nothing more to
+read at once, so a burst costs one send; and always before the answer to a later message.
 """
 
 from __future__ import annotations
@@ -39,11 +38,11 @@ class Receiver:
         self.page: Callable[[str, Mapping[str, str]], object] = (
             _no_page  # the program's, for `Show`
         )
-        self.question: Answer | None = None  # is open: nothing is read before it is answered
+        self.question: Answer | None = None  # open: nothing is read before it is answered
         self._steps: Steps[Message] | None = None
         self._parses = type(carrier).parse is not Carrier.parse
         self._wait: float | None = None  # seconds that each wait for bytes may take
-        self._due = 0.0  # when a message that has begun must have come; 0: none has
+        self._due = 0.0  # deadline of a message that has begun; 0: none has
         self._unsent_acks = 0
 
     # -- reading ----------------------------------------------------------------------------------
@@ -110,7 +109,7 @@ class Receiver:
         counter.bytes = self.driver.bytes_in
 
     def _allow(self, seconds: float | None) -> None:
-        """A message has begun and has so many seconds; None: nothing has."""
+        """A message has begun and must end within `seconds`; None: none has begun."""
         if seconds is not None:
             self._due = time.monotonic() + seconds
         elif self._due:
@@ -135,7 +134,7 @@ class Receiver:
             raise
 
     def limit(self, seconds: float | None) -> None:
-        """Let each wait for bytes take so long."""
+        """Limit each wait for bytes to `seconds`."""
         self._wait = seconds
         try:
             self.driver.transport.limit_waiting(seconds)
@@ -152,7 +151,7 @@ class Receiver:
         return True
 
     def settle(self, message: Message) -> None:
-        """The port is done with `message`: it is acknowledged, or answered if nobody did that."""
+        """The port is done with `message`: it is acknowledged, or, if still open, answered."""
         answer = message.answer
         if answer is not None:
             if answer is not self.question:
@@ -160,21 +159,21 @@ class Receiver:
             answer.open = False
             self.question = None
             # Without any answer a caller waits for ever; one in C++ takes the acknowledgement for
-            # it. A person at a text prompt, a name service, and a page are told nothing rather than
-            # that.
+            # it. For a person at a text prompt, a name service or a page, silence is better than an
+            # empty answer.
             if self.carrier.spelling != "text" and not self.carrier.delivery.lossy:
                 self._reply(Bottle())
                 return
         if self.carrier.acks:
             self._unsent_acks += 1
-            # The sender of a large message is likely to wait: it is not let far ahead.
+            # The sender of a large message is likely to wait: acknowledge soon.
             if self._unsent_acks >= MAX_UNSENT_ACKS or (
                 message.spelling == "binary" and len(message.payload) >= LARGE
             ):
                 self.send_acks()
 
     def refuse(self, message: Message) -> None:
-        """A monitor dropped it: its sender is told that it came, and no more."""
+        """A monitor dropped it: its sender gets an acknowledgement and no more."""
         self.counter.drops += 1
         self.open_question(message)
         self.settle(message)
@@ -216,7 +215,7 @@ class Receiver:
         try:
             self.send_acks()
         except YarpError:
-            pass  # they find nobody
+            pass  # the peer has gone
         self.driver.transport.close()
 
     def _owe_acks(self) -> None:

@@ -1,6 +1,6 @@
 """Sender: puts the messages of a connection on the wire, and takes in its acknowledgements.
 
-Rules: who calls holds `lock`, for one message at a time. Acknowledgements are read late: up to
+Rules: the caller holds `lock`, for one message at a time. Acknowledgements are read late: up to
 `WINDOW` messages may be on their way unconfirmed, then a send waits. When messages follow each
 other without a pause, the first leaves at once and those behind it are gathered into one send; a
 short timer sends what a writer leaves behind.
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 log = logger("yarpy.link")
 
-# How far a sender may be ahead of acknowledgements: so many messages, bytes, seconds. A slow reader
-# thus holds its sender up, as it does in C++, instead of getting old data.
+# How far a sender may be ahead of acknowledgements: in messages, bytes, seconds. Thus a slow reader
+# holds its sender up (backpressure), as in C++, instead of getting old data.
 WINDOW: Final = 256
 WINDOW_BYTES: Final = 1 << 16
 WINDOW_SECONDS: Final = 0.005
@@ -52,7 +52,7 @@ class Sender:
         self.broken = False
         self.unacknowledged = 0
         self._acks: Steps[None] | None = None
-        self._mute = False  # the peer leaves messages unconfirmed: they are not waited for
+        self._mute = False  # the peer does not acknowledge: nothing waits for it to
         self._ahead_since = 0.0
         self._ahead_from = 0
         self._rush = 0
@@ -112,7 +112,7 @@ class Sender:
         self._left = time.perf_counter()
 
     def gone(self) -> LinkClosed:
-        """What a writer is told once it is broken."""
+        """The error that a writer gets once the link is broken."""
         return LinkClosed(f'the connection to "{self.route.target}" is gone')
 
     def flush(self) -> None:
@@ -121,12 +121,12 @@ class Sender:
         self.gathered = 0
 
     def _flush_at_once(self, now: float) -> None:
-        """Send, and learn what that takes; often it seems more, when the reader runs first."""
+        """Send, and learn how long that takes; it seems longer when the reader runs first."""
         self.flush()
         self._cost = min(self._cost, time.perf_counter() - now)
 
     def _gather(self, now: float) -> None:
-        """Leave the message in the stream for the next send of many, which comes soon."""
+        """Coalesce: leave the message in the stream for the next send, which comes soon."""
         if not self.gathered:
             self._gathered_since = now
             if self._sweeper is None:

@@ -6,13 +6,14 @@ reader that comes back at once for the next message reads it itself, under a dir
 1. The reader asks. Nothing happens before the thread has a message in hand.
 2. The thread grants the lease before it hands that message over, then it parks: when the reader
    comes back, the lock is free or about to be.
-3. Who has the lock reads, acknowledges and obeys commands. The reader leaves it with each message.
-4. The lease ends when nothing has come for SILENCE, when the reader stays away for AWAY, when
-   somebody says so (another connection came, the thread got a priority), and with the connection.
+3. Whoever holds the lock reads, acknowledges and obeys commands. The reader releases it with each
+   message.
+4. The lease ends when nothing has come for SILENCE, when the reader stays away for AWAY, when it is
+   revoked (another connection came, the thread got a priority), and with the connection.
 5. Nothing is read while a question is open that came under the lease; its end wakes the thread.
 
 The thread looks every AWAY seconds, but only while messages flow: on a silent port the lease is
-over, the thread sleeps in the socket, the reader in the mailbox, and nobody looks at a clock.
+over, the thread sleeps in the socket, the reader in the mailbox, and no thread looks at a clock.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class Turn:
     """The right to read one connection."""
 
     def __init__(self) -> None:
-        self.lock = threading.Lock()  # who has it reads
+        self.lock = threading.Lock()  # its holder reads
         self.asked = False  # a reader would like the lease
         self.leased = False  # the thread leaves reading to it
         self.seen = 0.0  # when the reader was last here
@@ -49,12 +50,12 @@ class Turn:
         """Wait until the lease is over."""
         while self.leased:
             self._dozing = True
-            if not is_question_open():  # asked last, else its end could be missed
+            if not is_question_open():  # checked last, else the question's end could be missed
                 self._dozing = False
             self._changed.wait(None if self._dozing else AWAY)
             self._dozing = False
             self._changed.clear()
-            if self.leased and self.lock.acquire(blocking=False):  # else it reads right now
+            if self.leased and self.lock.acquire(blocking=False):  # else it is being read
                 try:
                     gone = time.perf_counter() - self.seen > AWAY
                     if gone and not is_question_open():
@@ -69,7 +70,7 @@ class Turn:
         self.asked = True
 
     def take(self, seconds: float) -> bool:
-        """Take the lock under the lease; False if there is none, or others read all the time."""
+        """Take the lock under the lease; False if there is none, or other threads keep it."""
         if not self.leased or not self.lock.acquire(timeout=seconds):
             return False
         if not self.leased:
