@@ -2,9 +2,9 @@
 
 Rules: a carrier is a state machine over a ByteStream - generators, no sockets, threads or clock.
 Its facts are class attributes; each method has a default that does what the plain binary carriers
-do, so a carrier overrides only what is different about it. What it wants of the world it yields as
-an effect (`wire/effects.py`), and what it tells is a message: it leaves no flags for others to look
-at. The link drives it, in this order:
+do, so a carrier overrides only what is different about it. What it needs from the outside it yields
+as an effect (`wire/effects.py`), and what it reports is a message: it leaves no flags for others to
+look at. The link drives it, in this order:
 
     initiator                       acceptor
     greet                     ->    (magic chosen) welcome
@@ -35,7 +35,7 @@ ASKS_FOR_KEY = "perhaps it asks for a key (auth.conf) or for TLS that this side 
 class Delivery:
     """How messages leave.
 
-    lossy: who reads too slowly misses messages; its writer never waits. backlog: messages that may
+    lossy: a slow consumer misses messages; its writer never waits. backlog: messages that may
     wait for such a reader. interval: seconds between its messages, at least. coalesces: small
     messages of a burst may leave in one send.
     """
@@ -48,10 +48,10 @@ class Delivery:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a peer has time for, in seconds; None: as long as it takes.
+    """A peer's timeouts, in seconds; None: it may take as long as it likes.
 
-    idle_timeout: an accepted peer may be silent. ack_timeout: for an acknowledgement; messages then
-    go one at a time. (For the time of a message see the effect `Within`.)
+    idle_timeout: for the silence of an accepted peer. ack_timeout: for an acknowledgement; messages
+    then go one at a time. (For the time of a message see the effect `Within`.)
     """
 
     idle_timeout: float | None = None
@@ -72,8 +72,8 @@ class Carrier:
     acks: bool = False  # the receiver confirms each message
     replies: ClassVar[bool] = True
     spelling: Spelling = "binary"  # what `encode` uses of a packet
-    foreign: ClassVar[bool] = False  # whom we dial may know nothing of YARP, nor of its keys
-    introduces: ClassVar[bool] = True  # who dials says its name, and what its carrier string adds
+    foreign: ClassVar[bool] = False  # the peer we dial may know nothing of YARP, nor of its keys
+    introduces: ClassVar[bool] = True  # the initiator gives its name and modifiers
     connectionless: ClassVar[bool] = False  # closing must be told to the peer some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
     delivery: Delivery = Delivery()
@@ -99,7 +99,7 @@ class Carrier:
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[Carrier | None]:
         """The acceptor's answer; `first` are the eight bytes, already read.
 
-        Where they did not tell enough: whose connection it is instead, to welcome the peer anew.
+        If they did not decide it: returns the carrier whose connection it is, to welcome it anew.
         """
         magic = self.recognises(first)
         if 0 < magic < MAGIC_SIZE:

@@ -1,6 +1,6 @@
 """mjpeg: pictures for browsers, and from network cameras: JPEG files in an endless HTTP answer.
 
-    GET /?action=stream HTTP/1.1            the one who dials is the one who watches
+    GET /?action=stream HTTP/1.1            the dialling side is the watcher
     GET /?action=snapshot HTTP/1.1          the next picture alone
 
     HTTP/1.0 200 OK ... Content-Type: multipart/x-mixed-replace;boundary=boundarydonotcross
@@ -8,11 +8,11 @@
     Content-Type: image/jpeg
     Content-Length: 734
 
-Rules: a watcher who is too slow gets fewer pictures, its port never waits for it. A picture is
+Rules: a slow watcher gets fewer pictures, the port never waits for it. A picture is
 compressed once for all watchers that want the same quality (`/?action=stream&quality=50&rate=10`,
 or `mjpeg+quality.50+rate.10` between ports; pictures per second). What is no picture is not sent,
-and counted; browsers, who are answered with the first message, are told that there are none. The
-envelope is the comment in the JPEG file. Cameras are understood that order, spell or leave out
+and counted; browsers, which are answered with the first message, are told that there are no
+pictures. The envelope is the comment in the JPEG file. Cameras may order, spell or leave out
 headers in their own way, or send in chunks; a damaged picture is dropped, and counted in `lost`. A
 camera that wants a password is dialled once more, with the answer that login.py knows.
 """
@@ -75,7 +75,7 @@ class Mjpeg(Carrier):
         self._past_mark = False  # that line has begun: its end is next
         self._once = False  # one picture is asked for, not a stream
         self._asked = False  # the answer begins with the first message
-        self._done = False  # everything was sent
+        self._done = False  # the answer is complete
         self._shared = b""  # a header of the answer
         self._chunks: Chunks | None = None  # what a camera's server has put the pictures into
 
@@ -102,11 +102,11 @@ class Mjpeg(Carrier):
         if wishes.rate:
             self.delivery = replace(self.delivery, interval=1 / wishes.rate)
             self.route.spec = self.route.spec.plus(f"rate.{wishes.rate:g}")
-        # Scripts of other pages may look too, as they may at everything that ports show.
+        # Scripts of other pages may read it too, like everything that ports show.
         self._shared = b"Access-Control-Allow-Origin: *\r\n" if "origin" in headers else b""
         agent = headers.get("user-agent", "yarp")
         if self._once or "yarp" not in agent.lower():
-            self._asked = True  # people are told if there are no pictures: that shows later
+            self._asked = True  # answered later: people are told if there are no pictures
         else:
             stream.write(_ANSWER + self._shared + b"\r\n" + _BOUNDARY)
 
@@ -150,7 +150,7 @@ class Mjpeg(Carrier):
         return frame
 
     def encode_quit(self, stream: ByteStream) -> None:
-        """Nothing ends the answer but closing."""
+        """Only closing ends the answer."""
 
     # -- the receiver -----------------------------------------------------------------------------
 
@@ -321,7 +321,7 @@ def _compressed(packet: Packet, quality: int) -> tuple[Buffer, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Wishes:
-    """What a request for pictures asks for; 0: nothing is said. once: one picture, no stream."""
+    """What a request for pictures asks for; 0: not given. once: one picture, no stream."""
 
     once: bool = False
     quality: int = 0

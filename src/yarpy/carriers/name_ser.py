@@ -48,7 +48,7 @@ class NameSer(Carrier):
         return Message(CALL, line, spelling="text")
 
     def encode_quit(self, stream: ByteStream) -> None:
-        """Nothing ends this protocol but closing."""
+        """Only closing ends this protocol."""
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
         stream.write(reply_text(value))

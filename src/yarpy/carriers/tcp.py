@@ -48,7 +48,7 @@ class Tcp(FastTcp):
 
 
 class Tls(Tcp):
-    """tcp in TLS, for those who dial: `tcp+tls` in one word. Who is dialled sees tcp, in TLS."""
+    """tcp in TLS, for the dialling side: `tcp+tls` in one word. The other side sees tcp, in TLS."""
 
     name = "tls"
 

@@ -59,7 +59,7 @@ class Text(Carrier):
         stream.write(b"q" + _END)
 
     def drain(self, stream: ByteStream) -> Steps[None]:
-        while True:  # the welcome, and what else the peer says
+        while True:  # the welcome, and whatever else the peer says
             yield from stream.read_line(MAX_LINE)
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
@@ -67,7 +67,7 @@ class Text(Carrier):
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         if not self._welcomed:
-            # A C++ sender leaves the welcome unread; who waits for a reply must step over it.
+            # A C++ sender leaves the welcome unread; to wait for a reply, we must step over it.
             self._welcomed = True
             yield from stream.read_line(framing.MAX_NAME + 16)
         line = yield from read_text(stream, min(stream.limit, MAX_LINE))

@@ -45,7 +45,7 @@ class Datagrams(Indexed):
             whole = assembler.add((yield from stream.read_datagram()))
             message = parse_whole(whole, stream.limit) if whole is not None else None
             if message is not None and message.key not in (DATA, CALL):
-                message = None  # nobody commands by datagrams: anybody could
+                message = None  # datagrams carry no commands: anybody could send one
             if whole is not None and message is None:
                 assembler.lost += 1
             self.lost = assembler.lost
@@ -53,7 +53,7 @@ class Datagrams(Indexed):
                 return message
 
     def encode_quit(self, stream: ByteStream) -> None:
-        """Not told in datagrams: the closing side asks the peer's port by a text connection."""
+        """Not sent in datagrams: the closing side asks the peer's port over a text connection."""
 
 
 def parse_whole(data: Buffer, limit: int) -> Message | None:

@@ -9,7 +9,7 @@ what goes out has a frame for each block. In JSON a frame is a message, a reply 
 `&admin` sends them to the administration, `&envelope` shows what is read as
 `{"envelope": "7 1.5", "data": [...]}`; of a picture only its size and kind are told, with `&pixels`
 all of it. Pings are answered, a close is answered and ends the connection. A page that reads too
-slowly misses messages. Which pages may write is said by `origin`. Frames are wsproto's.
+slowly misses messages. `origin` says which pages may write. wsproto reads and writes the frames.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _CLOSE = 0x8
 _PING = 0x9
 _PONG = 0xA
 _PROTOCOL_ERROR = (1002).to_bytes(2, "big")
-_NO_MASK = bytes(4)  # a mask that changes nothing: no proxy is to be protected from us
+_NO_MASK = bytes(4)  # a mask that changes nothing: there is no proxy to protect from us
 
 
 class WebSocket(Carrier):
@@ -64,7 +64,7 @@ class WebSocket(Carrier):
         self.enveloped = False
         self.pixels = False
         self._page = False  # the peer is a page, which we have answered
-        self._masks = False  # who dials masks what it sends
+        self._masks = False  # the client masks what it sends
         self._key = CALL
         self._frames: FrameDecoder | None = None
         self._bytes = ByteStream()  # what the frames carry
@@ -212,7 +212,7 @@ class WebSocket(Carrier):
         return message
 
     def _read_json(self, stream: ByteStream) -> Steps[Message]:
-        """The next message in JSON; what is none is answered, and the page may go on."""
+        """The next message in JSON; a frame that is none gets an error, and the page may go on."""
         while True:
             complete = False
             while not complete:

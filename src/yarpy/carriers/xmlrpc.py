@@ -2,13 +2,13 @@
 
     xmlrpc.client.ServerProxy("http://host:port/RPC2").get("encs")        get encs
 
-Rules: each message is a POST, its reply the response; also a port that says nothing responds, with
-an empty string. (A C++ port whose reader does not reply gives no response: a message waits for that
-to the one before it, but not for ever.) The questions of ROS nodes (`getPid`, `requestTopic`,
-`getBusInfo`, `publisherUpdate`) go to the administration, and the connection ends after them. What
-is not XML-RPC is answered with a fault, what comes too slowly with a status. A POST to `/` belongs
-here if it brings XML, else to http.
-How values are spelled: `yarpy.data.xmlrpc`.
+Rules: each message is a POST, its reply the response; a port that says nothing responds too, with
+an empty string. (A C++ port whose reader does not reply gives no response: a message waits for the
+response to the one before it, but not for ever.) The questions of ROS nodes (`getPid`,
+`requestTopic`, `getBusInfo`, `publisherUpdate`) go to the administration, and the connection ends
+after them. What is not XML-RPC is answered with a fault, what comes too slowly with a status. A
+POST to `/` belongs here if it brings XML, else to http. How values are spelled:
+`yarpy.data.xmlrpc`.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class XmlRpc(Carrier):
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self._terse = False  # the call came from a ROS node
-        self._finished = False  # everything was said
+        self._finished = False  # the dialogue is complete
         self._last = False  # the peer wants no more calls on this connection
         self._owed = False  # a call waits for its response
         self._confirmed = False  # the response to our call was read with its reply
@@ -110,7 +110,7 @@ class XmlRpc(Carrier):
         return Message(QUIT)
 
     def _read_body(self, stream: ByteStream) -> Steps[bytearray]:
-        """The body of a call, whose head is nobody's but h11's to judge."""
+        """The body of a call; h11 alone judges its head."""
         import h11
 
         talk = h11.Connection(h11.SERVER, max_incomplete_event_size=MAX_HEAD)
@@ -131,7 +131,7 @@ class XmlRpc(Carrier):
         return body
 
     def _judge(self, stream: ByteStream, head: h11.Request, most: int) -> Steps[None]:
-        """Go on only with a call that may be made, of at most so many bytes."""
+        """Go on only with an allowed call, of at most `most` bytes."""
         headers = {key.decode("ascii"): value.decode("latin-1") for key, value in head.headers}
         connection = headers.get("connection", "").lower()
         self._last = "close" in connection or (
@@ -168,7 +168,7 @@ class XmlRpc(Carrier):
     # -- the client -------------------------------------------------------------------------------
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        self._request(0)  # refuses a path that cannot be
+        self._request(0)  # refuses an impossible path
         return
         yield
 
@@ -192,7 +192,7 @@ class XmlRpc(Carrier):
         stream.write(self._request(len(body)) + body)
 
     def encode_quit(self, stream: ByteStream) -> None:
-        """Nothing ends the dialogue but closing."""
+        """Only closing ends the dialogue."""
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         body = yield from self._read_response(stream)
@@ -236,6 +236,6 @@ def _head(stream: ByteStream) -> bytes:
 
 
 def _brings_xml(head: bytes) -> bool:
-    """Whether the body will be XML; a browser that would accept some does not bring any."""
+    """Whether the body will be XML; a browser that accepts XML does not send any."""
     lines = (line.partition(b":") for line in head.lower().split(b"\n"))
     return any(name.strip() == b"content-type" and b"xml" in value for name, _, value in lines)

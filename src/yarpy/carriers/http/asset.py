@@ -1,6 +1,6 @@
 """Files of the pages that every port has: scripts and styles, at `/*/NAME`.
 
-Rules: nothing is shown but what is listed here. Names, numbers and messages come to scripts as JSON
+Rules: only what is listed here is served. Names, numbers and messages come to scripts as JSON
 and are put into a page as text, so that nothing needs to be escaped. Programs use them too.
 """
 
@@ -15,7 +15,7 @@ KINDS: Final = {
     "style.css": "text/css; charset=utf-8",  # how all pages look
     "port.css": "text/css; charset=utf-8",
     "port.js": "text/javascript; charset=utf-8",
-    "common.js": "text/javascript; charset=utf-8",  # small words for people
+    "common.js": "text/javascript; charset=utf-8",  # small texts for people
     "live.js": "text/javascript; charset=utf-8",  # pictures
     "plot.js": "text/javascript; charset=utf-8",  # curves
     "tree.js": "text/javascript; charset=utf-8",  # values

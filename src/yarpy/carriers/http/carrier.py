@@ -7,10 +7,10 @@
     GET /r  Accept: text/event-stream          the same for JavaScript's EventSource
 
 Rules: what a request means is `http_request`, what is answered `http_response`, who may act is
-`origin`; here is the protocol alone, with an h11 for each request anew. Every request gets exactly
-one response, also if the port says nothing (204, or `[]` in JSON), or if it comes too slowly (408).
-Bad requests get their status and end the connection. Who reads slowly misses messages. Between
-ports each message is a POST and its response the acknowledgement (`http_client`).
+`origin`; here is the protocol alone, with a new h11 for each request. Every request gets exactly
+one response, even if the port says nothing (204, or `[]` in JSON) or the request comes too slowly
+(408). Bad requests get their status and end the connection. A slow consumer misses messages.
+Between ports each message is a POST and its response the acknowledgement (`http_client`).
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class Http(Carrier):
         self._headers: Mapping[str, str] = {}
         self._head_only = False
         self._modern = False  # HTTP/1.1, which knows chunks
-        self._finished = False  # everything was said
+        self._finished = False  # the response is complete
         self._stays = False  # the connection stays open for another one
         self._wish: Wish | None = None  # what is being answered
         self._taken = 0  # messages that were handed on, and those that are acknowledged
@@ -193,7 +193,7 @@ class Http(Carrier):
         self._stays = False
         self._respond(stream, complaint(status, text))
         if status in (413, 431):
-            # Hanging up on somebody who still sends would take the answer away from him.
+            # Closing while the peer still sends would reset the connection and lose our answer.
             left = DRAIN
             while left > 0:
                 try:
@@ -205,8 +205,9 @@ class Http(Carrier):
         raise RemoteProtocolError(f"HTTP {status}: {text}")
 
     def _understood(self, stream: ByteStream, request: Request) -> Steps[Wish | Carrier | None]:
-        """What is wanted of the port; None if the request is answered without it, a carrier if the
-        rest is for that one to do."""
+        """What the request wants of the port; None if it is answered without the port, a carrier if
+        that one is to do the rest.
+        """
         from yarpy.carriers.http.request import Refusal, page_asked, read_wish
 
         if self.origins.turns_away(self._headers, self.route.host):
@@ -232,11 +233,11 @@ class Http(Carrier):
         return self._screened(stream, wish)
 
     def _screened(self, stream: ByteStream, wish: Wish) -> Wish | None:
-        """The wish, unless it must not come to the port."""
+        """The wish, unless it must not reach the port."""
         if wish.acts and not self.origins.admits(self._headers, "tls" in self.route.spec.tokens):
             self._respond(stream, MAY_NOT_ACT)
         elif self._head_only and (wish.acts or wish.key == "r"):
-            # Asking for a head must change nothing, so there is no reply to tell the length of.
+            # HEAD must change nothing, so there is no reply whose length could be told.
             self._respond(stream, bare(wish))
         elif (wish.key, wish.form) == ("r", "page"):
             self._respond(stream, self._responder.reader())
@@ -249,7 +250,7 @@ class Http(Carrier):
     def encode_reply(self, stream: ByteStream, value: object) -> None:
         wish = self._wish
         if wish is None:
-            return  # nobody waits for it any more
+            return  # nobody is waiting for it any more
         try:
             response = self._responder.reply(wish, value, self._host)
             if response.endless:

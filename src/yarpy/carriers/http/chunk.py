@@ -24,7 +24,7 @@ class Chunks:
 
     def __init__(self, limit: int) -> None:
         self.inner = ByteStream(limit)
-        self._left = 0  # bytes of this chunk that did not come yet
+        self._left = 0  # bytes of this chunk that have not come yet
         self._begun = False  # the line end behind a chunk is still to come
 
     def through(self, stream: ByteStream, steps: Steps[T]) -> Steps[T]:

@@ -1,7 +1,7 @@
 """Our side of HTTP when we dial: each message is a POST, its response the acknowledgement.
 
 Rules: the carrier string says where to (`http+path.hook`); responses come in the order of the
-requests; one that is no success is the end of the connection, and its text is the reason.
+requests; one that reports a failure ends the connection, with its text as the reason.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class HttpClient:
                 headers.append((ENVELOPE, envelope))
         stream.write(request_head("POST", f"/{path}?format={form}{admin}", headers) + body)
         talk = h11.Connection(h11.CLIENT, max_incomplete_event_size=MAX_HEAD)
-        # It has to know what was asked to understand the answer, not the bytes.
+        # To read the response, h11 must know the method of the request, but not its bytes.
         talk.send(h11.Request(method="POST", target="/", headers=[("Host", "x")]))
         talk.send(h11.EndOfMessage())
         self._asked.append(talk)

@@ -1,7 +1,7 @@
 """Header lines of HTTP as a tolerant reader sees them: of cameras, ROS programs, web pages.
 
-Rules: line ends are CR LF or LF, order and spelling do not matter, later lines win, only ways to
-log in add up; how many and how long they may be is limited. (The carrier http, which owes browsers
+Rules: line ends are CR LF or LF, order and spelling do not matter, later lines win, except that
+ways to log in add up; their number and length are limited. (The carrier http, which owes browsers
 every detail, uses h11.)
 """
 

@@ -5,10 +5,10 @@
     WWW-Authenticate: Digest realm="cam", nonce="6a9f", qop="auth", algorithm=SHA-256
     Authorization: Digest username="NAME", realm="cam", nonce="6a9f", ... response="..."
 
-Rules: pure; the camera asks first, so a password is never sent that nobody wanted. Of the digests
+Rules: pure; the camera asks first, so no password is sent unasked. Of the digests
 that a camera offers the strongest is taken, among equals the first; the password itself is sent
-only to a camera that offers no digest. What a camera says is limited before it is read, and comes
-back to it in quotes. Source: RFC 7616, and RFC 2617 for cameras without `qop`.
+only to a camera that offers no digest. What a camera says is limited before it is parsed, and is
+quoted when sent back. Source: RFC 7616, and RFC 2617 for cameras without `qop`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
 from yarpy.route import Route
 
 MAX_CHALLENGES: Final = 8192  # characters of all that a camera offers
-MAX_VALUE: Final = 1024  # characters of what goes back to it, its nonce above all
+MAX_VALUE: Final = 1024  # characters of a value that is sent back, such as its nonce
 
 _STRENGTH: Final = {"md5": 1, "sha-256": 2}
 _PIECE: Final = re.compile(r'(?:[^,"]|"(?:[^"\\]|\\.)*+"?+)++')
@@ -45,15 +45,16 @@ class Challenge:
 
     @property
     def strength(self) -> int:
-        """How good a digest it is; 0 for one that is not spoken here."""
+        """How strong the digest is; 0 for an unsupported one."""
         if self.qop not in ("", "auth"):
             return 0
         return _STRENGTH.get(self.algorithm.lower().removesuffix("-sess"), 0)
 
     @property
     def qop(self) -> str:
-        """`auth` if the camera knows it, "" if it speaks the elder digest without, else what it
-        wants."""
+        """`auth` if the camera offers it, "" for the older digest without `qop`, else what it
+        wants.
+        """
         wanted = self.values.get("qop", "").strip()
         return "auth" if "auth" in re.split(r"[\s,]+", wanted.lower()) else wanted
 
@@ -70,8 +71,8 @@ class Login:
     ) -> bytes:
         """The value of `Authorization` for a GET of `target`.
 
-        wanted: all that came as `WWW-Authenticate`. Raises LoginRefused if nothing is offered that
-        is spoken here, RemoteProtocolError for what is no challenge, LocalProtocolError.
+        wanted: all that came as `WWW-Authenticate`. Raises LoginRefused if nothing supported is
+        offered, RemoteProtocolError for a malformed challenge, LocalProtocolError.
         """
         challenges = parse_challenges(wanted)
         digests = [item for item in challenges if item.scheme == "digest"]
@@ -83,7 +84,7 @@ class Login:
             if best.qop not in ("", "auth"):
                 unknown += f" and {_shown(best.qop)}"
         elif not challenges or any(item.scheme == "basic" for item in challenges):
-            return self.basic()  # a camera that forgets to say how mostly means this
+            return self.basic()  # a camera that does not say how mostly means this
         else:
             unknown = f"{_shown(challenges[0].scheme)} authentication"
         raise LoginRefused(
@@ -98,7 +99,7 @@ class Login:
         return b"Basic " + b64encode(self.user + b":" + self.password)
 
     def digest(self, challenge: Challenge, target: bytes, cnonce: bytes) -> bytes:
-        """The answer to a digest challenge that is spoken here, with our random `cnonce`."""
+        """The answer to a supported digest challenge, with our random `cnonce`."""
         from hashlib import new
 
         values = {key: _returned(challenge.values, key) for key in ("realm", "nonce", "opaque")}
@@ -177,7 +178,7 @@ def parse_challenges(text: str) -> list[Challenge]:
 
 
 def refusal(wanted: str, login: Login | None) -> LoginRefused:
-    """What to tell somebody whom a camera does not let in."""
+    """The error text for a user whom a camera does not let in."""
     if login is None:
         return LoginRefused(
             "the camera wants a name and a password: mjpeg+path.<path>+user.<name>+password.<word>"
@@ -191,7 +192,7 @@ def refusal(wanted: str, login: Login | None) -> LoginRefused:
 
 
 def _returned(values: dict[str, str], key: str) -> bytes:
-    """What a camera said, as it is to come back to it."""
+    """What a camera said, in the form in which it is sent back."""
     value = values.get(key, "")
     if len(value) > MAX_VALUE:
         raise RemoteProtocolError(
@@ -203,7 +204,7 @@ def _returned(values: dict[str, str], key: str) -> bytes:
 
 
 def _shown(text: str) -> str:
-    """A word of a camera's in an error for people."""
+    """A camera's word as an error shows it to people."""
     return "".join(c for c in text[:40] if c.isprintable())
 
 

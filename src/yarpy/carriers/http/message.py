@@ -1,6 +1,6 @@
 """One message of HTTP/1.1: read by h11, written here.
 
-Rules: what others send is h11's to judge, byte by byte. What we send is either a head with the
+Rules: h11 judges what others send, byte by byte. What we send is either a head with the
 length of its body or a head with chunks behind it, so that writing it is joining bytes; header
 values are checked for what would end a line.
 """
@@ -75,8 +75,9 @@ def _head(first: str, headers: Headers) -> bytes:
 
 
 def two_lengths(head: h11.Request) -> bool:
-    """Whether a request says twice, in different ways, where it ends: somebody between us and who
-    sent it may have read another request than we would (smuggling). h11 refuses two numbers."""
+    """Whether a request gives its length twice, in different ways: a proxy on the way may have read
+    another request than we would (request smuggling). h11 refuses two numbers.
+    """
     names = {name for name, _ in head.headers}
     return b"transfer-encoding" in names and b"content-length" in names
 

@@ -5,11 +5,11 @@
     robot.lab.example                 every page of that computer, which may be ours
     *                                 any page, as in C++ YARP
 
-Rules: a browser tells where the page is from that makes it ask; who is no browser may act in any
-case. This protects people who browse, it is no password. Reading is open to every page, as in
-C++ YARP. A site may let its name point to this computer, to be taken for its own page (DNS
-rebinding): so a name with dots that nobody listed is not ours, and who comes over the loopback,
-where nobody else's name leads, is turned away with it.
+Rules: a browser names the origin of the page that makes the request; other programs may always act.
+This protects people who browse, it is no password. Reading is open to every page, as in C++ YARP. A
+site may point its own name to this computer, so that its page passes for the port's (DNS
+rebinding): so a name with dots that is not listed is not ours, and a request with it over the
+loopback, where no other computer's name leads, is turned away.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from collections.abc import Mapping
 class Origins:
     """Whose pages may act on a port: those of the `listed` origins and `hosts`.
 
-    `listed` None: those of everybody.
+    `listed` None: all pages.
     """
 
     def __init__(self, listed: frozenset[str] | None, hosts: frozenset[str] = frozenset()) -> None:
@@ -29,7 +29,8 @@ class Origins:
         self.hosts = hosts
 
     def admits(self, headers: Mapping[str, str], secure: bool = False) -> bool:
-        """Whether a request comes from such a page, from the port's own, or from no browser.
+        """Whether a request comes from such a page, from the port's own, or from a program that is
+        no browser.
 
         `secure`: it came in TLS.
         """
@@ -50,12 +51,12 @@ class Origins:
         site = headers.get("sec-fetch-site")
         if site is not None:
             return site in ("same-origin", "none") and self.knows(headers.get("host", ""))
-        # A browser that tells nothing may have been told to by the page.
+        # If a browser names no origin, the page may have made it hide it.
         return "mozilla/" not in headers.get("user-agent", "").lower()
 
     def knows(self, host: str) -> bool:
         """Whether this is what the computer may be called, by its Host header: an address, a name
-        of this network, or one of `hosts`. Any other may be a site's that points it to us."""
+        of this network, or one of `hosts`. Any other may belong to a site that points it to us."""
         name = hostname(host.lower())
         return (
             self.listed is None
@@ -70,7 +71,7 @@ class Origins:
         """Whether a request is for a computer of another name. `reached`: the address that it came
         to, which is a loopback's if the name led there."""
         if not (reached.startswith("127.") or reached == "::1"):
-            return False  # people call computers of a network as they like
+            return False  # within a network, computers may have any name
         return not self.knows(headers.get("host", ""))
 
     def _is_own(self, origin: str, host: str, secure: bool) -> bool:
@@ -80,8 +81,9 @@ class Origins:
 
     @property
     def framing(self) -> str:
-        """Who may frame pages that may act: where only some may act, nobody else. For the header
-        Content-Security-Policy; empty if everybody may."""
+        """Which origins may frame pages that may act: only those that may act themselves. For the
+        header Content-Security-Policy; empty if all may.
+        """
         if self.listed is None:
             return ""
         hosts = [f"{scheme}://{host}:*" for host in sorted(self.hosts) for scheme in _SCHEMES]
@@ -103,7 +105,7 @@ def origins_of(text: str | None = None) -> Origins:
 
 
 def not_ours(host: str) -> str:
-    """What to tell somebody who was turned away."""
+    """The text for a request that was turned away."""
     name = "".join(c for c in hostname(host) if c.isalnum() or c in ".-_")[:80]
     return (
         f"this computer is not known as {name}: call it by its address, or name it in "

@@ -1,8 +1,8 @@
 """Pages that a program shows to browsers on its port, beside those of the port itself.
 
 Rules: pages are read, they change nothing: what a page wants done it sends as a message. A page is
-the program's own, so its scripts act as the port's own page does; what came from elsewhere belongs
-into a reply with `(web ...)`, which browsers keep apart. Messages come first: a request that
+the program's own, so its scripts may do what the port's own page may; content from elsewhere
+belongs in a reply with `(web ...)`, which browsers keep apart. Messages come first: a request that
 carries one (`req`, `data`, `cmd`), `/r` and `/?` are never asked for here.
 """
 
@@ -30,5 +30,5 @@ class Page:
 
 
 #: called with the path, which begins with "/", and the arguments. A string is a page of HTML;
-#: None: what the port shows there by itself
+#: None: what the port shows there otherwise
 Pages: TypeAlias = Callable[[str, Mapping[str, str]], Page | str | None]

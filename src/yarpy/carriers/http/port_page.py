@@ -1,8 +1,8 @@
 """The page that a port shows to browsers, as text.
 
-Rules: plain HTML that can be used without its script too, which adds what flows; nothing is loaded
-from elsewhere. Whatever came from a port or a message is escaped here. Lines of a name server
-become links, lines of its help (those that begin with `+`) become forms, as in C++ (core-4 7.4).
+Rules: plain HTML that works without its script too, which adds live data; nothing is loaded from
+elsewhere. Whatever came from a port or a message is escaped here. Lines of a name server become
+links, lines of its help (those that begin with `+`) become forms, as in C++ (core-4 7.4).
 """
 
 from __future__ import annotations

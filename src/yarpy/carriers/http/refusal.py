@@ -1,7 +1,7 @@
 """The last answer on a connection: a status, a line that says what to do, and no more.
 
 For the carriers beside http that begin as a request of HTTP. Rules: the peer gets the time to read
-it; who hangs up on somebody who still sends takes its answer back.
+it; closing while the peer still sends resets the connection and loses the answer.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ READS: Final = ("*", "?", "h", "r")  # port commands that change nothing
 
 _VARIABLE = re.compile(r"\$([A-Za-z0-9_]*)")
 _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*+://[^/?#]*+")
-# What browsers and crawlers ask for by themselves: no message to a robot.
+# What browsers and crawlers request automatically: no message to a robot.
 _HABITS: Final = ("apple-touch-icon", ".well-known/", "robots.txt", "sitemap")
 _SPELLINGS: Final[dict[str, Form]] = {
     "json": "json",
@@ -62,7 +62,7 @@ class Request:
 class Wish:
     """A message or port command (`key`, as in Message), and how to answer it.
 
-    shown: what the page's form shows again. pixels: who reads wants pictures whole. rate: messages
+    shown: what the page's form shows again. pixels: the reader wants whole pictures. rate: messages
     a second that it wants at most; 0: all. acts: it may change something.
     """
 
@@ -214,8 +214,9 @@ def _posted(request: Request, fields: dict[str, str]) -> Wish | Refusal:
 
 
 def _json(request: Request, fields: dict[str, str], value: Any) -> Wish | Refusal:
-    """A JSON body: an array or object is the message; an object with `req` or `data` is as a
-    form."""
+    """A JSON body: an array or object is the message; an object with `req` or `data` is read like a
+    form.
+    """
     import json
 
     form = _form(request, fields, "json")
@@ -259,7 +260,7 @@ def _asked(
     substituting: bool = True,
     honest: bool = False,
 ) -> Wish:
-    """A message that is spelled as text. `honest`: its form is what it says, whoever asks."""
+    """A message that is spelled as text. `honest`: only `format` can change the answer's form."""
     if substituting:
         text = substitute(text, fields)
     if honest:
@@ -284,7 +285,7 @@ def _wish(fields: Mapping[str, str], form: Form, value: Bottle) -> Wish:
 
 
 def _command(request: Request, fields: Mapping[str, str]) -> Wish | Refusal:
-    """`cmd`: what somebody would type who is connected in text mode."""
+    """`cmd`: what a person would type on a connection in text mode."""
     line, _, rest = fields["cmd"].lstrip("\r\n").partition("\n")
     command = framing.parse_command(line.rstrip("\r"))
     form = _form(request, fields, "page")
@@ -315,7 +316,7 @@ def _outer(fields: Mapping[str, str]) -> Outer:
 
 
 def _form(request: Request, fields: Mapping[str, str], default: Form) -> Form:
-    """How to answer: what is asked for by name, then what the asker can read."""
+    """How to answer: by the form that is named, then by what the client accepts."""
     named = _SPELLINGS.get(fields.get("format", ""))
     if named is not None and named != "events":
         return named

@@ -1,13 +1,13 @@
 """What a browser gets from a port: replies, lines, pages and refusals as responses of HTTP.
 
-    json     [1, 2] LF            nothing said: []
-    text     1 2 CR LF            nothing said: 204
+    json     [1, 2] LF            no reply: []
+    text     1 2 CR LF            no reply: 204
     none     204
     page     the port's page with the reply on it (`http_page`)
     web      a page that a program put into its reply (core-4 7.5), kept apart from the port's own
 
-Rules: what was said goes in, a Response comes out; `http` writes it. Each response says that it is
-not to be kept, nor to be taken for another type, and that any page may read it.
+Rules: a reply goes in, a Response comes out; `http` writes it. Each response forbids caching and
+type sniffing, and lets any page read it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from yarpy.carriers.http.page import Page
     from yarpy.carriers.http.request import Refusal, Wish
 
-PRELUDE: Final = 2048  # blanks with which an endless page begins, as in C++: browsers wait for some
+PRELUDE: Final = 2048  # blanks with which an endless page begins, as in C++: browsers buffer
 
 _COMMON: Final = [
     ("Cache-Control", "no-store"),
@@ -38,7 +38,7 @@ _COMMON: Final = [
 ]
 _TYPES: Final = {"page": HTML, "json": JSON, "text": TEXT, "events": "text/event-stream"}
 _ALLOW: Final = ("Allow", "GET, HEAD, POST, OPTIONS")
-# Our own page needs nothing from elsewhere; what came in a message can be no script of it.
+# Our own page needs nothing from elsewhere; nothing that came in a message can run in it.
 _PAGE_POLICY: Final = (
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
     "img-src 'self' blob:; form-action 'self'; base-uri 'none'"
@@ -54,7 +54,7 @@ _GUEST_POLICY: Final = (
 class Response:
     """Status, type and bytes of a body, more headers.
 
-    body None: only the head was asked for, and nobody knows the rest. endless: the body is only the
+    body None: only the head was asked for, and the rest is unknown. endless: the body is only the
     beginning, messages follow.
     """
 
@@ -92,23 +92,23 @@ UNSPEAKABLE: Final = Response(500, body=b"the port's answer cannot be sent\n")
 
 
 def complaint(status: int, text: str) -> Response:
-    """A line that says what is wrong."""
+    """A response of one line that says what is wrong."""
     return Response(status, body=_encoded(text + "\n"))
 
 
 def refused(refusal: Refusal) -> Response:
-    """What is answered without the port."""
+    """An answer that needs no port."""
     text = f"{refusal.text}\n" if refusal.text else ""
     return Response(refusal.status, refusal.kind, _encoded(text))
 
 
 def bare(wish: Wish) -> Response:
-    """The head alone of what would be the answer."""
+    """The head of the answer, without its body."""
     return Response(200, _TYPES.get(wish.form, TEXT), None)
 
 
 class Responder:
-    """What the port that `route` ends at answers, told which pages may act (`origins`).
+    """The answers of the port at the end of `route`; `origins`: which pages may act.
 
     host: how the browser calls this computer, its Host header.
     """
@@ -124,7 +124,7 @@ class Responder:
         return (_guest(value) if wish.form != "json" else None) or self.said(wish, value, host)
 
     def said(self, wish: Wish, value: object, host: str) -> Response:
-        """A value or lines in the form that is wished."""
+        """A value or lines in the form that was asked for."""
         if wish.form == "json":
             return Response(200, JSON, _json_body(value, wish))
         if wish.form == "page":
@@ -157,7 +157,7 @@ class Responder:
         return Response(page.status, page.kind, page.to_bytes(), policy)
 
     def preflight(self, headers: Mapping[str, str]) -> Response:
-        """What a page may do here, which its browser asks before it does it."""
+        """What a page may do here; its browser asks beforehand (a CORS preflight)."""
         acting = ", POST" if self.origins.admits(headers, "tls" in self.route.spec.tokens) else ""
         allowed = [
             _ALLOW,
@@ -174,7 +174,7 @@ class Responder:
         return Response(200, HTML, body, [self._policy()])
 
     def _policy(self) -> tuple[str, str]:
-        """What browsers are told to refuse to the page; its form is not for others to frame."""
+        """What browsers must refuse to the page; no other site may frame its form."""
         framing = self.origins.framing
         return "Content-Security-Policy", _PAGE_POLICY + (f"; {framing}" if framing else "")
 

@@ -6,7 +6,7 @@
     guest     what the program put under `web`      see core-4 7.5
 
 Rules: each form of a message is made once, however many read it. Of a picture only size and kind
-are told, unless whoever reads JSON asks for pixels; who wants to see it takes mjpeg.
+are sent, unless a reader of JSON asks for pixels; to see it, take mjpeg.
 """
 
 from __future__ import annotations
