@@ -47,7 +47,7 @@ class Contact:
 
     @property
     def label(self) -> str:
-        """What ports call a connection that was dialled so: the name, or `/host:port/`."""
+        """What ports call a connection that was dialled this way: the name, or `/host:port/`."""
         return self.name or f"/{self.address}/"
 
     def __str__(self) -> str:
@@ -60,7 +60,7 @@ class Contact:
 def parse_contact(text: str) -> Contact:
     """Read `/name`, `carrier://name`, `/host:port`, `carrier://host:port[/name]`, `host:port`.
 
-    An empty carrier in the result means that none was given. Raises AddressError for no text.
+    An empty carrier in the result means that none was given. Raises AddressError for an empty text.
     """
     if not text:
         raise AddressError('an empty port name; names start with "/", addresses are /host:port')

@@ -1,10 +1,10 @@
-"""What the library logs, fit to be read by people, and the loggers that see to it.
+"""Loggers whose records are safe to read in a terminal.
 
     log = logger("yarpy.port")
 
-Rules: names, addresses and reasons come from strangers, and a log is read in a terminal, which
-obeys what is written there. So what a terminal would obey, what ends a line, and what turns the
-direction of a text around is escaped in every record, whatever handler takes it.
+Rules: names, addresses and reasons come from strangers, and a terminal obeys the control characters
+in what it shows. So what a terminal would obey, what ends a line, and what turns the direction of a
+text around is escaped in every record, whatever handler takes it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def logger(name: str) -> logging.Logger:
 
 
 def readable(text: str, keep: str = "") -> str:
-    """`text` with escapes in the place of what nobody sees but terminals and line readers obey.
+    """`text` with escapes in place of unseen characters that terminals and line readers obey.
 
     >>> readable("/cam" + chr(27) + "[2J" + chr(10))
     '/cam\\\\x1b[2J\\\\n'
@@ -49,7 +49,7 @@ def _make_readable(record: logging.LogRecord) -> bool:
     try:
         text = record.getMessage()
     except Exception:
-        return True  # the handler tells what is wrong with it
+        return True  # the handler reports what is wrong with it
     if _HIDDEN.search(text) is not None:
         record.msg, record.args = readable(text), ()
     return True

@@ -1,4 +1,4 @@
-"""realtime(): make this process answer faster than Python does by itself.
+"""realtime(): make this process answer faster than Python does by default.
 
 Rules: explicit, never at import; undone when used as a context manager.
 """
@@ -18,7 +18,7 @@ def realtime(priority: int = 0, switch_interval: float = SWITCH_INTERVAL) -> _Re
     less.
 
     With `priority` 1..99 the calling thread also gets SCHED_FIFO; that needs CAP_SYS_NICE or root
-    (LocalProtocolError says so). Objects that exist are taken out of garbage collection's way.
+    (LocalProtocolError says so). Objects that exist are frozen: garbage collection skips them.
     Stays in force; `with yarpy.realtime(): ...` undoes it at the end.
     """
     undo = _Realtime(sys.getswitchinterval(), priority)

@@ -1,6 +1,6 @@
 """Name -> plug-in: the one place where carriers, types, monitors and commands are looked up.
 
-Rules: our plug-ins and those of strangers come the same way, from packaging entry points (groups
+Rules: our plug-ins and third-party ones come the same way, from packaging entry points (groups
 `yarpy.carriers`, `yarpy.types`, `yarpy.monitors`, `yarpy.commands`). Nothing registers itself by
 being imported. A lookup loads only what it needs; a plug-in that fails to load is an error that
 names its distribution.
@@ -72,7 +72,7 @@ class Registry:
         self._lock = threading.RLock()  # two acceptors may meet an unknown protocol at once
 
     def add(self, name: str, plugin: Any) -> None:
-        """Put a plug-in in by hand (a test, a notebook); it wins over installed ones."""
+        """Add a plug-in by hand (a test, a notebook); it wins over installed ones."""
         with self._lock:
             self._loaded[name] = plugin
 
@@ -104,7 +104,7 @@ class Registry:
             return plugin
 
     def __iter__(self) -> Iterator[Any]:
-        """Every plug-in that loads; asking for one of the others by name tells why."""
+        """Every plug-in that loads; asking for one of the others by name says why."""
         for name in self.names():
             try:
                 yield self.load(name)

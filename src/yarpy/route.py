@@ -11,9 +11,9 @@ A carrier string is a protocol and what is added to it, in any order, a `+` befo
 It travels to the other side as a *specifier*: the sender's name, and a group `(key value)` for each
 addition, where every dot has become a space.
 
-Rules: pure. A connection has one `Route`, and that holds the one `CarrierSpec`: nobody looks into
-carrier strings himself. What everybody may see is `text`, without the password. Source: core-1
-sections 1.6, 1.12.
+Rules: pure. A connection has one `Route`, and that holds the one `CarrierSpec`: no other code
+parses carrier strings. What may be shown is `text`, without the password. Source: core-1 sections
+1.6, 1.12.
 
     >>> spec = parse_carrier("mjpeg+path.a.b+password.x+y+recv.priority+tc.0.5")
     >>> spec.base, spec.value("path"), spec.text
@@ -48,11 +48,11 @@ Monitors: TypeAlias = tuple[tuple[str, tuple[str, ...]], ...]
 
 @dataclass(frozen=True, slots=True, repr=False)
 class CarrierSpec:
-    """What a carrier string says. `text` is for everybody, `whole` has the password too.
+    """What a carrier string says. `text` may be shown, `whole` has the password too.
 
-    `own`: this program asked for it, and not somebody on the network.
+    `own`: this program asked for it, not somebody on the network.
     `base` is the protocol, `tokens` what is added to it. `send` and `recv` are the monitors at
-    either end. `log` is the value of `+log`: such a connection hears what a port is told, not what
+    either end. `log` is the value of `+log`: such a connection gets what a port receives, not what
     it writes.
     """
 
@@ -104,7 +104,7 @@ class CarrierSpec:
 
 
 def parse_carrier(text: str) -> CarrierSpec:
-    """Read a carrier string. Without a protocol it is about tcp. Any text is one.
+    """Read a carrier string. Without a protocol it means tcp. Any text is valid.
 
     >>> parse_carrier("").base
     'tcp'
@@ -207,7 +207,7 @@ class Route:
         added = []
         for token in _split_groups(rest):
             words = _split_groups(token[1:-1]) if token.startswith("(") else [token]
-            if words and words != ["tls"]:  # that is for us to see
+            if words and words != ["tls"]:  # whether it is TLS we see ourselves
                 added.append(".".join(words[:2]))
         if added:
             self.spec = self.spec.plus(*added)

@@ -3,8 +3,8 @@
     ca.pem  ca-key.pem      the authority; the key stays where it was made
     cert.pem  key.pem       one computer, by its names and addresses
 
-Rules: keys are of P-256 and readable by their owner alone. Nothing is overwritten but a certificate
-that is made anew. Uses the package cryptography, which only making certificates needs.
+Rules: keys are of P-256 and readable by their owner alone. Nothing is overwritten except a
+certificate that is renewed. Only making certificates needs the package cryptography.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ def _alternative(name: str) -> Any:
     try:
         return x509.DNSName(name)
     except ValueError as error:
-        raise LocalProtocolError(f'"{name}" is no name of a computer') from error
+        raise LocalProtocolError(f'"{name}" is not the name of a computer') from error
 
 
 def _private(key: Any) -> bytes:
@@ -141,7 +141,7 @@ def _public(certificate: Any) -> bytes:
 
 
 def _write(file: Path, data: bytes, mode: int) -> None:
-    """Whole or not at all, and never readable by others for a moment."""
+    """Write it whole or not at all; others cannot read it even for a moment."""
     fresh = file.with_name(f".{file.name}.new")
     fresh.unlink(missing_ok=True)
     with open(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as out:

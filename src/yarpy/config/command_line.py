@@ -2,8 +2,8 @@
 
 Rules (nameserver spec 7.1, checked against C++ YARP): every argument is one value, so that
 `--list "(1 2)"` is a list and `--text "a b"` one string; `--a::b 3` means `(a (b 3))`; backslashes
-are letters; a later `--key` replaces an earlier one. What stands before the first `--` is no
-option and is passed over.
+are letters; a later `--key` replaces an earlier one. What stands before the first `--` is not an
+option and is skipped.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def parse_value(text: str) -> Any:
 
 
 def _open(groups: dict[str, Bottle], name: str) -> Bottle:
-    """The list that takes the values of `name`, new; `a::b` is the list b inside of a."""
+    """A new list for the values of `name`; `a::b` is the list b inside a."""
     path = name.split("::")
     if len(path) == 1:
         groups[name] = Bottle([name])

@@ -126,7 +126,7 @@ def server_file(directory: Path, namespace: str) -> Path:
 
 
 def namespaces(environment: Mapping[str, str], directory: Path) -> list[str]:
-    """The namespaces in use, the current one first; `["/root"]` when nothing is said."""
+    """The namespaces in use, the current one first; `["/root"]` by default."""
     from yarpy.data.bottle import Bottle
 
     text = environment.get("YARP_NAMESPACE") or _read(namespace_file(directory))
@@ -192,7 +192,7 @@ def parse_server(text: str) -> Server | None:
 
 
 def default_port(environment: Mapping[str, str]) -> int:
-    """The port of a name server nobody said otherwise about, and of multicast discovery."""
+    """The default port of a name server, and the port of multicast discovery."""
     return _number(environment.get("YARP_PORT_RANGE", "")) or DEFAULT_PORT
 
 
@@ -263,7 +263,7 @@ def _read(path: Path) -> str:
 
 
 def _write(path: Path, text: str) -> None:
-    """Replace the file at once, so that nobody reads half an address."""
+    """Replace the file atomically, so that no reader sees half an address."""
     path.parent.mkdir(parents=True, exist_ok=True)
     draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     draft.write_text(text, "utf-8", "surrogateescape")

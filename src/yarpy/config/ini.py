@@ -9,8 +9,8 @@
     // comment      # comment      $VARIABLE ${VARIABLE} $(VARIABLE)
 
 Rules (nameserver spec 7.1, checked against C++ YARP): reading never fails on what is in a file; an
-included file that is not there is skipped with a warning. Beware as in C++: `//` begins a comment
-also inside a URL unless quoted, `a=b` without blanks is one key, and an open bracket or quote
+included file that is not there is skipped with a warning. Beware, as in C++: `//` begins a comment
+even inside a URL unless quoted, `a=b` without blanks is one key, and an open bracket or quote
 swallows the rest of the file.
 """
 
@@ -33,7 +33,7 @@ LONGEST = 1 << 20  # characters that the variables in a line may add to it
 Find = Callable[[str, str], Path | None]
 
 _NESTING = re.compile(r'[\\"(){}]')
-# (a name has an end: a file of nothing but `${` would otherwise be searched for it at each)
+# (names are bounded: in a file of nothing but `${` each would otherwise search the whole rest)
 _VARIABLE = re.compile(r"\\.|\$(?:\{([^}]{0,255}+)\}|\(([^)]{0,255}+)\)|([A-Za-z0-9_]{0,255}+))")
 
 
@@ -143,7 +143,7 @@ class _Reader:
             self._merge(path, parents)
             return
         section = self._enter(names[-2], names[-3] if len(names) > 2 else "")
-        # The file is merged into what the section has, and that is what remains of the section.
+        # The file is merged into what the section holds, and the result becomes the section.
         inner = _Reader(self._environment, self._values, self._find)
         for item in section[1:]:
             if isinstance(item, Bottle) and item:
@@ -201,12 +201,13 @@ class _Reader:
 def _words(text: str) -> Bottle:
     try:
         return Bottle.from_text(text)
-    except DecodeError:  # hundreds of brackets inside of each other
+    except DecodeError:  # hundreds of nested brackets
         return Bottle()
 
 
 def _joined(lines: Iterable[str]) -> Iterator[tuple[str, bool]]:
-    """Lines that a backslash, an open bracket or an open quote joins as one; whether it was closed.
+    """Lines, those that a backslash or an open bracket or quote joins as one; whether it was
+    closed.
 
     Every character is looked at once, however many lines there are."""
     parts: list[str] = []

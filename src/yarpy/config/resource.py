@@ -9,8 +9,8 @@ Rules (nameserver spec 6.6): a file is the first that exists of
     5. NAME                        in every base directory
 
 The base directories are, in order: the user's configuration, the user's data, the system's
-configuration, the system's data, and what `*.ini` files under `config/path.d` of the last add.
-Nothing is cached and nothing is printed. An absolute name is taken as it is.
+configuration, the system's data, and those named by `*.ini` files in `config/path.d` of the
+system's data. Nothing is cached and nothing is printed. An absolute name is taken as it is.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Search:
 
     contexts: in order of preference. robot: "" means `YARP_ROBOT_NAME`, or `default`.
     near: directory of the main configuration file, if it was found in `directory` (case 2).
-    values: options; one that is called like the file says what to look for instead.
+    values: options; one with the same name as the file says what to look for instead.
     """
 
     environment: Mapping[str, str] = field(default_factory=lambda: os.environ)

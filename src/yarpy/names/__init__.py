@@ -1,5 +1,5 @@
-"""Names: who is called what and where, asked of name services.
+"""Names: where ports are found by name, asked of name services.
 
-`base` is what ports are written against; `client` and `fallback_client` implement it, and
-`yarpy.nameserver.local` does for programs that need no server.
+`base` is what ports are written against; `client` and `fallback_client` implement it, as does
+`yarpy.nameserver.local` for programs that need no server.
 """

@@ -1,6 +1,6 @@
-"""Which address of this computer to tell others.
+"""Which of this computer's addresses to advertise.
 
-Rules: reading interfaces is best effort, a system that does not tell has just loopback. Texts are
+Rules: listing interfaces is best effort; where the system cannot, only loopback is known. Texts are
 plain: no zone (`%eth0`), and an IPv4 address seen through an IPv6 socket (`::ffff:10.0.0.1`) is
 written as IPv4, because that is what C++ YARP compares them with.
 """
@@ -91,7 +91,7 @@ def address_towards(
 
 
 def outward_address(addresses: Iterable[str] | None = None) -> str:
-    """The address a server says it lives at: IPv4, not loopback if possible, the shortest text."""
+    """The address that a server advertises: IPv4, not loopback if possible, the shortest text."""
     candidates = [
         address
         for address in (local_addresses() if addresses is None else addresses)

@@ -1,7 +1,7 @@
 """What a port needs of a name service. Ports are written against this and nothing else.
 
-Rules: a client may be used from any thread. `NoNameServer` means that nobody answered; a name
-that nobody knows is None, not an error.
+Rules: a client may be used from any thread. `NoNameServer` means that no server answered; an
+unknown name is None, not an error.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class NameClient(Protocol):
     """A name service as seen by its users.
 
     `allocates`: whether `register` hands out port numbers. If not, listen first on a number of the
-    system's choice and register with host and port. With or without, a registration that names
+    system's choice and register with host and port. Either way, a registration that names
     host and port is kept as it is.
     """
 
@@ -35,7 +35,7 @@ class NameClient(Protocol):
         port: int | None = None,
         port_type: str | None = None,
     ) -> Contact:
-        """Put `name` in and learn the complete contact; what is None the service fills in.
+        """Register `name` and return its complete contact; the service fills in what is None.
 
         name: `...` asks for a temporary name. Whoever had the name before loses it.
         Raises AddressError when the service refuses, NoNameServer when nobody answers.
@@ -43,7 +43,7 @@ class NameClient(Protocol):
         ...
 
     def unregister(self, name: str) -> None:
-        """Take `name` out; unknown names are ignored."""
+        """Unregister `name`; unknown names are ignored."""
         ...
 
     def query(self, name: str) -> Contact | None:
@@ -51,7 +51,8 @@ class NameClient(Protocol):
         ...
 
     def announce(self, name: str, ok: bool = True) -> None:
-        """Say that `name` listens now (persistent connections start), or does not answer."""
+        """Announce that `name` listens now (persistent connections start), or that it does not
+        answer."""
         ...
 
     def set(self, name: str, key: str, *values: str | int | float) -> Strings:
@@ -67,5 +68,5 @@ class NameClient(Protocol):
         ...
 
     def close(self) -> None:
-        """Let go of connections; the client may be used again."""
+        """Close the connections; the client may be used again."""
         ...

@@ -3,9 +3,9 @@
 Rules: plain blocking sockets with a timeout; safe to use from any thread, connections are lent to
 one command at a time. Old style commands go over `NAME_SERVER` lines, several over one connection,
 each behind its own 12 bytes of prefix. What C++ answers with a Bottle (`bot ...`, `subscribe`,
-`topic` ...) goes over `CONNACK`, whose replies end visibly. A connection that turns out dead (the
-server was restarted) is replaced once before NoNameServer is raised; every command may be repeated
-without harm. Source: nameserver spec 1.1, 1.2, 5.
+`topic` ...) goes over `CONNACK`, where the end of a reply can be seen. A connection that turns out
+to be dead (the server was restarted) is replaced once before NoNameServer is raised; every command
+may be repeated without harm. Source: nameserver spec 1.1, 1.2, 5.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from yarpy.transports.tls_setting import required
 
 IDLE = 10.0  # seconds after which an unused connection is not trusted any more
 SPARE = 2  # connections kept for the next command
-WHO = 1.0  # seconds to find out what it is that does not answer
+WHO = 1.0  # seconds to find out what listens there when it does not answer
 LARGEST = 64 << 20  # bytes of one whole reply
 
 _ACK = "<ACK>"
@@ -49,7 +49,7 @@ class _Gone(Exception):
 
 
 class _Line:
-    """One connection that has greeted: `lines` for NAME_SERVER, `acked` for CONNACK."""
+    """One connection after its handshake: `lines` for NAME_SERVER, `acked` for CONNACK."""
 
     def __init__(self, connection: socket.socket, kind: Literal["lines", "acked"]) -> None:
         self.connection = connection
@@ -100,9 +100,9 @@ class YarpNameClient:
     """A `NameClient` that asks the name server at `host`:`port`.
 
     timeout: seconds for connecting and for each part of a reply.
-    own_host: what to register where `register` is not told a host (`YARP_IP`); normally "", and
+    own_host: what to register when `register` is given no host (`YARP_IP`); normally "", and
     the server takes the address it sees.
-    prepare: called with each new connection before anything else (the proof of auth.conf).
+    prepare: called with each new connection before anything else (the handshake of auth.conf).
     """
 
     allocates = True
@@ -144,7 +144,7 @@ class YarpNameClient:
         lines = self.command(*words)
         contact = parse_registration(lines[0]) if lines else None
         if contact is None:
-            if not lines:  # a name server gives a reason at least
+            if not lines:  # a name server gives at least a reason
                 raise self._ordinary()
             reason = lines[0].removeprefix("error ")
             raise AddressError(f'the name server at {self._where} refused "{name}": {reason}')
@@ -172,7 +172,7 @@ class YarpNameClient:
     def list(self, prefix: str | None = None) -> Contacts:
         lines = self.command("list", prefix) if prefix else self.command("list")
         contacts = [contact for contact in map(parse_registration, lines) if contact is not None]
-        if not contacts and not prefix:  # a name server knows itself at least
+        if not contacts and not prefix:  # a name server lists at least itself
             raise self._ordinary()
         return contacts
 
@@ -191,10 +191,10 @@ class YarpNameClient:
     # --- any command
 
     def command(self, *words: str | int | float) -> Strings:
-        """The lines of an old style reply, without the end line; for `announce` none.
+        """The lines of an old style reply, without the end line; none for `announce`.
 
-        Raises AddressError for what has a Bottle as its reply (use `request`) and would wait
-        for an end line that never comes.
+        Raises AddressError for a command whose reply is a Bottle (use `request`): its end line
+        would never come.
         """
         verb = str(words[0]) if words else ""
         if not words or verb == "bot" or (verb in _BOTTLE_VERBS and verb != "announce"):
@@ -211,7 +211,7 @@ class YarpNameClient:
         return self._ask("acked", lambda line: _acknowledged(line, text))
 
     def connect(self) -> socket.socket:
-        """A bare connection to the server: it lives as long as the server does.
+        """A bare connection to the server: it ends when the server does.
 
         Raises NoNameServer.
         """
@@ -249,7 +249,7 @@ class YarpNameClient:
             try:
                 return self._talk(line, talk)
             except _Gone:
-                pass  # the server was restarted since; that is no news yet
+                pass  # perhaps the server was restarted: try once more on a new connection
         try:
             return self._talk(self._open(kind), talk)
         except _Gone as error:
@@ -317,7 +317,8 @@ class YarpNameClient:
         line.close()
 
     def _silent(self) -> NoNameServer:
-        """What is said of a server that accepts and does not answer: perhaps it is none."""
+        """The error about a server that accepts and does not answer: perhaps it is no name
+        server."""
         found: str | None = None
         with contextlib.suppress(_Gone, OSError, YarpError):
             line = self._open("acked")

@@ -1,7 +1,7 @@
-"""Which name service a port uses when it is not told.
+"""Which name service a port uses when it is given none.
 
 Rules: the innermost open `NameServer` or `LocalNames` of this process, else what `YARPY_SERVER` or
-the configuration files say. The files are read again whenever somebody asks, so a server that was
+the configuration files say. The files are read again at every lookup, so a server that was
 configured later is found; clients are kept, with their connections.
 """
 
@@ -24,7 +24,7 @@ from yarpy.wire.stream import ByteStream
 
 
 class DefaultNames:
-    """The process's choice. One instance, `DEFAULT`: what all ports share cannot live in one."""
+    """The process's choice. There is one instance, `DEFAULT`, since all ports share it."""
 
     def __init__(self) -> None:
         self._stack: list[NameClient] = []
@@ -43,7 +43,8 @@ class DefaultNames:
             self._stack = [item for item in self._stack if item is not client]
 
     def start_over(self) -> None:
-        """Go on in a forked process, where the thread that had the lock may be missing."""
+        """Make a new lock in a forked process: the thread that held the old one may not exist
+        there."""
         self._lock = threading.Lock()
 
     def current(self) -> NameClient:
@@ -107,7 +108,7 @@ def prove(connection: socket.socket) -> None:
             for piece in stream.take_output():
                 connection.sendall(piece)
             view = stream.get_buffer()
-            # Not a byte more than the proof: what follows belongs to somebody else.
+            # Not a byte beyond the proof: what follows is for the next reader.
             count = connection.recv_into(view[: 40 - stream.waiting])
             stream.buffer_updated(count) if count else stream.feed_eof()
     except StopIteration:

@@ -1,8 +1,8 @@
 """Finding a name server by multicast (`yarp detect`), and being found.
 
 Rules: the datagram codec is pure. A server is asked by the name of its namespace and answers to
-the whole group with the first line of its reply. Everybody in the group hears everything, so what
-is not a sound datagram is skipped without a word. Source: nameserver spec 6.4.
+the whole group with the first line of its reply. Every member of the group receives everything, so
+a malformed datagram is skipped silently. Source: nameserver spec 6.4.
 
     offset 0   uint32 LE   CRC-32 of the bytes from 8 on
     offset 4   int32 LE    number of the packet in its message; always 0 here
@@ -74,7 +74,7 @@ def search(
     question = encode_datagram(f"{PREFIX}query {namespace}")
     with _group_socket(group, port) as listener, _sender() as sender:
         for _ in range(tries):
-            with contextlib.suppress(OSError):  # no route now may be one a moment later
+            with contextlib.suppress(OSError):  # there may be a route a moment later
                 sender.sendto(question, (group, port))
             deadline = time.monotonic() + timeout
             while (left := deadline - time.monotonic()) > 0:
@@ -110,7 +110,7 @@ class Responder:
     def start(self) -> None:
         """Join the group. Raises OSError when this computer has no multicast."""
         listener = _group_socket(self.group, self.port)
-        listener.setblocking(False)  # readiness may turn out to be a broken datagram
+        listener.setblocking(False)  # what made it readable may be a broken datagram
         self._wake, sleeper = socket.socketpair()
         self._thread = threading.Thread(
             target=self._run, args=(listener, sleeper), name=f"discovery:{self.port}", daemon=True
@@ -142,7 +142,7 @@ class Responder:
                     if reply is not None:
                         sender.sendto(reply, (self.group, self.port))
                 except OSError:
-                    continue  # a lost answer: whoever asked asks again
+                    continue  # a lost answer: the client asks again
 
 
 def respond(datagram: bytes, answer: Answer) -> bytes | None:
@@ -163,7 +163,8 @@ def respond(datagram: bytes, answer: Answer) -> bytes | None:
 
 
 def _group_socket(group: str, port: int) -> socket.socket:
-    """A socket that hears the group. Bound to the group's own address where the system allows."""
+    """A socket that receives for the group, bound to the group's address where the system
+    allows."""
     listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

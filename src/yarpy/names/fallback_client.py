@@ -2,7 +2,7 @@
 
 Rules (nameserver spec 6.5): a port is registered in all, the first one completes the address and
 the others get it complete; a query goes through them until one knows the name; everything else is
-asked of the first. The first one must answer, the others may be away.
+asked of the first. The first one must answer, the others may be down.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class SeveralNames:
             raise missing
 
     def query(self, name: str) -> Contact | None:
-        """Where `name` is; NoNameServer if a service was away and no other knew the name."""
+        """Where `name` is; NoNameServer if a service was down and no other knew the name."""
         missing: NoNameServer | None = None
         for client in self.clients:
             try:

@@ -1,8 +1,8 @@
 """The text lines that name servers and their clients exchange.
 
-Rules: pure. A registration is the one line that everybody reads (by word position, in C++). Names
-may contain blanks and nothing is quoted, so ours is read from both ends.
-Source: nameserver spec 1.1, 2.3.
+Rules: pure. A registration is the one line that every client parses (C++ by word position). Names
+may contain blanks and nothing is quoted, so we parse it from both ends. Source: nameserver spec
+1.1, 2.3.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from yarpy.log import readable
 
 PREFIX = "NAME_SERVER "
 END = "*** end of message"
-LONGEST = 1 << 20  # bytes of one line, either way
+LONGEST = 1 << 20  # bytes of one line, in either direction
 
 _REGISTRATION = re.compile(r"registration name (.*) ip (\S*) port (-?\d{1,10}) type (.*)", re.S)
 _PLAIN = re.compile(r"[^\"\\\r\n\0]*")

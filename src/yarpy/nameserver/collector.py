@@ -1,9 +1,9 @@
-"""Collector: takes names out of the name service whose ports are dead.
+"""Collector: removes names from the name service when their ports are dead.
 
 Rules: a name goes only if its address actively refuses connections, seen `STRIKES` times in a row;
 a silent host may come back, and what never was a YARP port (no `process` property: a camera, a
-robot of another make) is not ours to judge. Ports of this host whose process lives are not
-bothered at all; others are asked a few at a time.
+robot of another make) is not ours to judge. Ports of this host are left alone while their process
+lives; others are probed a few at a time.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ class Collector:
         self._own_name = own_name
         self._interval = interval
         self._strikes: dict[str, int] = {}
-        self._suspects: set[str] = set()  # somebody could not reach them
+        self._suspects: set[str] = set()  # reported as unreachable
         self._wake = threading.Event()
         self._closed = False
         self._thread = threading.Thread(target=self._run, name="yarpy collector", daemon=True)
         self._thread.start()
 
     def suspect(self, name: str) -> None:
-        """Somebody says that `name` does not answer: look at it soon."""
+        """`name` is reported not to answer: look at it soon."""
         self._suspects.add(name)
         self._wake.set()
 
@@ -120,7 +120,7 @@ def _lives(process: int) -> bool:
 
 
 def _refuses(contact: Contact) -> bool:
-    """Whether nobody listens there, as the host itself says. Silence is no answer."""
+    """Whether the host itself says that nothing listens there. Silence proves nothing."""
     try:
         socket.create_connection((contact.host, contact.port), TIMEOUT).close()
     except ConnectionRefusedError:

@@ -6,7 +6,7 @@
 Rules: a command is a Bottle, the reply either *old style* (text lines ended by `*** end of
 message`) or one Bottle; which of them depends on the verb, on a leading `bot` and on a `(format
 json)` that HTTP adds, never on the connection (nameserver spec 2.1, 2.2). Unknown verbs get the
-end line alone. Nothing a stranger sends raises; what is refused is said in the reply.
+end line alone. No input raises; a refusal is said in the reply.
 """
 
 from __future__ import annotations
@@ -45,12 +45,13 @@ from yarpy.nameserver.topology import (
     undecorate,
 )
 
-# What may be asked by multicast: anybody in the network can send a datagram in anybody's name.
+# What may be asked by multicast, where anybody can forge the sender of a datagram.
 READING = frozenset({"query", "list", "runners", "get", "check", "route", "help"})
 
 
 class NameService:
-    """A name store and a topology that speak. Any thread may call; one command runs at a time.
+    """Answers commands from a name store and a topology. Any thread may call; one command runs at a
+    time.
 
     `lock` is held meanwhile. Hold it yourself to look at `store` or `topology`.
     """
@@ -164,7 +165,7 @@ class NameService:
             actions += self.topology.vanish(name)  # it may have been announced all the same
         if nested:
             return old(broken(port_bottle(None)), events, actions)
-        # C++ lets the reply for each owned name show through, whether it existed or not.
+        # As C++ does: one line for each owned name, whether it existed or not.
         owned = sum(len(port.fields.get("owns", ())) for port in removed)
         return old(["old"] * owned, events, actions)
 
@@ -276,8 +277,8 @@ def without_request(command: Sequence[Any]) -> tuple[list[Any], bool]:
     """The words of a command, and whether HTTP asked for JSON.
 
     HTTP appends what it knows of the request as `(key value)` lists: `(format json)`,
-    `(REQUEST_URI ...)`, the user's variables. Where C++ takes them for arguments we do not
-    (nameserver spec 9.5).
+    `(REQUEST_URI ...)`, the user's variables. C++ takes them for arguments; we do not (nameserver
+    spec 9.5).
     """
     words = list(command)
     keys = {plain_text(item[0]) for item in words if _is_pair(item)}
@@ -296,7 +297,7 @@ def _is_pair(item: Any) -> bool:
 
 
 def _word(words: Sequence[Any], place: int) -> str:
-    """A name or a like word: numbers, lists and blobs count as "", as in C++."""
+    """A name or similar word: numbers, lists and blobs count as "", as in C++."""
     word = words[place] if place < len(words) else ""
     return plain_text(word) if isinstance(word, (str, bool)) else ""
 

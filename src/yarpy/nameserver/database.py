@@ -1,8 +1,8 @@
-"""What makes a name service last: everything that changes is written to SQLite a moment later.
+"""Persistence of a name service: every change is written to SQLite a moment later.
 
 Rules: commands never wait for a disk: what changed is noted, and one transaction for each file
-writes all of it, from a thread of its own. `save` does it at once. What stands in the files is
-`table`'s business.
+writes all of it, from a thread of its own. `save` does it at once. The layout of the files is in
+`sqlite_tables`.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from yarpy.errors import AddressError
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.sqlite_tables import PortChanges, PortTable, RuleChanges, RuleTables
 
-DELAY = 0.05  # seconds that changes may gather before they are written
+DELAY = 0.05  # seconds during which changes are coalesced before they are written
 RETRY = 5.0  # seconds until a write that failed is tried again
 
 
 class Database:
-    """Makes a `NameService` last. An empty path or `:memory:` keeps that half in memory only.
+    """Persists a `NameService`. An empty path or `:memory:` keeps that half in memory only.
 
     `load` fills the service and watches it from then on; `start` writes in the background;
     `close` writes what is left. `cautious`: every transaction waits for the disk.
@@ -101,7 +101,7 @@ class Database:
                 raise
 
     def close(self) -> None:
-        """Write what is left and let go of the files."""
+        """Write what is left and close the files."""
         self._closing.set()
         self._something.set()
         if self._thread is not None:

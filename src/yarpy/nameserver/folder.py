@@ -1,8 +1,8 @@
 """A directory as web pages: what is below `/web/` of a name server that has one.
 
-Rules: only ordinary files that are really inside the directory are shown, also where symbolic links
-lead elsewhere; no name that begins with a dot. What is not there is 404. Files are read anew for
-each request.
+Rules: only ordinary files that are really inside the directory are shown, wherever symbolic links
+point; no name that begins with a dot. What is not there is 404. Files are read anew for each
+request.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Folder:
     def __init__(self, directory: str | Path) -> None:
         self._root = Path(directory).resolve()
         if not self._root.is_dir():
-            raise yarpy.AddressError(f'"{directory}" is no directory whose files could be shown')
+            raise yarpy.AddressError(f'"{directory}" is not a directory')
 
     def __call__(self, path: str, fields: Mapping[str, str]) -> yarpy.Page | None:
         if path != PREFIX and not path.startswith(f"{PREFIX}/"):
@@ -37,7 +37,7 @@ class Folder:
         except (OSError, ValueError):  # a name that is too long, or that no file can have
             found = None
         if found is None:
-            # What the pages of C++ ports want of their name server is there in any case.
+            # The pages of C++ ports load this from their name server, so it is always there.
             return None if path == f"{PREFIX}/main.css" else _missing("there is no such page\n")
         if found.is_dir():
             return _moved(path.rpartition("/")[2])
@@ -78,7 +78,7 @@ def _missing(text: str) -> yarpy.Page:
 
 
 def _moved(name: str) -> yarpy.Page:
-    """Leads to the directory itself, so that what its page refers to is looked for in there."""
+    """Redirects to the directory itself, so that relative links of its page resolve inside it."""
     from urllib.parse import quote
 
     target = quote(name) + "/"

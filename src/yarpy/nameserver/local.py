@@ -1,7 +1,7 @@
 """Names inside one process: a dictionary, for tests and programs without a name server.
 
-Rules: hands out no port numbers (there is no range to manage): a port listens where the system
-lets it and registers with its host and number. Multicast groups are still handed out, because no
+Rules: hands out no port numbers (there is no range to manage): a port lets the system choose its
+number, then registers with host and number. Multicast groups are still handed out, because no
 operating system does. Every `LocalNames()` is a world of its own; give the same one to all ports
 that are to find each other.
 """
@@ -67,4 +67,4 @@ class LocalNames:
             return [*self._store.contacts(prefix or "")]
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """There are no connections to close."""

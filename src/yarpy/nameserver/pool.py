@@ -20,8 +20,8 @@ class Pool:
     """Values `spell(first)` ... `spell(last)`, each lent to one owner at a time.
 
     `recycle`: freed values go out again before fresh ones (temporary names, groups); otherwise only
-    when no fresh one is left (port numbers). `remember`: an owner that comes back gets what it had,
-    for as long as nobody else was given it meanwhile.
+    when no fresh one is left (port numbers). `remember`: an owner that comes back gets the value it
+    had, unless another was given it meanwhile.
     """
 
     def __init__(
@@ -76,7 +76,8 @@ class Pool:
         return value
 
     def release(self, value: str, owner: str | None) -> bool:
-        """Take `value` back if it was lent to `owner` or to nobody in particular; whether so."""
+        """Take `value` back if it was lent to `owner` or to nobody in particular; returns whether
+        it was."""
         if value not in self._used or self._used[value] not in (owner, None):
             return False
         holder = self._used.pop(value)

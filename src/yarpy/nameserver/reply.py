@@ -1,7 +1,7 @@
 """Replies of a name server: the two styles, and how each is built.
 
-Rules: pure. Old style is lines ended by `*** end of message`, a Bottle each with all double
-quotes taken out; the other style is one Bottle. Source: nameserver spec 2.2.
+Rules: pure. Old style is lines ended by `*** end of message`, each a Bottle without any double
+quotes; the other style is one Bottle. Source: nameserver spec 2.2.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def properties(name: str, key: str, values: list[str] | None, nested: bool) -> R
 
 
 def value_of(text: str) -> Any:
-    """A stored property as the value it is the text of; what is no single value stays text."""
+    """A stored property as the value that its text spells; what is not one value stays text."""
     try:
         parsed = Bottle.from_text(text)
     except DecodeError:

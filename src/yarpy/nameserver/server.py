@@ -52,7 +52,7 @@ MAX_EVENTS: Final = 10_000
 
 
 class _Desk(Mailbox):
-    """Answers commands in the thread of the connection that brings them; who comes early waits."""
+    """Answers commands in the thread of the connection that brings them; early clients wait."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -150,8 +150,8 @@ class NameServer:
     # -- commands ---------------------------------------------------------------------------------
 
     def _is_taken(self, host: str, number: int) -> bool:
-        """Whether somebody on this computer listens there without having told us, such as a port
-        that outlived the server before us. (C++ lends the number, and the new port cannot open.)"""
+        """Whether an unregistered program on this computer listens there, such as a port that
+        outlived the previous server. (C++ lends the number, and the new port cannot open.)"""
         return (host == self.host or is_loopback(host)) and is_taken(number)
 
     def _answer(self, link: Inbound, message: Message) -> None:
@@ -192,7 +192,7 @@ class NameServer:
         self._follow(self.service.answer(command))
 
     def _follow(self, reply: Reply) -> None:
-        """Tell and do what follows from a command."""
+        """Publish the events of a command and start its actions."""
         for event in reply.events:
             if self._hub.outputs and self._events.qsize() < MAX_EVENTS:
                 self._events.put(event)
@@ -236,7 +236,7 @@ class NameServer:
         threading.Thread(target=work, name=f"yarpy {self.name} {what}", daemon=True).start()
 
     def _tell(self) -> None:
-        """Send events to who is connected to our output."""
+        """Send events to all that are connected to our output."""
         while (event := self._events.get()) is not None:
             packet = Packet(event)
             for link in self._hub.outputs:
@@ -269,7 +269,7 @@ class NameServer:
             probe.ask(contact, [Vocab("add"), f"{action.carrier}:/{action.destination}"])
 
     def _confirm(self, contact: Contact) -> None:
-        """Raise WrongPort if another port listens there than the one of that name."""
+        """Raise WrongPort if the port that listens there is not the one of that name."""
         store = self.service.store
         identity.confirm(contact, lambda name, key: store.values(name, key) or (), secret())
 

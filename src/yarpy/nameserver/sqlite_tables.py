@@ -1,8 +1,8 @@
 """The tables of a name server's two SQLite files, and how registrations and rules stand in them.
 
-Rules: as C++ yarpserver keeps them, each opens the files of the other (schema: nameserver spec
-8.1). What changed comes in whole, as copies, and is one transaction. Text is stored as the bytes it
-came as. When to write is `database`'s business.
+Rules: the same tables as C++ yarpserver's, so each can open the other's files (schema: nameserver
+spec 8.1). Changes arrive together, as copies, and are one transaction. Text is stored as the bytes
+that came. When to write is `database`'s business.
 
     ports   tags(id, rid, ns, name, value)
               a port     rid NULL, ns NULL, name 'port', value its name; its id is R
@@ -294,7 +294,7 @@ def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
             yield
             connection.execute("COMMIT")
         except BaseException:
-            connection.rollback()  # also when a reader held the commit up: the next one begins anew
+            connection.rollback()  # also when a reader blocked the commit: the next starts afresh
             raise
     except sqlite3.Error as error:
         raise AddressError(f"the name server's database cannot be written: {error}") from error

@@ -3,7 +3,7 @@
 Rules: pure; no sockets, no files, no clock. Names, fields and properties are one table, as in C++
 yarpserver: the keys `carrier`, `host`, `socket` and `type` *are* the address (nameserver spec 2.7).
 Property values are a multiset and come back sorted by their bytes. `*` is an ordinary name, not a
-wildcard. What the network can make grow has a limit (`Limits`); beyond it an AddressError.
+wildcard. Whatever the network can make grow has a limit (`Limits`); AddressError beyond it.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def _size(key: str, values: list[str]) -> int:
 
 
 def _number(text: str) -> int:
-    """The port number a text stands for; 0 for what is none."""
+    """The port number a text stands for; 0 for any other text."""
     try:
         number = int(text) if len(text) < 12 else 0
     except ValueError:
@@ -87,7 +87,7 @@ def _bytes(text: str) -> bytes:
     try:
         return text.encode("utf-8", "surrogateescape")
     except UnicodeEncodeError:
-        raise AddressError("a name or property holds characters that are no text") from None
+        raise AddressError("a name or property holds characters that are not text") from None
 
 
 def _group(counter: int) -> str:
@@ -97,10 +97,10 @@ def _group(counter: int) -> str:
 class NameStore:
     """All registrations. `host` and `port` are the server's own address.
 
-    Port numbers go out from port + 2 to port + 9999, one at a time for the whole network; none that
-    `is_taken(host, number)` by somebody who did not register.
-    `on_change(kind, key)` hears of everything a database must write: kinds `port` (a name),
-    `regid`, `tmpid`, `mcastCursor` (a value of that pool).
+    Port numbers go out from port + 2 to port + 9999, one at a time for the whole network; none for
+    which `is_taken(host, number)` says that an unregistered program has it. `on_change(kind, key)`
+    is called for everything a database must write: kinds `port` (a name), `regid`, `tmpid`,
+    `mcastCursor` (a value of that pool).
     """
 
     def __init__(
@@ -139,7 +139,7 @@ class NameStore:
         return {"regid": self.numbers, "tmpid": self.temporary, "mcastCursor": self.groups}
 
     def watch(self, on_change: Callable[[str, str], None] | None) -> None:
-        """Call `on_change(kind, key)` from now on for all that changes."""
+        """Call `on_change(kind, key)` for every change from now on."""
         self._on_change = on_change
         for kind, pool in self.pools.items():
             if on_change is None:

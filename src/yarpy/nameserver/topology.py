@@ -2,7 +2,7 @@
 
 Rules: pure; the clock is handed in (seconds since the epoch). Nothing here talks to a port: every
 event (`announce`, `vanish`, `subscribe` ...) returns the connections to make or to break, and the
-caller does so in the background, those of one pair in the order they came.
+caller does so in the background, in order for each pair of ports.
 
 Semantics (nameserver spec 8.3): a name is live from `announce` until it is unregistered, or until
 somebody says that it does not answer and it has been live for more than 30 s. A rule joins two
@@ -91,8 +91,9 @@ class Action:
 
 
 class Topology:
-    """Rules, topics, types and the live table. `on_change(kind, key)` hears what a database must
-    write: kinds `subscription` (key `source`, NUL, `destination`), `topic`, `live`, `structure`.
+    """Rules, topics, types and the live table. `on_change(kind, key)` is called for what a database
+    must write: kinds `subscription` (key `source`, NUL, `destination`), `topic`, `live`,
+    `structure`.
     """
 
     def __init__(self, clock: Callable[[], float], limit: int = 100_000) -> None:
@@ -118,7 +119,7 @@ class Topology:
         return [_connect(*pair) for pair in self._pairs(name) if self._both_live(pair)]
 
     def complain(self, name: str) -> None:
-        """Somebody says that `name` does not answer."""
+        """`name` is reported not to answer."""
         since = self.live.get(name)
         if since is not None and self.clock() - since > GRACE:
             del self.live[name]

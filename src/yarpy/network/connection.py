@@ -37,7 +37,7 @@ _POLL = 0.05  # seconds between looks while waiting
 
 
 def query(name: str, names: NameClient | None = None) -> Contact | None:
-    """Where the port `name` is, None if nobody knows. An address is its own answer.
+    """Where the port `name` is, None if it is unknown. An address is returned as it is.
 
     Raises NoNameServer.
     """
@@ -112,7 +112,7 @@ class Pairing:
             raise NotAllowed(refusal.NO_HTTP.format(asked.name or asked.address))
         self.asked = asked
         self.peer = (from_ if self.pull else to).label
-        # Perhaps a camera, which does not understand us: its watcher is asked first.
+        # Perhaps a camera, which does not understand us: ask its receiver first.
         self.plain = from_.reachable and not from_.name and not self.pull
 
     def admin(self, *words: object) -> Bottle:
@@ -124,7 +124,7 @@ class Pairing:
             raise LinkClosed(f"Cannot connect to port {name}: {error}") from error
 
     def confirm(self, names: NameClient) -> None:
-        """Be sure that the ports of these names listen where they are registered, before one of
+        """Make sure that the ports of these names listen where they are registered, before one of
         them sends to the other. Raises WrongPort if another port does."""
         for contact in (self.here, self.there):
             try:
@@ -143,7 +143,7 @@ class Pairing:
         return plain_text(listed.find("carrier", "")) if listed else ""
 
     def delete(self) -> bool:
-        """Have the connection ended; False if neither end knows of it."""
+        """End the connection; False if neither end knows of it."""
         if self.plain and _done(self.ask_back(Vocab("del"))):
             return True
         if _done(self.admin(Vocab("del"), self.peer)):
@@ -192,8 +192,8 @@ def _competent(contact: Contact) -> bool:
 
 
 def _pulls(base: str) -> bool:
-    """Whether the receiver is the one that dials. What the ends can do is for them to say: a
-    carrier that only they have is known by its name."""
+    """Whether the receiver is the one that dials. A carrier that is installed only at the ends is
+    known here by its name alone."""
     try:
         return not find_carrier(base).push
     except UnknownPlugin:
@@ -212,7 +212,7 @@ def join(
     names: NameClient | None = None,
     timeout: float | None = None,
 ) -> tuple[str, str]:
-    """Have two ports connected: over which carrier, and what the port says that was asked. Raises
+    """Connect two ports; returns the carrier and the answer of the port that was asked. Raises
     as `remote.connect`.
     """
     deadline = None if timeout is None else time.monotonic() + timeout
@@ -244,7 +244,7 @@ def _join(
     if isinstance(error, LinkClosed):
         try:
             find_carrier(pairing.spec.base)
-        except UnknownPlugin as unheard:  # so it may be a slip of the pen
+        except UnknownPlugin as unheard:  # so it may be a typing error
             raise UnknownPlugin(f"{error}; {unheard}") from error
     raise error
 

@@ -1,7 +1,7 @@
-"""The priority of any connection of the network, asked of and told to the ports at its two ends.
+"""The priority of any connection of the network, read from and set at the ports at its two ends.
 
 Rules: the messages are those of C++ tools (core-3 section 8.3), so ports of any YARP answer; each
-end has its own settings. What a side is not to change is left out.
+end has its own settings. Settings that a side is not to change are left out.
 """
 
 from __future__ import annotations

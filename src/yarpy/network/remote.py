@@ -1,7 +1,7 @@
 """RemoteConnection: a connection of any two ports, asked about and changed over the network.
 
-Rules: nothing is remembered but who sends to whom; every question goes to the two ports. C++ ports
-answer all of them but those for numbers, which they do not count.
+Rules: only the two names are kept; every question goes to the two ports. C++ ports answer all of
+them except those for counters, which they do not have.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ COUNTED = ("messages", "bytes", "rate", "jitter", "latency")
 
 
 class RemoteConnection(Connection):
-    """A connection of two ports, here or elsewhere. `reply`: what the port said that was asked to
-    make it.
+    """A connection of two ports, here or elsewhere. `reply`: the answer of the port that was asked
+    to make it.
 
     Its properties raise UnknownName when there is no such connection any more (or none that the
-    ports could tell of, as with a topic), LinkClosed and Timeout when a port does not answer.
+    ports know of, as with a topic), LinkClosed and Timeout when a port does not answer.
     """
 
     def __init__(
@@ -37,7 +37,7 @@ class RemoteConnection(Connection):
     @property
     def stats(self) -> dict[str, Any]:
         """Counters of the sender, or of the receiver if that alone counts: `messages`, `bytes`,
-        `rate` (1/s), `jitter`, `latency` (s); `drops` of both. None: nobody counts that."""
+        `rate` (1/s), `jitter`, `latency` (s); `drops` of both. None: not counted."""
         found = flow(self.source, self.target, self._names)
         return {**{key: found.measured(key) for key in COUNTED}, "drops": found.drops}
 
@@ -61,7 +61,7 @@ class RemoteConnection(Connection):
 
     def close(self) -> None:
         """End this connection; nothing happens if it has ended. With a topic the subscription ends:
-        nobody new is connected."""
+        no further ports are connected."""
         disconnect(self.source, self.target, names=self._names)
 
 

@@ -1,4 +1,4 @@
-"""rpc_monitor: copies of what an RPC client asks, and of the answers, for a port that looks on.
+"""rpc_monitor: copies of what an RPC client asks, and of the answers, for an observing port.
 
 Rides at the caller's end (`tcp+send.rpc_monitor`); parameter `monitor`, the port to write to
 (`/monitor` without). It gets Bottles as from C++ YARP, over a connection from `CLIENT/monitor`:
@@ -7,8 +7,8 @@ Rides at the caller's end (`tcp+send.rpc_monitor`); parameter `monitor`, the por
     time CLIENT SERVER reply   "rpc client" RpcMonitor ()     ()               (reply)
 
 Rules: a monitor, but one with a port, hence it lives up here. The copies leave from a thread of
-their own; when whoever looks on is 1000 behind, further ones are dropped and counted, and the
-client never waits. `get` tells how many.
+their own; when the observer is 1000 behind, further ones are dropped and counted, and the
+client never waits. `get` says how many.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _BEHIND = 1000  # copies
 
 
 class RpcMonitor:
-    """Tells somebody else what is said."""
+    """Copies questions and answers to the observer."""
 
     def __init__(self, place: Place) -> None:
         if not place.sending:
@@ -87,7 +87,7 @@ class RpcMonitor:
 
 
 def _bottle(message: Message) -> Bottle:
-    """What was said; what is no Bottle goes its way without a copy."""
+    """What was said; anything but a Bottle passes without a copy."""
     try:
         return message.as_(Bottle)
     except DecodeError:

@@ -1,4 +1,4 @@
-"""stats_monitor: how much goes over a connection, told once a second on two ports.
+"""stats_monitor: how much goes over a connection, published once a second on two ports.
 
 Rides at the sender's end, as in C++ YARP 4: `/stats_monitor/from/to/stats:o` tells about messages
 from `/from` to `/to`, `/stats_monitor/to/from/stats:o` about the replies. Each second brings

@@ -31,7 +31,7 @@ PATIENCE: Final = 1.0  # seconds for an answer
 
 @dataclass(slots=True)
 class End:
-    """A connection as one of its ports sees it; None: that port does not count.
+    """A connection as one of its ports sees it; None: that port does not count it.
 
     `rate` is in messages per second, `jitter` and `latency` (until a reply) in seconds.
     """
@@ -167,7 +167,7 @@ def _packets(value: Any) -> str | int | None:
 
 
 def _ask_cpp(contact: Contact) -> Iterable[tuple[str, str, End]]:
-    """What ports that do not count can tell."""
+    """What ports without counters can say."""
     for side in ("out", "in"):
         for name in map(plain_text, probe.ask(contact, ["list", side], timeout=PATIENCE)):
             if not name.startswith("/"):

@@ -1,4 +1,4 @@
-"""For authors of plug-ins: drive a carrier with bytes, test it whole, names that disturb nobody.
+"""For authors of plug-ins: drive a carrier with bytes, test it whole, names for one test alone.
 
     from yarpy.testing import CarrierConformance
 

@@ -5,8 +5,7 @@
 
 Rules: methods called `test_*` with plain asserts, as pytest runs them, but without need of it.
 First without a transport (`conformance_dialogue`), then between two real ports
-(`conformance_live`). What a carrier cannot do by its facts (`replies`, `acks`, `spelling`) is not
-asked of it.
+(`conformance_live`). What a carrier's facts (`replies`, `acks`, `spelling`) rule out is not tested.
 """
 
 from __future__ import annotations
@@ -16,4 +15,4 @@ from yarpy.testing.conformance_live import LiveConformance
 
 
 class CarrierConformance(DialogueConformance, LiveConformance):
-    """Subclass it and set `carrier`; what else can be said of a carrier is in `ConformanceCase`."""
+    """Subclass it and set `carrier`; further settings are in `ConformanceCase`."""

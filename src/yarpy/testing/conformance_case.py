@@ -1,6 +1,6 @@
 """What the conformance suite is about: a carrier, the messages it is tried with, what must arrive.
 
-Rules: no tests here, but all that may be said of a carrier which is not among its facts; the tests
+Rules: no tests here, only the settings that are not among a carrier's facts; the tests
 are in `conformance_dialogue` and `conformance_live`.
 """
 

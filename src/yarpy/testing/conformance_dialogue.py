@@ -154,7 +154,7 @@ class DialogueConformance(ConformanceCase):
                 self._check(reply, value)
 
     def test_acknowledgements_are_seen(self) -> None:
-        """One for each message; a call that nobody answers ends with it too."""
+        """One for each message; it also ends a call that is left unanswered."""
         talk = self._greeted()
         talk.send(self.values[0])
         _, carrier = talk.receiver
@@ -170,7 +170,7 @@ class DialogueConformance(ConformanceCase):
             assert talk.acknowledge(replied=True) is None, "the acknowledgement is read as a reply"
 
     def test_acknowledgements_in_bulk_are_single_ones(self) -> None:
-        """Several written or taken at once are what one by one would be."""
+        """Several at once, written or read, are the same bytes as one by one."""
         talk = self._greeted()
         message = talk.send(self.values[0])
         receiver, writing = talk.receiver
@@ -205,7 +205,7 @@ class DialogueConformance(ConformanceCase):
     # -- bad peers --------------------------------------------------------------------------------
 
     def test_end_at_any_byte_is_noticed(self) -> None:
-        """Whatever was sent so far: a peer that hangs up is an error of ours, not a silence."""
+        """A peer that hangs up, wherever in the dialogue, causes one of our errors and no hang."""
         wire = self._recorded()
         for size in range(len(wire) + 1):
             end, found = self._reader()
@@ -239,7 +239,7 @@ class DialogueConformance(ConformanceCase):
                     _ = message.value
 
     def test_lengths_are_not_believed(self) -> None:
-        """No four bytes of a message make its reader take a gigabyte before it has come."""
+        """No four bytes of a message make its reader allocate a gigabyte before it has come."""
         wire = self._recorded()
         huge = struct.pack("<i", (1 << 30) - 200)
         for at in range(len(wire) - 3):

@@ -78,7 +78,7 @@ class LiveConformance(ConformanceCase):
                 assert network.disconnect("/sender", "/receiver", names=names)
                 if self.carrier.push:
                     assert not sender.outputs, "the sender keeps its output"
-                else:  # who was dialled notices
+                else:  # the dialled side notices
                     _await(lambda: not sender.outputs, self.patience, "the sender keeps its output")
                 _await(lambda: not receiver.inputs, self.patience, "the receiver keeps its input")
 

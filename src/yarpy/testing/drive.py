@@ -43,8 +43,8 @@ class Handle:
 class End:
     """One side of a connection: a stream, and the steps that are running on it.
 
-    `outbox` holds what it wrote and nobody took; `opened` the places it asked for. With `piece`
-    bytes arrive in portions of that size, and the steps run after each.
+    `outbox` holds what it wrote and was not taken yet; `opened` the places it asked for. With
+    `piece` bytes arrive in portions of that size, and the steps run after each.
     """
 
     def __init__(self, piece: int = 0, limit: int = DEFAULT_LIMIT) -> None:
@@ -160,7 +160,8 @@ class Dialogue:
 
     @property
     def sender(self) -> tuple[End, Carrier]:
-        """The side that sends data, and its carrier: who dialled, unless the carrier pulls."""
+        """The side that sends data, and its carrier: the one that dialled, unless the carrier
+        pulls."""
         if self.kind.push:
             return self.initiator, self.initiating
         return self.acceptor, self._accepted()
