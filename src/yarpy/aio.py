@@ -191,7 +191,7 @@ class Port(BasePort["_Port"]):
     Every message is read once, in order. `queue` is how many may wait unread; beyond that a sender
     waits, and nothing is lost. With `latest` only the newest waits, older ones are dropped and
     counted, in `drops` and on their connection. A question may be answered by any task, at any
-    time; one that everybody has forgotten unanswered gets an empty answer. Other parameters as
+    time; one that is discarded unanswered gets an empty answer. Other parameters as
     `yarpy.Port`.
     """
 
@@ -225,7 +225,7 @@ class Port(BasePort["_Port"]):
         return _Port(self._open_hub())
 
     async def close(self) -> None:
-        """Close the port; who waits in `read` gets PortClosed."""
+        """Close the port; a waiting `read` raises PortClosed."""
         port, self._port = self._port, None
         self._closed = True
         if port is not None:
@@ -258,7 +258,7 @@ class Port(BasePort["_Port"]):
     ) -> int:
         """Send `value` to every connected port; see `yarpy.Port.write`.
 
-        The loop goes on while a slow reader is waited for.
+        The loop keeps running while this waits for a slow reader.
         """
         port = self.port
         return await asyncio.to_thread(port.write, value, stamp, wait=wait)
@@ -326,7 +326,7 @@ async def _until(condition: Callable[[], bool], timeout: float | None) -> bool:
 
 
 async def _opened(make: Callable[[], P]) -> P:
-    """What `make` opens, in a thread. Who is cancelled meanwhile leaves nothing open."""
+    """What `make` opens, in a thread. When cancelled meanwhile it leaves nothing open."""
     executor = ThreadPoolExecutor(1, "yarpy opening")
     opening = executor.submit(make)
     executor.shutdown(wait=False)
@@ -372,8 +372,8 @@ class _Arrival:
         self._message: Message | None = message
         answer = message.answer
         if answer is not None:
-            # A message of the reader's own: the connection's thread holds on to the other one.
-            # Once the reader forgets it nobody is left who could answer.
+            # The reader gets a copy, since the connection's thread holds on to the original. Once
+            # the copy is garbage, nobody is left who could answer.
             reply = _Reply(answer.give, self._done.set)
             self._message = message.replaced(message.payload)
             self._message.spelling, self._message.answer = message.spelling, reply
@@ -385,7 +385,7 @@ class _Arrival:
         return message
 
     def drop(self) -> None:
-        """Nobody will read it; it is counted."""
+        """It will not be read: count it as dropped."""
         self._link.counter.drops += 1
         self.release()
 

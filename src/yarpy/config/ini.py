@@ -206,8 +206,7 @@ def _words(text: str) -> Bottle:
 
 
 def _joined(lines: Iterable[str]) -> Iterator[tuple[str, bool]]:
-    """Lines, those that a backslash or an open bracket or quote joins as one; whether it was
-    closed.
+    """Lines, joined at a backslash, an open bracket or an open quote; whether all was closed.
 
     Every character is looked at once, however many lines there are."""
     parts: list[str] = []

@@ -51,8 +51,7 @@ class NameClient(Protocol):
         ...
 
     def announce(self, name: str, ok: bool = True) -> None:
-        """Announce that `name` listens now (persistent connections start), or that it does not
-        answer."""
+        """Report that `name` listens now (persistent connections start), or does not answer."""
         ...
 
     def set(self, name: str, key: str, *values: str | int | float) -> Strings:

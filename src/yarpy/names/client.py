@@ -317,8 +317,7 @@ class YarpNameClient:
         line.close()
 
     def _silent(self) -> NoNameServer:
-        """The error about a server that accepts and does not answer: perhaps it is no name
-        server."""
+        """The error for a server that accepts but is silent: perhaps it is no name server."""
         found: str | None = None
         with contextlib.suppress(_Gone, OSError, YarpError):
             line = self._open("acked")

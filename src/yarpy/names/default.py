@@ -43,8 +43,7 @@ class DefaultNames:
             self._stack = [item for item in self._stack if item is not client]
 
     def start_over(self) -> None:
-        """Make a new lock in a forked process: the thread that held the old one may not exist
-        there."""
+        """A new lock for a forked process: whoever held the old one may not exist there."""
         self._lock = threading.Lock()
 
     def current(self) -> NameClient:

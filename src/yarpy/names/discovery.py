@@ -163,8 +163,7 @@ def respond(datagram: bytes, answer: Answer) -> bytes | None:
 
 
 def _group_socket(group: str, port: int) -> socket.socket:
-    """A socket that receives for the group, bound to the group's address where the system
-    allows."""
+    """A socket in the group, bound to the group's own address where the system allows."""
     listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -76,8 +76,7 @@ class Pool:
         return value
 
     def release(self, value: str, owner: str | None) -> bool:
-        """Take `value` back if it was lent to `owner` or to nobody in particular; returns whether
-        it was."""
+        """Take `value` back if it was lent to `owner` or to nobody; returns whether it was."""
         if value not in self._used or self._used[value] not in (owner, None):
             return False
         holder = self._used.pop(value)
