@@ -42,7 +42,7 @@ def test_for_another_computer(tmp_path: Path) -> None:
 
 
 def test_mistakes(tmp_path: Path) -> None:
-    with pytest.raises(LocalProtocolError, match="no name of a computer"):
+    with pytest.raises(LocalProtocolError, match="not the name of a computer"):
         make(tmp_path, ["r\u00f6bot"])
     (tmp_path / "ca-key.pem").write_text("no key")
     with pytest.raises(LocalProtocolError, match="cannot be used"):

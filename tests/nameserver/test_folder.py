@@ -103,7 +103,7 @@ def test_the_rest_is_left_to_the_port(site: Path) -> None:
 
 
 def test_no_directory(site: Path) -> None:
-    with pytest.raises(yarpy.AddressError, match="no directory"):
+    with pytest.raises(yarpy.AddressError, match="not a directory"):
         Folder(site / "index.html")
 
 

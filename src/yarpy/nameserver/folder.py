@@ -21,7 +21,7 @@ _TEXTS: Final = ("text/", "application/json", "application/javascript", "image/s
 
 
 class Folder:
-    """The pages of `directory`: a function for `on_page`. AddressError if it is no directory."""
+    """The pages of `directory`: a function for `on_page`. AddressError if it is not one."""
 
     def __init__(self, directory: str | Path) -> None:
         self._root = Path(directory).resolve()
