@@ -35,25 +35,25 @@ class Transport(Protocol):
         """The number the peer needs to find us, 0 if none."""
 
     def ready(self, look: Callable[[], object] | None = None) -> None:
-        """Called once before the first byte: the two ends wait for each other here.
+        """Called once before the first byte: here the two ends wait for each other.
 
-        `look` is called now and then meanwhile; it raises when the peer will not come.
+        `look` is called now and then meanwhile; it raises if the peer will not come.
         """
 
     def recv_into(self, view: memoryview) -> int:
         """Wait for bytes; 0 is the end. Raises BlockingIOError when a time limit is over."""
 
     def try_recv_into(self, view: memoryview) -> int:
-        """Bytes that are there already; -1 if there are none, 0 is the end."""
+        """Bytes that have come already; -1 if there are none, 0 at the end."""
 
     def send(self, buffers: Sequence[Buffer]) -> None:
         """Send everything."""
 
     def limit_waiting(self, seconds: float | None) -> None:
-        """Let each receive or send wait that long at most; None: for ever."""
+        """Limit the wait of each receive or send; None: for ever."""
 
     def set_dscp(self, tos: int) -> None:
-        """Set the IP type-of-service byte (DSCP << 2) of what is sent."""
+        """Set the IP type-of-service byte (DSCP << 2) of outgoing packets."""
 
     def tos(self) -> int:
         """That byte, as the system has it."""
@@ -62,14 +62,14 @@ class Transport(Protocol):
         """Whether the peer has closed its side, without reading anything."""
 
     def interrupt(self) -> None:
-        """Wake whoever waits inside; nothing more will be sent or received."""
+        """Wake the threads that wait inside; nothing more will be sent or received."""
 
     def close(self) -> None:
         """Release it."""
 
 
 class SocketTransport:
-    """What every socket-backed transport does alike."""
+    """What all transports on sockets have in common."""
 
     def __init__(self, sock: socket.socket) -> None:
         self.sock = sock
@@ -116,7 +116,7 @@ class SocketTransport:
             self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, value)
             self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, value)
         except OSError:
-            pass  # closed by another thread meanwhile: whoever reads or writes is told
+            pass  # closed by another thread meanwhile: readers and writers get the error
 
     def set_dscp(self, tos: int) -> None:
         if self.sock.family == socket.AF_INET6:
@@ -152,7 +152,7 @@ class SocketTransport:
         try:
             self.sock.shutdown(socket.SHUT_RDWR)
         except OSError:
-            pass  # not connected any more: nobody is waiting inside
+            pass  # not connected any more: no thread is waiting inside
 
     def close(self) -> None:
         self.sock.close()
@@ -195,6 +195,6 @@ def address_of(raw: object) -> Address:
     if isinstance(raw, tuple) and len(raw) >= 2:
         host = str(raw[0])
         if len(raw) > 3 and raw[3] and "%" not in host:
-            host += f"%{raw[3]}"  # an address of one network alone: which one
+            host += f"%{raw[3]}"  # a link-local address: on which network
         return host.removeprefix("::ffff:"), int(raw[1])
     return str(raw), 0

@@ -1,7 +1,7 @@
 """Where ports listen: `YARPY_BIND`, in the environment of the program that opens them.
 
 (nothing)      on every IPv4 address of this computer, as C++ YARP
-local          on the loopback: nobody but this computer reaches them
+local          on the loopback: reachable from this computer only
 192.168.1.7    on this address alone
 """
 
@@ -23,7 +23,7 @@ def listening_host() -> str:
 
 
 def reach() -> str:
-    """To whom ports of this program are open, for people."""
+    """Who can reach the ports of this program, as a text for people."""
     host = listening_host()
     if not host:
         return "all networks"

@@ -1,9 +1,9 @@
 """UDP and multicast sockets: each send is one datagram, each receive is one datagram.
 
-Rules: receive buffers are asked for generously, since what the kernel drops is lost. What it had to
-drop it counts (SO_RXQ_OVFL on Linux), and `dropped` tells. What is sent is paced, since receivers
-of other programs have less room. A UDP sender is connected, so that a
-host where nobody receives any more can say so.
+Rules: receive buffers are asked for generously, since what the kernel drops is lost; it
+counts that (SO_RXQ_OVFL on Linux), `dropped` has the sum. Sending is paced, since receivers of
+other programs have less room. A UDP sender is connected, so that it learns when its target's port
+is no longer open.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ class DatagramTransport(SocketTransport):
         self._connected = False
         self._woken = False
         self._pace = Pace()
-        self._room = RECEIVE_BUFFER  # bytes that may still be read once woken
-        self.dropped = 0  # datagrams the kernel threw away for want of room
+        self._room = RECEIVE_BUFFER  # bytes that may still be read after the wake-up
+        self.dropped = 0  # datagrams that the kernel dropped because its buffer was full
         for size in (RECEIVE_BUFFER, RECEIVE_BUFFER // 8):
             try:
                 sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, size)
@@ -59,13 +59,13 @@ class DatagramTransport(SocketTransport):
                 return count  # an empty datagram is not an end: anybody can send one
 
     def _rest(self, view: memoryview) -> int:
-        """What had come when we were woken: it was sent before the end. 0 when that is all."""
+        """What had come before the wake-up: it was sent before the end. 0 when that is all."""
         try:
             count = self._recv_into(view, 0, MSG_DONTWAIT) if MSG_DONTWAIT else 0
         except OSError:
             return 0
         self._room -= count
-        return count if self._room > 0 else 0  # a sender who goes on is not followed for ever
+        return count if self._room > 0 else 0  # a sender that goes on is not read for ever
 
     def _recv_datagram(self, view: memoryview) -> int:
         if not _SO_RXQ_OVFL:
@@ -95,7 +95,7 @@ class DatagramTransport(SocketTransport):
                 self.sock.sendto(datagram, self._target)
 
     def connect(self) -> None:
-        """Hear from the target's host when nobody listens there; sending raises it then."""
+        """Let sending raise an error when the target's port is not open."""
         if self._target is not None:
             self.sock.connect(self._target)
             self._connected = True
@@ -130,7 +130,7 @@ def open_udp(listen: bool, local: Address, remote: Address, port: int) -> Datagr
         except OSError:
             sock.bind(
                 ("", 0)
-            )  # taken by somebody else; C++ does not check where datagrams are from
+            )  # taken by another program; C++ does not check where datagrams are from
         sender = DatagramTransport(sock, (remote[0], port))
         sender.connect()
         return sender
@@ -180,7 +180,7 @@ class McastReceiver(DatagramTransport):
             except BlockingIOError:
                 continue
         while self._rest(view):
-            # Not handed on: where the sender has come anew, its new connection has them as well.
+            # Not handed on: if the sender has reconnected, its new connection gets them as well.
             self.dropped += 1
         return 0
 

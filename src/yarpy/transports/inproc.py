@@ -15,7 +15,7 @@ from yarpy.errors import RemoteProtocolError
 from yarpy.transports.base import Address
 
 PATIENCE = 5.0  # seconds for the two ends to meet
-LOOK = 0.01  # seconds between looks whether the other end still means to come
+LOOK = 0.01  # seconds between checks whether the other end will still come
 _END = object()
 
 

@@ -1,10 +1,10 @@
 """Pace: how fast datagrams may leave, so that their receiver can keep up.
 
-Rules: nobody tells a sender of datagrams that the receiver is full, so it assumes what receivers
-are: a buffer of 208 kB, which is what Linux gives and C++ YARP leaves alone, holds three datagrams
-of the largest size; who reads it needs some 0.6 ms for one, as a gigabit network does to bring it.
-So one may leave at once, and the next when the receiver has likely read it. Small messages hardly
-ever wait: a hundred megabytes of them may leave in a second.
+Rules: datagrams have no backpressure, so the sender assumes a typical receiver: a buffer of 208 kB,
+the default of Linux, which C++ YARP leaves alone, holds three datagrams of the largest size;
+reading one takes some 0.6 ms, as long as a gigabit network takes to bring it. So one may leave at
+once, and the next when the receiver has likely read it. Small messages hardly ever wait: a hundred
+megabytes of them may leave in a second.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import Final
 
 BURST: Final = 65507  # bytes that may leave at once: one datagram of the largest size
-RATE: Final = 1e8  # bytes in a second that a receiver is taken to read
+RATE: Final = 1e8  # bytes a second that a receiver is assumed to read
 
 
 class Pace:
@@ -35,5 +35,5 @@ class Pace:
         read_at = max(self._read_at, now) + size / RATE
         if read_at - now > BURST / RATE:
             self._sleep(read_at - now - BURST / RATE)
-            read_at = max(read_at, self._clock() + size / RATE)  # who overslept does not hurry
+            read_at = max(read_at, self._clock() + size / RATE)  # time overslept is not made up for
         self._read_at = read_at

@@ -1,7 +1,7 @@
 """TCP: where every connection begins.
 
-Rules: TCP_NODELAY always (messages are sent whole); a peer that vanishes without a word, by a cut
-cable or a power failure, is noticed within half a minute; the listening socket takes every local
+Rules: TCP_NODELAY always (messages are sent whole); keepalive notices within half a minute a peer
+that vanishes silently, by a cut cable or a power failure; the listening socket takes every local
 address, or the one that `bind` says.
 """
 
@@ -18,7 +18,7 @@ from yarpy.transports.bind import listening_host
 
 CONNECT_TIMEOUT = 10.0  # seconds, as C++ YARP
 
-# After 10 s of silence the kernel asks the other one whether it lives, three times.
+# After 10 s of silence the kernel sends keepalive probes, three of them.
 _KEEP_ALIVE: Final = {"TCP_KEEPIDLE": 10, "TCP_KEEPINTVL": 5, "TCP_KEEPCNT": 3}
 
 
@@ -35,12 +35,12 @@ class TcpTransport(SocketTransport):
                     sock.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
 
     def peek(self) -> int:
-        """The first byte that comes, which stays there; -1 for the end."""
+        """The first byte that comes, left unread; -1 for the end."""
         first = self.sock.recv(1, socket.MSG_PEEK)
         return first[0] if first else -1
 
     def limit_unsent(self, size: int) -> None:
-        """Let no more than `size` bytes wait in the kernel for a slow network, where it can."""
+        """Limit the unsent bytes in the kernel to `size`, on systems that can."""
         option = getattr(socket, "TCP_NOTSENT_LOWAT", None)
         if option is not None:
             self.sock.setsockopt(socket.IPPROTO_TCP, option, size)
@@ -54,8 +54,9 @@ def dial(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TcpTransport
 
 
 def is_taken(port: int) -> bool:
-    """Whether nobody could listen on that number of this computer now: somebody does, or dials
-    from it."""
+    """Whether that port number of this computer is in use: by a listener, or by an outgoing
+    connection.
+    """
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as sock:
         try:
             if sys.platform != "win32":
@@ -69,7 +70,7 @@ def is_taken(port: int) -> bool:
 class TcpListener:
     """A listening socket on all IPv4 addresses, or the one of YARPY_BIND; `port` 0 for any number.
 
-    `wait` watches it together with connections that have not said anything yet.
+    `wait` watches it together with connections that have not sent anything yet.
     """
 
     def __init__(self, port: int = 0) -> None:

@@ -1,9 +1,9 @@
 """TLS: a TCP connection that nobody on the way can read or change. TLS 1.3 of the standard library.
 
-Rules: an SSL object is for one thread at a time, and no thread waits for the network while it has
-it: so it stands between two buffers in memory, a reader may wait while others send, and records
-leave in the order in which they were made. The peer's certificate is checked, with the name or
-address that was dialled. Errors are OSError, as everywhere in this room.
+Rules: an SSL object is for one thread at a time, and no thread waits for the network while it holds
+the object: so that stands between two buffers in memory, a reader may wait while others send, and
+records leave in the order in which they were made. The peer's certificate is checked, with the name
+or address that was dialled. Errors are OSError, as everywhere in this room.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ _PIECE: Final = 1 << 18  # bytes that are encrypted at once
 
 
 class NoCertificate(OSError):
-    """There is none, or it cannot be used; the text says what to do."""
+    """There is no certificate, or it cannot be used; the text says what to do."""
 
 
 class TlsTransport(TcpTransport):
     """A connected TCP socket with TLS on it, after `shake_hands`.
 
-    `host`: the name or address that we dialled; without it we were dialled.
+    `host`: the name or address that we dialled; empty: we were dialled.
     """
 
     def __init__(self, sock: socket.socket, host: str = "") -> None:
@@ -48,10 +48,10 @@ class TlsTransport(TcpTransport):
         self._sending = threading.Lock()
         self._reading = threading.Lock()
         self._raw = memoryview(bytearray(_RAW))
-        self._ahead = memoryview(b"")  # read to see whether the peer has gone
+        self._ahead = memoryview(b"")  # read ahead to see whether the peer has gone
 
     def shake_hands(self, deadline: float) -> None:
-        """The beginning. Raises ssl.SSLError, and BlockingIOError when it takes too long."""
+        """The TLS handshake. Raises ssl.SSLError, and BlockingIOError when it takes too long."""
         try:
             while True:
                 try:
@@ -66,7 +66,7 @@ class TlsTransport(TcpTransport):
                 if not self._take(super().recv_into(self._raw)):
                     raise ConnectionResetError("the peer hung up instead of speaking TLS")
         finally:
-            self._leave()  # also what is wrong, for the peer to read
+            self._leave()  # also the alert, which tells the peer what is wrong
             self.limit_waiting(None)
 
     # -- bytes ------------------------------------------------------------------------------------
@@ -98,7 +98,7 @@ class TlsTransport(TcpTransport):
 
     def ended(self) -> bool:
         if not self._reading.acquire(blocking=False):
-            return False  # somebody reads, and will notice
+            return False  # another thread reads, and will notice
         try:
             if self._ahead:
                 return False
@@ -118,7 +118,7 @@ class TlsTransport(TcpTransport):
             self._reading.release()
 
     def close(self) -> None:
-        """Say goodbye, if nobody has to wait for it, and hang up."""
+        """Say goodbye, if that takes no waiting, and hang up."""
         if self.sock.fileno() >= 0 and self._sending.acquire(blocking=False):
             try:
                 with self._lock:
@@ -136,19 +136,19 @@ class TlsTransport(TcpTransport):
     # -- inside -----------------------------------------------------------------------------------
 
     def _take(self, count: int) -> int:
-        """So many bytes came from the socket."""
+        """`count` bytes came from the socket."""
         with self._lock:
             self._incoming.write(self._raw[:count])
         return count
 
     def _leave(self) -> None:
-        """Send what the SSL object has to say by itself."""
+        """Send what the SSL object has written on its own account."""
         records = self._outgoing.read()
         if records:
             self.sock.sendall(records)
 
     def _decrypted(self, view: memoryview) -> int:
-        """Bytes that are there; 0 is the end, -1: more must come first."""
+        """Bytes that have come; 0 at the end, -1: more must come first."""
         if self._ahead:
             count = min(len(view), len(self._ahead))
             view[:count] = self._ahead[:count]
@@ -189,7 +189,7 @@ def dial_tls(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TlsTrans
 
 
 def secured(transport: TcpTransport, host: str, deadline: float) -> TlsTransport:
-    """TLS on a connection that is there. `host` empty: we were dialled. Raises as `dial_tls`; the
+    """TLS on an existing connection. `host` empty: we were dialled. Raises as `dial_tls`; the
     connection is closed then."""
     try:
         made = TlsTransport(transport.sock, host)
@@ -216,19 +216,19 @@ def explained(error: OSError) -> str:
 
 
 def server_context() -> ssl.SSLContext:
-    """For who dials us. Raises NoCertificate."""
+    """The context for connections that we accept. Raises NoCertificate."""
     where = folder()
     return _server(where, mutual(), _age(where))
 
 
 def client_context() -> ssl.SSLContext:
-    """For whom we dial. Raises NoCertificate."""
+    """The context for connections that we dial. Raises NoCertificate."""
     where = folder()
     return _client(where, _age(where))
 
 
 def _age(where: Path) -> tuple[float, ...]:
-    """When the files changed, 0 for one that is not there."""
+    """When each file changed, 0 for a missing one."""
     names = ("cert.pem", "key.pem", "ca.pem")
     files = [where / name for name in names]
     return tuple(file.stat().st_mtime if file.is_file() else 0.0 for file in files)
@@ -238,7 +238,7 @@ def _age(where: Path) -> tuple[float, ...]:
 def _server(where: Path, both: bool, age: tuple[float, ...]) -> ssl.SSLContext:
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.minimum_version = ssl.TLSVersion.TLSv1_3
-    context.num_tickets = 0  # connections last; nobody comes back with a ticket
+    context.num_tickets = 0  # connections last long; no session is resumed
     if not _own(context, where, age):
         raise NoCertificate(f"there is no cert.pem with a key.pem in {where}: `yarpy cert` does it")
     if both:
@@ -262,7 +262,7 @@ def _client(where: Path, age: tuple[float, ...]) -> ssl.SSLContext:
 
 
 def _own(context: ssl.SSLContext, where: Path, age: tuple[float, ...]) -> bool:
-    """Give it our certificate, if we have one."""
+    """Give the context our certificate, if we have one."""
     if not (age[0] and age[1]):
         return False
     try:

@@ -1,8 +1,8 @@
 """What the environment says of TLS: `YARPY_TLS`, and where the certificates are.
 
-    (nothing)   who dials chooses: `+tls`, https and wss are TLS, the rest is plain
+    (nothing)   the initiator chooses: `+tls`, https and wss are TLS, the rest is plain
     require     every connection of this program is TLS, to it and from it
-    mutual      and whoever dials it shows a certificate of its authority
+    mutual      and whoever dials it must show a certificate of its authority
 
 The folder `tls` beside the other configuration, or YARPY_TLS_DIR, has `cert.pem` and `key.pem` of
 this computer, and `ca.pem`, the authority that the others are checked against; without that one,
@@ -26,7 +26,7 @@ WORD: Final = "tls"  # in a carrier string
 
 
 def required() -> bool:
-    """Whether every connection must be TLS. Raises LocalProtocolError for a setting of no sense."""
+    """Whether every connection must be TLS. Raises LocalProtocolError for a senseless setting."""
     said = os.environ.get(SETTING, "")
     if said not in ("", "require", "mutual"):
         raise LocalProtocolError(f'{SETTING} is "require", "mutual" or nothing, not "{said[:40]}"')
@@ -34,7 +34,7 @@ def required() -> bool:
 
 
 def mutual() -> bool:
-    """Whether who dials us must show a certificate."""
+    """Whether those who dial us must show a certificate."""
     return os.environ.get(SETTING, "") == "mutual"
 
 

@@ -2,7 +2,7 @@
 
 Rules: pure. Numbers start at 0 with every message; a message of which a piece is missing, late or
 damaged, or that is longer than the limit, is dropped whole and counted: anybody can send a
-datagram, so none ends a connection. Number -1 is somebody waking their own reader: ignored.
+datagram, so none ends a connection. Number -1 is a program waking its own reader: ignored.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from yarpy.wire.stream import Buffer
 _HEAD: Final = struct.Struct("<Ii")
 MAX_DATAGRAM: Final = 65499  # what C++ sends at most
 _INDEX_HEAD: Final = 18
-_NEW: Final = 1 << 31  # beyond every piece's number
+_NEW: Final = 1 << 31  # above the number of any piece
 
 
 def split(buffers: Sequence[Buffer], size: int = MAX_DATAGRAM) -> Iterator[bytes]:
@@ -32,18 +32,19 @@ def split(buffers: Sequence[Buffer], size: int = MAX_DATAGRAM) -> Iterator[bytes
 
 class Assembler:
     """Puts datagrams together again. `lost` counts messages of which something came and could not
-    be used; a message that was on its way when we came is not among them."""
+    be used; a message that was on its way when we joined is not among them."""
 
     def __init__(self, limit: int) -> None:
         self.limit = limit
         self.lost = 0
-        # One block, so that a million tiny pieces take no more memory than their bytes.
+        # One buffer, so that a million tiny pieces take no more memory than their bytes.
         self._data: bytearray | None = None  # what has come of a message; None: none is begun
         self._total = 0
-        # The piece that comes next. While none is begun, pieces before it are of a message whose
-        # beginning did not come; those from it on, of one that is given up already.
+        # The piece that comes next. While none is begun, lower numbers are of a message whose
+        # beginning did not come; this number and higher ones, of a message that was given up
+        # already.
         self._expected = 0
-        self._late = 0  # the piece for want of which a message was given up; 0: none
+        self._late = 0  # the missing piece that made us give a message up; 0: none
 
     def add(self, datagram: bytes) -> bytes | bytearray | None:
         """Take one datagram; returns the message's bytes when it is whole."""
@@ -78,7 +79,7 @@ class Assembler:
         return whole
 
     def _skip(self, sequence: int) -> None:
-        """A piece that continues nothing."""
+        """A piece that does not continue the message begun."""
         if self._data is not None:
             late = self._expected
             self._give_up(late)

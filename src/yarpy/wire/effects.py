@@ -1,9 +1,9 @@
-"""What a protocol may ask of its driver besides bytes: the values that a `Steps` generator yields.
+"""What a protocol may ask its driver for besides bytes: the values that a `Steps` generator yields.
 
 Rules: plain values, no behaviour. `None` asks for more bytes; everything else is listed here. A
 connection greets over TCP; carriers that move elsewhere (UDP, multicast, Unix sockets, in-process)
-`Open` the new place, tell the peer about it, and `Switch` onto it. One that has to ask once more a
-peer that hangs up opens `tcp`. `Within` and `Show` are for `decode` alone.
+`Open` the new place, tell the peer about it, and `Switch` onto it. One whose peer hangs up after
+the first answer opens `tcp` to ask again. `Within` and `Show` are for `decode` alone.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Group(Effect):
 class Within(Effect):
     """A message has begun to come: it has `seconds` to its end, or raises Timeout inside `decode`.
 
-    None: nothing has begun any more. The end of `decode` says so too.
+    None: no message is under way any more. The end of `decode` says so too.
     """
 
     seconds: float | None

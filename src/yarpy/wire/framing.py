@@ -1,8 +1,8 @@
 """The framing that the binary carriers share: YARP numbers, the message index, port commands.
 
 Rules: pure. `encode` makes the buffers of one message, `read_message` reads one. The index of C++
-holds block lengths that its own reader only sums; ours believes the sum, except where it cannot be
-right (hand-made clients write what they like): then the payload itself is walked to find its end.
+holds block lengths that its own reader only sums; ours trusts the sum, except where it cannot be
+right (hand-made clients write anything): then the payload itself is walked to find its end.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from yarpy.wire.message import Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import CUT_OFF, LARGE, Buffer, ByteStream
 
-BASE: Final = 7777  # what a carrier's code is added to in its first eight bytes
+BASE: Final = 7777  # added to a carrier's code in its first eight bytes
 MAX_NAME: Final = 1000
 MAX_COMMAND: Final = 1 << 15  # half the buffer of a stream
 
@@ -36,7 +36,7 @@ def number(value: int) -> bytes:
 
 
 def parse_number(data: Buffer) -> int:
-    """The value of a YARP number, or -1 if the eight bytes are none."""
+    """The value of a YARP number, or -1 if the eight bytes are not one."""
     start, value, end = _NUMBER.unpack(data)
     return value if start == b"YA" and end == b"RP" and value >= 0 else -1
 
@@ -92,7 +92,7 @@ def encode_text_command(key: str, text: bytes = b"") -> list[Buffer]:
 
 
 def _encode_blocks(command: bytes, blocks: tuple[Buffer, ...]) -> list[Buffer]:
-    if len(blocks) > 200:  # the count is one byte; the reader does not care about borders
+    if len(blocks) > 200:  # the count is one byte; readers ignore the borders of blocks
         blocks = (b"".join(blocks),)
     sizes = [len(command), *map(len, blocks)]
     count = len(sizes)
@@ -189,7 +189,7 @@ def _read_any(stream: ByteStream) -> Steps[Message | None]:
     elif rest >= 8:
         message.payload = yield from stream.read_exact(rest)
     else:
-        # No payload is that short: the index lies, the payload must tell where it ends.
+        # No payload is that short: the index is wrong, the payload itself must show where it ends.
         message.payload = yield from read_payload(stream)
     return message
 
@@ -255,7 +255,7 @@ def parse_command(text: str) -> Message:
 
 
 def read_payload(stream: ByteStream) -> Steps[bytes | memoryview]:
-    """A payload that comes without a length, as replies do: walk it to its end."""
+    """A payload that comes without a length, as replies come: walk it to its end."""
     walker = Walker(stream.limit)
     limit = stream.limit
 
@@ -271,7 +271,7 @@ def read_payload(stream: ByteStream) -> Steps[bytes | memoryview]:
 def parse_reply(stream: ByteStream) -> Message | None:
     """A whole reply at the head of the stream's buffer, if it is a usual one; None: look closer.
 
-    As with `parse_plain`, nothing is waited for. Replies have no length: decoding tells it.
+    As with `parse_plain`, nothing is waited for. Replies have no length: decoding finds it.
     """
     head, tail = stream.head, stream.tail
     if tail - head > LARGE:

@@ -1,8 +1,8 @@
 """Packet (going out) and Message (come in): one unit of what ports say to each other.
 
 Rules: a Packet encodes each spelling at most once, however many links it goes to. A Message keeps
-its payload as it arrived and decodes it when somebody looks, in the thread that looks; a message
-that is dropped is never parsed. This is the one file of the wire that knows the data room.
+its payload as it arrived and decodes it on first use, in the thread that uses it; a message that is
+dropped is never parsed. This is the one file of the wire that knows the data room.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ QUIT: Final = "q"
 
 JSON: Final = "json"  # the asker wants values that programs can read, not lines for a person
 
-#: What encoding raises for a value that cannot be sent: an odd type, a number too large, a list too
-#: deep.
+#: What encoding raises for a value that cannot be sent: an unknown type, a number too large, a list
+#: too deep.
 UNSENDABLE: Final = (TypeError, ValueError, OverflowError)
 
-SMALL: Final = 2048  # bytes; larger messages gain nothing from waiting for others
+SMALL: Final = 2048  # bytes; larger messages gain nothing from coalescing
 
 _UNSET: Final = object()
 _COPIED: Final = ("key", "envelope", "spelling", "text", "source")
 
 
 class Lines(tuple[str, ...]):
-    """A reply of plain text lines, as old name services give it: not a Bottle, and not quoted.
+    """A reply of plain text lines, as old name services give them: not a Bottle, and not quoted.
 
     On binary connections it is a Bottle of one string.
     """
@@ -56,7 +56,7 @@ class Lines(tuple[str, ...]):
 
 
 class Encoded:
-    """A value in its binary spelling already; as text it is what these bytes say."""
+    """A value that is already in its binary spelling; as text, the value of these bytes."""
 
     __slots__ = ("data",)
 
@@ -89,7 +89,7 @@ class Packet:
 
     @property
     def forms(self) -> dict[object, tuple[Buffer, ...]]:
-        """What carriers made of it for themselves, each by a key of its own."""
+        """A cache for carriers: what each made of the packet, under a key of its own."""
         if self._forms is None:
             self._forms = {}
         return self._forms
@@ -102,7 +102,9 @@ class Packet:
         return self._blocks
 
     def snapshot(self, spelling: Spelling) -> None:
-        """Encode now, into memory of our own: the message leaves later, its writer goes on."""
+        """Encode now, into memory of our own: the message leaves later, and its writer goes on
+        meanwhile.
+        """
         if spelling == "text":
             _ = self.line
         elif spelling == "binary":
@@ -113,7 +115,7 @@ class Packet:
 
     @property
     def small(self) -> bool:
-        """Whether it is encoded into memory of its own: nothing the writer may change meanwhile."""
+        """Whether it is encoded into memory of its own, which the writer cannot change."""
         framed = self.framed
         return framed is not None and len(framed) == 1 and len(framed[0]) < SMALL
 
@@ -136,10 +138,10 @@ class Packet:
 
 
 class Answer:
-    """The way back of one question: whoever has the message gives it, once, from any thread.
+    """The way back of one question: whoever has the message may answer, once, from any thread.
 
-    `send` puts it on the wire. `then` is called once that is done, or has failed for good: whoever
-    waits for the end of the question sets it.
+    `send` puts it on the wire. `then` is called once that is done, or has failed for good; it is
+    set by the thread that waits for the end of the question.
     """
 
     __slots__ = ("_send", "open", "then")
@@ -194,14 +196,14 @@ class Message:
 
     @classmethod
     def decoded(cls, key: str, payload: bytes, value: object) -> Message:
-        """A message whose value is known already."""
+        """A message whose value is decoded already."""
         message = cls(key, payload)
         message._value = value
         return message
 
     @classmethod
     def of(cls, packet: Packet) -> Message:
-        """What is about to be sent, as a monitor looks at it."""
+        """An outgoing packet as a message, for a monitor to look at."""
         return cls(packet.key, packet.value, packet.envelope.decode(), "object")
 
     def replaced(self, value: object, binary: bool = False) -> Message:
@@ -214,7 +216,9 @@ class Message:
         return fresh
 
     def __getstate__(self) -> dict[str, Any]:
-        """For copies, also those in other processes: memory of their own, nobody to answer to."""
+        """For copies, also those in other processes: they have memory of their own and take no
+        answer.
+        """
         payload = self.payload
         return {
             **{name: getattr(self, name) for name in _COPIED},
@@ -282,7 +286,7 @@ class Message:
         return self.answer is not None and self.answer.open
 
     def reply(self, value: object) -> None:
-        """Answer the sender. Once, and only if it asked: `wants_reply` tells.
+        """Answer the sender. Once, and only if it asked: see `wants_reply`.
 
         Raises LocalProtocolError otherwise, LinkClosed if the sender has gone; TypeError,
         ValueError or OverflowError for what cannot be sent, which leaves the question open.

@@ -1,8 +1,8 @@
 """Steps: what a protocol is written in, a generator that asks for bytes or for something else.
 
-Rules: this file knows nobody, so that the stream may be written in steps and an effect may name a
-stream. `None` asks for more bytes, an `Effect` (see `effects.py`) for something that only the
-driver can do; its answer is what the `yield` returns.
+Rules: this file imports neither streams nor effects, so that the stream may be written in steps and
+an effect may name a stream. `None` asks for more bytes, an `Effect` (see `effects.py`) for
+something that only the driver can do; its answer is what the `yield` returns.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 class Effect:
-    """What a protocol may ask of its driver besides bytes."""
+    """What a protocol may ask its driver for besides bytes."""
 
     __slots__ = ()
 

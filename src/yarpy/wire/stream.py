@@ -4,7 +4,7 @@ Rules: the driver side is `get_buffer / buffer_updated / feed_eof / take_output`
 `read_* / write`; the read methods are generators that yield None when they need more bytes. Small
 reads are copied out of one fixed buffer; a large read lands in a buffer of its own, which the
 message then keeps, so an image is received without a copy. That buffer grows with what arrives, not
-with what was announced, and is used again once nobody holds it.
+with what was announced, and is reused once nothing holds it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 BUFFER_SIZE: Final = 1 << 16
 LARGE: Final = 1 << 14  # reads from here on get a buffer of their own
-FIRST_GRANT: Final = 1 << 24  # memory taken on the peer's word alone; beyond it must send first
+FIRST_GRANT: Final = 1 << 24  # memory taken on the peer's word alone; for more, it must send first
 DEFAULT_LIMIT: Final = 1 << 30  # bytes per message, whatever the peer announces
 CUT_OFF: Final = "the peer closed the connection in the middle of a message"
 
@@ -28,7 +28,7 @@ CUT_OFF: Final = "the peer closed the connection in the middle of a message"
 def _parts_hold() -> bool:
     """Whether a part of a view alone keeps its bytearray from being resized, as in CPython.
 
-    PyPy asks the whole view only, or nobody: there no buffer is used a second time.
+    PyPy checks the whole view only, or nothing: there no buffer is reused.
     """
     buffer = bytearray(2)
     whole = memoryview(buffer)
@@ -40,10 +40,10 @@ def _parts_hold() -> bool:
 
 
 def _is_free(buffer: bytearray) -> bool:
-    """Whether nobody looks at it: a bytearray refuses another size while a view of it lives.
+    """Whether no view of it is left: a bytearray refuses to be resized while a view of it lives.
 
-    One byte less and one more moves no memory. References would tell less: a view holds one
-    however many hold the view, and each version of Python counts its own differently.
+    One byte less and one more moves no memory. Reference counts would tell less: a view holds one
+    reference however many hold the view, and each version of Python counts its own differently.
     """
     try:
         buffer.append(buffer.pop())
@@ -58,8 +58,8 @@ _REUSES: Final = _parts_hold()
 class ByteStream:
     """Bytes in, bytes out. `limit` is the largest message, in bytes, that is accepted.
 
-    `buffer`, `head` and `tail` are open to protocols that parse in place: `buffer[head:tail]` is
-    what has arrived and was not read; move `head` past what was used.
+    `buffer`, `head` and `tail` are open to protocols that parse in place: `buffer[head:tail]` has
+    arrived and was not read; move `head` past what was used.
     """
 
     __slots__ = (
@@ -83,7 +83,7 @@ class ByteStream:
         self.limit = limit
         self._eof = False
         self._output: list[Buffer] = []
-        self._big: memoryview | None = None  # where a large read is landing
+        self._big: memoryview | None = None  # where a large read lands
         self._big_filled = 0
         self._spare: list[bytearray] = []
 
@@ -153,7 +153,7 @@ class ByteStream:
             yield None
 
     def read_exact(self, count: int) -> Steps[bytes | memoryview]:
-        """Exactly `count` bytes; large ones as a view of a buffer that is theirs alone."""
+        """Exactly `count` bytes; large ones as a view of a buffer of their own."""
         if count > LARGE:
             return (yield from self._read_large(count))
         if self.tail - self.head < count:
@@ -235,7 +235,7 @@ class ByteStream:
     def _enlarge(self, size: int) -> None:
         """The buffer is full and `size` bytes are announced: make it longer, up to twice as long.
 
-        Never more at once: the peer must have sent as much as it makes us take.
+        Never more at once: the peer must have sent as much as we allocate for it.
         """
         fresh = bytearray(max(min(size, 2 * len(self.buffer)), len(self.buffer)))
         count = self.tail - self.head
@@ -268,7 +268,7 @@ class ByteStream:
         return view
 
     def _spare_buffer(self, size: int) -> bytearray:
-        """A buffer for `size` bytes: one whose message is gone, else a new one."""
+        """A buffer for `size` bytes: a used one whose message is gone, else a new one."""
         for buffer in self._spare:
             if len(buffer) == size and _is_free(buffer):
                 return buffer
