@@ -36,7 +36,7 @@ def test_settings(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixt
     with caplog.at_level(logging.WARNING, "yarpy"):
         assert limits() == Limits(picture=100)
         limits()
-    assert caplog.text.count("YARPY_MAX_UNPACKED='lots' is no number") == 1
+    assert caplog.text.count("YARPY_MAX_UNPACKED='lots' is not a number") == 1
 
 
 @pytest.mark.parametrize(

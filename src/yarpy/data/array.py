@@ -2,7 +2,7 @@
 
     1-D float64 float32 int64 int32 int16 int8    list of that kind (a Vector, for float64)
     1-D bool uint8 uint16 uint32 float16          list of the smallest kind that holds every value
-    1-D uint64                                    list of int64; OverflowError for what is beyond
+    1-D uint64                                    list of int64; OverflowError for larger values
     2-D float64 float32                           Matrix
     2-D uint8, uint16                             image `mono`, `mo16`
     3-D uint8 with 1, 3 or 4 channels             image `mono`, `rgb`, `rgba`
@@ -92,13 +92,13 @@ def blocks(array: NDArray[Any]) -> Blocks:
         if code is not None:
             return image_blocks(array, pixel_of(code))
     raise TypeError(
-        f"no YARP type goes with an array of {array.dtype} and shape {array.shape}; say what is "
+        f"no YARP type fits an array of {array.dtype} and shape {array.shape}; say what is "
         "meant with Vector(array), Matrix(array) or Image(array, code)"
     )
 
 
 def scalar(value: Any) -> int | float | bool | str | bytes:
-    """What a numpy number is without numpy; the odd widths stay."""
+    """A numpy number as a plain Python one; the odd widths are kept."""
     name = value.dtype.name
     plain = value.item()
     if name == "int8":
@@ -109,4 +109,4 @@ def scalar(value: Any) -> int | float | bool | str | bytes:
         return Float32(plain)
     if isinstance(plain, (int, float, bool, str, bytes)):
         return plain
-    raise TypeError(f"no YARP type goes with a numpy {name}")
+    raise TypeError(f"no YARP type fits a numpy {name}")

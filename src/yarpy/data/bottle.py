@@ -2,8 +2,8 @@
 
 Rules: it is a Python list of the objects named in `yarpy.data.value`; nothing is converted when an
 element is stored, only when the Bottle is written. The spellings live in `reader`, `writer` and
-`text`, which know this class; the methods here import them when called, because the two cannot
-know each other when they are loaded.
+`text`, which know this class; the methods here import them when called, because two modules cannot
+import each other at load time.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Bottle(list[Any]):
 
     @classmethod
     def from_text(cls, text: str | bytes) -> Self:
-        """Read YARP's notation. What is unfinished or unbalanced vanishes, as it does in C++."""
+        """Read YARP's notation. Unfinished and unbalanced parts vanish, as in C++."""
         from yarpy.data.text import parse_text
 
         return cls(parse_text(text))

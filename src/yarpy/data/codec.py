@@ -12,10 +12,10 @@
     None                                        the null Value, an empty message
     Stamp, Vector, Matrix, Image, Sound ...     their own layout
     numpy arrays                                see `yarpy.data.array`
-    anything with `to_wire() -> blocks`         what it says
+    anything with `to_wire() -> blocks`         what that returns
 
 Rules: decoding raises DecodeError or Truncated, nothing else. Sending something unknown is a
-TypeError that says what can be sent. What is big stays where it is, on the way out and in.
+TypeError that says what can be sent. Large data are not copied, on the way out or in.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ _EMPTY: Final = Struct("<ii").pack(LIST, 0)
 
 
 def encode(obj: Any) -> Blocks:
-    """The payload in the binary spelling: blocks that belong one after the other."""
+    """The payload in the binary spelling: blocks to be sent one after the other."""
     kind = type(obj)
     if kind is list or kind is tuple or kind is Bottle:
         return list_blocks(obj)
@@ -162,7 +162,7 @@ def decode(view: Buffer) -> Any:
 def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
     """The natural value of the message that `buffer` begins with, and the bytes it takes.
 
-    None if it is not all there, or is not one of the usual: lists and single values.
+    None if it is incomplete, or is not of the usual kinds: lists and single values.
     """
     if len(buffer) < 12:
         return None
@@ -176,12 +176,12 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
 
 
 def decode_text(line: bytes | str) -> Bottle:
-    """The Bottle of a line; text that is no Bottle is one with less in it."""
+    """The Bottle of a line; what is not Bottle text is left out."""
     return Bottle(parse_text(line))
 
 
 def decode_as(view: Buffer, type_: type[T]) -> T:
-    """The payload as an object of `type_`; DecodeError that says what came instead.
+    """The payload as an object of `type_`; else a DecodeError that says what came instead.
 
     `type_` is Bottle, list, tuple, Property, dict, str, int, float, bool, bytes, Vocab (and the odd
     widths), a type of this package, numpy.ndarray, `object` for the natural value, or any class
@@ -208,7 +208,7 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
         return cast(T, _to_array(view))
     for base in (Bottle, Property, Vocab, str, int, float, bytes, list, tuple, dict):
         if issubclass(type_, base):
-            make = getattr(type_, "_make", type_)  # named tuples have their own way
+            make = getattr(type_, "_make", type_)  # named tuples have their own constructor
             try:
                 return cast(T, make(_CONVERTERS[base](view)))
             except (ValueError, TypeError, LookupError, OverflowError) as error:

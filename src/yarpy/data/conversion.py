@@ -1,9 +1,9 @@
 """One pixel type into another, with the numbers C++ YARP gets.
 
 Rules: nothing is scaled. Grey is (r + g + b) / 3 without a remainder, colour from grey is the same
-value three times, a missing alpha is 255, and what is too large for the target keeps its low bits.
-`sign` is the half of unsigned grey, unsigned grey is `sign` plus 128. Bayer patterns may be looked
-at as the grey image they are; to rebuild their colours takes more than this module knows.
+value three times, a missing alpha is 255, and numbers too large for the target keep their low bits.
+`sign` is the half of unsigned grey, unsigned grey is `sign` plus 128. Bayer patterns may be taken
+as the grey images they are; rebuilding their colours is not done here.
 """
 
 from __future__ import annotations

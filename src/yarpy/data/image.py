@@ -80,7 +80,7 @@ class Image(Wired):
 
     @classmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
-        """An Image over the bytes of a message; DecodeError if they are none."""
+        """An Image over the bytes of a message; DecodeError if they are not one."""
         if len(view) < _HEAD.size:
             raise Truncated(f"an Image has a header of {_HEAD.size} bytes", _HEAD.size)
         self = cls.found(view)
@@ -110,7 +110,7 @@ class Image(Wired):
             self._pixels = memoryview(b"")
             return self
         kind = _received(code, depth, known)
-        # What C++ reads is what it computes; the size in the header is not looked at.
+        # C++ reads as many bytes as it computes and ignores the size in the header, and so do we.
         end = _HEAD.size + _row_bytes(width, kind, self.quantum) * height
         if len(view) < end:
             raise Truncated(f"this Image takes {end} bytes, here are {len(view)}", end)
@@ -182,7 +182,7 @@ class Image(Wired):
         return f"Image({self.width} x {self.height}, {name!r}, quantum={self.quantum})"
 
 
-#: the C++ name for an image that takes the pixel type of what it receives, which all do here
+#: the C++ name for an image that takes the pixel type of what it receives; all do so here
 FlexImage = Image
 
 
@@ -231,7 +231,7 @@ def _kind_of(array: NDArray[Any]) -> Pixel:
     name = NATURAL.get((array.dtype.str[1:], channels))
     if name is None or array.ndim not in (2, 3):
         raise ValueError(
-            f"no pixel code goes with an array of {array.dtype} and shape {array.shape}: give one"
+            f"no pixel code fits an array of {array.dtype} and shape {array.shape}: give one"
         )
     return pixel_of(name)
 
@@ -239,7 +239,7 @@ def _kind_of(array: NDArray[Any]) -> Pixel:
 def _laid_out(
     rows: NDArray[Any], kind: Pixel, shape: tuple[int, ...], row_bytes: int
 ) -> memoryview:
-    """The memory of `rows` if it is as the wire wants it, else a copy with padded rows."""
+    """The memory of `rows` if it is laid out as on the wire, else a copy with padded rows."""
     if not rows.size:
         return memoryview(b"")
     plain = rows.dtype.str[0] != ">" and rows.flags.c_contiguous

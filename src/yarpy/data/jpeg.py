@@ -1,8 +1,9 @@
 """JPEG: an Image squeezed into a file, the comment inside it, and where such a file ends.
 
 Rules: no protocol here. Compression is simplejpeg's (libjpeg-turbo), imported when it is first
-needed; the settings are those of C++ YARP (4:2:0, baseline), whose bytes ours are. What comes in is
-measured before memory is taken for its pixels; whatever is wrong with it is a DecodeError.
+needed; the settings are those of C++ YARP (4:2:0, baseline), so the bytes are the same. The size of
+a picture is checked before memory is taken for its pixels; whatever is wrong with it is a
+DecodeError.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from yarpy.errors import DecodeError
 
 QUALITY: Final = 75  # of libjpeg, and so of C++ YARP
 
-MAX_SCANS: Final = 64  # walks over all pixels that one file may ask for; progressive ones have ten
+MAX_SCANS: Final = 64  # passes over all pixels that one file may ask for; progressive ones have ten
 
 _HEAD_SIZE: Final = 60  # of an Image on the wire
 _SOI: Final = b"\xff\xd8"
@@ -32,7 +33,7 @@ def encode(image: Image, quality: int = QUALITY) -> bytes:
     """The picture as a JPEG file; `quality` from 1 to 100.
 
     mono becomes grey, every other pixel type is seen as rgb. ValueError for a picture without
-    pixels, larger than 65500 either way, or of a pixel type that no colours can be made of.
+    pixels, larger than 65500 either way, or of a pixel type without colours.
     """
     import simplejpeg
 
@@ -103,8 +104,9 @@ def comment(data: bytes | bytearray | memoryview) -> str:
 
 
 def commented(data: bytes, text: bytes) -> bytes:
-    """The file with a comment, `text` and a NUL, put where C++ YARP puts it: behind the JFIF
-    header."""
+    """The file with a comment, `text` and a NUL, at the place where C++ YARP has it: behind the
+    JFIF header.
+    """
     at = 2
     if data[2:3] == b"\xff" and data[3] == _APP0:
         at = 4 + int.from_bytes(data[4:6], "big")
@@ -123,7 +125,7 @@ class Extent:
         self._in_scan = False
 
     def advance(self, data: bytearray) -> int:
-        """Where the file ends; 0: not in these bytes; -1: this is no JPEG file, or a broken one."""
+        """Where the file ends; 0: not in these bytes; -1: not a JPEG file, or a broken one."""
         if self._at == 0:
             if not _SOI.startswith(data[:2]):
                 return -1

@@ -7,9 +7,9 @@
 
 Rules: every message gives valid JSON. Where C++ gives valid JSON this is the same value (core-4
 7.7), so booleans, which are vocabs, are the strings "true" and "false", and a list of pairs is an
-object; but only if its keys are different words, where C++ repeats keys or writes numbers as keys.
-What JSON has no word for (nan, infinities) is null. Reading, an object is a list of pairs, its
-`type` is the word in front of them, and null is the vocab `null`.
+object; but only if its keys are different words (C++ repeats keys or writes numbers as keys).
+Numbers that JSON cannot express (nan, infinities) are null. Reading, an object is a list of pairs,
+its `type` is the word in front of them, and null is the vocab `null`.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def _plain_top(value: object, outer: Outer, pixels: bool) -> Any:
         described = _described(codec.decode(message), pixels) if outer == "auto" else None
         return _list(Bottle.from_bytes(message), outer, 0) if described is None else described
     except DecodeError:
-        return _plain(message, 0)  # a format of somebody's own
+        return _plain(message, 0)  # a user's own format
 
 
 def _described(value: object, pixels: bool = True) -> Any:
@@ -115,7 +115,7 @@ def _described(value: object, pixels: bool = True) -> Any:
 
 
 def _plain(value: object, depth: int) -> Any:
-    """What `json` makes the right text of."""
+    """The value from which `json` makes the right text."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -214,12 +214,12 @@ def _encodable(text: str) -> bool:
 
 
 def _mended(text: str) -> str:
-    """Bytes that were no UTF-8 as the mark for that; nothing else of JSON can hold them."""
+    """Bytes that are not UTF-8 become the replacement character; JSON cannot hold them."""
     raw = text.encode("utf-8", "surrogatepass")
     try:
         raw = text.encode("utf-8", "surrogateescape")
     except UnicodeEncodeError:
-        pass  # half a surrogate pair, which somebody wrote as \\ud800
+        pass  # half a surrogate pair, written as \\ud800
     return raw.decode("utf-8", "replace")
 
 

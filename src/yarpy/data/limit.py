@@ -1,12 +1,12 @@
-"""How much may come out of what arrives packed: pictures, compressed messages, lists.
+"""How large arriving data may get when unpacked: pictures, compressed messages, lists.
 
     YARPY_MAX_PICTURE     bytes of pixels, of a JPEG or PNG file or a depth image: 256 MiB
     YARPY_MAX_UNPACKED    bytes of any other message that was compressed: 64 MiB
     YARPY_MAX_ELEMENTS    elements of one message, with those of the lists in it: 4194304
 
-Rules: these hold beside the largest message that a port takes, and for everybody: who chose a
-monitor may be the other side. Whoever unpacks compares with them before memory is taken. A setting
-that is no number counts as none, with a warning.
+Rules: these hold beside the largest message that a port takes, and for every connection, since the
+peer may have chosen the monitor. They are checked before memory is taken. A setting that is not a
+number is ignored, with a warning.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Limits:
 
 
 def limits() -> Limits:
-    """What holds in this process, as its environment says now."""
+    """The limits of this process, as its environment says now."""
     return _read(*(os.environ.get(name, "") for name in _NAMES))
 
 
@@ -43,7 +43,7 @@ def _read(*texts: str) -> Limits:
             from yarpy.log import logger
 
             logger("yarpy").warning(
-                "%s=%.40r is no number and does not count: give bytes or elements in digits",
+                "%s=%.40r is not a number and is ignored: give bytes or elements in digits",
                 name,
                 text,
             )

@@ -22,7 +22,7 @@ _HEAD = Struct("<8i")
 
 
 class Matrix(Wired):
-    """Rows and columns of float64. `Matrix(array)` takes whatever numpy makes two dimensions of."""
+    """Rows and columns of float64. `Matrix(array)` takes anything numpy makes two-dimensional."""
 
     __slots__ = ("_array", "_data", "cols", "rows")
 
@@ -41,7 +41,7 @@ class Matrix(Wired):
 
     @classmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
-        """A Matrix over the bytes of a message; DecodeError if they are none."""
+        """A Matrix over the bytes of a message; DecodeError if they are not one."""
         if len(view) < _HEAD.size:
             raise Truncated(f"a Matrix has a header of {_HEAD.size} bytes", _HEAD.size)
         code, length, tag, rows, tag2, cols, list_code, count = _HEAD.unpack_from(view)

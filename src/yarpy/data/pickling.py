@@ -1,4 +1,4 @@
-"""Wired: values that are copied and pickled as what they are on the wire.
+"""Wired: values that are copied and pickled in their wire form.
 
 Rules: for values that are views of memory, which Python cannot copy by itself. A copy has memory of
 its own; an array that looks at it may be written to.
@@ -12,14 +12,14 @@ from typing import Any, Self
 
 
 class Wired:
-    """What `copy.deepcopy`, `pickle` and `multiprocessing` need of a value with a wire form."""
+    """What `copy.deepcopy`, `pickle` and `multiprocessing` need from a value with a wire form."""
 
     __slots__ = ()
 
     @classmethod
     @abstractmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
-        """The value that these bytes are."""
+        """The value made of these bytes."""
 
     @abstractmethod
     def to_wire(self) -> tuple[bytes | memoryview, ...]:

@@ -1,8 +1,8 @@
 """The pixel codes of images: names, sizes and how numpy sees them.
 
 Rules: a code is the vocab that travels in the image header; a negative code is an anonymous pixel
-of that many bytes. `depth` is what the header announces, `stride` what a pixel really takes in a
-row: they differ for `yuvc` only, whose depth C++ announces as 1.
+of that many bytes. `depth` is the size that the header announces, `stride` the bytes that a pixel
+really takes in a row: they differ for `yuvc` only, whose depth C++ announces as 1.
 """
 
 from __future__ import annotations

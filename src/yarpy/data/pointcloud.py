@@ -2,8 +2,9 @@
 
     i32 width, i32 height, i32 kind, i8 dense, i32 266, i32 points, then the points
 
-Rules: the header is no Bottle and nothing in it says "point cloud", so one is only read where it is
-asked for. Points are single precision, in groups of 16 bytes; a received cloud is a view of them.
+Rules: the header is not a Bottle and nothing in it says "point cloud", so a message is only read as
+one on request. Points are single precision, in groups of 16 bytes; a received cloud is a view of
+them.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ class PointCloud(Wired):
 
     `PointCloud(numbers)` makes points of kind `xyz` from an array (n, 3) or (height, width, 3), of
     kind `xy` from one that ends in 2. `PointCloud(points, kind)` takes a numpy array with named
-    fields; what the kind has and the array has not is zero. `array` is the structured array
+    fields; fields that the array lacks are zero. `array` is the structured array
     (height, width) over the memory of the cloud, `xyz` the coordinates in it.
     """
 
@@ -130,7 +131,7 @@ class PointCloud(Wired):
 
     @classmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
-        """A PointCloud over the bytes of a message; DecodeError if they are none."""
+        """A PointCloud over the bytes of a message; DecodeError if they are not one."""
         if len(view) < _HEAD.size:
             raise Truncated(f"a PointCloud has a header of {_HEAD.size} bytes", _HEAD.size)
         width, height, code, dense, list_code, count = _HEAD.unpack_from(view)

@@ -1,8 +1,8 @@
 """Property: the dictionary that YARP programs can read.
 
 Rules: as a message it is the Bottle of its text, lists `(key value ...)` sorted by key, so kinds
-that text cannot express become their nearest neighbour on the way out (an Int8 an int32, a Float32
-a double, a dict a list of lists). Reading takes list elements only; a later key wins.
+that text cannot express become the nearest kind on the way out (an Int8 an int32, a Float32 a
+double, a dict a list of lists). Reading takes list elements only; a later key wins.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ class Property(dict[str, Any]):
     """Named values. The value of `(key)` alone is None; `group(key)` gives all of `(key a b c)`."""
 
     __slots__ = ("_groups",)
-    # Lists that say more than key and value, kept with the value they belong to: when somebody puts
-    # another value under the key, the rest of the old list no longer counts.
+    # Lists that say more than key and value, kept with the value they belong to: when another value
+    # is put under the key, the rest of the old list no longer counts.
     _groups: dict[str, tuple[Any, Bottle]]
 
     def __init__(self, *args: Any, **values: Any) -> None:
@@ -45,7 +45,7 @@ class Property(dict[str, Any]):
 
     @classmethod
     def from_text(cls, text: str | bytes) -> Self:
-        """Read `(key value) (key value)`; whatever is no list is passed over."""
+        """Read `(key value) (key value)`; elements that are not lists are skipped."""
         from yarpy.data.text import parse_text
 
         return cls.from_bottle(parse_text(text))
@@ -78,7 +78,7 @@ class Property(dict[str, Any]):
         return key in self
 
     def update(self, *args: Any, **values: Any) -> None:
-        """As of any dict; of another Property the whole lists are taken."""
+        """As for any dict; from another Property the whole lists are taken."""
         super().update(*args, **values)
         if args and isinstance(args[0], Property):
             self._groups.update(args[0]._groups)
@@ -99,7 +99,7 @@ def text_of(values: Mapping[str, Any], depth: int = 0) -> str:
 
 
 def bottle_of(values: Mapping[str, Any]) -> Bottle:
-    """What a Property message holds: what `text_of` reads back as."""
+    """The elements of a Property message: its `text_of`, read back."""
     try:
         return Bottle(
             Bottle(map(_through_text, _group(values, key, values[key]))) for key in _sorted(values)
@@ -109,11 +109,11 @@ def bottle_of(values: Mapping[str, Any]) -> Bottle:
 
 
 class _NotPlain(Exception):
-    """Only printing and reading tells what becomes of this value."""
+    """Only printing and reading it back shows what this value becomes."""
 
 
 def _through_text(value: Any) -> Any:
-    """What a value is after it was printed and read again: mostly itself."""
+    """A value after it was printed and read back: mostly unchanged."""
     kind = type(value)
     if kind is int or kind is bool or kind is bytes:
         return value

@@ -5,8 +5,8 @@
     elements    i32 tag + payload when mixed, payload only otherwise
 
 Rules: a count or length is checked against the bytes that are there before memory is taken for it.
-Only DecodeError and Truncated come out. Bytes after the end are nobody's business here. A C++
-reader looks only at the low byte of the first code, so does this one. (Protocol of YARP 3.x.)
+Only DecodeError and Truncated come out. Bytes after the end are ignored here. Like a C++ reader,
+this one looks only at the low byte of the first code. (Protocol of YARP 3.x.)
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ from yarpy.data.value import (
 )
 from yarpy.errors import DecodeError, Truncated
 
-#: Messages up to this size are copied once: slicing bytes is much cheaper than slicing views. Nor
-#: are their elements counted.
+#: Messages up to this size are copied once: slicing bytes is much cheaper than slicing views. Their
+#: elements are not counted either.
 _SMALL: Final = 1 << 16
 
 _read_i32 = Struct("<i").unpack_from
@@ -71,7 +71,7 @@ def read_bottle(view: Buffer) -> Bottle:
 
 
 def read_leading(buffer: bytes) -> tuple[Bottle, int] | None:
-    """The Bottle that `buffer` begins with and the bytes it takes; None if it is not all there."""
+    """The Bottle that `buffer` begins with and the bytes it takes; None if it is incomplete."""
     if len(buffer) < 8:
         return None
     code, count = _read_pair(buffer)
@@ -84,7 +84,7 @@ def read_leading(buffer: bytes) -> tuple[Bottle, int] | None:
 
 
 def _room(size: int) -> list[int] | None:
-    """How many elements a message of `size` bytes may still have; None if it cannot have too many.
+    """How many elements a message of `size` bytes may still have; None if there cannot be too many.
 
     An element takes a byte on the wire, and forty here."""
     if size <= _SMALL:

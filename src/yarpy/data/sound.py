@@ -3,14 +3,14 @@
     256, 4, 0, samples, 1, channels, 1, bytes per sample, 1, frequency     (ten int32)
     samples of the first channel, of the second ...                        (int16)
 
-Others send Bottles instead, which are read too, and `to_bottle` makes them:
+Other versions send Bottles instead; those are read too, and `to_bottle` makes them:
 
     up to 3.8   256, 2, an image [mo16] with a row of samples for each channel, 257, 1, frequency
     3.10-3.12   256, 5, 1, samples, 1, channels, 1, bytes, 1, frequency, 320, count, the samples
     4.0         256, 6, the same, and a list of markers, which are not kept
 
-Rules: the 0 is no tag of a Bottle, so a Sound is not one and has no text form. Samples are always
-two bytes: what C++ calls 8-bit sound is sent like that too. A received Sound is a view.
+Rules: the 0 is not a tag of Bottles, so a Sound is not a Bottle and has no text form. Samples are
+always two bytes: what C++ calls 8-bit sound is sent like that too. A received Sound is a view.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Sound(Wired):
 
     @classmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
-        """A Sound over the bytes of a message; DecodeError if they are none."""
+        """A Sound over the bytes of a message; DecodeError if they are not one."""
         if bytes(view[:16]) == _OLD_START:
             return cls._from_old_wire(view)
         if len(view) < _HEAD.size:
@@ -132,7 +132,7 @@ class Sound(Wired):
         return self
 
     def to_bottle(self, version: str = "3.5") -> Bottle:
-        """The form for peers of YARP "3.5" (or older), "3.10" or "4.0", to be written as it is:
+        """The form for peers of YARP "3.5" (or older), "3.10" or "4.0", to be written unchanged:
         `port.write(sound.to_bottle())`."""
         if version not in ("3.5", "3.10", "4.0"):
             raise ValueError(f'a Sound as a Bottle is for "3.5", "3.10" or "4.0", not {version!r}')

@@ -42,7 +42,7 @@ class Stamp:
 
     @classmethod
     def from_text(cls, text: str | bytes) -> Self:
-        """Read `count time`; what follows (the frame of a Header) is passed over."""
+        """Read `count time`; what follows (the frame of a Header) is skipped."""
         line = text.decode("utf-8", "replace") if isinstance(text, bytes) else text
         match = _TEXT.match(line)
         if match is None or not -_MAX_COUNT <= int(match[1]) + 1 <= _MAX_COUNT + 1:

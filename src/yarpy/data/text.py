@@ -2,10 +2,10 @@
 
     word "two words" 12 0x1f 3.5 [voc] true (a list) {1 2 255}
 
-Rules: reading works on bytes and never complains: what is unfinished or unbalanced vanishes. The
-single exception is nesting beyond MAX_DEPTH, a DecodeError. Printing chooses the form that reads
-back; the words `null`, `inf` and `nan` are printed bare although they come back as something else,
-and a negative NaN prints as `-nan.0`, because that is what peers do.
+Rules: reading works on bytes and never fails: unfinished and unbalanced parts vanish. The single
+exception is nesting beyond MAX_DEPTH, a DecodeError. Printing chooses the form that reads back; the
+words `null`, `inf` and `nan` are printed bare although they read back as something else, and a
+negative NaN prints as `-nan.0`, because peers do so.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def balanced(text: str | bytes) -> bool:
 
 
 class Balance:
-    """`balanced` for a text that comes piece by piece; every byte is looked at once.
+    """`balanced` for a text that comes piece by piece; every byte is read once.
 
     `feed(first_line)`, then `feed(b"\\n" + next_line)` and so on until it says True.
     """
@@ -100,9 +100,9 @@ class Balance:
 
 
 def _parse(data: bytes, work: list[int]) -> list[Any]:
-    # What is inside a list is looked at once more for every list around it. `work` is how many
-    # bytes may still be looked at, so that deep and long text cannot keep us busy for minutes, and
-    # how many elements may still be made.
+    # The inside of a list is read once more for every list around it. `work` is how many bytes may
+    # still be read, so that deep and long text cannot keep us busy for minutes, and how many
+    # elements may still be made.
     work[0] -= len(data)
     if work[0] < 0:
         raise DecodeError("text with lists too deeply nested for its length")
@@ -187,7 +187,7 @@ def _unescape(word: bytes) -> str:
 
 
 def _byte(token: bytes) -> int:
-    """One byte of a blob: the low bits of what the token is worth as an integer."""
+    """One byte of a blob: the low bits of the token's value as an integer."""
     if token == b"null":
         return ord("n")
     first = token[:1]
@@ -265,7 +265,7 @@ def print_text(items: Sequence[Any], depth: int = 0) -> str:
 
 
 def plain_text(value: Any) -> str:
-    """A value on its own as text: without quotes or brackets, which is how keys are compared."""
+    """A value on its own as text: without quotes or brackets, as keys are compared."""
     if isinstance(value, Vocab):
         return _print_vocab(value).strip("[]")
     if isinstance(value, str):

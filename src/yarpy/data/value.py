@@ -1,6 +1,6 @@
 """The element kinds of a Bottle as Python objects, and their tags on the wire.
 
-Rules: plain `int`, `float`, `str`, `bytes` and `bool` stand for the kinds everybody uses. The odd
+Rules: plain `int`, `float`, `str`, `bytes` and `bool` stand for the common kinds. The odd
 widths are subclasses, so a decoded message encodes to the bytes it came from; arithmetic on them
 gives plain numbers again. Tags are those of YARP 3.x (4.0 renumbers the floats).
 """

@@ -3,8 +3,8 @@
     i32 256 + tag, i32 n, n packed numbers
 
 Rules: a received Vector is a view of the received bytes; `array` makes a numpy array of it without
-copying, and numpy is not needed until somebody asks for that. C++ reads float64 (Vector) and int32
-(VectorOf<int>); the other kinds are for yarpy peers and for Bottles.
+copying, and numpy is not needed before. C++ reads float64 (Vector) and int32 (VectorOf<int>); the
+other kinds are for yarpy peers and for Bottles.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class Vector(Wired, Sequence[Any]):
 
     @classmethod
     def from_wire(cls, view: bytes | bytearray | memoryview) -> Self:
-        """A Vector over the bytes of a message, which are not copied; DecodeError if it is none."""
+        """A Vector over the bytes of a message, uncopied; DecodeError if they are not one."""
         if len(view) < 8:
             raise Truncated(f"a Vector takes at least 8 bytes, here are {len(view)}", 8)
         code, count = _HEAD.unpack_from(view)

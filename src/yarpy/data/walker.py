@@ -1,8 +1,8 @@
 """Where does a message end that carries its length only inside itself?
 
 Replies and some messages come without any length. A Walker finds their end in a buffer that is
-still growing, without building objects. Rules: no byte is looked at twice, nothing is allocated for
-what a header announces, and what cannot be a message is refused at the first wrong byte.
+still growing, without building objects. Rules: no byte is read twice, nothing is allocated on a
+header's word, and bytes that cannot be a message are refused at the first wrong one.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ _WIDTH = {tag: width for tag, (_, width) in FIXED.items()}
 class Walker:
     """Finds the end of one Bottle (or of a Sound, which only looks like one).
 
-    Call `advance` with everything received so far, again and again, until `done`. Every call gives
-    the number of bytes that the message has at least; more than are there means: come back when
-    there are so many. Once `done`, it is the length of the message. DecodeError if it is none, or
-    longer than `limit` bytes.
+    Call `advance` with everything received so far, again and again, until `done`. Every call
+    returns the least number of bytes that the message can have; if that is more than have come,
+    call again when so many are there. Once `done`, it is the length of the message. DecodeError if
+    this is not a message, or longer than `limit` bytes.
     """
 
     __slots__ = ("_begun", "_kinds", "_left", "_owed", "_pos", "done", "limit")
@@ -45,13 +45,13 @@ class Walker:
         self._begun = False
         self._pos = 0
         # One entry per list that is open: the tag of its elements (0: each has its own), and how
-        # many are to come. `_owed` is what all of these take at the least.
+        # many are to come. `_owed` is the least that all of these can take.
         self._kinds: list[int] = []
         self._left: list[int] = []
         self._owed = 0
 
     def advance(self, view: Buffer) -> int:
-        """Look at what is new in `view`, which holds the message from its first byte."""
+        """Read what is new in `view`, which holds the message from its first byte."""
         size = len(view)
         if self.done:
             return self._pos

@@ -1,8 +1,8 @@
 """Write the binary spelling of a Bottle (its layout is described in `reader`).
 
-Rules: a message is a tuple of blocks whose concatenation it is: one, unless something big is
-inside, which then is a block of its own and not copied. Small messages are the hot path: there is
-one packing plan for every combination of element types that was met lately.
+Rules: a message is a tuple of blocks to be joined: a single one, unless something big is inside,
+which then is a block of its own and not copied. Small messages are the hot path: there is one
+packing plan for every combination of element types that came up lately.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def value_blocks(value: Any) -> Blocks:
 
 @lru_cache(maxsize=512)
 def _plan(kinds: tuple[type, ...]) -> Callable[[Sequence[Any]], bytes] | None:
-    """What packs a list of elements of these types at once; None if there is no short way.
+    """A packer for lists of elements of these types; None if there is no short way.
 
     It raises struct.error for an int beyond 32 bits, which no longer has the tag of its type.
     """
@@ -289,7 +289,7 @@ def _message(blocks: Blocks) -> tuple[int, bytes]:
 
 
 def _joined(parts: Sequence[bytes | memoryview]) -> Blocks:
-    """The pieces with all small neighbours put together; the views among them stay as they are."""
+    """The pieces with all small neighbours joined; the views among them are kept."""
     if memoryview not in map(type, parts):
         return (b"".join(parts),)
     blocks: list[bytes | memoryview] = []

@@ -5,11 +5,12 @@
     ["dict", 2]  within a call           (list dict 2)
     "[send]"                             the vocab send
 
-Rules: writing, every message gives valid XML-RPC, with the letters of C++ YARP where it has some:
-a list of pairs is a struct, `list` and `dict` in front of a list say what it is. What it leaves
-out or spoils has a form of its own here: long integers `<i8>`, truth `<boolean>`, blobs `<base64>`,
-empty lists, numbers with more than six decimals. Reading is the work of the standard library,
-behind defusedxml: no document types, no entities. Whatever is wrong is a DecodeError.
+Rules: writing, every message gives valid XML-RPC, with the same bytes as C++ YARP where that writes
+valid XML-RPC: a list of pairs is a struct, `list` and `dict` in front of a list say what it is.
+What it leaves out or spoils has a form of its own here: long integers `<i8>`, truth `<boolean>`,
+blobs `<base64>`, empty lists, numbers with more than six decimals. Reading is the work of the
+standard library, behind defusedxml: no document types, no entities. Whatever is wrong is a
+DecodeError.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def encode_answer(value: object, terse: bool = False) -> bytes:
 
 
 def encode_nothing() -> bytes:
-    """The answer that only says that a call was heard."""
+    """The answer that only says that a call has come."""
     return _encode("<methodResponse><params></params></methodResponse>")
 
 
@@ -211,7 +212,7 @@ def _parse(data: bytes | memoryview) -> tuple[tuple[Any, ...], str | None]:
         return target.close(), target.getmethodname()
     except Fault:
         raise
-    except Exception as error:  # expat's, defusedxml's, and what broken values lead to
+    except Exception as error:  # expat's, defusedxml's, and errors from broken values
         text = str(error) or type(error).__name__
         raise DecodeError(f"this is no XML-RPC: {text}") from error
 
@@ -251,7 +252,7 @@ def _read(value: Any, depth: int) -> Any:
 
 
 def _text(text: str) -> Any:
-    """A string; in brackets it is a vocab, or what else Bottle text makes of it."""
+    """A string; in brackets it is a vocab, or whatever Bottle text makes of it."""
     if text.startswith("["):
         found = Bottle.from_text(text)
         if len(found) == 1:

@@ -1,4 +1,4 @@
-"""Monitors: what looks at, changes, delays or refuses the messages of a connection or port."""
+"""Monitors look at, change, delay or refuse the messages of a connection or port."""
 
 from yarpy.monitors.base import DROP, Group, Place
 

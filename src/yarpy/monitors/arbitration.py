@@ -1,8 +1,8 @@
 """Arbitration: which of several connections may speak - the equations behind the priority monitor.
 
-Rules: pure; the time comes from whoever calls. Messages stimulate their connection, stimulation
+Rules: pure; the caller gives the time. Messages stimulate their connection, stimulation
 decays, active connections excite and inhibit each other, and the one with the largest output wins.
-Ties go to who came first. (Paikan, Metta, Natale: A port-arbitrated mechanism for behavior
+Ties go to the one that came first. (Paikan, Metta, Natale: A port-arbitrated mechanism for behavior
 selection in humanoid robotics, ICAR 2013; constants as in C++ YARP.)
 """
 
@@ -21,14 +21,14 @@ _KNOWN: Final = 1024  # outcomes that are remembered
 
 
 class Inconsistent(ArithmeticError):
-    """The weights have no solution: connections that excite each other in a circle, mostly."""
+    """The weights have no solution: mostly, connections excite each other in a circle."""
 
 
 @dataclass(slots=True, eq=False)
 class Competitor:
     """One connection, from `source`. Times in seconds.
 
-    `fade` is how long stimulation lasts, `rest` how long a neuron recovers (0: none is one),
+    `fade` is how long stimulation lasts, `rest` how long a neuron recovers (0: it is not a neuron),
     `strength` what a message adds, `weights` how strongly it excites (above 0) or inhibits others.
     """
 
@@ -39,7 +39,7 @@ class Competitor:
     bias: float = 1.0
     weights: tuple[tuple[str, float], ...] = ()
     virtual: bool = False
-    stimulus: float = field(default=0.0, init=False)  # at the time `since`; below 0: it rests
+    stimulus: float = field(default=0.0, init=False)  # at the time `since`; below 0: it is resting
     since: float = field(default=0.0, init=False)
     active: bool = field(default=False, init=False)
 
@@ -59,7 +59,7 @@ class Competitor:
         return left
 
     def stimulate(self, now: float) -> None:
-        """A message came."""
+        """A message has come."""
         left = self.stimulation(now)
         if self._refractory(left):
             return
@@ -69,7 +69,7 @@ class Competitor:
             self.active = True
 
     def _refractory(self, stimulus: float) -> bool:
-        """Whether messages leave it cold: a neuron that fires, or recovers from it."""
+        """Whether messages do not stimulate it: a neuron that fires, or recovers from firing."""
         return self.rest > 0 and not 0 <= stimulus < THRESHOLD
 
 
@@ -82,7 +82,7 @@ class Outcome:
 
 
 def _share(age: float, length: float) -> float:
-    """What is left after `age` of something that lasts `length`: 1 at first, 0 beyond the end."""
+    """The share left after `age` of something that lasts `length`: 1 at first, 0 after the end."""
     if age > length:
         return 0.0
     if length <= 0:
@@ -91,9 +91,9 @@ def _share(age: float, length: float) -> float:
 
 
 class Contest:
-    """Who competes for one port. An outcome depends on who is active, so few are worked out.
+    """The competitors for one port. Outcomes depend only on which are active, so few are computed.
 
-    Call `changed` whenever somebody's bias, weights or being virtual changed.
+    Call `changed` whenever the bias, weights or `virtual` of one changed.
     """
 
     def __init__(self, competitors: Sequence[Competitor] = ()) -> None:
@@ -101,7 +101,7 @@ class Contest:
         self._outcomes: dict[int, Outcome] = {}
 
     def changed(self) -> None:
-        """Work everything out anew."""
+        """Forget all outcomes: they are computed anew."""
         self._outcomes.clear()
 
     def decide(self, arrived: Competitor, now: float) -> bool:
@@ -110,7 +110,7 @@ class Contest:
         return self.outcome(now).winner is arrived
 
     def outcome(self, now: float) -> Outcome:
-        """How it stands at `now`. Raises Inconsistent."""
+        """The outcome at `now`. Raises Inconsistent."""
         mask, bit = 0, 1
         for one in self.competitors:
             if one.active:

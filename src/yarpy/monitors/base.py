@@ -1,20 +1,20 @@
-"""What a monitor is: something that rides on a connection, or a port, and sees every message.
+"""The contract of monitors: one rides on a connection, or a port, and sees every message.
 
 A monitor is any object with some of these methods; those it lacks cost nothing:
 
     accept(message) -> bool            False: the message is dropped, and counted
     update(message) -> object          what goes on instead: a value, a Message, or DROP;
-                                       None: the message as it is
+                                       None: the message unchanged
     update_reply(message) -> object    the same for the reply to a call, at the caller's side
     trigger()                          another monitor at the same port has let a message pass
     configure(parameters)              new parameters (a Property) while the connection runs
-    parameters() -> dict               what they are now
+    parameters() -> dict               their values now
     state() -> dict                    how it is doing, for people: numbers and words
     close()                            the connection ends
 
-The class, or any function that returns such an object, is called with the `Place` where it is to
-sit and is found by name (entry point group `yarpy.monitors`). It raises an error of yarpy's tree if
-its parameters are wrong: the connection is then refused with that text.
+The class, or any function that returns such an object, is called with its `Place` and is found by
+name (entry point group `yarpy.monitors`). It raises an error of yarpy's tree if its parameters are
+wrong: the connection is then refused with that text.
 
 Rules: at the sender's end the messages of several writers come one after the other, at the
 receiver's end those of one connection. `trigger`, `configure`, `parameters` and `state` come from
@@ -45,15 +45,15 @@ class _Drop:
 DROP: Final = _Drop()
 
 FAILURES: Final = (Exception, SystemExit)
-"""What a monitor may raise, and only it fails. It cannot end the program, or a thread of ours."""
+"""What a monitor may raise without ending the program, or a thread of ours: it alone fails."""
 
 
 class Group:
-    """The monitors at the receiving ends of one port's connections, who decide together.
+    """The monitors at the receiving ends of one port's connections, which decide together.
 
-    `members` is replaced, never changed. `shared` is for what those of one kind have in common,
-    under their class, and `lock` for whoever uses it; hold it briefly, and never while a monitor's
-    `trigger` runs.
+    `members` is replaced, never changed. `shared` holds what those of one kind have in common,
+    under their class, and `lock` guards it; hold it briefly, and never while a monitor's `trigger`
+    runs.
     """
 
     def __init__(self) -> None:
@@ -63,12 +63,12 @@ class Group:
         self._triggered: tuple[Any, ...] = ()
 
     def add(self, monitor: object) -> None:
-        """A connection came."""
+        """A connection was made."""
         with self.lock:
             self._set((*self.members, monitor))
 
     def remove(self, monitor: object) -> None:
-        """A connection went."""
+        """A connection has ended."""
         with self.lock:
             self._set(tuple(one for one in self.members if one is not monitor))
 
@@ -94,10 +94,10 @@ class Place:
     `carrier` is the whole carrier string. A monitor of a port rather than of a connection
     has an empty name where there is no peer, and no carrier. `tokens` are the monitor's own
     parameters, `shared` all of the connection's. `limit` is the largest message in bytes that the
-    port takes: nothing may grow beyond it in here either. `names` finds other ports: the name
-    client of this one.
-    `look` tells where a file may be, by its name and the contexts of robot and program that count.
-    `foreign`: somebody on the network asked for the monitor, not the program that has the port.
+    port takes: nothing may grow beyond it here either. `names` finds other ports: it is the port's
+    name client. `look` returns where a file may be, by its name and the contexts of robot and
+    program. `foreign`: the monitor was requested over the network, not by the program that has the
+    port.
     """
 
     source: str

@@ -24,7 +24,7 @@ from yarpy.wire.message import Message, Packet
 log = logger("yarpy.monitors")
 
 _MOST_TOLD: Final = 16  # different complaints of one chain that are logged
-_PLAIN: Final = frozenset((list, tuple, dict))  # what Python has for Bottles and Properties
+_PLAIN: Final = frozenset((list, tuple, dict))  # Python's types for Bottles and Properties
 
 
 def make(name: str, place: Place) -> object:
@@ -62,7 +62,7 @@ class Chain:
         self.monitors = tuple(monitors)
         self._where = where
         self._group = group
-        # Only those of a group let others know.
+        # Only monitors of a group trigger the others.
         self._steps = tuple(
             (
                 one if group is not None else None,
@@ -80,14 +80,14 @@ class Chain:
     def take(self, message: Message) -> Message | None:
         """What becomes of a message that came; None: it is dropped.
 
-        Its reader cannot tell it from one that came as it is: a list is a Bottle again.
+        Its reader sees no difference from one that came like this: a list is a Bottle again.
         """
         made = self._through(message)
         if made is None or made is message or type(made.payload) not in _PLAIN:
             return made
         try:
             return made.replaced(b"".join(codec.encode(made.payload)), binary=True)
-        except Exception as error:  # what no message can hold
+        except Exception as error:  # a value that no message can hold
             self._complain(error)
             return None
 
@@ -138,7 +138,7 @@ class Chain:
             log.warning("%s: a monitor dropped a message: %s", self._where, text)
 
     def followed_by(self, other: Chain) -> Chain:
-        """A chain of both; closing it is left to who made the two."""
+        """A chain of both; closing it is left to the owners of the two."""
         both = Chain((*self.monitors, *other.monitors), self._where, self._group)
         both._steps = self._steps + other._steps
         return both
@@ -146,18 +146,18 @@ class Chain:
     # -- parameters -------------------------------------------------------------------------------
 
     def configure(self, parameters: Property) -> bool:
-        """Give every monitor that takes any new parameters; whether there is one."""
+        """Give new parameters to every monitor that takes some; whether there is one."""
         able = [one for one in self.monitors if hasattr(one, "configure")]
         for monitor in able:
             monitor.configure(parameters)
         return bool(able)
 
     def parameters(self) -> Property:
-        """The parameters of all monitors that tell theirs."""
+        """The parameters of all monitors that have the method."""
         return self._told_by("parameters")
 
     def state(self) -> Property:
-        """How the monitors that tell are doing."""
+        """The state of all monitors that have the method."""
         return self._told_by("state")
 
     def _told_by(self, method: str) -> Property:

@@ -2,7 +2,7 @@
 
 Rules: pure. Words are events, except for true, false, and, or, not; `not` binds closest, then
 `and`, then `or`, as in Lua; parentheses group. (C++ YARP reads the same text, but takes parentheses
-for blanks and replaces events inside of longer words; write what both understand alike.)
+for blanks and replaces events inside longer words; write what both read alike.)
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ Has: TypeAlias = Callable[[str], bool]
 class Constraint:
     """A constraint that can be asked again and again. The empty one is always true.
 
-    Raises LocalProtocolError for a text that is none.
+    Raises LocalProtocolError for a text that is not a constraint.
     """
 
     def __init__(self, text: str) -> None:

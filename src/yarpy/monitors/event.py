@@ -1,9 +1,9 @@
 """Events: names that monitors set, for a while or for good, and that constraints ask for.
 
 Rules: one container for the whole process, as in C++, so monitors at different ports know of each
-other's. An event belongs to who set it: only its owner takes it away, and it goes with its owner.
-It is there as long as any owner's is. (In C++ a forgotten event outlives its monitor, and one that
-has expired hides that of another.)
+other's. An event belongs to the monitor that set it: only its owner takes it away, and it goes with
+its owner. Set by several, it stays until the last has gone. (In C++ a forgotten event outlives its
+monitor, and one that has expired hides that of another.)
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ MOST: Final = 1000  # events of one owner
 
 
 class Events:
-    """Who has set what, and until when."""
+    """The events of all owners, and until when each lasts."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock

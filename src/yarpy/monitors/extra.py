@@ -1,4 +1,4 @@
-"""Libraries that some monitors need and that yarpy does not install by itself.
+"""Libraries that some monitors need and that are not installed with yarpy.
 
 Rules: a monitor asks when it is made, so that a connection that cannot work is refused.
 """

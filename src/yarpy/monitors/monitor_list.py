@@ -1,7 +1,7 @@
 """Series: several monitors that C++ YARP 4 asks for at once, `file.A+type.dll+file1.B+type1.dll`.
 
-Rules: they see a message one after the other, each what the one before has made of it. What stands
-behind `+send.` or `+recv.` once in yarpy's own spelling, several times, needs no series.
+Rules: they see a message one after the other, each what the one before has made of it. In yarpy's
+own spelling, several `+send.` or `+recv.`, no series is needed.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def places(place: Place) -> list[Place]:
 
 
 def _renamed(tokens: tuple[str, ...], numbered: dict[str, str]) -> list[str]:
-    """The parameters of one: its own by their usual names, and what is nobody's."""
+    """The parameters of one: its own by their usual names, and those without a number."""
     found = []
     for token in tokens:
         name, dot, value = token.partition(".")

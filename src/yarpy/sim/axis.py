@@ -1,6 +1,6 @@
-"""Axis: what is known of a joint before it moves - its name, its range, how fast it can be.
+"""Axis: what is known of a joint before it moves - its name, its range, its top speed.
 
-Angles in degrees, sizes of an axis that slides in millimetres.
+Angles in degrees, positions of a sliding axis in millimetres.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ class Axis:
     name: str
     lowest: float
     highest: float
-    speed: float = 100.0  # of a trajectory, unless somebody sets another
+    speed: float = 100.0  # of a trajectory, unless another is set
     acceleration: float = 1000.0
     top_speed: float = 300.0
     top_acceleration: float = 20_000.0

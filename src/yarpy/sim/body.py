@@ -3,9 +3,9 @@
     with body.present() as joints:      # the joints as they are now; nothing moves in here
         print(joints[0].position)
 
-Rules: a body has no thread. Time passes when somebody looks: `present` lets the joints catch up
-with the clock first. The clock is given, so a test decides what time it is. Any thread may look,
-one at a time.
+Rules: a body has no thread. Time passes on demand: `present` first lets the joints catch up with
+the clock. The clock is an argument, so a test decides what time it is. Any thread may call, one at
+a time.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from yarpy.sim.joint import Joint
 
 J = TypeVar("J", bound=Joint)
 
-STEP: Final = 0.005  # seconds that pass at once, at most
-MEMORY: Final = 5.0  # what happened in a longer time that nobody looked is not worked out
+STEP: Final = 0.005  # seconds of one step, at most
+MEMORY: Final = 5.0  # seconds to catch up with, at most
 
 Clock = Callable[[], float]
 
 
 class Body(Generic[J]):
-    """These joints, in the time that `clock` tells in seconds."""
+    """These joints, in the time of `clock`, in seconds."""
 
     def __init__(self, joints: Sequence[J], clock: Clock = time.time) -> None:
         self.joints = tuple(joints)
         self._clock = clock
-        self.time = clock()  # until which the joints have come
+        self.time = clock()  # that the joints have reached
         self._lock = threading.RLock()  # board, cameras and sensors look from threads of their own
 
     @contextmanager

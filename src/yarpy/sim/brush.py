@@ -2,9 +2,9 @@
 
 Rules: what to paint is given as rows from `left` to `right` for each surface (`lens.Spans`) and as
 matrices from pixels to texels. Large surfaces are painted one by one, all arithmetic for a
-rectangle of pixels at once; small ones all together, as one list of pixels, because for them the
-number of calls is what costs. Work arrays are made once: to allocate them for each picture would
-cost more than the arithmetic.
+rectangle of pixels at once; small ones all together, as one list of pixels, because their cost is
+the number of calls. Work arrays are made once: allocating them for each picture would cost more
+than the arithmetic.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class Brush:
     ) -> None:
         """Paint surface `number` from `left` to `right` (height,), all of which is in `box`.
 
-        first: something will be painted over the rest of the box, so that it may get anything.
+        first: the rest of the box will be painted over, so it may get any value.
         """
         import numpy as np
 

@@ -1,7 +1,7 @@
 """Eye: a camera of a head, for `yarpy.devices.FrameGrabberServer`.
 
 The eyes of a head share a shutter: pictures that are taken at about the same time show the same
-moment, and say so, as those of a pair of cameras with one trigger.
+moment and have the same time stamp, like those of a pair of cameras with one trigger.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ PAIR: Final = 0.015  # seconds between two pictures that are one pair
 
 
 class Shutter:
-    """Lets each eye see a moment once, and the other one the same, if it looks soon."""
+    """Lets each eye see a moment once, and the other eye the same moment if it looks soon after."""
 
     def __init__(self, body: Body[Joint]) -> None:
         self._body = body
@@ -32,7 +32,7 @@ class Shutter:
         self.time = body.time
 
     def open(self, side: Side) -> tuple[list[float], float]:
-        """The angles of the joints in degrees, and when they were that."""
+        """The angles of the joints in degrees, and their time."""
         with self._lock, self._body.present() as joints:
             now = self._body.time
             if side in self._seen or not 0 <= now - self.time <= PAIR or not self._angles:

@@ -20,11 +20,11 @@ class Inertial:
     def __init__(self, body: Body[Joint]) -> None:
         self._body = body
         self._felt: Inertia | None = None
-        self._state: tuple[tuple[float, ...], ...] = ()  # of the joints when it was felt
+        self._state: tuple[tuple[float, ...], ...] = ()  # of the joints when it was measured
         self._time = body.time
 
     def timestamps(self) -> dict[str, float]:
-        """When something was measured last."""
+        """The time of the last measurement."""
         return {NAME: self._time}
 
     def gyroscopes(self) -> dict[str, Vector]:

@@ -1,8 +1,8 @@
 """Joint: a motor that follows its reference, within what it can do.
 
-Rules: no clock; `step(dt)` is all the time there is. What is between joint and reference is a
+Rules: no clock; `step(dt)` is all the time there is. The joint follows its reference as a
 critically damped system of second order, solved exactly, so that the length of steps changes
-nothing; acceleration, speed and range have hard ends.
+nothing; acceleration, speed and range have hard limits.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Joint:
         return reference.done and abs(self.position - reference.position) < 0.05
 
     def place(self, position: float) -> None:
-        """Be at rest here, without a way."""
+        """Be at rest here, without a trajectory."""
         self.reference.place(position)
         self.position = position
         self.speed = self.acceleration = 0.0
@@ -84,7 +84,7 @@ class Joint:
     def _advance(self, position: float) -> None:
         """Go to a position, but not out of the range."""
         lowest, highest = self.reference.limits
-        # Limits can be moved to where the joint is not: then it waits for its reference.
+        # Limits can be moved so that the joint is outside: then it waits for its reference.
         if lowest <= self.position <= highest and not lowest <= position <= highest:
             position, self.speed = min(max(position, lowest), highest), 0.0
         self.position = position

@@ -1,4 +1,4 @@
-"""Lens: how points and surfaces of the world come to lie in a picture.
+"""Lens: where points and surfaces of the world lie in a picture.
 
 A flat surface and its picture are related by a 3 x 3 matrix: with K the camera, R and p its pose,
 M = K R' [u v corner-p] takes (a, b, 1), a place on the surface with a and b from 0 to 1, to the
@@ -39,7 +39,7 @@ class Box:
         return self.left >= self.right or self.top >= self.bottom
 
     def common(self, other: Box) -> Box:
-        """The part that both have; it may be empty."""
+        """The part that both have in common; it may be empty."""
         return Box(
             max(self.left, other.left),
             max(self.top, other.top),
@@ -115,7 +115,7 @@ class Lens:
         return found
 
     def candidates(self, matrices: Array) -> Array:
-        """The numbers of the surfaces that may be in the picture; the others certainly are not."""
+        """The numbers of the surfaces that may be in the picture; the others cannot be."""
         import numpy as np
 
         x, y, z = (matrices @ _ENDS).transpose(1, 0, 2)
@@ -135,7 +135,8 @@ class Lens:
         edges[0], edges[1], depth = inverses.transpose(1, 0, 2)
         np.subtract(depth, edges[:2], out=edges[2:])
         slope = edges[:, :, 0]
-        # An edge along the rows: next to no slope, so that it ends far outside, on either side.
+        # An edge along the rows: a tiny slope instead of none, so that it ends far outside, on
+        # either side.
         slope[abs(slope) < 1e-12] = 1e-12
         edges[:, :, 1:] /= -slope[:, :, None]
         of_y, rest = edges[:, :, 1:].astype("f4").transpose(2, 0, 1)

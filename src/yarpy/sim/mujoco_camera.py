@@ -1,8 +1,8 @@
 """Cameras of a MuJoCo model, for `yarpy.devices.FrameGrabberServer`.
 
-Rules: what draws (a context of OpenGL) belongs to one thread, so all cameras of a model share a
-painter with a thread of its own. Shadows are drawn coarser than MuJoCo would: without a graphics
-card they take nine tenths of the time.
+Rules: an OpenGL context belongs to one thread, so all cameras of a model share a painter with a
+thread of its own. Shadows are drawn coarser than MuJoCo would draw them: without a graphics card
+they take nine tenths of the time.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from yarpy.errors import UnknownPlugin
 from yarpy.sim.mujoco_model import Model, mujoco
 
 SHADOWS: Final = 1024  # pixels of a map of shadows
-SAMPLES: Final = 2  # for a pixel, against jagged edges
+SAMPLES: Final = 2  # samples of a pixel, against jagged edges
 FREE: Final = -1  # the view that MuJoCo offers for every model
 PATIENCE: Final = 30.0  # seconds for a picture; a driver may hang
 
@@ -53,7 +53,7 @@ class Painter:
                 raise RuntimeError(Painter._spoiled)
             self._renderer: Any = self._do(self._open)
         except Exception as error:
-            # MuJoCo that failed once waits for ever when it is asked again, and Python with it.
+            # Once MuJoCo has failed, another try would hang for ever, and Python with it.
             Painter._spoiled = Painter._spoiled or str(error) or type(error).__name__
             self._work.put(None)
             how = os.environ.get("MUJOCO_GL", "")
@@ -64,7 +64,7 @@ class Painter:
         return self._do(lambda: self._paint(camera))
 
     def close(self) -> None:
-        """Let go of OpenGL."""
+        """Release the OpenGL context."""
         self._do(self._renderer.close)
         self._work.put(None)
 
@@ -73,7 +73,7 @@ class Painter:
             action()
 
     def _do(self, action: Callable[[], T]) -> T:
-        """Have something done by the thread that draws."""
+        """Run a function in the thread that draws."""
         result: Future[T] = Future()
 
         def act() -> None:
@@ -90,7 +90,7 @@ class Painter:
         renderer = mujoco().Renderer(self._model.model, height, width)
         with self._model.present():
             renderer.update_scene(self._model.data)
-        renderer.render()  # what is wrong shows now
+        renderer.render()  # errors show now
         return renderer
 
     def _paint(self, camera: int) -> tuple[Image, float]:

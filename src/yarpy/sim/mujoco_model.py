@@ -1,7 +1,7 @@
 """A MuJoCo model as a robot: joints with actuators, in the time of `Body`.
 
 Whatever kind of actuator drives a joint, the joint follows its reference: actuators for positions
-and speeds are told where to be, motors get the torque that a critically damped controller with
+and speeds get the setpoint, motors get the torque that a critically damped controller with
 knowledge of the model asks for. Angles are degrees outside and radians in MuJoCo, lengths
 millimetres outside and metres there.
 
@@ -22,7 +22,7 @@ from yarpy.sim.joint import Joint
 
 MISSING: Final = "this takes MuJoCo: pip install 'yarpy[sim]' (or pip install mujoco)"
 STIFFNESS: Final = 20.0  # rad/s, of the controllers for motors and speeds
-LONGEST: Final = 0.1  # seconds of simulation that one look may take; beyond that time is slower
+LONGEST: Final = 0.1  # simulated seconds of one catch-up; beyond that the model falls behind
 ENDLESS: Final = 1e6  # the range of a joint without limits
 
 Drive = Literal["position", "velocity", "motor"]
@@ -37,7 +37,7 @@ def mujoco() -> Any:
     if sys.platform == "linux":
         from ctypes.util import find_library
 
-        # It is decided when the module is imported. EGL draws without a display, and in any thread.
+        # Decided when the module is imported. EGL draws without a display, and in any thread.
         if find_library("EGL"):
             os.environ.setdefault("MUJOCO_GL", "egl")
         elif not os.environ.get("DISPLAY"):
@@ -72,13 +72,13 @@ class ModelJoint(Joint):
         return self.reference.done and abs(self.speed) < 1.0
 
     def read(self, data: Any) -> None:
-        """Take over where the model is."""
+        """Take the joint's state over from the model."""
         self.position = float(data.qpos[self._place]) * self._unit
         self.speed = float(data.qvel[self._freedom]) * self._unit
         self.acceleration = float(data.qacc[self._freedom]) * self._unit
 
     def command(self, data: Any, dt: float) -> None:
-        """Tell the actuator what to do for the next `dt` seconds."""
+        """Set the actuator's command for the next `dt` seconds."""
         reference, unit = self.reference, self._unit
         position, speed = float(data.qpos[self._place]), float(data.qvel[self._freedom])
         if reference.mode == "idl":
@@ -111,7 +111,7 @@ class Model(Body[ModelJoint]):
         if model.nkey:
             self._engine.mj_resetDataKeyframe(model, self.data, 0)
         self._engine.mj_forward(model, self.data)
-        self._behind = 0.0  # seconds that the model has not lived through yet
+        self._behind = 0.0  # seconds not simulated yet
         super().__init__(self._actuated(), clock)
         for joint in self.joints:
             joint.read(self.data)
@@ -155,7 +155,7 @@ class Model(Body[ModelJoint]):
         return [*found.values()]
 
     def _drive(self, actuator: int) -> Drive | None:
-        """What an actuator wants to be told; None for muscles and what else we do not know."""
+        """The kind of command that an actuator takes; None for muscles and other unknown kinds."""
         engine, model = self._engine, self.model
         if int(model.actuator_gaintype[actuator]) != int(engine.mjtGain.mjGAIN_FIXED):
             return None
@@ -178,7 +178,7 @@ def load(path: str | Path, clock: Clock = time.time) -> Model:
     """The model in an XML (MJCF, URDF) or MJB file. Raises UnknownPlugin (no MuJoCo), ValueError
     (it is no model), OSError."""
     engine, path = mujoco(), Path(path)
-    path.open("rb").close()  # a better error than MuJoCo has
+    path.open("rb").close()  # a better error than MuJoCo's
     binary = path.suffix.lower() == ".mjb"
     read = engine.MjModel.from_binary_path if binary else engine.MjModel.from_xml_path
     model = read(str(path))

@@ -29,8 +29,9 @@ def mujoco_robot(
 ) -> tuple[str, Parts]:
     """A name for the robot and its parts.
 
-    size: width and height of pictures. warn: told if there are none, because nothing can draw them.
-    Raises UnknownPlugin (no MuJoCo), ValueError (no model, or nothing to serve in it), OSError.
+    size: width and height of pictures. warn: called if there are none, because nothing can draw
+    them. Raises UnknownPlugin (no MuJoCo), ValueError (no model, or nothing to serve in it),
+    OSError.
     """
     model = load(path, clock)
     board, sensors, cameras = Board(model), Sensors(model), {}
@@ -52,5 +53,5 @@ def mujoco_robot(
 
 
 def _plain(name: str) -> str:
-    """A name as ports have it."""
+    """A name in the form of port names."""
     return re.sub(r"[^A-Za-z0-9_.\-/]+", "_", name).strip("/") or "_"

@@ -5,7 +5,7 @@
     texels = wall.texels()                           # (64, 128) uint32
 
 Colours are red, green, blue from 0 to 1; places are metres from the corner where the surface
-begins. Heavy to make, light to use: `texels` has one integer for each texel, bytes r, g, b, 0.
+begins. Slow to make, fast to use: `texels` has one integer for each texel, bytes r, g, b, 0.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 
     pos     minimum-jerk trajectory from here to a target
     vel     a speed, reached with the reference acceleration
-    posd    a position now; what is further away than the motor can do comes as fast as it can
-    mix     trajectories and speeds, whichever was said last
-    idl     nothing is wanted
+    posd    a position now; a distant one is reached as fast as the motor can
+    mix     trajectories and speeds, whichever was commanded last
+    idl     idle: no reference is followed
 
 Rules: no clock; `step(dt)` is all the time there is. The reference never leaves the limits and is
 continuous in position and speed, also when a command comes in the middle of another one.
@@ -84,7 +84,7 @@ class Reference:
     # -- commands -----------------------------------------------------------------------------
 
     def switch(self, mode: str) -> None:
-        """Change the mode; what moves comes to rest. Raises ValueError for one we do not have."""
+        """Change the mode; a moving joint comes to rest. ValueError for an unsupported mode."""
         mode = "idl" if mode == "fidl" else mode
         if mode not in MODES:
             raise ValueError(f"{self.axis.name} has no mode {mode}; it has {' '.join(MODES)}")
@@ -129,7 +129,7 @@ class Reference:
         self._coast = self.wanted_speed = 0.0
 
     def place(self, position: float) -> None:
-        """Be at rest here, without a way."""
+        """Be at rest here, without a trajectory."""
         self.position = self.target = self.direct_target = position
         self.speed = self.acceleration = 0.0
         self.stop()

@@ -3,9 +3,9 @@
     renderer = Renderer(room(), 320, 240)
     pixels = renderer.render(pose, time)             # (240, 320, 3) uint8
 
-Rules: surfaces are painted from back to front, there is no depth buffer: the background is behind
-everything, solids do not touch each other. What stands still is painted again only if the camera
-has moved. One thread at a time.
+Rules: surfaces are painted from back to front, without a depth buffer: the background is behind
+everything, solids do not touch each other. Still surfaces are painted again only if the camera has
+moved. One thread at a time.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Renderer:
         self._brush = Brush([s.texels for s in surfaces], width, height)
         self._shades = {ball: _shades(ball.colours) for ball in scene.balls}
         sizes = [len(scene.background), *map(len, scene.solids)]
-        self._solid = np.repeat(np.arange(len(sizes)), sizes)  # which one a surface is part of
+        self._solid = np.repeat(np.arange(len(sizes)), sizes)  # which body a surface is part of
         middles = self._corner + (self._u + self._v) / 2
         ends = np.cumsum(sizes)
         self._middles = [middles[e - n : e].mean(0) for n, e in zip(sizes, ends, strict=True)]
@@ -129,7 +129,7 @@ class Renderer:
     # -- what moves ---------------------------------------------------------------------------
 
     def _paint_ball(self, pose: Pose, ball: Ball, time: float) -> Box:
-        """Paint a ball and its shadow, and again the solids that are in front of them; where."""
+        """Paint a ball, its shadow, and again the solids in front of them; returns that box."""
         place = ball.place(time)
         painted = around(
             self._paint_shadow(pose, ball, place), self._paint_sphere(pose, ball, place, time)

@@ -3,8 +3,8 @@
     with Robot("/icubSim", icub_head()):             # /icubSim/head/rpc:i, /icubSim/cam/left ...
         ...
 
-Rules: a robot is what it is made of: control boards, cameras, sensors. How their ports speak to
-browsers, C++ programs or people is the business of ports.
+Rules: a robot is the sum of its devices: control boards, cameras, sensors. How their ports speak to
+browsers, C++ programs or people is left to the ports.
 """
 
 from __future__ import annotations

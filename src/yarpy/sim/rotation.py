@@ -1,4 +1,4 @@
-"""Rotations and vectors of three numbers, as tuples: for so few numbers numpy takes longer.
+"""Rotations and vectors of three numbers, as tuples: for so few numbers numpy is slower.
 
 A rotation is three rows; it turns vectors of a frame into those of the frame around it.
 """

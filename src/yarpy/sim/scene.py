@@ -39,15 +39,15 @@ class Surface:
 
 @dataclass(frozen=True, slots=True)
 class Ball:
-    """A ball that bounces on a round way; two colours, so that one sees it turn."""
+    """A ball that bounces along a circle; in two colours, so that one sees it turn."""
 
     radius: float = 0.055
     colours: tuple[Colour, Colour] = (_RED, _CREAM)
     centre: tuple[float, float] = (1.12, 0.0)
     reach: tuple[float, float] = (0.20, 0.30)
     ground: float = TABLE
-    lap: float = 8.0  # seconds for a round
-    bounce: float = 0.5  # seconds from the ground to the ground
+    lap: float = 8.0  # seconds for a circle
+    bounce: float = 0.5  # seconds from bounce to bounce
 
     def place(self, time: float) -> Vector:
         """Where its centre is."""

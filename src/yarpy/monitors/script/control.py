@@ -1,6 +1,6 @@
 """Control: what a script may do besides looking at messages - events, a constraint, a timer.
 
-Rules: any thread may call. What a script has set here is gone when its monitor closes.
+Rules: any thread may call. Whatever a script has set here is gone when its monitor closes.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _MOST: Final = 1e6
 
 
 class Control:
-    """One script's. `trigger` is called by its timer; `name` is that of the timer's thread."""
+    """The control of one script. Its timer, a thread called `name`, calls `trigger`."""
 
     def __init__(
         self,
@@ -79,7 +79,7 @@ class Control:
                 self._timer.start()
 
     def unset_trig_interval(self) -> None:
-        """Call `trig` on a timer no more."""
+        """Stop calling `trig` on a timer."""
         self.set_trig_interval(0)
 
     # As the scripts of C++ YARP call them.
@@ -112,7 +112,7 @@ class Control:
                 if self._closed or not interval:
                     self._timer = None
                     return
-            due = max(due + interval, time.monotonic())  # late ones are not made up for
+            due = max(due + interval, time.monotonic())  # missed ones are not made up for
             if not self._changed.wait(due - time.monotonic()):
                 self._trigger()
             else:

@@ -1,9 +1,10 @@
 """Lua scripts for a portmonitor: those of C++ YARP, with the callbacks in the table PortMonitor.
 
-Rules: every script has a Lua of its own, whose calls end after LIMIT instructions and whose memory
-after MEMORY bytes (binding/sandbox.lua). Scripts see YARP's classes (the rest of binding); between
-the languages go numbers and strings only, and the functions of `_Host`, once. That is for speed,
-and because lupa forgets an object that is handed over again while Lua collects its garbage (2.8).
+Rules: every script has a Lua of its own, whose calls are limited to LIMIT instructions and whose
+memory to MEMORY bytes (binding/sandbox.lua). Scripts see YARP's classes (the rest of binding);
+only numbers and strings pass between the languages, and the functions of `_Host`, once. That is for
+speed, and because lupa forgets an object that is handed over again while Lua collects its garbage
+(2.8).
 """
 
 from __future__ import annotations
@@ -56,14 +57,14 @@ def _data(text: str) -> bytes:
 
 
 class _Host:
-    """The Python functions that Lua calls. They raise; `given` makes messages of that."""
+    """The Python functions that Lua calls. They raise; `given` turns that into error texts."""
 
     def __init__(self, control: Control) -> None:
         self.message: Message | None = None  # on its way
         self._control = control
 
     def given(self) -> dict[bytes, Callable[..., object]]:
-        """Each as Lua calls it: a message of what went wrong or None, and then its results."""
+        """Each as Lua calls it: returns an error text or None, and then its results."""
         names = [name for name in dir(type(self)) if not name.startswith("_")]
         names = [name for name in names if name not in ("given", "message", "fetch_bottle")]
         found = {name.encode(): partial(_guarded, getattr(self, name)) for name in names}
@@ -145,7 +146,7 @@ def _guarded(function: Callable[..., object], *arguments: object) -> tuple[objec
 
 
 class LuaScript:
-    """One connection's. Raises ScriptError if the file cannot be run."""
+    """The script of one connection. Raises ScriptError if the file cannot be run."""
 
     def __init__(
         self,
@@ -189,10 +190,10 @@ class LuaScript:
         return self._done(self._inside[name.encode()], *arguments)
 
     def _done(self, function: Any, *arguments: object) -> Any:
-        """What a function of Lua's gives; of several results a tuple."""
+        """The result of a Lua function; of several results a tuple."""
         try:
             done = function(*arguments)
-        except Exception as error:  # out of memory where no script runs
+        except Exception as error:  # out of memory outside of a script
             raise ScriptError(f"{self._path}: {error}") from error
         if done is True:
             return None
@@ -229,7 +230,7 @@ class LuaScript:
         return self._made(message, self._call("update_reply"))
 
     def _made(self, message: Message, found: Any) -> object:
-        """What a script has made of a message, out of what Lua gives."""
+        """What a script has made of a message, from what Lua returns."""
         self._host.message = None
         if found is None:
             return None

@@ -1,10 +1,10 @@
 """Which scripts may run: `YARPY_SCRIPTS`, in the environment of the program that has the port.
 
-    (nothing)   those that the program itself asked for (Port.connect, Port.attach)
-    network     those too that the network asks for: a sender's carrier string, `add` and `atch`
+    (nothing)   those that the program itself requests (Port.connect, Port.attach)
+    network     also those requested over the network: a sender's carrier string, `add` and `atch`
     system      Lua scripts have all of Lua: io, os, require of any file
 
-Rules: who asks over the network names a file of a context's folder, where the owner of the machine
+Rules: a request over the network names a file in a context's folder, where the owner of the machine
 has put it, and nothing else: no path, no `..`. A script in Python may do whatever its program may.
 """
 
@@ -29,7 +29,7 @@ def granted(word: str) -> bool:
 
 
 def look_for(place: Place, file: str, context: str) -> Iterator[Path]:
-    """Where a script may be. Raises LocalProtocolError if it must not run, whatever it is."""
+    """Where a script may be. Raises LocalProtocolError if it must not run in any case."""
     if not place.foreign:
         return iter(place.look(file, [context] if context else []))
     if not granted(NETWORK):

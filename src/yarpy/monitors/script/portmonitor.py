@@ -7,10 +7,11 @@
     context     where scripts are looked for besides the usual places
     constraint  events that let messages pass (`not e_ball`): see constraint.py
 
-Rules: as in C++ YARP, per message: `accept`; the other monitors of the port hear of it; at the
-receiving end of a connection the constraint; `update`. If `accept` fails the message is dropped, if
-`update` fails it passes as it is; either way there is a log line, once for each complaint. A script
-that has changed on disk is loaded again; if it then does not start, the one before goes on.
+Rules: as in C++ YARP, per message: `accept`; then the other monitors of the port are triggered; at
+the receiving end of a connection the constraint; `update`. If `accept` fails the message is
+dropped, if `update` fails it passes unchanged; either way there is a log line, once for each
+complaint. A script that has changed on disk is loaded again; if it then does not start, the one
+before goes on.
 """
 
 from __future__ import annotations
@@ -97,7 +98,7 @@ class PortMonitor:
         return script, control
 
     def _options(self) -> Property:
-        """What `create` is told: as in C++, and the parameters that are not ours."""
+        """The arguments of `create`: as in C++, and the parameters that are not ours."""
         place = self._place
         found = Property()
         for token in place.tokens or place.shared:
@@ -194,7 +195,7 @@ class PortMonitor:
                 self._end()
 
     def _end(self) -> None:
-        """Let go of the script that has run."""
+        """End the script that has run."""
         try:
             self._script.close()
         except ScriptError as error:
@@ -211,7 +212,7 @@ def _python(place: Place) -> Load:
 def _lua(place: Place) -> Load:
     from yarpy.monitors.script.lua import LuaScript, lupa
 
-    lupa()  # before the file is looked for: it is the first thing to be had
+    lupa()  # before the file is looked for: without the library no file helps
     return partial(LuaScript, system=granted(SYSTEM))
 
 

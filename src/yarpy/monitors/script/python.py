@@ -1,13 +1,13 @@
 """Python scripts for a portmonitor: a file with some of these functions, or with a class Monitor.
 
-    create(options)        False: no such connection, please; options says between whom
+    create(options)        False: refuse the connection; options says between which ports
     accept(message)        whether it may pass
     update(message)        what goes on instead: a value, a Message, or yarpy.monitors.DROP;
-                           None: the message as it is
+                           None: the message unchanged
     update_reply(message)  the same for the reply to a call
-    trig()                 another connection of the port let a message pass, or the timer says so
+    trig()                 another connection of the port let a message pass, or the timer is due
     setparam(parameters)   new parameters, a Property
-    getparam()             what they are, a dict or Property
+    getparam()             their values, a dict or Property
     destroy()              the connection ends
 
 Messages are yarpy's. The names of C++ YARP 4 (acceptData, updateData, updateReply, setParams,
@@ -50,7 +50,7 @@ Callback = Callable[..., Any]
 
 
 class PythonScript:
-    """One connection's. Raises ScriptError if the file cannot be run."""
+    """The script of one connection. Raises ScriptError if the file cannot be run."""
 
     def __init__(self, path: Path, source: bytes, control: Control) -> None:
         self._path = str(path)
@@ -58,7 +58,7 @@ class PythonScript:
         module.__file__ = self._path
         vars(module).update(portmonitor=control, PortMonitor=control)
         self._module = module
-        sys.modules[module.__name__] = module  # dataclasses and others look for their module
+        sys.modules[module.__name__] = module  # dataclasses and others look up their module
         try:
             exec(compile(source, self._path, "exec"), vars(module))
             kind = getattr(module, "Monitor", None)
@@ -145,7 +145,7 @@ class PythonScript:
             sys.modules.pop(self._module.__name__, None)
 
     def _call(self, callback: Callback, *arguments: object) -> Any:
-        """With as many of the arguments as it takes."""
+        """Call it with as many of the arguments as it takes."""
         try:
             return callback(*arguments[: _taken(callback)])
         except FAILURES as error:
@@ -153,7 +153,7 @@ class PythonScript:
 
 
 def _taken(callback: Callback) -> int | None:
-    """How many arguments a function takes by position; None if any number, or nobody knows."""
+    """How many arguments a function takes by position; None if any number, or unknown."""
     try:
         parameters = inspect.signature(callback).parameters.values()
     except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""Scripts: the files that a portmonitor runs - where they are, when they change, what they offer.
+"""Scripts: the files that a portmonitor runs - where they are, when they change, what they provide.
 
 Rules: whatever the language, a script is an object with the methods of `Script`. It raises
 ScriptError, which names file and line, and nothing else.
@@ -31,25 +31,25 @@ class Script(Protocol):
     """A loaded script. A callback that it lacks does nothing."""
 
     def create(self, options: Property) -> bool:
-        """The first call; False: the script wants no such connection."""
+        """The first call; False: the script refuses the connection."""
 
     def accept(self, message: Message) -> bool:
         """Whether the message may pass."""
 
     def update(self, message: Message) -> object:
-        """What goes on instead: a value, a Message, DROP; None: the message as it is."""
+        """What goes on instead: a value, a Message, DROP; None: the message unchanged."""
 
     def update_reply(self, message: Message) -> object:
         """The same for the reply to a call."""
 
     def trigger(self) -> None:
-        """Another connection of the port has let a message pass, or the timer says so."""
+        """Another connection of the port has let a message pass, or the timer is due."""
 
     def configure(self, parameters: Property) -> None:
         """New parameters."""
 
     def parameters(self) -> Property:
-        """What they are now."""
+        """Their values now."""
 
     def close(self) -> None:
         """The last call."""
@@ -61,7 +61,7 @@ Load = Callable[[Path, bytes, Control], Script]
 def find_script(place: Place, name: str, context: str, endings: Sequence[str]) -> Path:
     """The file of a script, found as configuration files are.
 
-    Raises LocalProtocolError, which tells where it may be put, or that it must not run.
+    Raises LocalProtocolError, which says where it may be put, or that it must not run.
     """
     looked: list[Path] = []
     for ending in endings:
@@ -90,7 +90,7 @@ def read_script(path: Path) -> bytes:
 
 
 class Watch:
-    """Whether a file has changed since the last question; the disk is asked now and then only."""
+    """Whether a file has changed since the last call; the disk is read only now and then."""
 
     def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:
         self._path = path
@@ -99,7 +99,7 @@ class Watch:
         self._again = clock() + PATIENCE
 
     def changed(self) -> bool:
-        """Whether it has changed. A file that is away just now has not."""
+        """Whether it has changed. A file that is missing at the moment has not."""
         now = self._clock()
         if now < self._again:
             return False

@@ -1,7 +1,7 @@
 """bayer: the grey pictures of Bayer cameras become colour at the receiver's end.
 
-The sender writes plain `mono` images; the reader gets `rgb`, without padding, and the envelope as
-it was. Parameters, as in C++ YARP (of several with one name the first counts):
+The sender writes plain `mono` images; the reader gets `rgb`, without padding, and the envelope
+unchanged. Parameters, as in C++ YARP (of several with one name the first counts):
 
     size    half: a quarter of the pixels, made without interpolation
     order   the first two pixels of the first two rows: grbg (else), gbrg, rggb, bggr

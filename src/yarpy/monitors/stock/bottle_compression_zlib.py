@@ -1,10 +1,10 @@
 """bottle_compression_zlib: any message, squeezed with zlib at the sender's end.
 
-On the wire: a Bottle of the size in bytes before (int32) and a blob, the zlib stream (RFC 1950) of
-the message's binary spelling. C++ YARP does the same with all that can be read as a Bottle;
-between two ends of yarpy everything goes, a Sound as well.
+On the wire: a Bottle of the uncompressed size in bytes (int32) and a blob, the zlib stream (RFC
+1950) of the message's binary spelling. C++ YARP does the same with all that can be read as a
+Bottle; between two ends of yarpy anything can be sent, a Sound as well.
 
-Rules: zlib lets other threads run meanwhile. `get` tells the sums of both sizes.
+Rules: zlib lets other threads run meanwhile. `get` returns the sums of both sizes.
 """
 
 from __future__ import annotations

@@ -3,12 +3,12 @@
 The results are those of C++ YARP, which has two programs for it. For widths that are a multiple
 of 8 it uses algorithms of libdc1394: `nearest`, `simple`, `bilinear`, `hqlinear` and `downsample`
 are the same to the bit here, with the same black frame where an algorithm lacks neighbours. For
-other widths it averages the neighbours that there are, whatever the algorithm asked for.
+other widths it averages the existing neighbours, whichever algorithm was asked for.
 
 Rules: grey is uint8 of shape (height, width), colour uint8 of shape (height, width, 3). `green` and
 `red` say where the pattern begins: the column of green in the first row, and the row of red. The
-functions compute all colours of all pixels from shifted views and then choose; what is beyond the
-border counts as 0.
+functions compute all colours of all pixels from shifted views and then choose; pixels beyond the
+border count as 0.
 
 Source for `hqlinear`: Malvar, He and Cutler, High-quality linear interpolation for demosaicing of
 Bayer-patterned color images, ICASSP 2004.
@@ -82,7 +82,7 @@ _FAR_ALONG: Final = ((-2, 0), (2, 0))
 def assembled(
     green: int, red: int, own: Any, cross: Any, across: Any, along: Any, opposite: Any
 ) -> Colour:
-    """One picture from what each colour is at each kind of pixel.
+    """One picture out of the values of each colour at each kind of pixel.
 
     own: a pixel's own colour. cross: green where there is none. across: red or blue at a green
     pixel whose row has it, along: whose column has it. opposite: red at blue and blue at red.

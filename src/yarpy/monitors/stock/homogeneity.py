@@ -1,12 +1,12 @@
 """Adaptive homogeneity-directed demosaicing: the method `ahd` of Bayer cameras.
 
-The picture is rebuilt twice, with green interpolated along the rows and along the columns; of each
-pixel that version is taken whose neighbourhood is more uniform in CIE Lab, so that colours do not
+The picture is rebuilt twice, with green interpolated along the rows and along the columns; for each
+pixel the version is taken whose neighbourhood is more uniform in CIE Lab, so that colours do not
 mix across an edge. A frame of 3 pixels is averaged, as pictures of odd widths are.
 
-Rules: the results are those of libdc1394, and so of C++ YARP, to the bit. Hence the number of
-integers on the way, and what looks odd: its Lab takes 65535 for white although pixels are bytes,
-and next to the frame it counts green as 0 where it has no two neighbours on each side.
+Rules: the results are those of libdc1394, and so of C++ YARP, to the bit. Hence the many integers
+on the way, and what looks odd: its Lab takes 65535 for white although pixels are bytes, and next to
+the frame it counts green as 0 where it has no two neighbours on each side.
 
 Source: Hirakawa and Parks, Adaptive homogeneity-directed demosaicing algorithm, IEEE Transactions
 on Image Processing 14 (2005).
@@ -105,7 +105,7 @@ def _lab(colour: Colour) -> tuple[Any, Any, Any]:
 
 
 def _uniformity(across: tuple[Any, Any, Any], along: tuple[Any, Any, Any]) -> tuple[Any, Any]:
-    """For both versions, how much the 3 x 3 pixels around each one are like their neighbours."""
+    """For both versions, how similar the 3 x 3 pixels around each one are to their neighbours."""
     import numpy as np
 
     light: list[list[Any]] = []  # by version and by neighbour: left, right, above, below
@@ -114,7 +114,7 @@ def _uniformity(across: tuple[Any, Any, Any], along: tuple[Any, Any, Any]) -> tu
         steps = [[c - np.roll(c, shift, (0, 1)) for c in lab] for shift in (*ACROSS, *ALONG)]
         light.append([abs(step[0]) for step in steps])
         tint.append([step[1] ** 2 + step[2] ** 2 for step in steps])
-    # What counts as alike is what each version differs in the direction it was made in.
+    # The tolerance is how much each version differs along the direction in which it was made.
     limits = [
         np.minimum(np.maximum(*kind[0][:2]), np.maximum(*kind[1][2:])) for kind in (light, tint)
     ]

@@ -3,8 +3,8 @@
 On the wire: a Bottle of [jpeg], the pixel code of the image (a vocab) and a blob, the JPEG file.
 The receiver gets an image of the same pixel code; alpha becomes 255.
 
-Rules: libjpeg-turbo lets other threads run meanwhile. Pixels that are no colours are refused: a
-JPEG would make depth or Bayer patterns into something else.
+Rules: libjpeg-turbo lets other threads run meanwhile. Pixels that are not colours are refused: JPEG
+would spoil depth or Bayer patterns.
 """
 
 from __future__ import annotations

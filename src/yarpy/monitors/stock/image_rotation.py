@@ -2,7 +2,7 @@
 
 Parameters, as in C++ YARP 4: `options_rotate` is rotate_cw, rotate_ccw (a quarter turn), rotate_180
 or rotate_none, `options_flip` is flip_x (upside down), flip_y (left to right), flip_xy or
-flip_none. The turn comes first. Without any, C++ YARP 3 turns clockwise, and so does this.
+flip_none. The turn comes first. Without parameters C++ YARP 3 turns clockwise, and so does this.
 
 Rules: every pixel type but those that are patterns of several pixels (Bayer, yuv), which a turn
 would break.

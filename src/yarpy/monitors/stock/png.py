@@ -1,8 +1,8 @@
 """PNG: an Image squeezed into a file without loss, and back.
 
-Rules: the work is OpenCV's, which the caller hands in. What comes in is measured before memory is
-taken for its pixels, and its checksums are compared, since libpng makes a picture of half a file
-too. Whatever is wrong with it is a DecodeError.
+Rules: the work is OpenCV's, which the caller hands in. The size of a picture is checked before
+memory is taken for its pixels, and so are its checksums, since libpng makes a picture even of half
+a file. Whatever is wrong with it is a DecodeError.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def decode(cv2: Any, data: bytes, code: str, limit: int) -> Image:
 
 
 def _check(data: bytes, limit: int) -> None:
-    """See to it that the file is whole and not too large."""
+    """Check that the file is whole and not too large."""
     width, height = (int.from_bytes(data[at : at + 4], "big") for at in (16, 20))
     if not data.startswith(_START + b"\0\0\0\rIHDR"):
         raise DecodeError("no PNG: it begins otherwise")

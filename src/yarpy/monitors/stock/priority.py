@@ -3,17 +3,17 @@
     yarpy connect /ball /eye tcp+recv.priority+st.10+tc.1+bs.20
 
 Rules: it sits at the receiving end of every connection that is to take part; those without it are
-never held back. On the wire it is nothing but these parameters (in C++ the same):
+never held back. On the wire there are only these parameters, as in C++:
 
     tc       seconds that a message keeps its connection active (1)
     tr       seconds that it rests after having been active; above 0 it behaves as a neuron (0)
     st       what one message adds, 10 makes it active at once (10)
-    bs       how strong it is, of those that are active the strongest wins (10)
+    bs       how strong it is: of the active ones the strongest wins (10)
     ex       links to others, `(/source weight)`: above 0 excite, below 0 inhibit it
     virtual  it never gets through, it only excites and inhibits
 
-As `st`, `bs` and weights come with the connection, 10 stands for 1. While it runs, `set in` takes
-`st` and `bs` as they are, and weights in tenths again; that is how C++ does it.
+In `st`, `bs` and weights of the carrier string, 10 stands for 1. While it runs, `set in` takes `st`
+and `bs` unscaled, and weights in tenths again, as in C++.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _LINKS: Final = 1000  # of one connection
 
 
 class Priority:
-    """The monitor of one connection; the others it finds in `place.group`."""
+    """The monitor of one connection; it finds the others in `place.group`."""
 
     def __init__(self, place: Place, clock: Callable[[], float] = time.monotonic) -> None:
         if place.sending:
@@ -106,7 +106,7 @@ class Priority:
             self._contest().changed()
 
     def parameters(self) -> dict[str, Any]:
-        """As C++ tells them: `ex` as one text."""
+        """As C++ returns them: `ex` as one text."""
         one = self.competitor
         return {
             "bs": one.bias,
@@ -118,7 +118,7 @@ class Priority:
         }
 
     def state(self) -> dict[str, Any]:
-        """Where the contest stands: our stimulation and output, and who may speak ("" nobody)."""
+        """The state of the contest: our stimulation and output, and who may speak ("": nobody)."""
         with self._group.lock:
             one, now = self.competitor, self._clock()
             try:

@@ -1,7 +1,7 @@
 """sensorMeasurements_to_vector: position and orientation out of a stream of sensors.
 
-Takes what a server of several sensors streams on `/measures:o` (ten lists, by kind of sensor) and
-gives a Vector of six: x, y, z of the one position sensor, then the three angles of the one
+Takes the stream of a multi-sensor server on `/measures:o` (ten lists, by kind of sensor) and
+returns a Vector of six: x, y, z of the one position sensor, then the three angles of the one
 orientation sensor. As in C++ YARP, messages with none or several of either are refused.
 """
 

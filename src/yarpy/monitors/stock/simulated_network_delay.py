@@ -1,4 +1,4 @@
-"""simulated_network_delay: hold every message for a while, to try programs out for a slow network.
+"""simulated_network_delay: hold every message for a while, as a slow network would.
 
 Parameter, as in C++ YARP 4: `delay_ms`, 0 without, at most 10000.
 
@@ -6,8 +6,8 @@ Where: at the receiver's end. The wait is then in the thread of that one connect
 sender's other connections go on. At the sender's end, which C++ allows too, the writer itself
 waits, and with it all connections of its port.
 
-Rules: it is a pause, not a line: messages that come faster than the delay wait for each other, and
-acknowledgements then slow their sender down, as a narrow network would.
+Rules: it is a pause, not a delay line: messages that come faster than the delay wait for each
+other, and acknowledgements then slow their sender down, as a narrow network would.
 """
 
 from __future__ import annotations

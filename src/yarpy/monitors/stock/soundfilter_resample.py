@@ -4,7 +4,7 @@ Parameters, as in C++ YARP: `channel` (from 0; all without), `gain_percent` (100
 `frequency` (samples per second), applied in this order. Either end.
 
 Rules: another rate needs soxr (extra `sound`), the library of C++ YARP; each message is resampled
-by itself. C++ resamples single channels only. What gets too loud is cut off at the limits.
+on its own. C++ resamples single channels only. Samples that get too loud are clipped.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""throttleDown: let at most one message pass in a time, and drop the others.
+"""throttleDown: let at most one message pass in each period, and drop the others.
 
 Parameter, as in C++ YARP 4: `period_ms`, 1000 without. At the sender's end dropped messages do not
 travel; at the receiver's they do.
@@ -28,7 +28,7 @@ class ThrottleDown:
         now = time.monotonic()
         if now < self._due:
             return False
-        # More than a period late: the beat begins anew.
+        # More than a period late: the period begins anew.
         self._due = (self._due if now < self._due + self._period else now) + self._period
         return True
 

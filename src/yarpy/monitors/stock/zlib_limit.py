@@ -1,7 +1,7 @@
-"""A limit for zlib: data are unpacked to the size that was announced, and never to more.
+"""A limit for zlib: data are unpacked to the announced size, and never to more.
 
-Rules: memory is taken for what comes out, not for what somebody announced, and never for more than
-the limit. Whatever is wrong is a DecodeError.
+Rules: memory is taken for what comes out, not for what is announced, and never for more than the
+limit. Whatever is wrong is a DecodeError.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def unpacked(data: object, size: object, limit: int) -> bytes:
         raise DecodeError(f"compressed data announce {size} bytes, the limit is {limit}")
     stream = zlib.decompressobj()
     try:
-        made = stream.decompress(data, size + 1)  # one more: 0 would mean without end
+        made = stream.decompress(data, size + 1)  # one more: 0 would mean without limit
     except zlib.error as error:
         raise DecodeError(f"compressed data are damaged: {error}") from error
     if len(made) != size or not stream.eof:
