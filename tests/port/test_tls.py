@@ -178,7 +178,7 @@ def test_certificate_of_somebody_else(names: yarpy.LocalNames, folder: Path) -> 
     with yarpy.Port("/in", names=names), yarpy.Port("/out", names=names) as out:
         make(folder / "other", ["127.0.0.1"])
         (folder / "ca.pem").write_bytes((folder / "other" / "ca.pem").read_bytes())
-        with pytest.raises(yarpy.RemoteProtocolError, match=r"certificate is not good"):
+        with pytest.raises(yarpy.RemoteProtocolError, match=r"certificate is not valid"):
             out.connect("/in", "tls")
 
 

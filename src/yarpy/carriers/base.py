@@ -28,7 +28,7 @@ from yarpy.wire.stream import Buffer, ByteStream
 
 MAGIC_SIZE = 8  # bytes by which protocols are told apart
 PAGE = "page"  # what follows the port command `*` when a browser asks
-ASKS_FOR_KEY = "perhaps it asks for a key (auth.conf) or for TLS that this side has not"
+ASKS_FOR_KEY = "perhaps it wants a key (auth.conf) or TLS, which this side does not have"
 
 
 @dataclass(frozen=True, slots=True)

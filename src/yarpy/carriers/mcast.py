@@ -32,7 +32,7 @@ class Mcast(Datagrams):
         yield from super().welcome(stream, first)
         where = bytes((yield from stream.read_exact(6)))
         if not 224 <= where[0] <= 239:
-            raise RemoteProtocolError(f"{'.'.join(map(str, where[:4]))} is no multicast address")
+            raise RemoteProtocolError(f"{'.'.join(map(str, where[:4]))} is not a multicast address")
         group, port = ".".join(map(str, where[:4])), int.from_bytes(where[4:], "big")
         handle = yield Open("mcast", listen=True, group=group, port=port)
         yield Switch(handle, DatagramStream(stream.limit))

@@ -172,7 +172,7 @@ class Mjpeg(Carrier):
         # ffmpeg as a server says octet-stream, whatever it sends.
         if kind != "application/octet-stream" and not kind.startswith("multipart/"):
             raise RemoteProtocolError(
-                f"{path} is no stream of pictures but {kind or 'of no known type'}"
+                f"{path} is not a stream of pictures but {kind or 'of no known type'}"
                 "; the carrier mjpeg+path.<path> says what to ask for"
             )
         if "chunked" in headers.get("transfer-encoding", "").lower():

@@ -300,7 +300,7 @@ class WebSocket(Carrier):
             elif frame.opcode != _PONG:
                 if (frame.opcode == _CONTINUATION) != self._inside:
                     self._write(stream, _CLOSE, _PROTOCOL_ERROR)
-                    raise RemoteProtocolError("WebSocket frames of two messages in one another")
+                    raise RemoteProtocolError("WebSocket frames of two messages are mixed")
                 self._rest = memoryview(payload)
                 self._inside = not (frame.frame_finished and frame.message_finished)
                 return not self._inside

@@ -85,7 +85,7 @@ class Image(Wired):
             raise Truncated(f"an Image has a header of {_HEAD.size} bytes", _HEAD.size)
         self = cls.found(view)
         if self is None:
-            raise DecodeError("no Image: the header is another one")
+            raise DecodeError("not an Image: the header is a different one")
         return self
 
     @classmethod

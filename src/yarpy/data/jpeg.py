@@ -82,7 +82,7 @@ def decode(data: bytes | bytearray | memoryview, limit: int = 1 << 30) -> memory
     except DecodeError:
         raise
     except (ValueError, MemoryError) as error:
-        raise DecodeError(f"no JPEG that can be shown: {error}") from error
+        raise DecodeError(f"not a readable JPEG: {error}") from error
     image = Image(pixels if depth == 3 else pixels[..., 0])
     wire[:_HEAD_SIZE] = image.to_wire()[0]
     return memoryview(wire)

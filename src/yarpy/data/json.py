@@ -60,7 +60,7 @@ def from_json(text: str | bytes | bytearray | memoryview) -> Any:
     except DecodeError:
         raise
     except ValueError as error:
-        raise DecodeError(f"this is no JSON: {error}") from None
+        raise DecodeError(f"this is not JSON: {error}") from None
     return _message(found, 0)
 
 
@@ -227,7 +227,7 @@ def _mended(text: str) -> str:
 
 
 def _no_constant(word: str) -> Any:
-    raise ValueError(f"{word} is no JSON number")
+    raise ValueError(f"{word} is not a JSON number")
 
 
 def _message(value: Any, depth: int) -> Any:
@@ -256,7 +256,7 @@ def _pairs(value: dict[str, Any], depth: int) -> Any:
         try:
             return a2b_base64(value["base64"], strict_mode=True)
         except (Error, ValueError) as error:
-            raise DecodeError(f"a blob that is no base64: {error}") from None
+            raise DecodeError(f"a blob that is not base64: {error}") from None
     front = isinstance(kind, (str, int, float))
     items = Bottle([_message(kind, depth + 1)] if front else [])
     for key, item in value.items():

@@ -46,7 +46,7 @@ class Matrix(Wired):
             raise Truncated(f"a Matrix has a header of {_HEAD.size} bytes", _HEAD.size)
         code, length, tag, rows, tag2, cols, list_code, count = _HEAD.unpack_from(view)
         if (code, length, tag, tag2, list_code) != (256, 3, 1, 1, 266):
-            raise DecodeError("no Matrix: it is a list of rows, columns and a list of float64")
+            raise DecodeError("not a Matrix, a list of rows, columns and a list of float64")
         if rows < 0 or cols < 0 or count != rows * cols:
             raise DecodeError(f"a Matrix of {rows} times {cols} with {count} numbers")
         end = _HEAD.size + 8 * count

@@ -136,7 +136,7 @@ class PointCloud(Wired):
             raise Truncated(f"a PointCloud has a header of {_HEAD.size} bytes", _HEAD.size)
         width, height, code, dense, list_code, count = _HEAD.unpack_from(view)
         if list_code != 266 or width < 0 or height < 0 or count != width * height:
-            raise DecodeError("no PointCloud: the header is another one")
+            raise DecodeError("not a PointCloud: the header is a different one")
         kind = _BY_CODE.get(code)
         if kind is None:
             raise DecodeError(f"a PointCloud with points of the unknown kind {code}")

@@ -130,7 +130,7 @@ def _sorted(values: Mapping[str, Any]) -> list[str]:
     """The keys in the order of their bytes."""
     for key in values:
         if not isinstance(key, str):
-            raise TypeError(f"the key {key!r} is no string: a YARP Property only has string keys")
+            raise TypeError(f"the key {key!r} is not a string: YARP Properties have string keys")
     return sorted(values, key=lambda key: key.encode("utf-8", "surrogateescape"))
 
 

@@ -80,7 +80,7 @@ class Sound(Wired):
             return cls._from_new_wire(view)
         one, channels, two, _, three, frequency = rest
         if (code, length, zero, one, two, three) != (256, 4, 0, 1, 1, 1):
-            raise DecodeError("no Sound: the header is another one")
+            raise DecodeError("not a Sound: the header is a different one")
         return cls._over(view, _HEAD.size, channels, samples, frequency)
 
     @classmethod
@@ -91,13 +91,15 @@ class Sound(Wired):
         size, samples, channels = head[11], head[13], head[14]
         image = (9, _MAT, 9, _MO16, 257, 5, 2)
         if head[4:11] != image or head[15:] != (12, size) or size != 2 * samples * channels:
-            raise DecodeError("no Sound: two lists, but the first is no image of 16-bit samples")
+            raise DecodeError(
+                "not a Sound: the first of two lists is not an image of 16-bit samples"
+            )
         end = _OLD.size + max(size, 0) + _OLD_END.size
         if len(view) < end:
             raise Truncated(f"this Sound takes {end} bytes, here are {len(view)}", end)
         code, count, frequency = _OLD_END.unpack_from(view, end - _OLD_END.size)
         if (code, count) != (257, 1):
-            raise DecodeError("no Sound: the second list is no frequency")
+            raise DecodeError("not a Sound: the second list is not a frequency")
         return cls._over(view, _OLD.size, channels, samples, frequency)
 
     @classmethod
@@ -107,7 +109,7 @@ class Sound(Wired):
         _, _, _, samples, *rest = _NEW.unpack_from(view)
         one, channels, two, _, three, frequency, tag, count = rest
         if (one, two, three, tag) != (1, 1, 1, _INT16_LIST) or count != samples * channels:
-            raise DecodeError("no Sound: a list, but not of samples with their header")
+            raise DecodeError("not a Sound: the list does not have the header of samples")
         return cls._over(view, _NEW.size, channels, samples, frequency)
 
     @classmethod

@@ -46,7 +46,7 @@ class Stamp:
         line = text.decode("utf-8", "replace") if isinstance(text, bytes) else text
         match = _TEXT.match(line)
         if match is None or not -_MAX_COUNT <= int(match[1]) + 1 <= _MAX_COUNT + 1:
-            raise DecodeError(f"no stamp: {line[:60]!r} (a stamp is a count and a time: 7 12.5)")
+            raise DecodeError(f"not a stamp: {line[:60]!r} (a stamp is a count and a time: 7 12.5)")
         return cls(int(match[1]), float(match[2]))
 
     parse = from_text
@@ -65,7 +65,7 @@ class Stamp:
             raise Truncated(f"a stamp takes {_WIRE.size} bytes, here are {len(data)}", _WIRE.size)
         code, length, int_tag, count, float_tag, time = _WIRE.unpack_from(data)
         if (code, int_tag, float_tag) != (256, 1, 10) or length not in (2, 3):
-            raise DecodeError("no stamp: a stamp is a list of an int32 and a float64")
+            raise DecodeError("not a stamp: a stamp is a list of an int32 and a float64")
         return cls(count, time)
 
     def to_wire(self) -> tuple[bytes]:

@@ -84,7 +84,7 @@ class Vector(Wired, Sequence[Any]):
         code, count = _HEAD.unpack_from(view)
         name = _NAMES.get(code & UNIT_MASK)
         if name is None or code & ~UNIT_MASK != 256 or count < 0:
-            raise DecodeError(f"no Vector: its list code is {code}, not 256 plus a kind of number")
+            raise DecodeError(f"not a Vector: list code {code} is not 256 plus a kind of number")
         return cls._over(memoryview(view)[8:], name, count)
 
     @classmethod

@@ -214,7 +214,7 @@ def _parse(data: bytes | memoryview) -> tuple[tuple[Any, ...], str | None]:
         raise
     except Exception as error:  # expat's, defusedxml's, and errors from broken values
         text = str(error) or type(error).__name__
-        raise DecodeError(f"this is no XML-RPC: {text}") from error
+        raise DecodeError(f"this is not XML-RPC: {text}") from error
 
 
 def _some(items: Sequence[Any]) -> Iterator[Any]:

@@ -258,5 +258,5 @@ def closed(error: OSError) -> YarpError:
     if isinstance(error, YarpError):
         return error
     if isinstance(error, BlockingIOError | TimeoutError):
-        return Timeout("the peer does not take what is sent")
+        return Timeout("the peer does not read what is sent")
     return LinkClosed(f"the peer is gone ({error.strerror or error})")

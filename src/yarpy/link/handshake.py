@@ -71,7 +71,7 @@ def find_carrier(base: str) -> type[Carrier]:
         if base not in registry.monitors.names():
             raise
         raise UnknownPlugin(
-            f'"{base}" is no carrier but a monitor, which rides on one: use tcp+recv.{base}, or '
+            f'"{base}" is not a carrier but a monitor, which rides on one: use tcp+recv.{base}, or '
             f"tcp+send.{base} at the sender's end"
         ) from None
     if not (isinstance(carrier, type) and issubclass(carrier, Carrier)):

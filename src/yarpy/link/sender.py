@@ -174,9 +174,9 @@ class Sender:
     def _fall_mute(self, limit: float) -> None:
         self._mute = True
         log.warning(
-            '%s: "%s" does not respond to messages over %s within %g s; from now on none is waited '
-            "for, and what was not confirmed counts as dropped when the connection ends. Connect "
-            "with tcp if you can",
+            '%s: "%s" does not respond to messages over %s within %g s; from now on '
+            "acknowledgements are not waited for, and missing ones count as drops when the "
+            "connection ends. Connect with tcp if you can",
             self.route.source,
             self.route.target,
             self.carrier.name,

@@ -204,7 +204,7 @@ def explained(error: OSError) -> str:
     """What went wrong with TLS, and what to do."""
     if isinstance(error, ssl.SSLCertVerificationError):
         return (
-            f"its certificate is not good: {error.verify_message}. The authority is ca.pem in "
+            f"its certificate is not valid: {error.verify_message}. The authority is ca.pem in "
             f"{folder()}, the names are those of `yarpy cert` there"
         )
     if isinstance(error, ssl.SSLError):
@@ -240,7 +240,9 @@ def _server(where: Path, both: bool, age: tuple[float, ...]) -> ssl.SSLContext:
     context.minimum_version = ssl.TLSVersion.TLSv1_3
     context.num_tickets = 0  # connections last long; no session is resumed
     if not _own(context, where, age):
-        raise NoCertificate(f"there is no cert.pem with a key.pem in {where}: `yarpy cert` does it")
+        raise NoCertificate(
+            f"there is no cert.pem with key.pem in {where}: `yarpy cert` makes both"
+        )
     if both:
         if not age[2]:
             raise NoCertificate(f"there is no ca.pem in {where} to check others against")

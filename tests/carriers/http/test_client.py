@@ -95,5 +95,5 @@ def test_path_with_blanks_is_refused() -> None:
 
 def test_response_that_nobody_asked_for() -> None:
     client = HttpClient(Route("/a", "/b", "http", 80, "h"))
-    with pytest.raises(RemoteProtocolError, match="nobody asked"):
+    with pytest.raises(RemoteProtocolError, match="without a request"):
         run(client.response(ByteStream()), ByteStream(), [OK])

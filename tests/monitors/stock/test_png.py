@@ -88,5 +88,5 @@ def test_size_is_looked_at_before_memory_is_taken(side: int) -> None:
 
 @pytest.mark.parametrize(("made", "wanted"), [("rgb", "mono"), ("mono", "rgb"), ("mo16", "mono")])
 def test_another_pixel_type_than_announced(made: str, wanted: Any) -> None:
-    with pytest.raises(DecodeError, match=f"no PNG of pixels {wanted}"):
+    with pytest.raises(DecodeError, match=f"not a PNG of pixels {wanted}"):
         png.decode(cv2, png.encode(cv2, sample(made)), wanted, LIMIT)

@@ -52,7 +52,7 @@ class Chunks:
             except ValueError:
                 self._left = -1
             if self._left < 0:
-                raise RemoteProtocolError(f"no size of a chunk: {text[:20]!r}")
+                raise RemoteProtocolError(f"not the size of a chunk: {text[:20]!r}")
             if not self._left:
                 raise LinkClosed("the peer has ended its answer")
         yield from stream.more(1)

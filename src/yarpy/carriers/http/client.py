@@ -63,7 +63,7 @@ class HttpClient:
         import h11
 
         if not self._asked:
-            raise RemoteProtocolError("a response came that nobody asked for")
+            raise RemoteProtocolError("a response came without a request")
         talk = self._asked.popleft()
         body = bytearray()
         limit = min(stream.limit, MAX_BODY)
@@ -76,7 +76,7 @@ class HttpClient:
                 if len(body) > limit:
                     raise RemoteProtocolError(f"a response of more than {limit} bytes")
         except h11.RemoteProtocolError as error:
-            raise RemoteProtocolError(f"no HTTP response: {error}") from None
+            raise RemoteProtocolError(f"not an HTTP response: {error}") from None
         if not (isinstance(head, h11.Response) and isinstance(event, h11.EndOfMessage)):
             raise LinkClosed("the peer closed the connection")
         rest, _ = talk.trailing_data

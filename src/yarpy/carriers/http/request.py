@@ -203,7 +203,10 @@ def _posted(request: Request, fields: dict[str, str]) -> Wish | Refusal:
         if fields.keys() & {"cmd", "req", "data"}:
             return _by_fields(request, fields)
         if body.strip() and b"=" not in body:  # curl says so of whatever it is given
-            return Refusal(400, f"no form, as {FORM} says: JSON and text want a Content-Type too")
+            return Refusal(
+                400,
+                f"the body is not a form, as {FORM} says: JSON and text need a Content-Type too",
+            )
         return Wish("*", _form(request, fields, "page"), text=PAGE)
     if kind == "text/plain":
         text = body.decode("utf-8", "surrogateescape")

@@ -85,8 +85,8 @@ NO_SUCH_METHOD: Final = Response(
 )
 MAY_NOT_ACT: Final = Response(
     403,
-    body=b"only the port's own page may act here, and who is no browser: open the port's page, or "
-    b"name yours in YARPY_WEB_ORIGINS where the port was opened\n",
+    body=b"only the port's own page and programs other than browsers may act here: "
+    b"open the port's page, or name yours in YARPY_WEB_ORIGINS where the port was opened\n",
 )
 UNSPEAKABLE: Final = Response(500, body=b"the port's answer cannot be sent\n")
 

@@ -85,7 +85,7 @@ def read_script(path: Path) -> bytes:
     except OSError as error:
         raise LocalProtocolError(f'"{path}" cannot be read: {error.strerror}') from error
     if len(found) > LARGEST:
-        raise LocalProtocolError(f'"{path}" is no script: it has more than {LARGEST} bytes')
+        raise LocalProtocolError(f'"{path}" is not a script: it has more than {LARGEST} bytes')
     return found
 
 

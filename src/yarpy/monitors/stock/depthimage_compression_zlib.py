@@ -56,4 +56,4 @@ class DepthZlib:
                 made = unpacked(data, size, min(self._limit, limits().picture))
                 rows: NDArray[np.float32] = np.frombuffer(made, "<f4")
                 return Image(rows.reshape(height, -1 if size else width)[:, :width], "dec")
-        raise DecodeError("these are no compressed depth images: does the sender compress them?")
+        raise DecodeError("this is not a compressed depth image: does the sender compress them?")

@@ -41,7 +41,7 @@ class ImageCompressionJpeg:
                 if made.code == code:
                     return message.replaced(wire, binary=True)
                 return message.replaced(made.converted(code))
-        raise DecodeError("this is no JPEG of image_compression_jpeg: does the sender use it?")
+        raise DecodeError("this is not a JPEG of image_compression_jpeg: does the sender use it?")
 
     def parameters(self) -> dict[str, object]:
         return {"quality": self._quality} if self._sending else {}

@@ -33,4 +33,4 @@ class ImageCompressionPng:
         match message.as_(Bottle):
             case ["png", str(code), bytes(data)] if code in png.CODES:
                 return message.replaced(png.decode(self._cv2, data, str(code), self._limit))
-        raise DecodeError("this is no PNG of image_compression_png: does the sender use it?")
+        raise DecodeError("this is not a PNG of image_compression_png: does the sender use it?")

@@ -47,17 +47,17 @@ def decode(cv2: Any, data: bytes, code: str, limit: int) -> Image:
     try:
         array = cv2.imdecode(np.frombuffer(data, "u1"), cv2.IMREAD_UNCHANGED)
         if array is None:
-            raise DecodeError("no PNG that can be shown")
+            raise DecodeError("not a readable PNG")
         return Image(array, _ORDERED.get(code, code)).converted(code)
     except (ValueError, cv2.error) as error:
-        raise DecodeError(f"no PNG of pixels {code}: {error}") from error
+        raise DecodeError(f"not a PNG of pixels {code}: {error}") from error
 
 
 def _check(data: bytes, limit: int) -> None:
     """Check that the file is whole and not too large."""
     width, height = (int.from_bytes(data[at : at + 4], "big") for at in (16, 20))
     if not data.startswith(_START + b"\0\0\0\rIHDR"):
-        raise DecodeError("no PNG: it begins otherwise")
+        raise DecodeError("not a PNG: it begins with other bytes")
     if width * height * 8 > limit:  # four channels of 16 bits
         raise DecodeError(
             f"a PNG of {width} times {height} pixels; the limit is {limit} bytes (the port's, or "

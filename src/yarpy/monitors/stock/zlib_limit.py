@@ -15,7 +15,7 @@ def unpacked(data: object, size: object, limit: int) -> bytes:
     """The `size` bytes that `data` were compressed from, at most `limit`. Raises DecodeError."""
     if not isinstance(data, bytes) or not isinstance(size, int):
         raise DecodeError(
-            "these are no compressed data: does the same monitor ride on the sender's end?"
+            "this is not compressed data: does the same monitor ride on the sender's end?"
         )
     if not 0 <= size <= limit:
         raise DecodeError(f"compressed data announce {size} bytes, the limit is {limit}")
