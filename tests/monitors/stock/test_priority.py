@@ -35,7 +35,7 @@ class Contest:
 
     def join(self, source: str, tokens: str = "") -> Priority:
         parts = parse_carrier(f"tcp+recv.priority{tokens}").tokens
-        place = Place(source, "/in", "", False, parts, parts, self.group)
+        place = Place(source, "/in", "tcp", False, parts, parts, self.group)
         one = Priority(place, clock=lambda: self.now)
         self.group.add(one)
         return one
@@ -182,7 +182,7 @@ def test_contradicting_weights_drop_with_one_line(
 @given(st.text(max_size=40))
 def test_any_token_makes_a_monitor_or_a_clear_error(text: str) -> None:
     for token in (text, f"ex.{text}", f"(ex {text})", f"st.{text}", f"bs.{text}"):
-        place = Place("/a", "/in", "", False, (token,))
+        place = Place("/a", "/in", "tcp", False, (token,))
         try:
             Priority(place).accept(MESSAGE)
         except YarpError:
@@ -294,7 +294,7 @@ def test_wrong_parameter_refuses_the_connection(
     with (
         yarpy.Port("/in", names=senders.names),
         yarpy.Port("/out", names=senders.names) as out,
-        pytest.raises(yarpy.LinkClosed, match="what is wrong with priority"),
+        pytest.raises(yarpy.LocalProtocolError, match="what is wrong with priority"),
     ):
         out.connect("/in", "tcp+recv.priority+st.much")
     assert '"st" takes a number' in caplog.text
