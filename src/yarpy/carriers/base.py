@@ -74,7 +74,7 @@ class Carrier:
     spelling: Spelling = "binary"  # what `encode` uses of a packet
     foreign: ClassVar[bool] = False  # the peer we dial may know nothing of YARP, nor of its keys
     introduces: ClassVar[bool] = True  # the initiator gives its name and modifiers
-    connectionless: ClassVar[bool] = False  # closing must be told to the peer some other way
+    connectionless: ClassVar[bool] = False  # the peer must learn of the end some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
     delivery: Delivery = Delivery()
     limits: ClassVar[Limits] = Limits()
@@ -140,7 +140,7 @@ class Carrier:
     def drain(self, stream: ByteStream) -> Steps[None]:
         """Without acknowledgements: read what the peer says until it hangs up, after our goodbye.
 
-        For peers that may have said something which nobody read: closing with unread input resets
+        For peers whose last input may be unread: closing with unread input resets
         the connection and loses our last output.
         """
         return

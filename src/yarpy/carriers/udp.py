@@ -1,6 +1,6 @@
 """udp: greets over TCP, then sends each message as datagrams with a checksum and a number.
 
-Rules: the acceptor opens a UDP socket and tells its port; the initiator sends from the UDP port
+Rules: the acceptor opens a UDP socket and sends its port; the initiator sends from the UDP port
 with the number of its TCP port. Nothing comes back; a lost piece drops its message, which is
 counted. A datagram can be forged by anybody: none ends a connection, and none is a command.
 """

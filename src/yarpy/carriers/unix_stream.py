@@ -1,6 +1,6 @@
 """unix_stream: greets over TCP, then both meet on a Unix socket of the same host.
 
-Rules: no index; a port command is followed at once by the payload, which tells its own end. With
+Rules: no index; a port command is followed at once by the payload, which shows its own end. With
 the modifier `+ack` (magic `UNIX_ACK`) each message, quit included, is answered with `ACK` and a
 NUL.
 """

@@ -2,7 +2,7 @@
 
     encode(obj), encode_text(obj)                the two spellings of anything that can be sent
     decode(view), decode_text(line)              the natural value of what came
-    decode_as(view, type_), decode_text_as(...)  ... or of the type that somebody wants
+    decode_as(view, type_), decode_text_as(...)  ... or of a type of your choice
     Walker                                       the end of a message that has no length
 
     sent                                        as

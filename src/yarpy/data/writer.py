@@ -306,5 +306,5 @@ def _joined(parts: Sequence[bytes | memoryview]) -> Blocks:
 
 
 def with_article(name: str) -> str:
-    """`an Image`, `a list`: a type's name as it is said in an error."""
+    """`an Image`, `a list`: a type's name for error texts."""
     return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"

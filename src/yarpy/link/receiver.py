@@ -139,7 +139,7 @@ class Receiver:
         try:
             self.driver.transport.limit_waiting(seconds)
         except OSError:
-            pass  # closed meanwhile; reading tells
+            pass  # closed meanwhile; reading will report it
 
     # -- answering --------------------------------------------------------------------------------
 

@@ -138,7 +138,7 @@ class Sender:
             self.gathered += 1
 
     def sweep(self, timeout: float | None = None) -> bool:
-        """Send what a burst left behind; False if somebody is stuck in sending for `timeout`
+        """Send what a burst left behind; False if a thread is stuck in sending for `timeout`
         seconds."""
         if not self.lock.acquire(timeout=seconds(timeout)):
             return False
@@ -224,7 +224,7 @@ class Sender:
             driver.transport.limit_waiting(None)
 
     def caught_up(self) -> bool:
-        """Whether the reader has taken the last message, or will not tell."""
+        """Whether the reader has taken the last message, or does not acknowledge."""
         if not self.lock.acquire(blocking=False):
             return False
         try:

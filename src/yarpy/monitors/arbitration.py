@@ -75,7 +75,7 @@ class Competitor:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Who may speak, None if nobody may, and the outputs of those that are active by source."""
+    """Which one may speak (None: none may), and the outputs of the active ones by source."""
 
     winner: Competitor | None
     outputs: dict[str, float]
@@ -141,7 +141,7 @@ def _outcome(active: Sequence[Competitor]) -> Outcome:
 
 
 def _solve(active: Sequence[Competitor]) -> list[float]:
-    """The fixed point y = W y + b of those who are active; the others neither act nor are acted on.
+    """The fixed point y = W y + b of the active ones; the others neither act nor are acted on.
 
     W[k][j] is the weight of j's link to k.
     """

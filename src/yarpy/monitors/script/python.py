@@ -11,7 +11,7 @@
     destroy()              the connection ends
 
 Messages are yarpy's. The names of C++ YARP 4 (acceptData, updateData, updateReply, setParams,
-getParams) will do as well. `portmonitor` is there without an import: see Control.
+getParams) will do as well. `portmonitor` needs no import: see Control.
 
 Rules: a script has a module of its own, and so variables of its own, for every connection. It runs
 in the program with all its rights and without limits.
