@@ -101,6 +101,30 @@ server.where().getPort()
         client.close()
 
 
+def test_a_living_cpp_port_keeps_its_name(network: CppYarp) -> None:
+    """A second one fails to open and the first goes on; one that was killed is replaced at once."""
+    with (
+        CppProgram(network) as first,
+        CppProgram(network) as second,
+        yarpy.Port("/twin/out") as out,
+    ):
+        number = first.do("port = yarp.BufferedPortBottle(); assert port.open('/twin/in')\n"
+                          "port.setStrict(); port.where().getPort()")  # fmt: skip
+        assert not second.do("port = yarp.BufferedPortBottle(); port.open('/twin/in')")
+        assert "address conflict" in second.process.stderr
+        found = yarpy.query("/twin/in")
+        assert found is not None and found.port == number
+        out.connect("/twin/in")
+        out.write(["still there"])
+        assert first.do("port.read().toString()") == '"still there"'
+        first.process.kill()
+        assert second.do("port = yarp.BufferedPortBottle(); port.open('/twin/in')")
+        wait_until(lambda: second.do("port.getInputCount()") == 1, PATIENCE)
+        second.do("port.setStrict()")
+        out.write(["here again"])
+        assert second.do("port.read().toString()") == '"here again"'
+
+
 def test_a_cpp_port_is_dialled_again(network: CppYarp) -> None:
     """It says its name, so it is known again, by its name and at its address."""
     with yarpy.Port("/identity/out") as out:

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.name_line import new_service
 
+from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.errors import YarpError
 from yarpy.names.registration_line import END
@@ -368,3 +369,60 @@ def test_many_threads_get_different_numbers(service: NameService) -> None:
         thread.join()
     ports = [contact.port for contact in service.store.contacts()]
     assert len(ports) == len(set(ports)) == 800
+
+
+# --- a name that a living port has
+
+
+def with_living(*living: str) -> NameService:
+    return NameService(
+        NameStore("127.0.0.1", 21100), Topology(lambda: 0.0), lambda contact: contact.name in living
+    )
+
+
+@pytest.mark.parametrize("again", ["", " ... ... -1", " tcp 127.0.0.1 0 yarp/image"])
+def test_a_living_port_keeps_its_name_and_number(again: str) -> None:
+    service = with_living("/x")
+    first = ask(service, "register /x ... ... -1 yarp/sound")
+    ask(service, "announce /x", "set /x process 5")
+    reply = service.answer_text("register /x" + again, "127.0.0.1")
+    assert list(reply.lines[:-1]) == first, "so that the newcomer cannot listen"
+    assert (reply.events, reply.actions) == ((), ())
+    assert ask(service, "get /x process") == ["port /x property process = 5"]
+    assert ask(service, "get /x type") == ["port /x property type = yarp/sound"]
+    nested = ask(service, f"NAME_SERVER bot register /x{again}")
+    assert nested == ["port", "name /x", "ip 127.0.0.1", "port_number 21102", "carrier tcp"]
+
+
+@pytest.mark.parametrize(
+    "again",
+    ["/x tcp 127.0.0.1 5", "/x tcp 10.0.0.9", "/x mcast", "/dead", "..."],
+    ids=["own number", "other host", "multicast", "dead port", "temporary"],
+)
+def test_other_registrations_are_as_ever(again: str) -> None:
+    before = ("register /x", "register /dead", "register /own tcp 127.0.0.1 21103")
+    living, plain = with_living("/x"), with_living()
+    assert ask(living, *before, f"register {again}") == ask(plain, *before, f"register {again}")
+    assert ask(living, "list") == ask(plain, "list")
+
+
+def test_others_are_served_while_a_port_is_asked_whether_it_lives() -> None:
+    asked, goes_on = threading.Event(), threading.Event()
+
+    def is_alive(contact: Contact) -> bool:
+        asked.set()
+        return goes_on.wait(10)
+
+    service = NameService(NameStore("127.0.0.1", 21100), Topology(lambda: 0.0), is_alive)
+    replies = [ask(service, "register /x")]
+    slow = threading.Thread(target=lambda: replies.append(ask(service, "register /x")))
+    slow.start()
+    assert asked.wait(10)
+    others = threading.Thread(target=lambda: ask(service, "unregister /x", "register /y"))
+    others.start()
+    others.join(10)
+    assert not others.is_alive()
+    goes_on.set()
+    slow.join(10)
+    assert replies[1] == replies[0], "the number of before, or a new one: it has been unregistered"
+    assert ask(service, "query /x") == replies[1]

@@ -61,6 +61,31 @@ def test_numbers_that_strangers_have_are_not_lent() -> None:
             assert port.contact.port == number + 3
 
 
+def test_a_living_port_keeps_its_number() -> None:
+    """What C++ programs ask: a number for the name, whoever has it."""
+    with NameServer() as server:
+        with yarpy.Port("/x") as port:
+            assert server.client.register("/x").port == port.contact.port
+            assert server.client.get("/x", "process") == [str(os.getpid())]
+            port._hub.registration.registered = False  # as if it were killed
+        again = server.client.register("/x")
+        assert again.port == port.contact.port, "it is free again, and the name's own"
+
+
+def test_a_name_whose_number_another_has_gets_a_new_one() -> None:
+    number = free_block(10)
+    with NameServer(number) as server, yarpy.Port("/other") as other:
+        server.client.register("/x", "tcp", "127.0.0.1", other.contact.port)
+        assert server.client.register("/x").port == number + 3
+
+
+def test_a_port_that_is_silent_keeps_its_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("yarpy.nameserver.server.BUSY", 0.2)
+    with NameServer() as server, socket.create_server(("127.0.0.1", 0)) as silent:
+        stuck = server.client.register("/stuck", "tcp", "127.0.0.1", silent.getsockname()[1])
+        assert server.client.register("/stuck") == stuck
+
+
 # ---------------------------------------------------------------------------------- captures
 
 

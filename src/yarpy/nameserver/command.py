@@ -15,6 +15,7 @@ import threading
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -53,12 +54,20 @@ class NameService:
     """Answers commands from a name store and a topology. Any thread may call; one command runs at a
     time.
 
-    `lock` is held meanwhile. Hold it yourself to look at `store` or `topology`.
+    `lock` is held meanwhile. Hold it yourself to look at `store` or `topology`. `is_alive(contact)`
+    tells whether the port of that name still has its address; it may take a while, so it is asked
+    without the lock.
     """
 
-    def __init__(self, store: NameStore, topology: Topology) -> None:
+    def __init__(
+        self,
+        store: NameStore,
+        topology: Topology,
+        is_alive: Callable[[Contact], bool] = lambda contact: False,
+    ) -> None:
         self.store = store
         self.topology = topology
+        self._is_alive = is_alive
         self.lock = threading.RLock()  # a registration changes store, pools and rules together
         self._subscriber: dict[str, Callable[[list[Any]], Reply]] = {
             "subscribe": self._subscribe,
@@ -91,21 +100,26 @@ class NameService:
         """The reply to a command that came from `peer_host` ("" when that is not known)."""
         words, nested = without_request(command)
         verb = plain_text(words[0]) if words else ""
-        with self.lock:
-            subscriber = self._subscriber.get(verb)
-            if subscriber is not None:
+        subscriber = self._subscriber.get(verb)
+        if subscriber is not None:
+            with self.lock:
                 try:
                     return subscriber(words)
                 except AddressError as error:
                     return fail(str(error))
-            if verb == "NAME_SERVER":
-                del words[0]
-            if words and plain_text(words[0]) == "bot":
-                del words[0]
-                nested = True
-            registry = self._registry.get(plain_text(words[0])) if words else None
-            if registry is None:
-                return old(())
+        if verb == "NAME_SERVER":
+            del words[0]
+        if words and plain_text(words[0]) == "bot":
+            del words[0]
+            nested = True
+        verb = plain_text(words[0]) if words else ""
+        registry = self._registry.get(verb)
+        if registry is None:
+            return old(())
+        held = self._held(words, peer_host) if verb == "register" else None
+        with self.lock:
+            if held is not None and self.store.query(held.name) == held:
+                return _registered(held, nested)
             try:
                 return registry(words, nested, peer_host)
             except AddressError as error:
@@ -136,6 +150,23 @@ class NameService:
         network, name = split_network(undecorate(_word(words, 1))[1])
         return found(self.store.query(name, network), nested)
 
+    def _held(self, words: list[Any], peer: str) -> Contact | None:
+        """Where a living port has the name that is registered once more on the same host.
+
+        That port keeps it: the newcomer is told the number that is in use, cannot listen there, and
+        says that there is an address conflict, as around the name server of C++.
+        """
+        with self.lock:
+            contact = self.store.query(_word(words, 1))
+        if contact is None or contact.carrier != "tcp" or _port_number(words) > 0:
+            return None
+        carrier, host = _word(words, 2), _word(words, 3)
+        if host in ("", "..."):
+            host = plain_host(peer)
+        if carrier not in ("", "...", "tcp") or host != contact.host:
+            return None
+        return contact if self._is_alive(contact) else None
+
     def _register(self, words: list[Any], nested: bool, peer: str) -> Reply:
         name = _word(words, 1)
         removed = self.store.unregister(name)
@@ -153,9 +184,7 @@ class NameService:
             return old([f"error {error}"], events, actions)
         if contact.carrier != "mcast":
             events.append(Bottle([Vocab("add"), contact.name]))
-        if nested:
-            return old(broken(port_bottle(contact)), events, actions)
-        return old([registration_line(contact)], events, actions)
+        return _registered(contact, nested, events, actions)
 
     def _unregister(self, words: list[Any], nested: bool, peer: str) -> Reply:
         name = _word(words, 1)
@@ -294,6 +323,15 @@ def without_request(command: Sequence[Any]) -> tuple[list[Any], bool]:
 
 def _is_pair(item: Any) -> bool:
     return isinstance(item, list) and len(item) == 2
+
+
+def _registered(
+    contact: Contact, nested: bool, events: Sequence[Bottle] = (), actions: Sequence[Action] = ()
+) -> Reply:
+    """What is said of a port that was registered."""
+    if nested:
+        return old(broken(port_bottle(contact)), events, actions)
+    return old([registration_line(contact)], events, actions)
 
 
 def _word(words: Sequence[Any], place: int) -> str:

@@ -19,7 +19,7 @@ from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import YarpError
+from yarpy.errors import Timeout, YarpError
 from yarpy.link.inbound import Inbound
 from yarpy.log import logger
 from yarpy.names.address import is_loopback, local_addresses
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 log = logger("yarpy.name_server")
 
 WORKERS: Final = 4
+BUSY: Final = 1.0  # seconds for a port that lives to say its name
 GROUP: Final = "224.2.1.1"
 MAX_EVENTS: Final = 10_000
 
@@ -106,7 +107,9 @@ class NameServer:
         self.client = client_of(Server(host, self.port))
         self.name = name
         self.service = NameService(
-            NameStore(host, self.port, is_taken=self._is_taken), Topology(time.time)
+            NameStore(host, self.port, is_taken=self._is_taken),
+            Topology(time.time),
+            self._is_alive,
         )
         self._pages = NamePage(name, self._contacts, self.service.verbs, folder)
         self._database: Database | None = None
@@ -152,7 +155,21 @@ class NameServer:
     def _is_taken(self, host: str, number: int) -> bool:
         """Whether an unregistered program on this computer listens there, such as a port that
         outlived the previous server. (C++ lends the number, and the new port cannot open.)"""
-        return (host == self.host or is_loopback(host)) and is_taken(number)
+        return self._is_here(host) and is_taken(number)
+
+    def _is_alive(self, contact: Contact) -> bool:
+        """Whether the port of that name is there; one that is silent may be stopped or busy."""
+        if self._is_here(contact.host) and not is_taken(contact.port):
+            return False
+        try:
+            return probe.who(contact, BUSY, secret()) == contact.name
+        except Timeout:
+            return True
+        except (YarpError, OSError):
+            return False
+
+    def _is_here(self, host: str) -> bool:
+        return host == self.host or is_loopback(host)
 
     def _answer(self, link: Inbound, message: Message) -> None:
         peer = link.driver.transport.remote[0]

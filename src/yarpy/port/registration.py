@@ -111,7 +111,7 @@ class Registration:
             self.describe(names)
 
     def _refuse_taken(self, names: NameClient) -> None:
-        """A name belongs to the living port that has it. C++ would take it away in silence."""
+        """A name belongs to the living port that has it, on whichever computer."""
         if not self.name.startswith("/"):
             return
         try:
