@@ -13,7 +13,7 @@ from typing import Any
 
 from yarpy.carriers.http.login import MAX_CHALLENGES, parse_challenges
 from yarpy.carriers.http.port_page import page
-from yarpy.carriers.http.request import Request, page_asked, read_fields, read_wish
+from yarpy.carriers.http.request import Request, page_asked, read_fields, read_intent
 from yarpy.config.configuration import parse_server
 from yarpy.config.ini import parse_ini
 from yarpy.contact import parse_contact
@@ -67,15 +67,15 @@ def _of_text(read: Callable[[str], Any]) -> Callable[[bytes], Any]:
 
 
 def _get(data: bytes) -> object:
-    return read_wish(Request("GET", "/" + data.decode("latin-1"), {}))
+    return read_intent(Request("GET", "/" + data.decode("latin-1"), {}))
 
 
 def _post(data: bytes) -> object:
-    return read_wish(Request("POST", "/form", {}, data))
+    return read_intent(Request("POST", "/form", {}, data))
 
 
 def _post_json(data: bytes) -> object:
-    return read_wish(Request("POST", "/form", {"content-type": "application/json"}, data))
+    return read_intent(Request("POST", "/form", {"content-type": "application/json"}, data))
 
 
 def _page_asked(data: bytes) -> object:

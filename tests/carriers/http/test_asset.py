@@ -7,11 +7,11 @@ import re
 import pytest
 
 from yarpy.carriers.http.asset import KINDS, asset
-from yarpy.carriers.http.request import Refusal, Request, page_asked, read_wish
+from yarpy.carriers.http.request import Refusal, Request, page_asked, read_intent
 
 
 def get(path: str) -> Refusal:
-    found = read_wish(Request("GET", path, {}))
+    found = read_intent(Request("GET", path, {}))
     assert isinstance(found, Refusal)
     return found
 

@@ -11,12 +11,12 @@ from support.steps import measured
 
 from yarpy.carriers.http.request import (
     MAX_FIELDS,
+    Intent,
     Refusal,
     Request,
-    Wish,
     page_asked,
     read_fields,
-    read_wish,
+    read_intent,
     substitute,
 )
 from yarpy.data.bottle import Bottle
@@ -26,15 +26,15 @@ from yarpy.errors import DecodeError
 HTML = "text/html,application/xhtml+xml,*/*;q=0.8"
 
 
-def wish(target: str, accept: str = "*/*", method: str = "GET") -> Wish:
-    found = read_wish(Request(method, target, {"accept": accept}))
-    assert isinstance(found, Wish), found
+def intent(target: str, accept: str = "*/*", method: str = "GET") -> Intent:
+    found = read_intent(Request(method, target, {"accept": accept}))
+    assert isinstance(found, Intent), found
     return found
 
 
-def posted(body: str, kind: str = "", target: str = "/form") -> Wish | Refusal:
+def posted(body: str, kind: str = "", target: str = "/form") -> Intent | Refusal:
     headers = {"content-type": kind} if kind else {}
-    return read_wish(Request("POST", target, headers, body.encode()))
+    return read_intent(Request("POST", target, headers, body.encode()))
 
 
 MESSAGES = [
@@ -69,7 +69,7 @@ MESSAGES = [
 
 @pytest.mark.parametrize(("target", "key", "text", "form"), MESSAGES)
 def test_messages(target: str, key: str, text: str, form: str) -> None:
-    found = wish(target)
+    found = intent(target)
     assert (found.key, found.form, found.acts) == (key, form, True)
     expected = Bottle.from_text(text.replace("\\udcfc", "\udcfc"))
     assert found.message().value == expected
@@ -92,13 +92,13 @@ COMMANDS = [
 
 @pytest.mark.parametrize(("target", "key", "form"), COMMANDS)
 def test_port_commands(target: str, key: str, form: str) -> None:
-    found = wish(target)
+    found = intent(target)
     assert (found.key, found.form, found.acts) == (key, form, False)
     assert found.text == ("page" if key == "*" else "")
 
 
 def test_commands_that_connect() -> None:
-    found = wish("/?cmd=/dest")
+    found = intent("/?cmd=/dest")
     assert (found.key, found.text, found.acts) == ("/", "dest", True)
 
 
@@ -117,13 +117,13 @@ ACCEPTING = [
 
 @pytest.mark.parametrize(("target", "accept", "form"), ACCEPTING)
 def test_answers_suit_who_asks(target: str, accept: str, form: str) -> None:
-    assert wish(target, accept).form == form
+    assert intent(target, accept).form == form
 
 
 def test_outer_form() -> None:
-    assert wish("/?req=x&outer=dict").outer == "dict"
-    assert wish("/?req=x&outer=list").outer == "list"
-    assert wish("/?req=x&outer=tree").outer == "auto"
+    assert intent("/?req=x&outer=dict").outer == "dict"
+    assert intent("/?req=x&outer=list").outer == "list"
+    assert intent("/?req=x&outer=tree").outer == "auto"
 
 
 BODIES = [
@@ -144,22 +144,22 @@ BODIES = [
 @pytest.mark.parametrize(("kind", "body", "text", "form"), BODIES)
 def test_bodies(kind: str, body: str, text: str, form: str) -> None:
     found = posted(body, kind)
-    assert isinstance(found, Wish), found
+    assert isinstance(found, Intent), found
     assert (found.key, found.form) == ("d", form)
     assert found.message().value == Bottle.from_text(text)
 
 
 def test_json_body_keeps_kinds() -> None:
     found = posted('["1", 1, true, null]', "application/json")
-    assert isinstance(found, Wish)
+    assert isinstance(found, Intent)
     assert found.message().value == ["1", 1, True, Vocab("null")]
 
 
 def test_body_for_the_port_itself() -> None:
     found = posted('{"req": "ver", "admin": true}', "application/json")
-    assert isinstance(found, Wish)
+    assert isinstance(found, Intent)
     assert found.key == "a"
-    assert posted("") == wish("/", method="POST")
+    assert posted("") == intent("/", method="POST")
 
 
 REFUSED = [
@@ -180,7 +180,7 @@ REFUSED = [
 
 @pytest.mark.parametrize(("request_", "status"), REFUSED)
 def test_refused(request_: Request, status: int) -> None:
-    found = read_wish(request_)
+    found = read_intent(request_)
     assert isinstance(found, Refusal)
     assert found.status == status
 
@@ -207,8 +207,8 @@ def test_substitution() -> None:
 )
 def test_any_request_means_something(method: str, target: str, kind: str, body: bytes) -> None:
     headers = {"content-type": kind} if kind else {}
-    found = read_wish(Request(method, "/" + target, headers, body))
-    if isinstance(found, Wish):
+    found = read_intent(Request(method, "/" + target, headers, body))
+    if isinstance(found, Intent):
         _ = found.message()
     else:
         assert 200 <= found.status < 500
@@ -249,12 +249,12 @@ def test_arguments_do_not_multiply() -> None:
         Request("GET", f"/?req={many[:4000]}&a={long[:8000]}", {}),
     ):
         with measured() as peak:
-            refusal = read_wish(request)
+            refusal = read_intent(request)
         assert isinstance(refusal, Refusal) and refusal.status == 400
         assert peak.bytes < 1 << 24
     assert substitute("$a" * 1000, {"a": "x" * 1000}) == "x" * 1_000_000
 
 
 def test_the_address_of_a_proxy_counts_only_at_the_beginning() -> None:
-    wish = read_wish(Request("GET", "http://robot:10001/?req=see+http://elsewhere/", {}))
-    assert isinstance(wish, Wish) and wish.payload == b"see http://elsewhere/"
+    intent = read_intent(Request("GET", "http://robot:10001/?req=see+http://elsewhere/", {}))
+    assert isinstance(intent, Intent) and intent.payload == b"see http://elsewhere/"

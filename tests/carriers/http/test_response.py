@@ -7,7 +7,7 @@ import pytest
 from yarpy.carriers.http.message import HTML, JSON, TEXT
 from yarpy.carriers.http.origin import origins_of
 from yarpy.carriers.http.page import Page
-from yarpy.carriers.http.request import Form, Refusal, Wish
+from yarpy.carriers.http.request import Form, Intent, Refusal
 from yarpy.carriers.http.response import (
     LATE,
     PRELUDE,
@@ -25,8 +25,8 @@ PORT = Responder(Route("", "/cap/srv", "http"), origins_of("*"))
 LOCKED = Responder(Route("", "/cap/srv", "http"), origins_of("http://dash:8080"))
 
 
-def wish(form: Form) -> Wish:
-    return Wish("d", form)
+def intent(form: Form) -> Intent:
+    return Intent("d", form)
 
 
 def headers(response: Response) -> dict[str, str]:
@@ -49,11 +49,11 @@ REPLIES: list[tuple[Form, object, int, str, bytes]] = [
 
 @pytest.mark.parametrize(("form", "value", "status", "kind", "body"), REPLIES)
 def test_replies(form: Form, value: object, status: int, kind: str, body: bytes) -> None:
-    assert PORT.reply(wish(form), value, "x") == Response(status, kind, body)
+    assert PORT.reply(intent(form), value, "x") == Response(status, kind, body)
 
 
 def test_reply_on_a_page() -> None:
-    response = PORT.reply(wish("page"), ["<b>"], "x:1")
+    response = PORT.reply(intent("page"), ["<b>"], "x:1")
     assert (response.status, response.kind, response.endless) == (200, HTML, False)
     assert response.body is not None
     assert b"<h1>/cap/srv</h1>" in response.body
@@ -62,39 +62,39 @@ def test_reply_on_a_page() -> None:
 
 def test_page_leads_where_the_browser_can_go() -> None:
     line = "registration name /a ip 127.0.0.1 port 10002 type tcp"
-    body = PORT.said(wish("page"), Lines([line]), "robot:10000").body
+    body = PORT.said(intent("page"), Lines([line]), "robot:10000").body
     assert body is not None and b'href="http://robot:10002/"' in body
 
 
 def test_nothing_said() -> None:
-    assert PORT.nothing(wish("json"), "x") == Response(200, JSON, b"[]\n")
-    assert PORT.nothing(wish("text"), "x") == Response(204)
-    body = PORT.nothing(wish("page"), "x").body
+    assert PORT.nothing(intent("json"), "x") == Response(200, JSON, b"[]\n")
+    assert PORT.nothing(intent("text"), "x") == Response(204)
+    body = PORT.nothing(intent("page"), "x").body
     assert body is not None and b"(no reply)" in body
 
 
-# ---------------------------------------------------------------------------------- guests
+# ---------------------------------------------------------- pages that programs put into replies
 
-GUEST = [["web", "<b>hi</b>"], ["mime", "text/x"]]
+REPLY_PAGE = [["web", "<b>hi</b>"], ["mime", "text/x"]]
 
 
 def test_page_that_a_program_put_into_its_reply() -> None:
     for form in ("page", "text"):
-        response = PORT.reply(wish(form), GUEST, "x")
+        response = PORT.reply(intent(form), REPLY_PAGE, "x")
         assert (response.kind, response.body) == ("text/x", b"<b>hi</b>")
         assert headers(response)["Content-Security-Policy"].startswith("sandbox")
-    assert PORT.reply(wish("page"), GUEST[:1], "x").kind == HTML
-    assert PORT.reply(wish("json"), GUEST, "x").kind == JSON
-    assert PORT.reply(wish("none"), GUEST, "x").status == 204
+    assert PORT.reply(intent("page"), REPLY_PAGE[:1], "x").kind == HTML
+    assert PORT.reply(intent("json"), REPLY_PAGE, "x").kind == JSON
+    assert PORT.reply(intent("none"), REPLY_PAGE, "x").status == 204
 
 
 def test_type_that_is_no_header_makes_it_a_reply_like_any_other() -> None:
     evil = [["web", "<b>"], ["mime", "a\r\nEvil: 1"]]
-    assert PORT.reply(wish("text"), evil, "x").kind == TEXT
+    assert PORT.reply(intent("text"), evil, "x").kind == TEXT
 
 
 def test_page_that_goes_on() -> None:
-    response = PORT.reply(wish("page"), [*GUEST, ["stream", 1]], "x")
+    response = PORT.reply(intent("page"), [*REPLY_PAGE, ["stream", 1]], "x")
     assert response.endless
     assert response.body == b" " * PRELUDE + b"<b>hi</b>"
     assert "Content-Length" not in headers(response)
@@ -109,7 +109,7 @@ def test_page_that_goes_on() -> None:
     ],
 )
 def test_beginning_of_what_a_reader_gets(form: Form, kind: str, begins: bytes) -> None:
-    response = PORT.reading(wish(form))
+    response = PORT.reading(intent(form))
     assert (response.kind, response.endless) == (kind, True)
     assert response.body == begins
 
@@ -119,10 +119,10 @@ def test_beginning_of_what_a_reader_gets(form: Form, kind: str, begins: bytes) -
 
 def test_pages_are_not_for_others_to_frame_where_only_some_may_act() -> None:
     frame = "frame-ancestors 'self' http://dash:8080"
-    for response in (LOCKED.said(wish("page"), [1], "x"), LOCKED.reader()):
+    for response in (LOCKED.said(intent("page"), [1], "x"), LOCKED.reader()):
         assert headers(response)["Content-Security-Policy"].endswith(frame)
     assert headers(LOCKED.shown(Page("hi")))["Content-Security-Policy"] == frame
-    assert "frame" not in headers(PORT.said(wish("page"), [1], "x"))["Content-Security-Policy"]
+    assert "frame" not in headers(PORT.said(intent("page"), [1], "x"))["Content-Security-Policy"]
     assert "Content-Security-Policy" not in headers(PORT.shown(Page("hi")))
 
 
@@ -152,7 +152,7 @@ def test_heads() -> None:
         b"HTTP/1.1 408 Request Timeout\r\n" + common + b"Content-Type: text/plain; charset=utf-8"
         b"\r\nContent-Length: 35\r\nConnection: close\r\n\r\n"
     )
-    assert bare(wish("json")).head().endswith(b"Content-Type: application/json\r\n\r\n")
+    assert bare(intent("json")).head().endswith(b"Content-Type: application/json\r\n\r\n")
 
 
 def test_header_that_cannot_be_sent() -> None:

@@ -17,10 +17,10 @@ FORMS: list[tuple[Form, object, bytes, bytes]] = [
     ("events", [1], b"7\ndata: evil\r\0", b"id: 7data: evil\ndata: [1]\n\n"),
     ("json", ["a", 1], b"7 1.25", b'["a", 1]\n'),
     ("text", ["a", 1], b"7 1.25", b"a 1\r\n"),
-    ("guest", [["web", "<b>"]], b"", b"<b>"),
-    ("guest", [["web", b"\xff"]], b"", b"\xff"),
-    ("guest", [["web"]], b"", b"(web)\r\n"),
-    ("guest", [1], b"", b"1\r\n"),
+    ("reply_page", [["web", "<b>"]], b"", b"<b>"),
+    ("reply_page", [["web", b"\xff"]], b"", b"\xff"),
+    ("reply_page", [["web"]], b"", b"(web)\r\n"),
+    ("reply_page", [1], b"", b"1\r\n"),
 ]
 
 

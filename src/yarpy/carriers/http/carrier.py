@@ -52,7 +52,7 @@ from yarpy.wire.stream import ByteStream
 if TYPE_CHECKING:
     import h11
 
-    from yarpy.carriers.http.request import Form, Request, Wish
+    from yarpy.carriers.http.request import Form, Intent, Request
 
 DRAIN: Final = 1 << 20  # bytes of a refused body that are read, so that the refusal arrives
 TIME: Final = 60.0  # seconds a connection may be idle, and a request may take to come
@@ -81,7 +81,7 @@ class Http(Carrier):
         self._modern = False  # HTTP/1.1, which knows chunks
         self._finished = False  # the response is complete
         self._stays = False  # the connection stays open for another one
-        self._wish: Wish | None = None  # what is being answered
+        self._intent: Intent | None = None  # what is being answered
         self._taken = 0  # messages that were handed on, and those that are acknowledged
         self._acked = 0
         self._streaming = False
@@ -115,21 +115,21 @@ class Http(Carrier):
         while not self._finished:
             if self._streaming:  # the reply to the last message has begun something endless
                 return Message("r")
-            if self._wish is not None:
+            if self._intent is not None:
                 self._answer_nothing(stream)  # the next request waits already
                 continue
             request = yield from self._read_request(stream)
-            wish = (yield from self._understood(stream, request)) if request is not None else None
-            if isinstance(wish, Carrier):
-                return Message("r", wish)
-            if wish is None:
+            intent = (yield from self._understood(stream, request)) if request is not None else None
+            if isinstance(intent, Carrier):
+                return Message("r", intent)
+            if intent is None:
                 continue
             self._taken += 1
-            if wish.key == "r":
-                self._begin_reading(stream, wish)
+            if intent.key == "r":
+                self._begin_reading(stream, intent)
                 return Message("r")
-            self._wish = wish
-            return wish.message(_envelope(self._headers))
+            self._intent = intent
+            return intent.message(_envelope(self._headers))
         return Message(QUIT)
 
     def _read_request(self, stream: ByteStream) -> Steps[Request | None]:
@@ -204,11 +204,11 @@ class Http(Carrier):
                 stream.head = stream.tail
         raise RemoteProtocolError(f"HTTP {status}: {text}")
 
-    def _understood(self, stream: ByteStream, request: Request) -> Steps[Wish | Carrier | None]:
+    def _understood(self, stream: ByteStream, request: Request) -> Steps[Intent | Carrier | None]:
         """What the request wants of the port; None if it is answered without the port, a carrier if
         that one is to do the rest.
         """
-        from yarpy.carriers.http.request import Refusal, page_asked, read_wish
+        from yarpy.carriers.http.request import Refusal, page_asked, read_intent
 
         if self.origins.turns_away(self._headers, self.route.host):
             self._respond(stream, complaint(421, not_ours(self._host)))
@@ -226,52 +226,52 @@ class Http(Carrier):
         if page is not None:
             self._respond(stream, self._responder.shown(page))
             return None
-        wish = read_wish(request)
-        if isinstance(wish, Refusal):
-            self._respond(stream, refused(wish))
+        intent = read_intent(request)
+        if isinstance(intent, Refusal):
+            self._respond(stream, refused(intent))
             return None
-        return self._screened(stream, wish)
+        return self._screened(stream, intent)
 
-    def _screened(self, stream: ByteStream, wish: Wish) -> Wish | None:
-        """The wish, unless it must not reach the port."""
-        if wish.acts and not self.origins.admits(self._headers, "tls" in self.route.spec.tokens):
+    def _screened(self, stream: ByteStream, intent: Intent) -> Intent | None:
+        """The intent, unless it must not reach the port."""
+        if intent.acts and not self.origins.admits(self._headers, "tls" in self.route.spec.tokens):
             self._respond(stream, MAY_NOT_ACT)
-        elif self._head_only and (wish.acts or wish.key == "r"):
+        elif self._head_only and (intent.acts or intent.key == "r"):
             # HEAD must change nothing, so there is no reply whose length could be told.
-            self._respond(stream, bare(wish))
-        elif (wish.key, wish.form) == ("r", "page"):
+            self._respond(stream, bare(intent))
+        elif (intent.key, intent.form) == ("r", "page"):
             self._respond(stream, self._responder.reader())
         else:
-            return wish
+            return intent
         return None
 
     # -- answering --------------------------------------------------------------------------------
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
-        wish = self._wish
-        if wish is None:
+        intent = self._intent
+        if intent is None:
             return  # nobody is waiting for it any more
         try:
-            response = self._responder.reply(wish, value, self._host)
+            response = self._responder.reply(intent, value, self._host)
             if response.endless:
-                self._wish = None
-                self._begin_stream(stream, "guest", response)
+                self._intent = None
+                self._begin_stream(stream, "reply_page", response)
             else:
                 self._respond(stream, response)
         except (TypeError, ValueError, YarpError):
-            if self._wish is not None:
+            if self._intent is not None:
                 self._respond(stream, UNSPEAKABLE)
             raise
 
     def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
-        if self._wish is not None:
-            said = self._responder.said(self._wish, Lines(lines), self._host)
+        if self._intent is not None:
+            said = self._responder.said(self._intent, Lines(lines), self._host)
             self._respond(stream, said)
 
     def encode_ack(self, stream: ByteStream, count: int) -> None:
         """The response to a message that the port did not reply to."""
         self._acked += count
-        if self._wish is not None and self._acked >= self._taken:
+        if self._intent is not None and self._acked >= self._taken:
             self._answer_nothing(stream)
 
     def encode_quit(self, stream: ByteStream) -> None:
@@ -280,8 +280,8 @@ class Http(Carrier):
         self._streaming = False
 
     def _answer_nothing(self, stream: ByteStream) -> None:
-        assert self._wish is not None
-        self._respond(stream, self._responder.nothing(self._wish, self._host))
+        assert self._intent is not None
+        self._respond(stream, self._responder.nothing(self._intent, self._host))
 
     @property
     def _host(self) -> str:
@@ -289,7 +289,7 @@ class Http(Carrier):
 
     def _respond(self, stream: ByteStream, response: Response) -> None:
         """Write a whole response."""
-        self._wish = None
+        self._intent = None
         last = []
         if not self._stays:
             last.append(("Connection", "close"))
@@ -306,11 +306,11 @@ class Http(Carrier):
 
     # -- a reader ---------------------------------------------------------------------------------
 
-    def _begin_reading(self, stream: ByteStream, wish: Wish) -> None:
+    def _begin_reading(self, stream: ByteStream, intent: Intent) -> None:
         """Answer `/r`: everything that the port writes, from now on."""
-        self._pixels = wish.pixels
-        interval = 1 / wish.rate if wish.rate else 0.0
-        self._begin_stream(stream, wish.form, self._responder.reading(wish), interval)
+        self._pixels = intent.pixels
+        interval = 1 / intent.rate if intent.rate else 0.0
+        self._begin_stream(stream, intent.form, self._responder.reading(intent), interval)
 
     def _begin_stream(
         self, stream: ByteStream, form: Form, response: Response, interval: float = 0.0

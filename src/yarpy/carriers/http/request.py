@@ -28,7 +28,7 @@ from yarpy.errors import DecodeError
 from yarpy.wire import framing
 from yarpy.wire.message import ADMIN, CALL, DATA, JSON, Message, Spelling
 
-Form: TypeAlias = Literal["page", "json", "text", "none", "events", "guest"]
+Form: TypeAlias = Literal["page", "json", "text", "none", "events", "reply_page"]
 
 MAX_FIELDS: Final = 1000
 MAX_FILLED: Final = 1 << 20  # characters that arguments may put in the place of their names
@@ -59,7 +59,7 @@ class Request:
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class Intent:
     """A message or port command (`key`, as in Message), and how to answer it.
 
     shown: what the page's form shows again. pixels: the reader wants whole pictures. rate: messages
@@ -97,7 +97,7 @@ class Refusal:
     kind: str = TEXT
 
 
-def read_wish(request: Request) -> Wish | Refusal:
+def read_intent(request: Request) -> Intent | Refusal:
     """What a GET, HEAD or POST request is about."""
     try:
         return _read(request)
@@ -105,7 +105,7 @@ def read_wish(request: Request) -> Wish | Refusal:
         return Refusal(400, str(error))
 
 
-def _read(request: Request) -> Wish | Refusal:
+def _read(request: Request) -> Intent | Refusal:
     path, mark, query = _parts(request.target)
     if not query and "=" in path:
         path, query = "", path  # `/data=list`
@@ -129,9 +129,9 @@ def _read(request: Request) -> Wish | Refusal:
     if not fields.keys() & {"cmd", "req", "data"}:
         if path in ("", "form", "data"):
             key = "?" if mark and path == "" else "*"
-            return Wish(key, _form(request, fields, "page"), text=PAGE if key == "*" else "")
+            return Intent(key, _form(request, fields, "page"), text=PAGE if key == "*" else "")
         if len(path) == 1:
-            return Wish("*", _form(request, fields, "page"), text=PAGE) if path == "*" else _one()
+            return Intent("*", _form(request, fields, "page"), text=PAGE) if path == "*" else _one()
         words = _decoded(path).replace("/", " ").strip()
         fields = {**fields, "data": words}
         default: Form = "page" if _likes(request, "text/html") else "text"
@@ -195,7 +195,7 @@ def _parts(target: str) -> tuple[str, str, str]:
     return target.partition("#")[0].removeprefix("/").partition("?")
 
 
-def _posted(request: Request, fields: dict[str, str]) -> Wish | Refusal:
+def _posted(request: Request, fields: dict[str, str]) -> Intent | Refusal:
     kind = request.headers.get("content-type", FORM).partition(";")[0].strip().lower()
     body = request.body
     if kind == FORM:
@@ -207,7 +207,7 @@ def _posted(request: Request, fields: dict[str, str]) -> Wish | Refusal:
                 400,
                 f"the body is not a form, as {FORM} says: JSON and text need a Content-Type too",
             )
-        return Wish("*", _form(request, fields, "page"), text=PAGE)
+        return Intent("*", _form(request, fields, "page"), text=PAGE)
     if kind == "text/plain":
         text = body.decode("utf-8", "surrogateescape")
         return _asked(request, fields, text, "text", substituting=False)
@@ -216,7 +216,7 @@ def _posted(request: Request, fields: dict[str, str]) -> Wish | Refusal:
     return Refusal(415, f"send {FORM}, application/json or text/plain, not {kind[:80]}")
 
 
-def _json(request: Request, fields: dict[str, str], value: Any) -> Wish | Refusal:
+def _json(request: Request, fields: dict[str, str], value: Any) -> Intent | Refusal:
     """A JSON body: an array or object is the message; an object with `req` or `data` is read like a
     form.
     """
@@ -224,10 +224,10 @@ def _json(request: Request, fields: dict[str, str], value: Any) -> Wish | Refusa
 
     form = _form(request, fields, "json")
     if not isinstance(value, Bottle):
-        return _wish(fields, form, Bottle([value]))
+        return _intent(fields, form, Bottle([value]))
     body = json.loads(request.body)
     if not isinstance(body, dict) or not body.keys() & {"cmd", "req", "data"}:
-        return _wish(fields, form, value)
+        return _intent(fields, form, value)
     asked: Any = None
     for key, item in body.items():
         if isinstance(item, str):
@@ -243,10 +243,10 @@ def _json(request: Request, fields: dict[str, str], value: Any) -> Wish | Refusa
     if asked is None:
         fields.setdefault("format", "json")
         return _by_fields(request, fields)
-    return _wish(fields, form, asked if isinstance(asked, Bottle) else Bottle([asked]))
+    return _intent(fields, form, asked if isinstance(asked, Bottle) else Bottle([asked]))
 
 
-def _by_fields(request: Request, fields: dict[str, str]) -> Wish | Refusal:
+def _by_fields(request: Request, fields: dict[str, str]) -> Intent | Refusal:
     if "cmd" in fields:
         return _command(request, fields)
     if "req" in fields:
@@ -262,7 +262,7 @@ def _asked(
     *,
     substituting: bool = True,
     honest: bool = False,
-) -> Wish:
+) -> Intent:
     """A message that is spelled as text. `honest`: only `format` can change the answer's form."""
     if substituting:
         text = substitute(text, fields)
@@ -271,7 +271,7 @@ def _asked(
         form = "text" if named == "html" else _SPELLINGS.get(named, default)
     else:
         form = _form(request, fields, default)
-    return Wish(
+    return Intent(
         _key(fields, form),
         form,
         text.encode("utf-8", "surrogateescape"),
@@ -280,27 +280,27 @@ def _asked(
     )
 
 
-def _wish(fields: Mapping[str, str], form: Form, value: Bottle) -> Wish:
+def _intent(fields: Mapping[str, str], form: Form, value: Bottle) -> Intent:
     """A message that is a value; strings stay strings, whatever is in them."""
     payload = b"".join(codec.encode(value))
     shown = value.to_text() if form == "page" else ""
-    return Wish(_key(fields, form), form, payload, "binary", outer=_outer(fields), shown=shown)
+    return Intent(_key(fields, form), form, payload, "binary", outer=_outer(fields), shown=shown)
 
 
-def _command(request: Request, fields: Mapping[str, str]) -> Wish | Refusal:
+def _command(request: Request, fields: Mapping[str, str]) -> Intent | Refusal:
     """`cmd`: what a person would type on a connection in text mode."""
     line, _, rest = fields["cmd"].lstrip("\r\n").partition("\n")
     command = framing.parse_command(line.rstrip("\r"))
     form = _form(request, fields, "page")
     if command.key in (CALL, DATA, ADMIN):
         payload = rest.encode("utf-8", "surrogateescape")
-        return Wish(command.key, form, payload, outer=_outer(fields), shown=rest)
+        return Intent(command.key, form, payload, outer=_outer(fields), shown=rest)
     if command.key == "r":
         return _reading(request, fields, "")
     if command.key == "q":
         return _one()
     text = PAGE if command.key == "*" else command.text
-    return Wish(command.key, form, text=text, outer=_outer(fields))
+    return Intent(command.key, form, text=text, outer=_outer(fields))
 
 
 def _one() -> Refusal:
@@ -332,7 +332,7 @@ def _form(request: Request, fields: Mapping[str, str], default: Form) -> Form:
     return default
 
 
-def _reading(request: Request, fields: Mapping[str, str], query: str) -> Wish | Refusal:
+def _reading(request: Request, fields: Mapping[str, str], query: str) -> Intent | Refusal:
     """`/r`: everything that the port writes, or `rate` messages a second at most."""
     asked = query.split("&")
     try:
@@ -340,7 +340,7 @@ def _reading(request: Request, fields: Mapping[str, str], query: str) -> Wish | 
     except ValueError as error:
         return Refusal(400, str(error))
     form = _reading_form(request, fields, asked)
-    return Wish("r", form, pixels="pixels" in asked, rate=rate)
+    return Intent("r", form, pixels="pixels" in asked, rate=rate)
 
 
 def number_of(name: str, fields: Mapping[str, str], least: float, most: float) -> float:

@@ -27,7 +27,7 @@ from yarpy.wire.message import Lines
 
 if TYPE_CHECKING:
     from yarpy.carriers.http.page import Page
-    from yarpy.carriers.http.request import Refusal, Wish
+    from yarpy.carriers.http.request import Intent, Refusal
 
 PRELUDE: Final = 2048  # blanks with which an endless page begins, as in C++: browsers buffer
 
@@ -44,7 +44,7 @@ _PAGE_POLICY: Final = (
     "img-src 'self' blob:; form-action 'self'; base-uri 'none'"
 )
 # A page that a program made: its scripts run, but not as those of the port's own pages.
-_GUEST_POLICY: Final = (
+_REPLY_PAGE_POLICY: Final = (
     "Content-Security-Policy",
     "sandbox allow-scripts allow-forms allow-popups",
 )
@@ -102,9 +102,9 @@ def refused(refusal: Refusal) -> Response:
     return Response(refusal.status, refusal.kind, _encoded(text))
 
 
-def bare(wish: Wish) -> Response:
+def bare(intent: Intent) -> Response:
     """The head of the answer, without its body."""
-    return Response(200, _TYPES.get(wish.form, TEXT), None)
+    return Response(200, _TYPES.get(intent.form, TEXT), None)
 
 
 class Responder:
@@ -117,32 +117,33 @@ class Responder:
         self.route = route
         self.origins = origins
 
-    def reply(self, wish: Wish, value: object, host: str) -> Response:
+    def reply(self, intent: Intent, value: object, host: str) -> Response:
         """The port's reply; an endless one if a program's page wants to go on."""
-        if wish.form == "none":
+        if intent.form == "none":
             return Response(204)
-        return (_guest(value) if wish.form != "json" else None) or self.said(wish, value, host)
+        page = _reply_page(value) if intent.form != "json" else None
+        return page or self.said(intent, value, host)
 
-    def said(self, wish: Wish, value: object, host: str) -> Response:
+    def said(self, intent: Intent, value: object, host: str) -> Response:
         """A value or lines in the form that was asked for."""
-        if wish.form == "json":
-            return Response(200, JSON, _json_body(value, wish))
-        if wish.form == "page":
-            return self._page(wish, _lines(value), host)
+        if intent.form == "json":
+            return Response(200, JSON, _json_body(value, intent))
+        if intent.form == "page":
+            return self._page(intent, _lines(value), host)
         return Response(200, TEXT, reply_text(value))
 
-    def nothing(self, wish: Wish, host: str) -> Response:
+    def nothing(self, intent: Intent, host: str) -> Response:
         """The answer to a message that the port did not reply to."""
-        if wish.form == "json":
+        if intent.form == "json":
             return Response(200, JSON, b"[]\n")
-        return self._page(wish, ["(no reply)"], host) if wish.form == "page" else Response(204)
+        return self._page(intent, ["(no reply)"], host) if intent.form == "page" else Response(204)
 
-    def reading(self, wish: Wish) -> Response:
+    def reading(self, intent: Intent) -> Response:
         """The beginning of everything that the port writes from now on."""
         from yarpy.carriers.http.stream import KINDS
 
-        body = b": reading\n\n" if wish.form == "events" else b""
-        return Response(200, KINDS[wish.form], body, endless=True)
+        body = b": reading\n\n" if intent.form == "events" else b""
+        return Response(200, KINDS[intent.form], body, endless=True)
 
     def reader(self) -> Response:
         """The page that shows what the port writes, message by message."""
@@ -167,10 +168,10 @@ class Responder:
         ]
         return Response(204, more=allowed)
 
-    def _page(self, wish: Wish, lines: list[str], host: str) -> Response:
+    def _page(self, intent: Intent, lines: list[str], host: str) -> Response:
         from yarpy.carriers.http.port_page import page
 
-        body = page(self.route.target, lines, wish.shown, hostname(host))
+        body = page(self.route.target, lines, intent.shown, hostname(host))
         return Response(200, HTML, body, [self._policy()])
 
     def _policy(self) -> tuple[str, str]:
@@ -179,7 +180,7 @@ class Responder:
         return "Content-Security-Policy", _PAGE_POLICY + (f"; {framing}" if framing else "")
 
 
-def _guest(value: object) -> Response | None:
+def _reply_page(value: object) -> Response | None:
     """The page that a program put under the key `web`; None if there is none."""
     from yarpy.carriers.http.stream import web_of
 
@@ -193,16 +194,16 @@ def _guest(value: object) -> Response | None:
     if not (kind.isascii() and kind.isprintable()):
         return None
     if Bottle(value).group("stream") is None:
-        return Response(200, kind, body, [_GUEST_POLICY])
-    return Response(200, kind, b" " * PRELUDE + body, [_GUEST_POLICY], endless=True)
+        return Response(200, kind, body, [_REPLY_PAGE_POLICY])
+    return Response(200, kind, b" " * PRELUDE + body, [_REPLY_PAGE_POLICY], endless=True)
 
 
-def _json_body(value: object, wish: Wish) -> bytes:
+def _json_body(value: object, intent: Intent) -> bytes:
     from yarpy.data.json import to_json
 
     if isinstance(value, Lines):
         value = ["list", *value]
-    return (to_json(value, wish.outer) + "\n").encode()
+    return (to_json(value, intent.outer) + "\n").encode()
 
 
 def _lines(value: object) -> list[str]:

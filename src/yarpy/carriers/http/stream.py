@@ -1,9 +1,9 @@
 """Messages one after another in an HTTP response that does not end.
 
-    events    id: 7 1.25 LF data: [1, 2] LF LF      for JavaScript's EventSource
-    json      [1, 2] LF
-    text      1 2 CR LF
-    guest     what the program put under `web`      see core-4 7.5
+    events        id: 7 1.25 LF data: [1, 2] LF LF      for JavaScript's EventSource
+    json          [1, 2] LF
+    text          1 2 CR LF
+    reply_page    what the program put under `web`      see core-4 7.5
 
 Rules: each form of a message is made once, however many read it. Of a picture only size and kind
 are sent, unless a reader of JSON asks for pixels; to see it, take mjpeg.
@@ -45,17 +45,17 @@ def _made(packet: Packet, form: Form, pixels: bool) -> bytes:
         envelope = packet.envelope.translate(None, b"\r\n\0")
         mark = b"id: " + envelope + b"\n" if envelope else b""
         return mark + b"data: " + text + b"\n\n"
-    if form == "guest":
+    if form == "reply_page":
         value = packet.value
-        guest = web_of(value) if isinstance(value, (list, tuple)) else None
-        if guest is not None:
-            return guest
+        reply_page = web_of(value) if isinstance(value, (list, tuple)) else None
+        if reply_page is not None:
+            return reply_page
     return packet.line + b"\r\n"
 
 
 def web_of(value: list[object] | tuple[object, ...]) -> bytes | None:
     """What a program put under the key `web`; None if there is nothing."""
-    guest = Bottle(value).group("web")
-    if guest is None or len(guest) < 2:
+    web = Bottle(value).group("web")
+    if web is None or len(web) < 2:
         return None
-    return guest[1] if isinstance(guest[1], bytes) else str(guest[1]).encode("utf-8", "replace")
+    return web[1] if isinstance(web[1], bytes) else str(web[1]).encode("utf-8", "replace")
