@@ -83,3 +83,8 @@ def test_a_complaint_has_the_name_looked_at(server, monkeypatch):
             with pytest.raises(yarpy.LinkClosed):
                 asker.connect("/lost")
         assert gone("/lost")
+
+
+def test_a_host_name_that_cannot_be_one_is_no_proof():
+    """Nor does it end the collector, which would raise."""
+    assert not collector._refuses(yarpy.Contact("tcp", "/x", "x" * 70, 10000))

@@ -48,6 +48,11 @@ def test_impossible_numbers(port: int) -> None:
         dial("127.0.0.1", port)
 
 
+def test_impossible_host() -> None:
+    with pytest.raises(AddressError, match="is no host name"):
+        dial("x" * 70, 10000)
+
+
 def test_nobody_there() -> None:
     with pytest.raises(ConnectionRefusedError):
         dial("127.0.0.1", free_port(), 2)

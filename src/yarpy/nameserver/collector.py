@@ -125,6 +125,6 @@ def _refuses(contact: Contact) -> bool:
         socket.create_connection((contact.host, contact.port), TIMEOUT).close()
     except ConnectionRefusedError:
         return True
-    except OSError:
+    except (OSError, UnicodeError):  # UnicodeError: no host can have such a name
         return False
     return False

@@ -47,10 +47,13 @@ class TcpTransport(SocketTransport):
 
 
 def dial(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TcpTransport:
-    """Connect to a port. Raises OSError (ConnectionRefusedError, TimeoutError ...)."""
+    """Connect to a port. Raises OSError (ConnectionRefusedError ...), AddressError."""
     if not 0 < port < 65536:
         raise AddressError(f"{host}:{port}: a TCP port number lies between 1 and 65535")
-    return TcpTransport(socket.create_connection((host, port), timeout))
+    try:
+        return TcpTransport(socket.create_connection((host, port), timeout))
+    except UnicodeError as error:  # from the encoding of names for DNS
+        raise AddressError(f'"{host}" is no host name: {error}') from error
 
 
 def is_taken(port: int) -> bool:
