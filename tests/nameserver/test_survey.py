@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import socket
 import threading
+from contextlib import suppress
 
 from support.wait import patience, wait_until
 
@@ -38,12 +39,42 @@ def test_what_is_told() -> None:
         [link] = survey.told(contacts["/in"])["links"]
         assert (link["out"], link["peer"]) == (False, "/out")
         assert survey.told(contacts["/gone"]) == {"alive": False}
-        assert survey.told(contacts["/silent"]) == {"alive": None, "silent": True}
+        assert survey.told(contacts["/silent"]) == {
+            "alive": None,
+            "silent": "does not answer: stopped, or very busy",
+        }
         assert survey.told(contacts["fallback"]) == {"alive": None}
         # Who took the name since is not known yet.
         assert survey.told(Contact("tcp", "/out", "127.0.0.1", 1)) == {"alive": None}
         survey.close()
         wait_until(lambda: not any(t.name == "yarpy survey" for t in threading.enumerate()))
+
+
+def hang_up(there: socket.socket) -> None:
+    """Close whatever is accepted, until the listener is closed."""
+    with suppress(OSError):
+        while True:
+            there.accept()[0].close()
+
+
+def test_only_a_refusal_proves_that_nobody_is_there() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as there:
+        contacts = [
+            Contact("tcp", "/unreachable", "255.255.255.255", 9),
+            Contact("tcp", "/misspelled", "x" * 70, 9),  # no name of a computer is that long
+            Contact("tcp", "/hangs/up", "127.0.0.1", there.getsockname()[1]),
+        ]
+        threading.Thread(target=hang_up, args=[there], daemon=True).start()
+        survey = Survey(lambda: contacts)
+        survey.want()
+        wait_until(lambda: all("silent" in survey.told(one) for one in contacts), patience(10))
+        found = [survey.told(one) for one in contacts]
+        survey.close()
+    assert [one["alive"] for one in found] == [None] * 3
+    for one, text in zip(
+        found, ("nobody answers at 255", "is no host name", "closed"), strict=True
+    ):
+        assert text in one["silent"]
 
 
 def test_nobody_is_asked_where_nobody_looks() -> None:

@@ -1,8 +1,8 @@
 """Survey: whether the registered ports answer, whose they are, and what they are connected to.
 
 Rules: ports are asked only while somebody wants to know, side by side and with a time limit. What a
-port said is known until it says something else; a refused connection proves that nobody is there,
-silence proves nothing.
+port said is known until it says something else. Only a refused connection proves that nobody is
+there; silence proves nothing, nor does a host that cannot be reached.
 """
 
 from __future__ import annotations
@@ -41,7 +41,10 @@ class Survey:
         self._closed = threading.Event()
 
     def told(self, contact: Contact) -> dict[str, Any]:
-        """What is known of a port: plain data for a page. `alive` None: it is not known."""
+        """What is known of a port: plain data for a page.
+
+        alive: None if it is not known; `silent` says why, if it was asked.
+        """
         found = self._found.get(contact.name)
         if found is None or found["at"] != contact.address:
             return {"alive": None}
@@ -78,9 +81,11 @@ class Survey:
         try:
             about = probe.ask(contact, ["prop", "get", contact.name], timeout=PATIENCE)
         except Timeout:
-            return {**told, "alive": None, "silent": True}
-        except (YarpError, OSError):
-            return {**told, "alive": False}
+            return {**told, "alive": None, "silent": "does not answer: stopped, or very busy"}
+        except (YarpError, OSError) as error:
+            if isinstance(error.__cause__, ConnectionRefusedError):
+                return {**told, "alive": False}
+            return {**told, "alive": None, "silent": str(error)[:200]}
         process = _pairs(about, "process")
         told["program"] = plain_text(process.get("arguments") or process.get("name") or "")[:200]
         told["process"] = process.get("pid")

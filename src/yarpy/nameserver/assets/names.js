@@ -24,7 +24,7 @@ function life(port) {
   if (port.carrier === "mcast") return "a multicast group";
   if (port.alive) return "";
   if (port.alive === false) return "gone: nobody listens there; yarpy clean removes such names";
-  return port.silent ? "does not answer: stopped, or very busy" : "";
+  return port.silent ?? "";
 }
 
 // What there is to tell of a port, in the words that the filter looks through.
