@@ -243,3 +243,57 @@ def test_nothing_is_mended_for_a_port_that_is_closed(names: yarpy.LocalNames) ->
     port.close()
     reconnect.output_lost(port._hub, Route("/out", "/in", "tcp"))
     assert reconnect.pending(port._hub) == []
+
+
+def lost(names: yarpy.LocalNames, port: yarpy.Port) -> reconnect._Lost:
+    """A connection of `port` to `/in`, which has failed."""
+    return reconnect._Lost(port._hub, Route(port.name, "/in", "tcp", peer="/in"), incoming=False)
+
+
+def test_pauses_grow(names: yarpy.LocalNames) -> None:
+    """A dead port is dialled at once at first, and then ever more rarely, by chance."""
+    with yarpy.Port("/out", names=names) as out:
+        item = lost(names, out)
+        now, pauses = 0.0, []
+        while now < 600.0:
+            item.put_off(now)
+            pauses.append(item.due - now)
+            now = item.due
+        assert pauses[0] < 0.2
+        for early, late in zip(pauses, pauses[7:], strict=False):
+            assert late > min(2 * early, 29.9), "beyond what chance does"
+        assert len(pauses) < 60, "in ten minutes"
+        assert 30.0 <= pauses[-1] <= 30.0 * reconnect.SLOWER
+        item.pause = reconnect.LOCKED
+        for _ in range(3):
+            item.put_off(0.0)
+            assert item.due >= reconnect.LOCKED, "a camera that locks out is asked no sooner"
+
+
+def test_why_something_stays_away_is_logged_once(
+    names: yarpy.LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Another port has the number; then nobody; then a third port: two lines for all attempts."""
+    with yarpy.Port("/out", names=names) as out:
+        item = lost(names, out)
+        repairer = reconnect.Repairer()
+        repairer._lost.append(item)
+
+        def attempts(number: int) -> None:
+            names.register("/in", "tcp", "127.0.0.1", number)
+            names.set("/in", "process", 1)
+            for _ in range(3):
+                repairer._try_to_mend(item)
+            assert repairer._lost == [item] and not out.outputs
+
+        with yarpy.BufferedPort("/other", names=names) as other:
+            attempts(other.contact.port)
+            number = other.contact.port
+        attempts(number)
+        with yarpy.BufferedPort("/third", names=names) as third:
+            attempts(third.contact.port)
+        assert not other.inputs and not third.inputs
+    told = [record.getMessage() for record in caplog.records if "/in" in record.getMessage()]
+    assert len(told) == 2
+    assert told[0].startswith('/out: no connection to /in: not "/in" listens at 127.0.0.1:')
+    assert 'but the port "/other"' in told[0] and 'but the port "/third"' in told[1]

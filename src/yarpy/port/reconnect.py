@@ -19,7 +19,7 @@ from typing import Final
 
 from yarpy.contact import parse_contact
 from yarpy.data.value import Vocab
-from yarpy.errors import LoginRefused, YarpError
+from yarpy.errors import LoginRefused, WrongPort, YarpError
 from yarpy.link.handshake import find_carrier
 from yarpy.link.outbound import Outbound
 from yarpy.log import logger
@@ -54,6 +54,21 @@ class _Lost:
     due: float = 0.0
     under_way: bool = False
     seen_gone: bool = False
+    told: str = ""  # what was logged last: each reason is told once, not at every attempt
+
+    def put_off(self, now: float) -> None:
+        """Another attempt later; each pause is longer than the one before."""
+        self.due = now + self.pause * random.uniform(1.0, SLOWER)
+        self.pause = min(self.pause * SLOWER, max(self.pause, LONGEST))
+
+    def tell(self, reason: YarpError, then: str) -> None:
+        """Log why it does not come back, and what happens `then`."""
+        if str(reason) != self.told:
+            self.told = str(reason)
+            way = "from" if self.incoming else "to"
+            log.warning(
+                "%s: no connection %s %s: %s; %s", self.hub.name, way, _peer(self), reason, then
+            )
 
 
 class Repairer:
@@ -241,14 +256,9 @@ class Repairer:
                 done = self._dial_again(item, item.route.target)
         except LoginRefused as error:
             item.pause = LOCKED
-            who = item.route.source if item.incoming else item.route.target
-            log.warning(
-                "%s: not admitted to %s: %s; it is asked again every %g s",
-                item.hub.name,
-                who,
-                error,
-                LOCKED,
-            )
+            item.tell(error, f"it is asked again every {LOCKED:g} s")
+        except WrongPort as error:
+            item.tell(error, "it is dialled again now and then, until the right one answers")
         except (YarpError, OSError):
             pass  # not yet
         now = time.monotonic()
@@ -258,8 +268,7 @@ class Repairer:
             with self._lock:
                 self._lost = [other for other in self._lost if other is not item]
         else:
-            item.due = now + item.pause * random.uniform(1.0, SLOWER)
-            item.pause = min(item.pause * SLOWER, max(item.pause, LONGEST))
+            item.put_off(now)
 
     def _mend_input(self, item: _Lost) -> bool:
         """Ask the sender, once it lives again, to send to us as before."""

@@ -13,7 +13,7 @@ from support.command_line import CommandLine
 from support.port import free_port
 
 import yarpy
-from yarpy.cli.verbs.server import BACKLOG, Scribe, decide
+from yarpy.cli.verbs.server import BACKLOG, LONGEST, QUESTIONS, SILENT, Scribe, decide
 from yarpy.config.configuration import Configuration, Server
 
 
@@ -260,6 +260,37 @@ def test_commands_are_marked(capsys):
         " * list",
         " * ",
     ]
+
+
+def said(capsys, *commands: str) -> list[str]:
+    scribe = Scribe()
+    for text in commands:
+        scribe.command(text, "127.0.0.1")
+    scribe.close()
+    return [line.removeprefix(" * ") for line in capsys.readouterr().out.splitlines()]
+
+
+DIAL = ('query "/dead"', 'get "/dead" ips', 'announce "/dead" 0')
+
+
+def test_dialling_a_dead_port_again_and_again_is_printed_once(capsys):
+    assert said(capsys, *DIAL * 50, 'query "/other"') == [*DIAL, *DIAL[:2], 'query "/other"']
+
+
+@pytest.mark.parametrize("back", ['register "/dead"', 'announce "/dead"', 'announce "/dead" 1'])
+def test_a_port_that_is_back_is_printed_as_ever(back, capsys):
+    lines = (*DIAL, back, *DIAL, back, *DIAL[:2] * 2)
+    assert said(capsys, *lines) == [*lines]
+
+
+def test_what_is_remembered_of_dead_ports_is_bounded(capsys):
+    names = [f'announce "/{number}" 0' for number in range(SILENT + 1)]
+    assert said(capsys, *names, names[0], names[0]) == [*names, names[0]]
+    questions = [f'get "/x" {number}' for number in range(QUESTIONS + 10)]
+    repeated = said(capsys, 'announce "/x" 0', *questions * 2)
+    assert repeated[1:] == [*questions, *questions[QUESTIONS - 1 :]], "the announcement is one too"
+    long = f'announce "/{"x" * LONGEST}" 0'
+    assert said(capsys, long, long) == [long, long]
 
 
 def test_no_client_waits_for_a_slow_terminal(monkeypatch):

@@ -40,6 +40,9 @@ if TYPE_CHECKING:
 
 HAPPY: Final = 600.0  # seconds between signs of life
 BACKLOG: Final = 10_000  # lines that may wait for a slow terminal before some are left out
+SILENT: Final = 1000  # names that are remembered as reported not to answer
+QUESTIONS: Final = 100  # different ones that are remembered of each
+LONGEST: Final = 1000  # characters of what is remembered
 MEMORY: Final = ":memory:"
 ANY_NAME: Final = '"..."'  # as it is printed: the server chooses
 
@@ -103,9 +106,14 @@ def decide(
 
 
 class Scribe:
-    """Prints a line for each command, in a thread of its own: no client waits for a terminal."""
+    """Prints a line for each command, in a thread of its own: no client waits for a terminal.
+
+    What is asked about a port that is reported not to answer is printed once: those who were
+    connected to it dial it again and again until it is back.
+    """
 
     def __init__(self) -> None:
+        self._silent: dict[str, set[str]] = {}  # name -> what was printed of it since
         self._lines: deque[str] = deque()
         self._skipped = 0
         self._registered = ""
@@ -117,15 +125,35 @@ class Scribe:
     def command(self, text: str, peer: str) -> None:
         """A client at `peer` sent this command."""
         with self._changed:
+            if self._is_old(text):
+                return
             if len(self._lines) >= BACKLOG:
                 self._skipped += 1
                 return
             self._lines.append(self._mark(text) + text)
             self._changed.notify()
 
+    def _is_old(self, text: str) -> bool:
+        """Whether this was printed since the port that it is about is reported not to answer."""
+        verb, name, rest = _parts(text)
+        if verb == "register" or (verb == "announce" and rest != "0"):
+            self._silent.pop(name, None)
+        if verb not in ("announce", "query", "get") or len(text) > LONGEST:
+            return False
+        if verb == "announce" and rest == "0" and name not in self._silent:
+            if len(self._silent) >= SILENT:
+                self._silent.clear()
+            self._silent[name] = set()
+        printed = self._silent.get(name)
+        if printed is None or text in printed:
+            return printed is not None
+        if len(printed) < QUESTIONS:
+            printed.add(text)
+        return False
+
     def _mark(self, text: str) -> str:
         """` * `, or deeper for what is set on the port that was just registered."""
-        verb, name = (*text.removeprefix("bot ").split(" ", 2), "", "")[:2]
+        verb, name, _ = _parts(text)
         if verb == "register":
             self._registered = name
         elif verb == "set" and self._registered in (name, ANY_NAME):
@@ -154,6 +182,13 @@ class Scribe:
                 print_line("\n".join(lines))
             except (OSError, ValueError):
                 return  # nobody reads any more; the server goes on
+
+
+def _parts(text: str) -> tuple[str, str, str]:
+    """A command's verb, the name it is about, and what follows."""
+    words = text.removeprefix("NAME_SERVER ").removeprefix("bot ").split(" ", 2)
+    verb, name, rest = (*words, "", "")[:3]
+    return verb, name, rest
 
 
 @click.command()
