@@ -10,12 +10,12 @@ import subprocess
 import sys
 from collections.abc import Sequence
 
-LOOP = "import os\nparent = os.getppid()\nwhile os.getppid() == parent:\n    sum(range(100000))"
+LOOP = "import os, sys\nwhile os.getppid() == int(sys.argv[1]):\n    sum(range(100000))"
 
 
 def run(command: Sequence[str], loops: int) -> int:
     """The exit code of `command`."""
-    busy = [subprocess.Popen([sys.executable, "-c", LOOP]) for _ in range(loops)]
+    busy = [subprocess.Popen([sys.executable, "-c", LOOP, str(os.getpid())]) for _ in range(loops)]
     try:
         return subprocess.run(command).returncode
     finally:
