@@ -46,7 +46,7 @@ def test_a_failed_attempt_lets_the_next_one_in() -> None:
 
 
 class Slow:
-    """`connecting.open_output`, but the thread of repairs pauses once inside until it is let go."""
+    """`connecting.open_output`, but the first repair pauses inside until it is let go."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.inside = threading.Event()
@@ -55,7 +55,7 @@ class Slow:
         monkeypatch.setattr(connecting, "open_output", self)
 
     def __call__(self, hub: Hub, *arguments: object) -> None:
-        if threading.current_thread().name == "yarpy repair" and not self.inside.is_set():
+        if threading.current_thread().name == "yarpy dial /in" and not self.inside.is_set():
             self.inside.set()
             assert self.go_on.wait(10)
         self._real(hub, *arguments)  # type: ignore[arg-type]

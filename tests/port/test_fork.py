@@ -38,7 +38,8 @@ def child_of(work):
 
 server = yarpy.NameServer().__enter__()
 in_ = yarpy.BufferedPort("/in", strict=True)
-out = yarpy.Port("/out").connect("/in")
+out = yarpy.Port("/out")
+out.connect("/in")
 """
 
 
@@ -60,7 +61,8 @@ def test_child_with_a_port_of_its_own_leaves_its_parents_connections_alone() -> 
         ready, free = os.pipe(), os.pipe()
 
         def work():
-            with yarpy.Port("/child").connect("/in") as port:
+            with yarpy.Port("/child") as port:
+                port.connect("/in")
                 port.write(["from the child"], wait=True)
                 os.write(ready[1], b"x")
                 os.read(free[0], 1)
@@ -108,7 +110,8 @@ def test_others_notice_the_death_of_a_parent_whose_child_lives_on() -> None:
         ready, end = os.pipe(), os.pipe()
 
         def work():
-            with yarpy.Port("/parent").connect("/in") as port:
+            with yarpy.Port("/parent") as port:
+                port.connect("/in")
                 def grandchild():
                     os.write(ready[1], b"x")
                     os.close(1)
