@@ -18,6 +18,7 @@ from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
+from yarpy.sim.robot import Robot, icub_head
 from yarpy.views.scope import SOURCES, Scope
 
 if TYPE_CHECKING:
@@ -36,7 +37,8 @@ class Bench:
 
     def source(self, name: str) -> yarpy.Port:
         port = self.stack.enter_context(yarpy.Port(name, names=self.names))
-        return port.connect("/scope")
+        port.connect("/scope")
+        return port
 
     def told(self, query: str = "") -> dict[str, Any]:
         with urllib.request.urlopen(f"{self.url}data{query}", timeout=PATIENCE) as answer:
@@ -176,6 +178,32 @@ def test_curves(browser: Browser) -> None:
             drawn(page, ORANGE)
             page.locator(".curve").first.click()
             drawn(page, BLUE)
+
+
+def test_joints_and_sensors_have_names_and_units(browser: Browser) -> None:
+    with yarpy.NameServer() as server:
+        scope = Scope()
+        with (
+            Robot("/sim", icub_head(), names=server.client) as robot,
+            yarpy.Port("/scope", names=server.client, callback=scope.take) as port,
+        ):
+            assert robot
+            scope.serve(port, server.client)
+            for name in ("/sim/head/state:o", "/sim/inertial/measures:o"):
+                yarpy.connect(name, "/scope", names=server.client)
+            page = browser.open(f"http://{port.address}/")
+            reads(page, "figure:has-text('state:o') .label >> nth=0", "^0 neck_pitch$")
+            reads(page, "figure:has-text('state:o') .value >> nth=0", r"^-?\d.*\d°$|^0°$")
+            imu = "figure:has-text('measures:o')"
+            reads(page, f"{imu} .label >> nth=3", "^4 head_imu accelerometer x$")
+            reads(page, f"{imu} .value >> nth=5", r"^9.8\d* m/s²$")
+            browser.picture(page, "scope_robot", whole=True)
+            # One unit for all curves of a plot stands at its axis.
+            for place in (0, 1, 2, 6, 7, 8):
+                page.locator(f"{imu} .curve").nth(place).click()
+            page.wait_for_timeout(500)
+            browser.picture(page, "scope_unit", whole=True)
+            browser.close()
 
 
 def test_pause_hover_and_time(browser: Browser) -> None:

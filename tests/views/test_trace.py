@@ -39,7 +39,7 @@ def traced(*values: Any, indices: tuple[int, ...] = ()) -> tuple[Trace, dict[str
 
 def test_curves_and_rows() -> None:
     _, told = traced([1, 2.5, -3], [4, 5, 6])
-    assert told["curves"] == [{"index": i, "label": ""} for i in range(3)]
+    assert told["curves"] == [{"index": i, "label": "", "unit": ""} for i in range(3)]
     assert told["rows"] == [(0.0, 1, 2.5, -3), (1.0, 4, 5, 6)]
     assert (told["next"], told["total"], told["rate"]) == (2, 2, 1.0)
     assert (told["more"], told["others"], told["empty"], told["complaint"]) == (0, [], 0, "")
@@ -76,7 +76,7 @@ def test_what_is_no_number_is_skipped_and_told() -> None:
     value = ["pos", 1, [yarpy.Vocab("ok"), ["angle", 2.5]], b"\0\1", "<b>" * 20]
     trace, told = traced(value, value)
     assert told["rows"][0] == (0.0, 1, 2.5)
-    assert told["curves"] == [{"index": 1, "label": "pos"}, {"index": 4, "label": "angle"}]
+    assert [(one["index"], one["label"]) for one in told["curves"]] == [(1, "pos"), (4, "angle")]
     long = yarpy.Bottle(["<b>" * 20]).to_text()[:30]
     assert told["others"] == [
         "pos at 0", "[ok] at 2", "angle at 3", "2 bytes at 5", f"{long}... at 6",
@@ -202,3 +202,22 @@ def test_times_of_measurements_are_no_curves() -> None:
     assert [index for index, (_, time) in enumerate(leaves_of(value)) if time] == [2, 4, 6]
     assert not any(time for _, time in leaves_of([[1.0, 2.0], 3.0]))
     assert list(flat(value)) == [0.5, 1.5, 1795.25, 9.8, 1795.25, 8.8, 1795.25]
+
+
+def test_what_a_device_says_of_its_numbers() -> None:
+    trace, told = traced(["a", 1.0, 2.0])
+    assert [(one["label"], one["unit"]) for one in told["curves"]] == [("a", ""), ("", "")]
+    trace.describe(lambda value: [("", ""), ("elbow", "°"), ("", "m")][: len(value)])
+    trace.take(message(["a", 1.0, 2.0]), 1.0)
+    told = trace.told(0, 1.0)
+    assert [(one["label"], one["unit"]) for one in told["curves"]] == [("elbow", "°"), ("", "m")]
+
+
+@pytest.mark.parametrize("labels", [[], [("x", "")] * 3, None])
+def test_messages_other_than_a_device_said(labels: list[tuple[str, str]] | None) -> None:
+    trace = Trace("/x")
+    trace.describe(lambda value: labels[:] if labels is not None else value[7])
+    trace.take(message([1.0, 2.0]), 0.0)
+    told = trace.told(0, 1.0)
+    assert [(one["label"], one["unit"]) for one in told["curves"]] == [("", "")] * 2
+    assert told["total"] == 1

@@ -4,7 +4,7 @@
     GET /data?after=120,40      what came after message 120 of the first source and 40 of the second
 
 Rules: a page asks for what is new to it as often as it likes, so that a slow browser or none costs
-nothing.
+nothing. A device is asked once what it sends, while its curves are drawn already.
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import yarpy
+from yarpy.names.base import NameClient
 from yarpy.views.asset import jsonpage, page_of
+from yarpy.views.label import learn, rpc_of
 from yarpy.views.trace import Trace
 
 SOURCES: Final = 16  # that are drawn
@@ -39,6 +41,8 @@ class Scope:
         view: Mapping[str, float | None] | None = None,
     ) -> None:
         self._port: yarpy.Port | None = None
+        self._names: NameClient | None = None
+        self._asked: set[str] = set()
         self._indices = indices
         self._view = dict(view or {})
         self._start = time.monotonic()
@@ -48,9 +52,10 @@ class Scope:
         self._refused = 0
         self._lock = threading.Lock()  # messages come in threads of their connections
 
-    def serve(self, port: yarpy.Port) -> None:
-        """Show the page on `port`, and tell who sends to it."""
+    def serve(self, port: yarpy.Port, names: NameClient | None = None) -> None:
+        """Show the page on `port`, and tell who sends to it; `names` knows their other ports."""
         self._port = port
+        self._names = names
         port.on_page(self._page)
 
     def take(self, message: yarpy.Message) -> None:
@@ -63,7 +68,23 @@ class Scope:
                     self._refused += 1
                     return
                 trace = self._traces[message.source] = Trace(message.source, self._indices)
+            if message.source not in self._asked:
+                self._asked.add(message.source)
+                self._ask(trace)
             trace.take(message, now)
+
+    def _ask(self, trace: Trace) -> None:
+        """Learn in the background what the device behind a port calls its numbers."""
+
+        def learn_it() -> None:
+            found = learn(trace.name, self._names)
+            if found is not None:
+                with self._lock:
+                    trace.describe(found)
+
+        if rpc_of(trace.name):
+            name = f"yarpy labels {trace.name}"
+            threading.Thread(target=learn_it, name=name, daemon=True).start()
 
     def wait_for(self, name: str, line: str) -> None:
         """Tell people why the source `name` is not there; "": it is."""

@@ -14,6 +14,7 @@ from itertools import islice
 from typing import Any, Final
 
 import yarpy
+from yarpy.views.label import Describe, Label
 
 HISTORY: Final = 20_000  # messages
 CURVES: Final = 12  # numbers of a message, where nobody chose
@@ -32,6 +33,9 @@ class Trace:
         self._columns = list(indices)
         self._chosen = bool(indices)
         self._labels: dict[int, str] = {}
+        self._describe: Describe | None = None
+        self._described: list[Label] = []  # one for each of
+        self._leaves = -1  # so many elements
         self._rows: deque[tuple[float | None, ...]] = deque(maxlen=HISTORY)
         self._total = 0
         self._times: deque[float] = deque(maxlen=1000)
@@ -41,14 +45,23 @@ class Trace:
         self._complaint = ""
         self._clock = Clock()
 
+    def describe(self, describe: Describe) -> None:
+        """Name curves by what the device behind the port says."""
+        self._describe = describe
+        self._leaves = -1
+
     def take(self, message: yarpy.Message, now: float) -> None:
         """Keep the numbers of a message that came at `now`, in seconds."""
         try:
-            found = list(islice(leaves_of(message.as_(object)), LEAVES))
+            value = message.as_(object)
+            found = list(islice(leaves_of(value), LEAVES))
         except yarpy.DecodeError as error:
             self.refuse(f"a message that cannot be read: {error}")
             return
         self._times.append(now)
+        if self._describe is not None and len(found) != self._leaves:
+            self._leaves = len(found)
+            self._described = _labels(self._describe, value, len(found))
         leaves = [leaf for leaf, _ in found]
         numbers = [number_of(leaf) for leaf in leaves]
         self._look(leaves, numbers, {index for index, (_, time) in enumerate(found) if time})
@@ -97,7 +110,7 @@ class Trace:
         span = times[-1] - times[0] if len(times) > 1 else 0.0
         return {
             "name": self.name,
-            "curves": [{"index": i, "label": self._labels.get(i, "")} for i in self._columns],
+            "curves": [self._curve(index) for index in self._columns],
             "rows": rows,
             "next": self._total - new + len(rows),
             "total": self._total,
@@ -107,6 +120,10 @@ class Trace:
             "empty": self._empty,
             "complaint": self._complaint,
         }
+
+    def _curve(self, index: int) -> dict[str, Any]:
+        label, unit = self._described[index] if index < len(self._described) else ("", "")
+        return {"index": index, "label": label or self._labels.get(index, ""), "unit": unit}
 
 
 class Clock:
@@ -174,6 +191,15 @@ def parse_indices(text: str) -> list[int]:
             raise ValueError(f'"{word}" is no index; indices are 0,2,5 or 0-3')
         found.extend(_range(int(first), int(last or first)))
     return list(dict.fromkeys(found))
+
+
+def _labels(describe: Describe, value: Any, count: int) -> list[Label]:
+    """The labels of the first `LEAVES` elements of a message; none if it is not as described."""
+    try:
+        found = describe(value)[:LEAVES]
+    except (TypeError, ValueError, LookupError):
+        return []
+    return found if len(found) == count else []
 
 
 def _range(first: int, last: int) -> Iterable[int]:

@@ -12,7 +12,7 @@ Source: multipleanalogsensorsclient of YARP 3.x.
 from __future__ import annotations
 
 from contextlib import ExitStack
-from typing import Final
+from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.devices.closeable import Closeable, local_prefix, prefix
@@ -29,6 +29,17 @@ PATIENCE: Final = 10.0
 
 #: For each kind, the values and the time of each sensor.
 _Measures = list[list[tuple[tuple[float, ...], float]]]
+
+
+def read_names(reply: Any) -> list[list[tuple[str, str]]]:
+    """For each kind the sensors, each with its frame, in the answer to `getMetadata`.
+
+    Raises TypeError, ValueError.
+    """
+    lists = reply[0] if isinstance(reply, list) and len(reply) == 1 else reply
+    if len(lists) != len(KINDS):
+        raise ValueError(f"{len(lists)} kinds of sensors, not {len(KINDS)}")
+    return [[(str(name), str(frame)) for name, frame, *_ in sensors] for sensors in lists]
 
 
 class MultiSensor(Closeable):
@@ -136,14 +147,10 @@ class MultiSensor(Closeable):
 
     def _learn_names(self) -> None:
         reply = self._rpc.call(Bottle(["getMetadata"]), timeout=PATIENCE)
-        lists = reply[0] if isinstance(reply, list) and len(reply) == 1 else reply
         try:
-            if len(lists) != len(KINDS):
-                raise ValueError(f"{len(lists)} kinds of sensors, not {len(KINDS)}")
-            for sensors in lists:
-                triples = [(str(name), str(frame)) for name, frame, *_ in sensors]
-                self._sensors.append([name for name, _ in triples])
-                self.frames.update(triples)
+            for sensors in read_names(reply):
+                self._sensors.append([name for name, _ in sensors])
+                self.frames.update(sensors)
         except (TypeError, ValueError) as error:
             raise RemoteProtocolError(f'"{self.remote}" names no sensors: {error}') from error
 

@@ -1,7 +1,7 @@
 // Numbers as curves: the program is asked for what is new, and what is seen is drawn again.
 
 import {ask, copyOf, part, pause, press, rate, say, several} from "/*/common.js";
-import {Plot, colour, dashes, nearest, search} from "/*/plot.js";
+import {Plot, behind, colour, dashes, nearest, search} from "/*/plot.js";
 
 const LOOK = 33; // ms between questions to the program, and between drawings
 const KEPT = 20000; // messages of each source
@@ -57,7 +57,14 @@ class Panel {
     }
   }
 
+  // The unit of all curves that are seen, "" if they have several.
+  unit() {
+    const units = new Set([...this.curves()].map(({source, place}) => source.info.curves[place].unit));
+    return units.size === 1 ? [...units][0] : "";
+  }
+
   draw(view) {
+    this.plot.unit = this.unit();
     if (this.sources.some((source) => source.times.length)) this.plot.draw([...this.curves()], view);
   }
 
@@ -123,7 +130,7 @@ class Panel {
         this.buttons.set(key, button);
         part(this.figure, "curves").append(button);
       }
-      const {index, label} = source.info.curves[place];
+      const {index, label, unit} = source.info.curves[place];
       const prefix = this.sources.length > 1 ? `${source.info.name} ` : "";
       say(part(button, "label"), `${prefix}${index}${label ? ` ${label}` : ""}`);
       const line = part(button, "colour").style;
@@ -131,7 +138,7 @@ class Panel {
       line.borderTopStyle = dashes(number).length ? "dashed" : "solid";
       const at = view.hover === null ? lastOf(times, view) : nearest(times, values, view.hover);
       const value = at === null ? null : values[at];
-      say(part(button, "value"), value === null || value === undefined ? "-" : short(value));
+      say(part(button, "value"), value === null || value === undefined ? "-" : short(value) + behind(unit));
     }
   }
 }

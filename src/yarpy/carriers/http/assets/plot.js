@@ -17,6 +17,9 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 export const colour = (number) => (dark.matches ? DARK : LIGHT)[number % LIGHT.length];
 export const dashes = (number) => (number < LIGHT.length ? [] : [6, 4]);
 
+// A unit as it stands behind a number.
+export const behind = (unit) => (unit === "" || unit === "°" ? unit : ` ${unit}`);
+
 // The index of the first time that is not before `time`.
 export function search(times, time) {
   let low = 0;
@@ -166,7 +169,7 @@ export class Plot {
       context.lineTo(right, at);
       context.stroke();
       context.fillStyle = ink;
-      context.fillText(written(value, rows.decimals) + (this.unit.length > 1 ? "" : this.unit), LEFT - 6, at);
+      context.fillText(written(value, rows.decimals) + (this.unit.length > 1 ? "" : behind(this.unit)), LEFT - 6, at);
     }
     context.strokeStyle = line;
     context.textBaseline = "top";
