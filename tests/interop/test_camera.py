@@ -117,7 +117,7 @@ def test_damaged_pictures_are_dropped_and_counted() -> None:
 
 
 RUDE = [
-    (b"HTTP/1.1 200 OK\r\nContent-Type: text/html\r\n\r\n<html>", "no stream of pictures"),
+    (b"HTTP/1.1 200 OK\r\nContent-Type: text/html\r\n\r\n<html>", "not a stream of pictures"),
     (b"HTTP/1.1 404 Not Found\r\n\r\n", "404 Not Found"),
     (b"what?\r\n\r\n", "what?"),
     (b"HTTP/1.1 200 OK\r\nX: " + b"x" * 100_000, "a line of more than"),
@@ -146,7 +146,7 @@ def test_watching_goes_on_after_a_broken_stream(rest: bytes) -> None:
     with raw_camera(good + rest, good) as (name, asked), viewer(strict=True) as (names, view):
         network.connect(name, "/view", "mjpeg", names=names)
         assert is_the_picture(view.read(timeout=PATIENCE).value)
-        wait_until(lambda: len(asked) == 2, PATIENCE)
+        wait_until(lambda: len(asked) >= 2, PATIENCE)
         assert is_the_picture(view.read(timeout=PATIENCE).value)
         network.disconnect(name, "/view", names=names)
 
