@@ -2,7 +2,6 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
-EXTRA ?= test
 
 .PHONY: demo test pure links programs stress fuzz chaos soak check bench clean
 .NOTPARALLEL: # the stages, in their order
@@ -15,7 +14,7 @@ $(VENV)/.base: pyproject.toml
 	@touch $@
 
 $(VENV)/.ready: $(VENV)/.base
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[$(EXTRA)]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
 	@touch $@
 
 # This computer alone reaches it; make demo DEMO=--lan lets others of the network see and move it.
