@@ -36,7 +36,8 @@ class Source:
         tell: Callable[[str], object] = lambda line: None,
     ) -> None:
         from yarpy.contact import parse_contact
-        from yarpy.route import masked
+        from yarpy.link.handshake import find_carrier
+        from yarpy.route import masked, parse_carrier
 
         self._port = port
         self._name = name
@@ -44,6 +45,8 @@ class Source:
         self._carrier = carrier
         self._tell = tell
         self._contact = parse_contact(name)
+        if self._contact.carrier != "topic":
+            find_carrier(parse_carrier(carrier or self._contact.carrier or "tcp").base)
         self._wanted = True
         self._look()
         threading.Thread(
