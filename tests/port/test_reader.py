@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 from yarpy import network
@@ -330,7 +331,7 @@ def test_nobody_wakes_up_on_a_silent_port(kind: str, names: LocalNames) -> None:
                 out.write(["x"])
                 return link.turn.leased
 
-            wait_until(has_lease, what="a lease")
+            wait_until(has_lease, patience(20.0), what="a lease")
             wait_until(lambda: not link.turn.leased, what="its end")
             time.sleep(0.1)
             before = switches()
