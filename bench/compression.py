@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from yarpy import Image, registry
-from yarpy.monitors.base import Place, split_tokens
+from yarpy.monitors.base import Place
+from yarpy.route import parse_carrier
 from yarpy.wire.message import DATA, Message, Packet
 
 COMPRESSION = (
@@ -43,7 +44,7 @@ def pictures() -> dict[str, Image]:
 
 
 def monitor(name: str, tokens: str = "", sending: bool = False) -> Any:
-    own = tuple(split_tokens(f"x+{tokens}")) if tokens else ()
+    own = parse_carrier(f"x+{tokens}").tokens if tokens else ()
     return registry.monitors.load(name)(Place("/out", "/in", "", sending, own, own))
 
 

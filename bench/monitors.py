@@ -13,9 +13,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from yarpy.data.bottle import Bottle
-from yarpy.monitors.base import Group, Place, split_tokens
+from yarpy.monitors.base import Group, Place
 from yarpy.monitors.script.portmonitor import portmonitor
 from yarpy.monitors.stock.priority import Priority
+from yarpy.route import parse_carrier
 from yarpy.wire.message import DATA, Message
 
 RUNS, COUNT = 7, 5000
@@ -76,7 +77,7 @@ def contest(size: int, links: bool) -> Callable[[Message], object]:
     group, monitors = Group(), []
     for number in range(size):
         others = f"+(ex (/{(number + 1) % size} -5) (/{(number + 3) % size} 2))" if links else ""
-        tokens = tuple(split_tokens(f"tcp+recv.priority+bs.{number + 1}{others}"))
+        tokens = parse_carrier(f"tcp+recv.priority+bs.{number + 1}{others}").tokens
         monitors.append(Priority(Place(f"/{number}", "/in", "", False, tokens, tokens, group)))
         group.add(monitors[-1])
     turns = [monitor.accept for monitor in monitors]

@@ -320,7 +320,8 @@ def test_nobody_wakes_up_on_a_silent_port(kind: str, names: LocalNames) -> None:
     """Neither a reader that had the socket to itself nor the thread of the connection."""
     with make(kind, names) as in_, Port("/out", names=names) as out:
         out.connect("/in")
-        wait_until(lambda: in_._hub.inputs)
+        # Not the question who listens here, which may still be on its way out.
+        wait_until(lambda: [link.route.source for link in in_._hub.inputs] == ["/out"])
         link = in_._hub.inputs[0]
         heard: list[Message] = []
         reader = threading.Thread(target=lambda: heard.extend(in_))
