@@ -7,6 +7,7 @@ import os
 import socket
 import threading
 import time
+from itertools import groupby
 from types import SimpleNamespace
 
 import pytest
@@ -31,6 +32,7 @@ from yarpy.port.mailbox import Latest
 from yarpy.port.port import Port
 from yarpy.port.registration import Registration
 from yarpy.wire import framing
+from yarpy.wire.message import Message
 
 # ---------------------------------------------------------------------------------- opening
 
@@ -120,6 +122,101 @@ def test_new_connection_of_the_same_sender_replaces_the_old(names: LocalNames) -
             wait_until(lambda c=carrier: [i.carrier for i in in_.inputs] == [c])
             out.write([carrier])
             assert in_.read(timeout=5).value == [carrier]
+
+
+def _dial_at_once(port: Port, greeting: bytes, count: int) -> list[socket.socket]:
+    start = threading.Barrier(count)
+    socks = [socket.socket() for _ in range(count)]
+
+    def dial(sock: socket.socket) -> None:
+        sock.connect(("127.0.0.1", port.contact.port))
+        start.wait()
+        sock.sendall(greeting)
+
+    threads = [threading.Thread(target=dial, args=(sock,)) for sock in socks]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for sock in socks:
+        sock.setblocking(False)
+    return socks
+
+
+def _is_over(sock: socket.socket) -> bool:
+    try:
+        while sock.recv(1000):
+            pass  # the welcome
+    except BlockingIOError:
+        return False
+    except OSError:
+        pass
+    return True
+
+
+def test_of_connections_that_one_sender_makes_at_once_one_stays(names: LocalNames) -> None:
+    """With two of them every message would come twice."""
+    events: list[bool] = []
+    with Port("/in", names=names) as in_:
+        in_.on_connection(lambda event: events.append(event.created))
+        for number in range(50):
+            socks = _dial_at_once(in_, b"CONNECT /same\r\n", 4)
+            wait_until(lambda: sum(map(_is_over, socks)) == 3, what="three replaced")  # noqa: B023
+            assert len(in_.inputs) == 1
+            for sock in socks:
+                with contextlib.suppress(OSError):
+                    sock.sendall(b"D\r\n%d\r\n" % number)
+            assert in_.read(timeout=5).value == [number]
+            for sock in socks:
+                sock.close()
+            wait_until(lambda: len(events) == 8 * (number + 1))  # noqa: B023
+            assert in_.inputs == []
+        assert events == [True, False] * 200
+        assert in_.stats["past"]["inputs"]["messages"] == 50
+
+
+def test_nothing_of_a_replaced_connection_comes_after_its_successor(names: LocalNames) -> None:
+    came: list[object] = []
+    with Port("/in", names=names, callback=lambda message: came.append(message.value[0])) as in_:
+        for _ in range(25):
+            came.clear()
+            socks = _dial_at_once(in_, b"", 4)
+            for sock in socks:
+                who = b"%d" % sock.fileno()
+                sock.sendall(b"CONNECT /same\r\n" + b"D\r\n%b\r\n" % who * 20)
+            wait_until(lambda: sum(map(_is_over, socks)) == 3)  # noqa: B023
+            for sock in socks:
+                sock.close()
+            wait_until(lambda: not in_.inputs)
+            runs = [who for who, _ in groupby(came)]
+            assert runs and len(runs) == len(set(runs))
+
+
+def test_closing_waits_for_a_callback_with_what_a_replaced_connection_brought(
+    names: LocalNames,
+) -> None:
+    busy, go, done = threading.Event(), threading.Event(), threading.Event()
+
+    def callback(message: Message) -> None:
+        busy.set()
+        go.wait()
+        time.sleep(0.1)
+        done.set()
+
+    with contextlib.ExitStack() as stack:
+        port = Port("/in", names=names, callback=callback)
+        first, second = (
+            stack.enter_context(socket.create_connection(("127.0.0.1", port.contact.port)))
+            for _ in range(2)
+        )
+        first.sendall(b"CONNECT /same\r\nD\r\n1\r\n")
+        assert busy.wait(5)
+        second.sendall(b"CONNECT /same\r\n")
+        first.setblocking(False)
+        wait_until(lambda: _is_over(first))
+        go.set()
+        port.close()
+        assert done.is_set()
 
 
 def test_unrooted_names_do_not_displace(names: LocalNames) -> None:

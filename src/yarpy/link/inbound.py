@@ -64,6 +64,7 @@ class Inbound:
         self.turn = Turn()
         self.successor = carrier  # the carrier that goes on when the peer becomes a reader
         self.thread: threading.Thread | None = None
+        self.served = threading.Event()  # the thread has ended it, and has told everybody
         self.sched = Sched()  # as requested; -1: nothing was
         self.tos = 0
         self.own_chain: Chain | None = None  # the monitors that ride on it

@@ -36,9 +36,9 @@ def _abandon(hub: Hub) -> None:
     hub.closing = hub.inherited = True
     hub.mailbox.abandon("this port was opened before the process was forked; open one here")
     hub.reception.abandon()
-    links: tuple[Inbound | Outbound, ...] = (*hub.inputs, *hub.outputs)
+    links: tuple[Inbound | Outbound, ...] = (*hub.inputs, *hub.leaving, *hub.outputs)
     for link in links:
         sock = getattr(link.driver.transport, "sock", None)
         if sock is not None:
             sock.close()
-    hub.inputs = hub.outputs = ()
+    hub.inputs = hub.leaving = hub.outputs = ()

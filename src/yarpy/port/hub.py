@@ -103,7 +103,8 @@ class Hub:
         self.limit = limit
         self.callbacks = Callbacks(registration)
         self.properties = Property()
-        self.inputs: tuple[Inbound, ...] = ()
+        self.inputs: tuple[Inbound, ...] = ()  # one at most from each rooted name
+        self.leaving: tuple[Inbound, ...] = ()  # were inputs; their threads have not ended yet
         self.outputs: tuple[Outbound, ...] = ()
         self.past = {"inputs": Past(), "outputs": Past()}
         self.closing = False
@@ -174,6 +175,7 @@ class Hub:
             self._serve_reader(driver, carrier)
             return
         link = Inbound(self, driver, carrier)
+        link.thread = threading.current_thread()
         try:
             self.take_input(link)
         except PortClosed:
@@ -184,21 +186,30 @@ class Hub:
         self.serve_input(link)
 
     def take_input(self, link: Inbound) -> None:
-        """Make an open connection one of our inputs, to be served next. Raises PortClosed, and as
-        monitors do that cannot start; the connection is closed then."""
+        """Make an open connection one of our inputs, to be served next.
+
+        It replaces the one that its sender had, and waits for the end of that, up to 2 s. Raises
+        PortClosed, and as monitors do that cannot start; the connection is closed then.
+        """
         link.receiver.page = self.callbacks.page
         try:
             self.monitoring.incoming(link)
         except YarpError:
             link.driver.transport.close()
             raise
-        if link.route.source.startswith("/"):
-            self._displace(link.route.source)
-        with self.lock:
+        source = link.route.source
+        with self.lock:  # of connections that come at once each replaces the one before it
+            rooted = source.startswith("/")
+            older = tuple(item for item in self.inputs if rooted and item.route.source == source)
+            others = tuple(item for item in self.inputs if item not in older)
             late = self.closing
-            full = link.carrier.connectionless and self._datagram_inputs() >= MAX_DATAGRAM_INPUTS
+            full = link.carrier.connectionless and (
+                sum(item.carrier.connectionless for item in (*others, *self.leaving))
+                >= MAX_DATAGRAM_INPUTS
+            )
             if not (late or full):
-                self.inputs = (*self.inputs, link)
+                self.inputs = (*others, link)
+                self.leaving = (*self.leaving, *older)
         if full:
             self._turn_away(link)
             raise RemoteProtocolError(
@@ -209,14 +220,15 @@ class Hub:
                 self.ask_to_leave(link.route.source)
             self._turn_away(link)
             raise PortClosed(f'"{self.name}" is closed')
+        for old in older:
+            old.close()
+            if old.thread is not threading.current_thread():
+                old.served.wait(2.0)  # what it still brings comes before what the new one brings
 
     def _turn_away(self, link: Inbound) -> None:
         link.driver.transport.close()
         if link.own_chain is not None:
             link.own_chain.close()
-
-    def _datagram_inputs(self) -> int:
-        return sum(link.carrier.connectionless for link in self.inputs)
 
     def serve_input(self, link: Inbound) -> None:
         """Serve an input, in this thread, until it ends."""
@@ -227,14 +239,7 @@ class Hub:
         link.serve()
         if link.own_chain is not None:
             link.own_chain.close()
-
-    def _displace(self, source: str) -> None:
-        """A new connection of the same sender replaces the old one."""
-        for old in self.inputs:
-            if old.route.source == source:
-                old.close()
-                if old.thread is not None and old.thread is not threading.current_thread():
-                    old.thread.join(2.0)
+        link.served.set()
 
     def administer(self, link: Inbound, message: Message) -> Bottle:
         return self.crew.administer(self, message)
@@ -284,8 +289,9 @@ class Hub:
 
     def _forget_input(self, link: Inbound) -> bool:
         with self.lock:
-            known = link in self.inputs
+            known = link in (*self.inputs, *self.leaving)
             self.inputs = tuple(item for item in self.inputs if item is not link)
+            self.leaving = tuple(item for item in self.leaving if item is not link)
         if known:
             self.past["inputs"].add(link.counter, link.lost)
         self.on_inputs()
@@ -370,7 +376,7 @@ class Hub:
         for link in self.inputs:
             link.close()
         deadline = time.monotonic() + 3.0
-        for link in self.inputs:
+        for link in (*self.inputs, *self.leaving):
             if link.thread is not None and link.thread is not threading.current_thread():
                 link.thread.join(max(0.0, deadline - time.monotonic()))
         self.reception.close()
