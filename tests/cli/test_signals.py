@@ -88,3 +88,27 @@ def test_is_no_exception_that_code_swallows():
 def test_held_without_a_watch_holds_nothing():
     with pytest.raises(ZeroDivisionError), held():
         raise ZeroDivisionError
+
+
+LOST = """
+import os, signal, time
+from yarpy.cli import signals
+class Dying:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0.05)  # the signal is handled here, where Python drops what is raised
+signals.watch()
+try:
+    Dying()
+    print("going on", flush=True)
+    time.sleep(30)
+except signals.Interrupted as signal_:
+    print("ended by", signal_.number, flush=True)
+"""
+
+
+def test_a_signal_that_comes_where_python_drops_exceptions_is_not_lost():
+    """In a finaliser, or a callback of an import: it used to be printed and forgotten."""
+    done = subprocess.run([sys.executable, "-c", LOST], capture_output=True, text=True, timeout=20)
+    assert done.stdout.splitlines()[-1] == f"ended by {int(signal.SIGTERM)}"
+    assert "Exception ignored" not in done.stderr

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,6 +19,7 @@ from types import FrameType
 from typing import Final
 
 PATIENCE: Final = 2.0  # seconds that closing may take before another signal means: at once
+AGAIN: Final = 0.01  # seconds until a signal that was dropped is raised again
 _NAMES: Final = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 
 
@@ -36,6 +39,7 @@ def watch() -> None:
         if number is None or (name == "SIGHUP" and signal.getsignal(number) is signal.SIG_IGN):
             continue
         signal.signal(number, handler)
+    sys.unraisablehook = handler.retry
 
 
 @contextmanager
@@ -71,3 +75,23 @@ class _Handler:
             self.waiting = number
         elif now - self._first > PATIENCE:
             os._exit(128 + number)
+
+    def retry(self, lost: sys.UnraisableHookArgs) -> None:
+        """Raise the signal again if Python dropped it: it had come while a finaliser or a callback
+        of the interpreter ran, whose exceptions go nowhere."""
+        if not isinstance(lost.exc_value, Interrupted):
+            sys.__unraisablehook__(lost)
+            return
+        self._first = None
+        # From another thread: here it would be dropped once more.
+        threading.Timer(AGAIN, _wake_main_thread, (lost.exc_value.number,)).start()
+
+
+def _wake_main_thread(number: int) -> None:
+    """Send the signal to the thread that handles it, also where that one sleeps."""
+    if hasattr(signal, "pthread_kill"):
+        ident = threading.main_thread().ident
+        assert ident is not None
+        signal.pthread_kill(ident, number)
+    else:
+        signal.raise_signal(number)
