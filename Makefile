@@ -37,8 +37,10 @@ stress: $(VENV)/.ready
 chaos: $(VENV)/.ready
 	$(BIN)/python tests/chaos/run.py
 
-# An hour, or as long as is said: whether memory and descriptors stay what they are.
+# How long `soak` and `fuzz` take; hours find more.
 SECONDS ?= 3600
+
+# Whether memory and descriptors stay what they are.
 soak: $(VENV)/.ready
 	$(BIN)/python tests/chaos/soak.py $(SECONDS)
 
@@ -47,8 +49,7 @@ check: $(VENV)/.ready
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-# Strange input for everything that reads, for so long; hours find more. SEED=N does a run again.
-SECONDS ?= 3600
+# Strange input for everything that reads. SEED=N does a run again.
 fuzz: $(VENV)/.ready
 	$(BIN)/python tests/fuzz/run.py $(SECONDS) $(if $(SEED),--seed $(SEED))
 

@@ -61,6 +61,13 @@ PEERS = (
     Peer("cpp-latency-test", "peer_latency_test.py", "cpp", (), ("stream", "rpc")),
     Peer("yarpy-tcp", "peer_yarpy.py", "yarpy", ("--carrier", "tcp")),
     Peer("yarpy-fast_tcp", "peer_yarpy.py", "yarpy", ("--carrier", "fast_tcp")),
+    Peer(
+        "yarpy-tls",
+        "peer_yarpy.py",
+        "cryptography",
+        ("--carrier", "tls"),
+        ("stream", "rpc", "large", "flood"),
+    ),
     Peer("yarpy-spin", "peer_yarpy.py", "yarpy", ("--spin",), ("stream",), needs_core=True),
 )
 
@@ -211,6 +218,12 @@ def main() -> int:
     facts = machine()
     bench = Bench(two_cores())
     with contextlib.ExitStack() as stack:
+        with contextlib.suppress(ImportError):  # the peer that needs it is named with the reason
+            from yarpy.config.authority import make
+
+            folder = stack.enter_context(tempfile.TemporaryDirectory())
+            make(Path(folder), ["127.0.0.1", "localhost"])
+            os.environ["YARPY_TLS_DIR"] = folder
         if not options.peers or any("cpp".startswith(one[:3]) for one in options.peers):
             try:
                 home = stack.enter_context(tempfile.TemporaryDirectory())

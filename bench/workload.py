@@ -86,6 +86,9 @@ GOALS = (
     Goal("rpc", "yarpy-tcp", "cpp-latency-test", 0.85),
     Goal("large", "yarpy-tcp", "cpp-tcp", 0.35),
     Goal("large", "yarpy-tcp", "raw", 1.3),
+    Goal("stream", "yarpy-tls", "yarpy-tcp", 1.3),
+    Goal("rpc", "yarpy-tls", "yarpy-tcp", 1.3),
+    Goal("large", "yarpy-tls", "yarpy-tcp", 2.0),
     Goal("flood", "yarpy-tcp", "cpp-tcp", 5.0),
     Goal("flood", "yarpy-tcp", "cpp-fast_tcp", 1.5),
 )

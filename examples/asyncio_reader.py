@@ -1,4 +1,4 @@
-"""asyncio: two ports read in one event loop, with `async for`, beside other work.
+"""asyncio: read two ports in one event loop, with `async for`, next to other work.
 
     python examples/asyncio_reader.py
 

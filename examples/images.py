@@ -33,7 +33,7 @@ def main() -> None:
             print(f"{image} at {message.stamp.time:.3f} s, {pixels.shape}, square at {middle}")
             assert not pixels.flags.owndata
 
-        # Other pixels need their code; rows may be padded, as C++ does it.
+        # Other pixels need their code; rows may be padded, as in C++.
         depth = np.full((2, 5), 1.5, "float32")
         eye.write(yarpy.Image(depth))
         print(brain.read(timeout=5).value)

@@ -1,4 +1,4 @@
-"""A listener: asks the talker to send to it, and prints what comes.
+"""A listener: asks the talker to send to it, and prints what arrives.
 
 In three terminals:
 

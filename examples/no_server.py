@@ -2,8 +2,8 @@
 
     python examples/no_server.py
 
-`LocalNames` is a dictionary: ports that are given the same one find each other. An address
-`/host:port` needs no names whatever, not even on the other side.
+`LocalNames` is a dictionary: ports that share one find each other. An address `/host:port` needs no
+names at all, not even on the other side.
 """
 
 import yarpy

@@ -3,8 +3,8 @@
     python examples/realtime.py
 
 Needs no name server. Threads of one Python program take turns, 5 ms each while they compute.
-`yarpy.realtime()` makes the turns short. With a priority the calling thread gets SCHED_FIFO too,
-which takes root or CAP_SYS_NICE. (`spin=True`, not shown, is for a reader with a core to itself.)
+`yarpy.realtime()` makes the turns shorter. With a priority the calling thread gets SCHED_FIFO too,
+which needs root or CAP_SYS_NICE. (`spin=True`, not shown, is for a reader with a core to itself.)
 """
 
 import statistics

@@ -1,8 +1,8 @@
-"""A robot of one's own: three joints that any YARP program can move, and a program that does.
+"""A robot of your own: three joints that any YARP program can move, and a program that does.
 
     python examples/robot_head.py
 
-Needs no name server. With one, C++ programs find the head as well, and people with netcat do: see
+Needs no name server. With one, C++ programs and people with netcat find the head too: see
 docs/devices.md.
 """
 

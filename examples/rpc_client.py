@@ -4,7 +4,7 @@
     python examples/rpc_server.py       # in another
     python examples/rpc_client.py       # in a third
 
-It works as well with any C++ YARP program that answers, and needs no name of its own.
+It also works with any C++ YARP program that answers, and needs no name of its own.
 """
 
 import yarpy

@@ -5,7 +5,7 @@
     python examples/rpc_client.py       # in a third, or: yarpy rpc /calculator
 
 What the handler returns is the reply. An error in the handler is logged here and answered as
-`[fail] "reason"`, and the connection goes on. Ctrl-C ends the server.
+`[fail] "reason"`, and the connection stays open. Ctrl-C ends the server.
 """
 
 import threading
@@ -29,7 +29,7 @@ def answer(message: yarpy.Message) -> object:
 
 
 def main() -> None:
-    # `lock`: one question at a time, also when several clients ask.
+    # `lock`: one question at a time, even if several clients ask.
     with yarpy.RpcServer("/calculator", answer, lock=True) as server:
         print(f"{server.name} listens at {server.address}", flush=True)
         threading.Event().wait()

@@ -1,4 +1,4 @@
-"""Carriers: the same message over every protocol that is installed, one connection after another.
+"""Carriers: the same message over every installed protocol, one connection after another.
 
     python examples/several_carriers.py
 

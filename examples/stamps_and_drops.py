@@ -2,8 +2,8 @@
 
     python examples/stamps_and_drops.py
 
-Needs no name server. A BufferedPort keeps the newest message; what it drops it counts, on the side
-that dropped. So the messages sent are those read plus the drops, whatever the carrier.
+Needs no name server. A BufferedPort keeps the newest message; drops are counted on the side that
+dropped. So messages sent = messages read + drops, over any carrier.
 """
 
 import time

@@ -1,4 +1,4 @@
-"""A talker: ten times a second it sends a number and a word to whoever is connected.
+"""A talker: ten times a second it sends a number and a word to every connected port.
 
 In three terminals:
 

@@ -7,22 +7,25 @@ left out by being new. `--stage` takes the tests of one stage; without it all ar
 import signal
 from pathlib import Path
 
+import hypothesis
 import pytest
 from support.patience import FACTOR
 
+hypothesis.settings.register_profile("yarpy", deadline=None)  # the machine may be busy
+hypothesis.settings.load_profile("yarpy")
 pytest_plugins = ["support.browser"]
 
 TESTS = Path(__file__).parent
 STAGES = {
     # bytes and values, no sockets: seconds
     "pure": {
-        *("wire", "data", "carriers", "config", "test_architecture.py", "test_contact.py"),
+        *("wire", "data", "idl", "carriers", "config", "test_architecture.py", "test_contact.py"),
         *("test_errors.py", "test_registry.py", "test_route.py"),
     },
     # ports, links, names and monitors of one process: a minute
     "links": {
         *("transports", "link", "monitors", "names", "nameserver", "port", "network", "testing"),
-        *("test_aio.py", "test_qos.py", "test_realtime.py"),
+        *("aio", "test_qos.py", "test_realtime.py"),
     },
     # everything else, from devices to programs, browsers and C++ YARP: minutes
     "programs": set(),

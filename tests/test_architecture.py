@@ -34,6 +34,7 @@ LAYERS: list[set[str]] = [
     {"__main__"},
 ]
 BESIDE = {
+    ("idl", "data"),
     ("registry", "contact"),
     ("link", "monitors"),
     ("link", "qos"),
@@ -58,16 +59,6 @@ UNIX_MODULES = {
     "fcntl", "grp", "posix", "pty", "pwd", "readline", "resource", "spwd", "syslog", "termios",
     "tty",
 }  # fmt: skip
-# Circles that are still there, to be untied.
-KNOWN_CIRCLES: list[set[str]] = [
-    {
-        "yarpy.data.bottle",
-        "yarpy.data.property",
-        "yarpy.data.reader",
-        "yarpy.data.text",
-        "yarpy.data.writer",
-    },
-]
 HEAVY_MODULES = ("numpy", "click", "rich", "sqlite3", "asyncio", "email", "http", "xml")
 
 FILES = sorted(SOURCE.rglob("*.py"))
@@ -172,10 +163,7 @@ def test_no_two_files_import_each_other() -> None:
             for module, _ in imports(path)
         }
         graph[name] = found & modules.keys() - {name}
-    new = [
-        circle for circle in circles(graph) if not any(circle <= known for known in KNOWN_CIRCLES)
-    ]
-    assert new == []
+    assert circles(graph) == []
 
 
 @pytest.mark.parametrize("path", FILES, ids=relative)

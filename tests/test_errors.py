@@ -14,6 +14,7 @@ TREE = [
     ("AddressError", ValueError),
     ("UnknownName", LookupError),
     ("WrongPort", errors.UnknownName),
+    ("UnknownType", LookupError),
     ("UnknownPlugin", LookupError),
     ("NoNameServer", ConnectionError),
     ("PortClosed", RuntimeError),
@@ -24,7 +25,8 @@ TREE = [
     ("LocalProtocolError", errors.YarpError),
     ("NotAllowed", errors.LocalProtocolError),
     ("RemoteProtocolError", errors.YarpError),
-    ("LoginRefused", errors.RemoteProtocolError),
+    ("AccessRefused", errors.RemoteProtocolError),
+    ("LoginRefused", errors.AccessRefused),
 ]
 
 

@@ -5,7 +5,7 @@
     ["hello", 1]
     {"data": ["add", 1, 2], "reply": true}
 
-A line that is no object with `data` in it is the data itself.
+A line that is not an object with `data` in it is the data itself.
 """
 
 import json

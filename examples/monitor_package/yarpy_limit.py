@@ -1,4 +1,4 @@
-"""limit: numbers on a connection stay within limits, whatever the program behind it says.
+"""limit: keep the numbers on a connection within limits, whatever its sender writes.
 
 yarpy connect /joystick /motor tcp+recv.limit+most.10
 yarpy admin /motor set in /joystick "(most 5)"
@@ -6,14 +6,14 @@ yarpy admin /motor set in /joystick "(most 5)"
 
 from typing import Any
 
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError
 from yarpy.monitors import Place
 from yarpy.wire.message import Message
 
 
 class Limit:
-    """Numbers between -most and most pass as they are, others are cut; what is none is dropped."""
+    """Numbers from -most to most pass unchanged, others are clipped; anything else is dropped."""
 
     def __init__(self, place: Place) -> None:
         self.most = place.number("most", 1.0, least=0.0)

@@ -31,7 +31,7 @@ _WHERE = {
     "NameClient": "yarpy.names.base",
     "YarpNameClient": "yarpy.names.client",
     "Bottle": "yarpy.data.bottle",
-    "Property": "yarpy.data.property",
+    "Property": "yarpy.data.bottle",
     "Vocab": "yarpy.data.value",
     "Int8": "yarpy.data.value",
     "Int16": "yarpy.data.value",
@@ -58,6 +58,7 @@ _WHERE = {
     "UnknownName": "yarpy.errors",
     "WrongPort": "yarpy.errors",
     "UnknownPlugin": "yarpy.errors",
+    "UnknownType": "yarpy.errors",
     "NoNameServer": "yarpy.errors",
     "PortClosed": "yarpy.errors",
     "LinkClosed": "yarpy.errors",
@@ -67,6 +68,7 @@ _WHERE = {
     "LocalProtocolError": "yarpy.errors",
     "NotAllowed": "yarpy.errors",
     "RemoteProtocolError": "yarpy.errors",
+    "AccessRefused": "yarpy.errors",
     "LoginRefused": "yarpy.errors",
 }
 
@@ -76,11 +78,11 @@ if TYPE_CHECKING:
     from yarpy.carriers.http.page import Page as Page
     from yarpy.contact import Contact as Contact
     from yarpy.data.bottle import Bottle as Bottle
+    from yarpy.data.bottle import Property as Property
     from yarpy.data.image import FlexImage as FlexImage
     from yarpy.data.image import Image as Image
     from yarpy.data.matrix import Matrix as Matrix
     from yarpy.data.pointcloud import PointCloud as PointCloud
-    from yarpy.data.property import Property as Property
     from yarpy.data.sound import Sound as Sound
     from yarpy.data.stamp import Stamp as Stamp
     from yarpy.data.value import Float32 as Float32
@@ -89,6 +91,7 @@ if TYPE_CHECKING:
     from yarpy.data.value import Int64 as Int64
     from yarpy.data.value import Vocab as Vocab
     from yarpy.data.vector import Vector as Vector
+    from yarpy.errors import AccessRefused as AccessRefused
     from yarpy.errors import AddressError as AddressError
     from yarpy.errors import DecodeError as DecodeError
     from yarpy.errors import LinkClosed as LinkClosed
@@ -102,6 +105,7 @@ if TYPE_CHECKING:
     from yarpy.errors import Truncated as Truncated
     from yarpy.errors import UnknownName as UnknownName
     from yarpy.errors import UnknownPlugin as UnknownPlugin
+    from yarpy.errors import UnknownType as UnknownType
     from yarpy.errors import WrongPort as WrongPort
     from yarpy.errors import YarpError as YarpError
     from yarpy.names.base import NameClient as NameClient

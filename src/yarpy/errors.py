@@ -4,6 +4,7 @@
     |-- AddressError (ValueError)        a name, address or carrier string that cannot be used
     |-- UnknownName (LookupError)        no name service knows this port
     |   `-- WrongPort                    ... or another port has its number by now
+    |-- UnknownType (LookupError)        nobody has the definition of this type
     |-- UnknownPlugin (LookupError)      no installed carrier, type, monitor or command of that name
     |-- NoNameServer (ConnectionError)   no name server answers
     |-- PortClosed (RuntimeError)        the port was closed or interrupted meanwhile
@@ -14,7 +15,8 @@
     |-- LocalProtocolError               we asked for the impossible (a reply where none can go)
     |   `-- NotAllowed                   ... or for what this port does not do
     `-- RemoteProtocolError              the peer broke the rules: its link closes, the port lives
-        `-- LoginRefused                 ... or has its own rules: it wants another name, password
+        `-- AccessRefused                ... or has rules of its own: we may not do that there
+            `-- LoginRefused             ... or it wants another name and password
 
 Rules: a message says what happened and what to do next; names come in quotes, as typed.
 """
@@ -36,6 +38,10 @@ class UnknownName(YarpError, LookupError):
 
 class WrongPort(UnknownName):
     """Where a name leads, another port listens: the entry of the name service is out of date."""
+
+
+class UnknownType(YarpError, LookupError):
+    """Nobody has the definition of a type."""
 
 
 class UnknownPlugin(YarpError, LookupError):
@@ -82,5 +88,9 @@ class RemoteProtocolError(YarpError):
     """The peer broke the rules of its protocol; its link is closed."""
 
 
-class LoginRefused(RemoteProtocolError):
+class AccessRefused(RemoteProtocolError):
+    """The peer does not let us do that (its access.toml); asking again does not help."""
+
+
+class LoginRefused(AccessRefused):
     """The peer wants a name and a password, or others than ours; asking again does not help."""

@@ -32,6 +32,8 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "name_ser": "yarpy.carriers.name_ser:NameSer",
         "http": "yarpy.carriers.http.carrier:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
+        "rossrv": "yarpy.carriers.rossrv:RosSrv",
+        "tcpros": "yarpy.carriers.tcpros:TcpRos",
         "websocket": "yarpy.carriers.websocket:WebSocket",
         "xmlrpc": "yarpy.carriers.xmlrpc:XmlRpc",
     },
@@ -58,6 +60,8 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "rpc_monitor": "yarpy.network.rpc_monitor:RpcMonitor",
         "stats_monitor": "yarpy.network.stats_monitor:StatsMonitor",
     },
+    # What ports may be part of beside their connections; it has ports of its own, too.
+    "graphs": {"ros": "yarpy.ros.part:part_of"},
 }
 
 
@@ -162,3 +166,4 @@ carriers: Final = Registry("carriers")
 types: Final = Registry("types")
 monitors: Final = Registry("monitors")
 commands: Final = Registry("commands")
+graphs: Final = Registry("graphs")

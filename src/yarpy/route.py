@@ -34,8 +34,9 @@ parses carrier strings. What may be shown is `text`, without the password. Sourc
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from typing import Any, Final, TypeAlias
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.log import readable
@@ -152,11 +153,29 @@ def masked(text: str) -> str:
     return _PASSWORD.sub("+password.***", text)
 
 
+@dataclass(frozen=True, slots=True)
+class Declared:
+    """What our port says of itself where a protocol asks for it: the node that it belongs to, its
+    topic or service, the name of its type, and the class of that, as far as it is known. `latched`:
+    who comes late gets the last message. `clock` gives the time for messages without a stamp, in
+    seconds."""
+
+    node: str = ""
+    topic: str = ""
+    type: str = ""
+    kind: Any = None
+    latched: bool = False
+    clock: Callable[[], float] | None = None
+
+
+UNDECLARED: Final = Declared()
+
+
 @dataclass(slots=True, init=False)
 class Route:
     """Who talks to whom over what: one connection. `port` is the accepting side's TCP port,
     `host` its address, where it was dialled. `peer` is what the port that was dialled calls itself,
-    as far as it was asked and can say."""
+    as far as it was asked and can say. `declared` is what our port says of itself."""
 
     source: str
     target: str
@@ -164,6 +183,7 @@ class Route:
     port: int
     host: str
     peer: str = field(compare=False)
+    declared: Declared = field(compare=False)
 
     def __init__(
         self,
@@ -173,6 +193,7 @@ class Route:
         port: int = 0,
         host: str = "",
         peer: str = "",
+        declared: Declared = UNDECLARED,
     ) -> None:
         self.source = source
         self.target = target
@@ -180,6 +201,7 @@ class Route:
         self.port = port
         self.host = host
         self.peer = peer
+        self.declared = declared
 
     @property
     def carrier(self) -> str:

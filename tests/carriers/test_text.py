@@ -199,7 +199,7 @@ def test_lines_are_not_quoted() -> None:
 
 def test_something_else_than_an_acknowledgement() -> None:
     carrier, stream = TextAck(Route("/a", "/b")), ByteStream()
-    with pytest.raises(RemoteProtocolError, match="acknowledgement was due"):
+    with pytest.raises(RemoteProtocolError, match="expected an acknowledgement"):
         run(carrier.expect_ack(stream), stream, [b"hello\r\n"])
 
 

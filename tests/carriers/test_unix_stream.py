@@ -90,7 +90,7 @@ def test_acknowledgement_is_four_bytes() -> None:
 
 def test_something_else_than_an_acknowledgement() -> None:
     carrier, stream = UnixStream(Route("/a", "/b", "unix_stream+ack")), ByteStream()
-    with pytest.raises(RemoteProtocolError, match="acknowledgement was due"):
+    with pytest.raises(RemoteProtocolError, match="expected an acknowledgement"):
         run(carrier.expect_ack(stream), stream, [b"NACK"])
 
 

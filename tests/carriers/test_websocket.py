@@ -141,13 +141,13 @@ def test_messages_go_out_block_by_block_as_from_cpp() -> None:
 class Page:
     """A page with wsproto as its browser, at a port's end of the connection."""
 
-    def __init__(self, wishes: str = "", *protocols: str, piece: int = 0) -> None:
+    def __init__(self, options: str = "", *protocols: str, piece: int = 0) -> None:
         self.ws = WSConnection(ConnectionType.CLIENT)
         self.end = End(piece)
         self.messages: list[Message] = []
         self.carrier = WebSocket(Route("", "/p", "websocket"))
         request = self.ws.send(
-            Request(host="h:1", target=f"/?ws{wishes}", subprotocols=list(protocols))
+            Request(host="h:1", target=f"/?ws{options}", subprotocols=list(protocols))
         )
         assert request.startswith(b"GET /?ws")
         self.end.begin(self.carrier.welcome(self.end.stream, request[:8]))
@@ -292,7 +292,7 @@ def test_broken_frames(frame: bytes) -> None:
 
 
 def test_other_origins(monkeypatch: pytest.MonkeyPatch) -> None:
-    for setting, origin, wishes, host, admitted in (
+    for setting, origin, options, host, admitted in (
         ("http://good:1", "http://good:1", "", "", True),
         ("http://good:1", "http://bad", "", "", False),
         ("", "http://bad", "", "", False),
@@ -307,7 +307,7 @@ def test_other_origins(monkeypatch: pytest.MonkeyPatch) -> None:
         ws = WSConnection(ConnectionType.CLIENT)
         headers = [(b"Origin", origin.encode())]
         name = "h.evil.test" if host else "h:1"
-        request = ws.send(Request(host=name, target=f"/?ws{wishes}", extra_headers=headers))
+        request = ws.send(Request(host=name, target=f"/?ws{options}", extra_headers=headers))
         end.begin(carrier.welcome(end.stream, request[:8]))
         end.feed(request[8:])
         ws.receive_data(end.take())
@@ -331,7 +331,7 @@ def test_answers_that_are_no_websocket(said: bytes) -> None:
         end.feed(said)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.binary(max_size=300), st.booleans(), st.sampled_from([0, 1, 7]))
 def test_whatever_comes_only_our_errors(data: bytes, as_json: bool, piece: int) -> None:
     page = Page("", *(["yarp.json"] if as_json else []), piece=piece)

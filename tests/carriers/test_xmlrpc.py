@@ -317,7 +317,7 @@ def test_path() -> None:
         End().begin(XmlRpc(Route("/a", "/b", "xmlrpc+path.a\r\nb")).greet(End().stream))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_whatever_comes_only_our_errors(data: st.DataObject) -> None:
     wire = bytearray(load_capture("xmlrpc_server_two_calls").steps[0].data)

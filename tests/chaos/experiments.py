@@ -11,15 +11,20 @@ import resource
 import signal
 import socket
 import statistics
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 
+import pytest
 from chaos import network
-from chaos.stage import Program, Stage
+from chaos.stage import PATIENCE, Program, Stage
+from support.wait import wait_until
 
 import yarpy
+from yarpy.carriers.base import MAGIC_SIZE
 from yarpy.names.client import YarpNameClient
 
 HERTZ = 500.0
@@ -38,11 +43,18 @@ def milliseconds(values: list[float]) -> str:
     return f"back after {statistics.median(ordered) * 1000:.0f} ms, 99 %: {last * 1000:.0f} ms"
 
 
-def balance(written: int, delivered: int, drops: int) -> str:
-    """What became of messages. Dropped are all that nobody confirmed; some may have come."""
-    left = written - delivered - drops
-    rest = f"{left} uncounted" if left >= 0 else f"of which {-left} came all the same"
-    return f"{written} written, {delivered} delivered, {drops} counted as dropped, {rest}"
+def balance(counts: dict[str, int], delivered: int, kills: int = 0) -> str:
+    """What became of messages: every one is delivered, dropped or unconfirmed, no drop was
+    delivered; but one in each killed program's hands."""
+    written, drops, unconfirmed = (counts[key] for key in ("written", "drops", "unconfirmed"))
+    lost = written - delivered
+    told = (
+        f"{written} written, {delivered} delivered, {drops} counted as dropped, {unconfirmed} as "
+        f"unconfirmed"
+    )
+    _check(drops <= lost + kills, f"{told}: some of the dropped were delivered")
+    _check(lost <= drops + unconfirmed + kills, f"{told}: some are counted nowhere")
+    return f"{told}, of which {max(0, lost - drops)} were lost"
 
 
 def kill_receiver(carrier: str, count: int) -> Row:
@@ -60,7 +72,7 @@ def kill_receiver(carrier: str, count: int) -> Row:
             back.append(max(0.0, reader.times[0] - reader.ready_at))
         counts = writer.end()
         delivered += len(reader.numbers)
-    told = balance(counts["written"], delivered, counts["drops"])
+    told = balance(counts, delivered, count)
     return Row(f"receiver killed, {carrier}", f"{count}", f"{milliseconds(back)}; {told}")
 
 
@@ -165,6 +177,47 @@ def silent_peers(count: int) -> Row:
     )
 
 
+def crowd(count: int, word: str, what: str) -> Row:
+    """Many connections at once that never say a whole message, while somebody asks."""
+    seconds = count / 1000
+    with Stage() as stage:
+        names = _names(stage)
+        with (
+            yarpy.RpcServer("/server", lambda message: ["pong"], names=names) as server,
+            yarpy.RpcClient("/server", names=names) as client,
+        ):
+            before, files, threads = _memory(), _files(), threading.active_count()
+            grown, pings = 0.0, []
+            program = stage.crowd(server.contact.port, count, seconds, word)
+            until = None
+            while until is None or time.monotonic() < until:
+                started = time.perf_counter()
+                client.call("ping", timeout=10.0)
+                pings.append(time.perf_counter() - started)
+                grown = max(grown, _memory() - before)
+                if until is None and program.numbers:
+                    until = time.monotonic() + 1.0
+                time.sleep(0.002)
+            held, busy = _files() - files, threading.active_count() - threads
+            _check(busy <= 3 or len(word) >= MAGIC_SIZE, f"{busy} threads for those without a word")
+            _check(grown < 200, f"{grown:.0f} MB for {count} connections")
+            program.kill()
+            left = time.monotonic()
+            while _files() > files + 3 or threading.active_count() > threads + 3:
+                _check(time.monotonic() < left + PATIENCE, "what they took is not given back")
+                time.sleep(0.01)
+            back = time.monotonic() - left
+    pings.sort()
+    return Row(
+        what,
+        f"{count} in {seconds:g} s",
+        f"calls of others take {statistics.median(pings) * 1000:.1f} ms, 99 %: "
+        f"{pings[int(0.99 * len(pings))] * 1000:.1f} ms, longest {pings[-1] * 1000:.0f} ms; "
+        f"{held} connections and {busy} threads at the end, {grown:.0f} MB of memory; "
+        f"all is back {back:.1f} s after they left",
+    )
+
+
 def clock_jump(seconds: float) -> Row:
     """The wall clock of the sender leaps an hour back or forth every second."""
     with Stage() as stage:
@@ -191,16 +244,123 @@ def cut_link(carrier: str, seconds: float) -> Row:
         line.cut()
         time.sleep(seconds)
         before = len(reader.said)
-        line.mend()
-        mended = time.monotonic()
+        line.restore()
+        restored = time.monotonic()
         reader.wait_for(lambda: len(reader.said) > before)
-        back = reader.said[before][0] - mended
+        back = reader.said[before][0] - restored
         _wait_for_numbers(reader)
         counts = writer.end()
         time.sleep(0.5)
         got = reader.numbers
-    told = balance(counts["written"], len(got), counts["drops"])
+    told = balance(counts, len(got))
     return Row(f"link cut, {carrier}", f"{seconds:g} s", f"back after {back:.1f} s; {told}")
+
+
+@contextmanager
+def _dead_after(seconds: float) -> Iterator[None]:
+    """Programs and ports take a host for dead after so many seconds without an answer."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("YARPY_PEER_TIMEOUT", f"{seconds:g}")
+        yield
+
+
+def dead_reader(strict: bool, timeout: float) -> Row:
+    """The host of a receiver is switched off; its name turns up on another host."""
+    with (
+        _dead_after(timeout),
+        network.hosts(2) as (first, second),
+        Stage(network.AT_HOME) as stage,
+        yarpy.BufferedPort("/out", strict=strict, names=_names(stage)) as out,
+    ):
+        reader = stage.read("/in", before=first.inside)
+        out.connect("/in")
+        with _writing(out) as longest:
+            _wait_for_numbers(reader)
+            first.die()
+            died = time.monotonic()
+            wait_until(lambda: not out.outputs, timeout + 30)
+            noticed = time.monotonic() - died
+            _check(noticed < timeout + 5, f"it took {noticed:.1f} s to notice a dead host")
+            _names(stage).unregister("/in")
+            successor = stage.read("/in", before=second.inside)
+            _wait_for_numbers(successor)
+            back = successor.times[0] - successor.ready_at
+    return Row(
+        f"host of the receiver switched off, {'strict' if strict else 'newest'}",
+        f"after {timeout:g} s",
+        f"noticed after {noticed:.1f} s; the name on another host gets messages after "
+        f"{max(0.0, back):.1f} s; longest `write` {longest[0]:.1f} s",
+    )
+
+
+def dead_writer(timeout: float) -> Row:
+    """The host of a sender is switched off."""
+    with (
+        _dead_after(timeout),
+        network.hosts(1) as (host,),
+        Stage(network.AT_HOME) as stage,
+        yarpy.BufferedPort("/in", strict=True, names=_names(stage)) as in_,
+    ):
+        stage.write("/out", "/in", "tcp", HERTZ, before=host.inside)
+        for _ in range(20):
+            in_.read(timeout=30)
+        host.die()
+        died = time.monotonic()
+        wait_until(lambda: not in_.inputs, timeout + 30)
+        noticed = time.monotonic() - died
+    _check(noticed < timeout + 5, f"it took {noticed:.1f} s to notice a dead host")
+    return Row(
+        "host of the sender switched off", f"after {timeout:g} s", f"noticed after {noticed:.1f} s"
+    )
+
+
+def stopped_reader_on_a_dead_host(timeout: float) -> Row:
+    """A receiver that is stopped may keep its writer waiting for as long as its host lives."""
+    with (
+        _dead_after(timeout),
+        network.hosts(1) as (host,),
+        Stage(network.AT_HOME) as stage,
+        yarpy.Port("/out", names=_names(stage)) as out,
+    ):
+        reader = stage.read("/in", before=host.inside)
+        out.connect("/in")
+        with _writing(out, "x" * 100_000):
+            _wait_for_numbers(reader)
+            for line in host.programs():
+                os.kill(line, signal.SIGSTOP)
+            time.sleep(2 * timeout)
+            _check(bool(out.outputs), "a stopped receiver was taken for a dead host")
+            host.die()
+            died = time.monotonic()
+            wait_until(lambda: not out.outputs, 3 * timeout + 30)
+            noticed = time.monotonic() - died
+    return Row(
+        "a stopped receiver, its host switched off later",
+        f"after {2 * timeout:g} s",
+        f"kept until then; noticed after {noticed:.1f} s",
+    )
+
+
+@contextmanager
+def _writing(out: yarpy.Port | yarpy.BufferedPort, payload: str = "") -> Iterator[list[float]]:
+    """Write numbers meanwhile; gives a list of what the longest `write` took, in seconds."""
+    ended, longest = threading.Event(), [0.0]
+
+    def write() -> None:
+        number = 0
+        while not ended.wait(1 / HERTZ):
+            started = time.monotonic()
+            out.write([number, payload])
+            longest[0] = max(longest[0], time.monotonic() - started)
+            number += 1
+
+    thread = threading.Thread(target=write)
+    thread.start()
+    try:
+        yield longest
+    finally:
+        ended.set()
+        thread.join(PATIENCE)
 
 
 def full_disk(count: int) -> Row:
@@ -237,9 +397,15 @@ def all_of(scale: float) -> list[Callable[[], Row]]:
         lambda: stop_one_of_two(max(1.5, 20 * scale)),
         lambda: slow_reader(max(1.5, 20 * scale)),
         lambda: silent_peers(some(2000)),
+        lambda: crowd(some(10_000), "x", "peers that connect and say one byte"),
+        lambda: crowd(some(10_000), "GET / HT", "peers that begin to greet"),
         lambda: clock_jump(max(3.0, 20 * scale)),
         lambda: cut_link("tcp", max(2.0, 10 * scale)),
         lambda: cut_link("udp", max(2.0, 10 * scale)),
+        lambda: dead_reader(True, max(2.0, 25 * min(scale, 1.0))),
+        lambda: dead_reader(False, max(2.0, 25 * min(scale, 1.0))),
+        lambda: dead_writer(max(2.0, 25 * min(scale, 1.0))),
+        lambda: stopped_reader_on_a_dead_host(max(2.0, 25 * min(scale, 1.0))),
         lambda: full_disk(some(100)),
     ]
 
@@ -256,6 +422,10 @@ def _wait_for_numbers(reader: Program, count: int = 20) -> None:
 def _check(holds: bool, what: str) -> None:
     if not holds:
         raise AssertionError(what)
+
+
+def _files() -> int:
+    return len(os.listdir("/proc/self/fd"))
 
 
 def _memory() -> float:

@@ -1,4 +1,4 @@
-"""A link that can be cut, and a disk that is full: what only root may make, in places of their own.
+"""Links that are cut, hosts that die, a disk that is full: what only root may make, out of the way.
 
 Rules: a network namespace and a pair of virtual interfaces with the number of this process in their
 names; a file system in memory. All are gone afterwards.
@@ -20,6 +20,10 @@ HERE: Final = "10.231.77.1"
 THERE: Final = "10.231.77.2"
 
 
+#: Our address in the network of the hosts that die.
+AT_HOME: Final = "10.231.78.1"
+
+
 class Missing(Exception):
     """This cannot be made here; the text says why."""
 
@@ -38,10 +42,11 @@ class Link:
         self._interface = interface
 
     def cut(self) -> None:
-        _run("ip", "link", "set", self._interface, "down")
+        """Over there: with an interface of ours its route would go, and others might answer."""
+        _run(*self.inside, "ip", "link", "set", self._interface, "down")
 
-    def mend(self) -> None:
-        _run("ip", "link", "set", self._interface, "up")
+    def restore(self) -> None:
+        _run(*self.inside, "ip", "link", "set", self._interface, "up")
 
     @property
     def inside(self) -> tuple[str, ...]:
@@ -67,7 +72,7 @@ def link() -> Iterator[Link]:
         _run("ip", "link", "add", near, "type", "veth", "peer", "name", far, "netns", name)
         _run("ip", "addr", "add", f"{HERE}/24", "dev", near)
         _run("ip", "link", "set", near, "up")
-        found = Link(name, near)
+        found = Link(name, far)
         for command in (
             ("ip", "addr", "add", f"{THERE}/24", "dev", far),
             ("ip", "link", "set", far, "up"),
@@ -78,6 +83,62 @@ def link() -> Iterator[Link]:
     finally:
         subprocess.run(["ip", "netns", "del", name], capture_output=True)
         subprocess.run(["ip", "link", "del", near], capture_output=True)
+
+
+class Host:
+    """A network namespace on a switch, at `address`."""
+
+    def __init__(self, name: str, address: str, plug: str) -> None:
+        self.name = name
+        self.address = address
+        self._plug = plug
+
+    def die(self) -> None:
+        """Nothing comes from it or reaches it any more, and nobody is told."""
+        _run("ip", "link", "set", self._plug, "down")
+
+    def programs(self) -> list[int]:
+        """The numbers of the processes there."""
+        told = subprocess.run(["ip", "netns", "pids", self.name], capture_output=True, text=True)
+        return [int(number) for number in told.stdout.split()]
+
+    @property
+    def inside(self) -> tuple[str, ...]:
+        """What to put before a command that is to run there."""
+        return "ip", "netns", "exec", self.name
+
+
+@contextmanager
+def hosts(count: int) -> Iterator[list[Host]]:
+    """So many hosts, which share a switch with this one, AT_HOME."""
+    _needs_root("ip")
+    number = os.getpid()
+    switch, names = f"yc{number}s", [f"yarpy-host-{number}-{i}" for i in range(count)]
+    try:
+        _run("ip", "link", "add", switch, "type", "bridge")
+        _run("ip", "addr", "add", f"{AT_HOME}/24", "dev", switch)
+        _run("ip", "link", "set", switch, "up")
+        found = []
+        for place, name in enumerate(names):
+            plug, address = f"yc{number}p{place}", f"10.231.78.{place + 2}"
+            _run("ip", "netns", "add", name)
+            _run("ip", "link", "add", plug, "type", "veth", "peer", "name", "eth0", "netns", name)
+            _run("ip", "link", "set", plug, "master", switch)
+            _run("ip", "link", "set", plug, "up")
+            host = Host(name, address, plug)
+            for command in (
+                ("ip", "addr", "add", f"{address}/24", "dev", "eth0"),
+                ("ip", "link", "set", "eth0", "up"),
+                ("ip", "link", "set", "lo", "up"),
+            ):
+                _run(*host.inside, *command)
+            found.append(host)
+        yield found
+    finally:
+        for place, name in enumerate(names):
+            subprocess.run(["ip", "link", "del", f"yc{number}p{place}"], capture_output=True)
+            subprocess.run(["ip", "netns", "del", name], capture_output=True)
+        subprocess.run(["ip", "link", "del", switch], capture_output=True)
 
 
 @contextmanager

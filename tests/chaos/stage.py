@@ -106,5 +106,16 @@ class Stage:
         """`before`: words before the command, such as those that name another network."""
         return self._start("read", name, str(pause), before=before)
 
-    def write(self, out: str, target: str, carrier: str, hertz: float, *options: str) -> Program:
-        return self._start("write", out, target, carrier, str(hertz), *options)
+    def crowd(self, port: int, count: int, seconds: float, word: str) -> Program:
+        return self._start("crowd", str(port), str(count), str(seconds), word)
+
+    def write(
+        self,
+        out: str,
+        target: str,
+        carrier: str,
+        hertz: float,
+        *options: str,
+        before: tuple[str, ...] = (),
+    ) -> Program:
+        return self._start("write", out, target, carrier, str(hertz), *options, before=before)

@@ -35,6 +35,7 @@ def test_words_of_a_line_that_is_being_typed(line, words):
         ("yarpy help qo", ["qos"]),
         ("yarpy qos ", ["describe", "get", "set"]),
         ("yarpy qos g", ["get"]),
+        ("yarpy name un", ["unregister"]),
         ("yarpy connect /a /b fast", ["fast_tcp"]),
         ("yarpy split /a --carrier fast", ["fast_tcp"]),
         ("yarpy connect --file ", [FILES]),

@@ -24,6 +24,13 @@ def test_every_verb_has_its_section() -> None:
     assert sections == set(VERBS)
 
 
+def test_defaults_are_shown_and_true() -> None:
+    page = manual(root)
+    assert "[default: 30.0; 0.1<=x<=1000.0]" in page
+    assert "The port number.  [default: (as stored, else 10000); 0<=x<=65535]" in page
+    assert 'default: ""' not in page and "default: ...]" not in page
+
+
 @pytest.mark.skipif(not shutil.which("man"), reason="man is not installed (man-db)")
 def test_man_shows_it_without_a_warning() -> None:
     done = subprocess.run(

@@ -44,7 +44,8 @@ def test_few_columns_by_default_and_numbers_aligned(here, ports):
 
 
 LONG = ("/robot/left_arm/very/long/name/state:o", "/logger/of/everything/left_arm/state:i", "tcp",
-        "1234567", "1000.0", "81.25", "12", "0.10", "0.52", "FIFO 30", "AF42", "")  # fmt: skip
+        "1234567", "1000.0", "81.25", "12", "0", "0", "0.10", "0.52", "FIFO 30", "AF42",
+        "")  # fmt: skip
 
 
 @pytest.mark.parametrize("width", [80, 100, 120, 40])
@@ -59,6 +60,16 @@ def test_wide_shows_everything():
     [titles, row] = layout([LONG], 80, True)
     assert [text.strip() for text, _ in row] == list(LONG)
     assert len(titles) == len(COLUMNS)
+
+
+def test_what_is_written_to_nobody_is_no_trouble(here, ports):
+    with yarpy.Port("/over/idle") as idle:
+        idle.write(["nobody"])
+        assert "/over/idle" not in here("stats").out
+        lines = here("stats", "--wide").out.splitlines()
+    [line] = [line for line in lines if "/over/idle" in line]
+    assert line.split()[:5] == ["/over/idle", "(past)", "0", "0", "0"]
+    assert "1" in line.split()
 
 
 def test_json(here, ports):

@@ -15,10 +15,9 @@ from support.message import bottles, kinds
 from support.vectors import binaries, rows
 
 from yarpy.data import codec
-from yarpy.data.bottle import Bottle
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.image import Image
 from yarpy.data.matrix import Matrix
-from yarpy.data.property import Property
 from yarpy.data.sound import Sound
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab

@@ -225,3 +225,14 @@ def test_mutated(data):
         return
     image.array.sum()
     joined(image)
+
+
+def test_memory_that_is_laid_out_as_on_the_wire() -> None:
+    rows = bytearray(range(16))
+    image = Image.over(memoryview(rows), 3, 2, "mono", 8)
+    assert image.array.tolist() == [[0, 1, 2], [8, 9, 10]]
+    rows[0] = 99
+    assert image.array[0, 0] == 99
+    assert Image.from_wire(b"".join(image.to_wire())) == image
+    with pytest.raises(ValueError, match="3 times 3 pixels take 24 bytes, here are 16"):
+        Image.over(memoryview(rows), 3, 3, "mono", 8)

@@ -127,7 +127,7 @@ def test_size_is_looked_at_before_memory_is_taken() -> None:
     assert peak.bytes < 1_000_000
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_damage_is_our_error(data: st.DataObject) -> None:
     broken = bytearray(PICTURE)

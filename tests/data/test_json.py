@@ -12,9 +12,8 @@ from hypothesis import strategies as st
 
 import yarpy
 from yarpy.data import codec
-from yarpy.data.bottle import Bottle
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.json import from_json, to_json
-from yarpy.data.property import Property
 from yarpy.data.value import Float32, Int8, Int64, Vocab
 from yarpy.errors import DecodeError
 

@@ -139,3 +139,14 @@ def test_mutated(noise, at):
         PointCloud.from_wire(message).array.copy()
     except DecodeError:
         pass
+
+
+def test_memory_that_is_laid_out_as_on_the_wire() -> None:
+    cloud = PointCloud([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+    data = bytearray(cloud.to_wire()[1])
+    again = PointCloud.over(memoryview(data), 2, 1, "xyz")
+    assert again == cloud
+    again.array["x"][0, 0] = 9
+    assert data[:4] == b"\0\0\x10\x41"
+    with pytest.raises(ValueError, match="take 48 bytes, not 32"):
+        PointCloud.over(memoryview(data), 3, 1, "xyz")

@@ -7,9 +7,7 @@ from hypothesis import strategies as st
 from support.message import bottles, kinds, walk
 from support.vectors import binaries, rows
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
-from yarpy.data.reader import read_bottle
+from yarpy.data.bottle import Bottle, Property, read_bottle
 from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
 from yarpy.data.walker import Walker
 from yarpy.data.writer import list_blocks

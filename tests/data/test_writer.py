@@ -1,16 +1,18 @@
 import enum
+import math
 import struct
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support.message import scalars
+from support.message import bottles, kinds, scalars, texts
 
-from yarpy.data.bottle import Bottle
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.stamp import Stamp
+from yarpy.data.text import parse_text, text_of
 from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
 from yarpy.data.vector import Vector
-from yarpy.data.writer import list_blocks, value_blocks
+from yarpy.data.writer import dict_elements, list_blocks, value_blocks
 
 
 @pytest.mark.parametrize(
@@ -168,3 +170,27 @@ def test_short_ways_write_what_the_long_way_writes(items):
 def test_what_cannot_be_an_element_is_named_as_one_says_it() -> None:
     with pytest.raises(TypeError, match=r"^an object cannot be an element"):
         list_blocks([object()])
+
+
+@given(st.dictionaries(texts, scalars | bottles, max_size=5))
+def test_the_message_is_what_the_text_says(values):
+    by_text = parse_text(text_of(values))
+    assert repr(dict_elements(values)) == repr(by_text)
+    assert kinds(dict_elements(values)) == kinds(by_text)
+    assert Property(values).to_bytes() == Bottle(by_text).to_bytes()
+
+
+@pytest.mark.parametrize("word", ["null", "inf", "nan", "-inf", "true", "-nan"])
+def test_words_that_change(word):
+    changed = {"null": Vocab("null"), "inf": math.inf, "nan": math.nan}.get(word, word)
+    assert repr(dict_elements({"k": [word]})) == repr([["k", [changed]]])
+
+
+def test_values_that_text_changes():
+    negative_nan = struct.unpack("<d", b"\0\0\0\0\0\0\xf8\xff")[0]
+    assert dict_elements({"k": negative_nan}) == [["k", "-nan.0"]]
+    assert math.isnan(dict_elements({"k": math.nan})[0][1])
+    assert dict_elements({"k": -math.inf}) == [["k", -math.inf]]
+    assert dict_elements({"a": 1, "b": Vocab(")")}) == [["a", 1]], "the bracket swallows its group"
+    with pytest.raises(OverflowError):
+        Property(k=2**70).to_bytes()

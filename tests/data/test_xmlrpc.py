@@ -14,8 +14,7 @@ from support.label import spelled
 from support.steps import measured
 
 from yarpy.data import xmlrpc as ours
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.value import Int8, Int16, Int64, Vocab
 from yarpy.errors import DecodeError
 
@@ -252,9 +251,9 @@ scalars = st.one_of(
 @given(st.lists(scalars, max_size=5))
 def test_scalars_come_back(values: list[Any]) -> None:
     answer = ours.decode_answer(ours.encode_answer(["x", "y", *values]))
-    mended = [v.replace("\ufffe", "\ufffd").replace("\uffff", "\ufffd") if isinstance(v, str) else v
+    clean = [v.replace("\ufffe", "\ufffd").replace("\uffff", "\ufffd") if isinstance(v, str) else v
               for v in values]  # fmt: skip
-    assert answer == ["x", "y", *mended]
+    assert answer == ["x", "y", *clean]
 
 
 def test_numbers_of_every_width_are_written_at_once() -> None:

@@ -18,11 +18,19 @@ from yarpy.config.configuration import parse_server
 from yarpy.config.ini import parse_ini
 from yarpy.contact import parse_contact
 from yarpy.data import xmlrpc
+from yarpy.data.bottle import Property
 from yarpy.data.json import from_json
-from yarpy.data.property import Property
 from yarpy.data.stamp import Stamp
 from yarpy.data.text import balanced, parse_text
-from yarpy.errors import AddressError, DecodeError, LocalProtocolError, RemoteProtocolError
+from yarpy.errors import (
+    AddressError,
+    DecodeError,
+    LocalProtocolError,
+    RemoteProtocolError,
+    UnknownType,
+)
+from yarpy.idl.rosmsg.catalogue import Catalogue
+from yarpy.idl.rosmsg.source import Standard
 from yarpy.monitors.constraint import Constraint
 from yarpy.names.discovery import respond
 from yarpy.names.registration_line import parse_registration, plain
@@ -33,7 +41,7 @@ from yarpy.route import Route, masked, parse_carrier
 from yarpy.wire.framing import parse_command
 
 #: what a parser may raise for a text that is none
-REFUSALS = (DecodeError, AddressError, LocalProtocolError, RemoteProtocolError)
+REFUSALS = (DecodeError, UnknownType, AddressError, LocalProtocolError, RemoteProtocolError)
 
 Shape = tuple[bytes, bytes, bytes]
 
@@ -116,13 +124,43 @@ def _named(data: bytes) -> object:
     return service.answer_text(text, "127.0.0.1").text_lines()
 
 
+def _definition(data: bytes) -> object:
+    """What a peer of ROS sends with its connection."""
+    catalogue = Catalogue([Standard()])
+    text = data.decode("utf-8", "surrogateescape")
+    catalogue.message_of("p/Type", text)
+    return catalogue.service_of("p/Do", text)
+
+
 LINE = b" and words up to the end of the line, as in a file that people write\n"
 _TEXT_PIECES = (
     *(b"1", b"0", b"0x", b"+", b"-", b".", b"e", b"inf", b"nan", b"null", b"true", b"a", b"[a]"),
     *(b'"', b"\\", b"(", b")", b"{", b"}", b"[", b"]", b" ", b",", b"\n", b"\xc3", b"\0", b"12 "),
 )
 
+_SEPARATOR = b"\n" + b"=" * 80 + b"\nMSG: "
+
 GRAMMARS = {
+    "ros definition": Grammar(
+        _definition,
+        (
+            *((b"", piece, b"") for piece in (b"#", b"\n", b"=", b"a", b"[", b"1", b" ", b"---\n")),
+            *((b"int32", piece, b" a") for piece in (b"[", b"]", b"1", b"/", b"/a")),
+            *((b"int32 A=", piece, b"") for piece in (b"1", b"(", b"-", b"1e", b" ")),
+            (b"bool A=", b"(", b""),
+            (b"", b"# a\n", b"int8 a"),
+            (b"int8 a\n", b"# a\n", b"int8 b"),
+            (b"string A=", b"a=", b""),
+            (b"int8 a\n", _SEPARATOR + b"p/A\nint8 a\n", b""),
+            (b"A a\n" + _SEPARATOR + b"p/A\n", b"int8 a\nA[] b\n", b""),
+        ),
+        (
+            *(b"int32 ", b"string ", b"time ", b"Header ", b"float64[] ", b"uint8[4] ", b"A "),
+            *(b"a", b"b", b"A=1", b"B = x # y", b"\n", b"# ", b"---\n", b" ", b"\xff", b"[", b"]"),
+            _SEPARATOR + b"p/A\nint8 a\n",
+            _SEPARATOR + b"p/B\nType t\n",
+        ),
+    ),
     "text": Grammar(
         parse_text,
         (

@@ -7,6 +7,7 @@ from what C++ YARP was recorded to say (tests/golden). Whoever adds a decoder ad
 
 from __future__ import annotations
 
+import random
 import struct
 import zlib
 from collections.abc import Callable
@@ -16,6 +17,7 @@ from typing import Any
 import numpy as np
 from fuzz.grammar import GRAMMARS, REFUSALS
 from support.capture import CAPTURES, load_capture
+from support.ros_value import filled
 from support.vectors import rows
 
 import yarpy
@@ -23,6 +25,10 @@ from yarpy import registry
 from yarpy.data import codec, jpeg
 from yarpy.data.image import Image
 from yarpy.errors import YarpError
+from yarpy.idl.rosmsg.library import Library
+from yarpy.idl.rosmsg.native import to_value
+from yarpy.idl.rosmsg.sniff import sniff
+from yarpy.idl.rosmsg.source import Standard
 from yarpy.link.handshake import recognise
 from yarpy.monitors.stock import png
 from yarpy.monitors.stock.zlib_limit import unpacked
@@ -169,6 +175,35 @@ def _said(sender: str) -> tuple[bytes, ...]:
     return tuple(sorted(said for said in found if 0 < len(said) < 4000))
 
 
+def _sniffed(data: bytes) -> None:
+    """A type for the bytes of a port, and the bytes read by it."""
+    _ROS.message_of("p/Sniffed", sniff(data)).from_ros(data)
+
+
+def _ros(name: str) -> Target:
+    """What a peer of ROS sends, and what comes as that type on connections of YARP."""
+    cls = _ROS.message(name)
+
+    def read(data: bytes) -> None:
+        for convert in (cls.from_ros, cls.from_wire):
+            try:
+                message = convert(data)
+            except YarpError:
+                continue
+            message.to_ros()
+            message.to_bottle()
+            for kind in (object, *TYPES):
+                try:
+                    to_value(message, kind)
+                except YarpError:
+                    continue
+
+    full = [filled(cls, random.Random(seed)) for seed in range(3)]
+    seeds = [b"".join(message.to_ros()) for message in full]
+    return Target(read, (*seeds, *(b"".join(message.to_wire()) for message in full)))
+
+
+_ROS = Library([Standard()])
 _PIXELS = np.arange(24 * 32 * 3, dtype="u1").reshape(24, 32, 3)
 _MESSAGES = tuple(
     bytes.fromhex(row["binary"]) for kind in ("bottle", "types") for row in rows(kind)
@@ -194,6 +229,11 @@ TARGETS = {
         for name, grammar in GRAMMARS.items()
     },
     "messages": Target(_decode_all, _MESSAGES),
+    **{
+        f"ros {name}": _ros(f"sensor_msgs/{name}")
+        for name in ("JointState", "PointCloud2", "Image")
+    },
+    "sniff": Target(_sniffed, _MESSAGES),
     "walker": Target(_walk, _MESSAGES),
     "jpeg": Target(
         _picture, (jpeg.encode(Image(_PIXELS)), jpeg.encode(Image(_PIXELS[..., 0].copy())))
@@ -212,6 +252,7 @@ TARGETS = {
         )
         for name in (
             *("tcp", "fast_tcp", "text", "text_ack", "http", "xmlrpc", "mjpeg", "websocket"),
+            *("tcpros", "rossrv"),
             *("unix_stream", "udp", "mcast", "name_ser"),
         )
     },

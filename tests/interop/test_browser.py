@@ -89,7 +89,7 @@ def test_page_of_a_port(browser: Browser, port: yarpy.RpcServer, dark: bool, pho
     look = f"port_{'dark' if dark else 'light'}_{'phone' if phone else 'desk'}"
     assert page.title() == "/head/rpc:i - yarp port"
     shows(page, "no connections with other ports")
-    shows(page, "it takes messages and sends none by itself")
+    shows(page, "it receives messages and sends none by itself")
     assert fits(page)
     field_and_button = page.locator("form").first.bounding_box()
     assert field_and_button and field_and_button["height"] < 60, "they stand below each other"

@@ -71,11 +71,11 @@ def raw_camera(*answers: bytes) -> Iterator[tuple[str, list[bytes]]]:
         with suppress(OSError):
             for answer in answers:
                 sock, _ = listener.accept()
-                asked.append(sock.recv(1000))
-                sock.sendall(answer)
-                sock.settimeout(PATIENCE)
-                sock.recv(1)  # until the watcher goes
-                sock.close()
+                with sock:
+                    asked.append(sock.recv(1000))
+                    sock.sendall(answer)
+                    sock.settimeout(PATIENCE)
+                    sock.recv(1)  # until the watcher goes
 
     thread = threading.Thread(target=serve, daemon=True)
     thread.start()
@@ -226,12 +226,12 @@ def test_wrong_path_is_told() -> None:
 class Browser:
     """A socket that asks for a stream, and reads as it likes."""
 
-    def __init__(self, port: yarpy.Port | yarpy.BufferedPort, wishes: str = "") -> None:
+    def __init__(self, port: yarpy.Port | yarpy.BufferedPort, options: str = "") -> None:
         self.sock = socket.socket()
         self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 14)
         self.sock.settimeout(PATIENCE)
         self.sock.connect((port.contact.host, port.contact.port))
-        self.sock.sendall(f"GET /?action=stream{wishes} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
+        self.sock.sendall(f"GET /?action=stream{options} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
         self.file = self.sock.makefile("rb")
         assert self.file.readline() == b"HTTP/1.0 200 OK\r\n"
         while self.file.readline().strip():

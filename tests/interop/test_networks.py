@@ -5,33 +5,16 @@ each. Needs root and iproute2.
 """
 
 import os
-import shutil
-import subprocess
 import sys
 from collections.abc import Iterator
 
 import pytest
+from support.namespace import ip, why_not
 from support.process import Process
 
 PREFIX = f"y{os.getpid() % 10000}"
 LEFT, RIGHT = "10.77.1", "10.77.2"
 PORT = 10000
-
-
-def ip(*words: str, check: bool = True) -> None:
-    subprocess.run(["ip", *words], check=check, capture_output=True, timeout=10)
-
-
-def why_not() -> str:
-    if not hasattr(os, "geteuid") or os.geteuid() != 0:
-        return "network namespaces need root: run this file with sudo"
-    if shutil.which("ip") is None:
-        return "network namespaces need the command ip: install iproute2"
-    probe = subprocess.run(["ip", "netns", "add", PREFIX], capture_output=True, text=True)
-    if probe.returncode:
-        return f"this system has no network namespaces: {probe.stderr.strip()}"
-    ip("netns", "del", PREFIX)
-    return ""
 
 
 @pytest.fixture(scope="module")

@@ -26,11 +26,11 @@ PATIENCE = patience(10.0)
 class Page:
     """A WebSocket as a page has it."""
 
-    def __init__(self, port: yarpy.Port, wishes: str = "", *protocols: str) -> None:
+    def __init__(self, port: yarpy.Port, options: str = "", *protocols: str) -> None:
         where = port.contact.host, port.contact.port
         self.sock = socket.create_connection(where, PATIENCE)
         self.ws = WSConnection(ConnectionType.CLIENT)
-        self.say(Request(host="h", target=f"/?ws{wishes}", subprotocols=list(protocols)))
+        self.say(Request(host="h", target=f"/?ws{options}", subprotocols=list(protocols)))
         assert isinstance(self.hear(), AcceptConnection)
 
     def say(self, event: Event) -> None:
@@ -65,8 +65,8 @@ class Page:
 
 
 @contextmanager
-def page(port: yarpy.Port, wishes: str = "", *protocols: str) -> Iterator[Page]:
-    found = Page(port, wishes, *protocols)
+def page(port: yarpy.Port, options: str = "", *protocols: str) -> Iterator[Page]:
+    found = Page(port, options, *protocols)
     try:
         yield found
     finally:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
+import pytest
 from support.wait import wait_until
 
 from yarpy.errors import LinkClosed
@@ -94,6 +95,20 @@ def test_failing_send_stops_the_queue() -> None:
     slow.thread.join(5)
     assert not slow.thread.is_alive()
     assert not slow.queue.wait_put(Packet(2))
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_defect_in_sending_leaves_nobody_waiting() -> None:
+    def send(packet: Packet) -> None:
+        raise ZeroDivisionError
+
+    queue = Background(send, Counter())
+    assert queue.put(Packet([1]))
+    thread = threading.Thread(target=queue.run)
+    thread.start()
+    assert queue.wait_empty(5)
+    thread.join(5)
+    assert queue.stopped
 
 
 def test_sweeper_comes_soon_and_sleeps_when_nothing_is_left() -> None:

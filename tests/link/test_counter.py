@@ -58,17 +58,28 @@ def test_numbers_by_name() -> None:
     assert found["bytes"] == 70
     assert found["since"] == 5.0
     assert set(found) == {
-        *("messages", "bytes", "drops", "period", "jitter", "latency", "since", "rate"),
+        *(
+            "messages",
+            "bytes",
+            "drops",
+            "unconfirmed",
+            "period",
+            "jitter",
+            "latency",
+            "since",
+            "rate",
+        ),
     }
 
 
 def test_sums_over_links_that_are_over() -> None:
     past = Past()
-    assert past.as_dict() == {"messages": 0, "bytes": 0, "drops": 0}
-    counters = [Counter(messages=1, bytes=10, drops=2) for _ in range(3 * KEEP)]
+    assert past.as_dict() == {"messages": 0, "bytes": 0, "drops": 0, "unconfirmed": 0}
+    counters = [Counter(messages=1, bytes=10, drops=2, unconfirmed=4) for _ in range(3 * KEEP)]
     for counter in counters:
         past.add(counter, 1)
     expected = {"messages": 3 * KEEP, "bytes": 30 * KEEP, "drops": 9 * KEEP}
+    expected["unconfirmed"] = 12 * KEEP
     assert past.as_dict() == expected
     counters[-1].drops += 5  # what waited is dropped later
     assert past.as_dict()["drops"] == 9 * KEEP + 5

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import socket
 import threading
 import time
@@ -11,7 +13,7 @@ from support.port import free_port
 from support.transport import ScriptTransport, scripted
 
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
-from yarpy.link.driver import Driver, closed
+from yarpy.link.driver import Driver, link_error
 from yarpy.transports.base import SocketTransport
 from yarpy.transports.datagram import DatagramTransport
 from yarpy.wire.effects import Group, Open, Switch
@@ -121,7 +123,7 @@ def test_deadline_that_has_passed() -> None:
     ],
 )
 def test_errors_while_sending(error: OSError, wanted: type[Exception]) -> None:
-    assert type(closed(error)) is wanted
+    assert type(link_error(error)) is wanted
 
 
 def test_failing_send_is_our_error() -> None:
@@ -250,3 +252,37 @@ def test_limit_reaches_the_stream() -> None:
     driver = Driver(transport, limit=1000)
     with pytest.raises(RemoteProtocolError):
         driver.run(driver.stream.read_exact(20_000))
+
+
+@pytest.mark.parametrize("number", [errno.ETIMEDOUT, errno.EHOSTUNREACH, errno.ENETUNREACH])
+def test_dead_host_is_the_end_of_a_connection(number: int) -> None:
+    """Not a peer that is merely late, who is not dialled again."""
+    error = OSError(number, os.strerror(number))
+    driver, _ = scripted(error)
+    with pytest.raises(LinkClosed, match="host does not answer"):
+        driver.fill()
+    assert isinstance(link_error(error), LinkClosed)
+
+
+def test_flush_by_a_deadline_leaves_the_rest_for_the_next() -> None:
+    near, far = socket.socketpair()
+    driver = Driver(SocketTransport(near))
+    data = bytes(range(256)) * 20_000
+    driver.stream.write(data)
+    for deadline in (0.0, time.monotonic() + 0.05):
+        with pytest.raises(Timeout):
+            driver.flush(deadline)
+    assert 0 < driver.bytes_out < len(data)
+    assert driver.stream.pending
+    driver.stream.write(b"the end")
+    thread = threading.Thread(target=driver.flush, args=(time.monotonic() + 30,))
+    thread.start()
+    found = bytearray()
+    while len(found) < len(data) + 7:
+        found += far.recv(1 << 20)
+    thread.join(5)
+    assert bytes(found) == data + b"the end"
+    assert driver.bytes_out == len(found)
+    assert not driver.stream.pending
+    near.close()
+    far.close()

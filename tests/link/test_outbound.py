@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import threading
 import time
+from contextlib import suppress
 
 import pytest
 from support.outbound import connected, link_on, open_link, read_messages, total
 from support.transport import scripted
 from support.wait import wait_until
 
-from yarpy.carriers.base import Delivery
+from yarpy.carriers.base import Carrier, Delivery, Limits
 from yarpy.carriers.tcp import FastTcp, Tcp
-from yarpy.carriers.text import TextAck
+from yarpy.carriers.text import Text, TextAck
 from yarpy.carriers.udp import Udp
 from yarpy.data.bottle import Bottle
-from yarpy.errors import LinkClosed, LocalProtocolError, Timeout
+from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.link import outbound as module
+from yarpy.link.budget import Budget
 from yarpy.wire import framing
 from yarpy.wire.message import CALL, Packet
 
@@ -34,7 +36,7 @@ def test_waiting_for_acknowledgements() -> None:
         assert not link.broken
         read_messages(far, 1)
         link.wait_acknowledged(5)
-        assert link.sender.unacknowledged == 0
+        assert link.sender.window.open == 0
         far.close()
         with pytest.raises(LinkClosed):
             link.send(Packet([2]))
@@ -72,6 +74,13 @@ def test_acknowledgements_of_earlier_messages_come_first() -> None:
     message = link.call(Packet(["ask"], key=CALL), 5)
     assert message is not None
     assert message.value == ["ok"]
+
+
+def test_question_that_is_not_taken_has_its_limit_too() -> None:
+    with connected(FastTcp) as (link, _):
+        with pytest.raises(Timeout):
+            link.call(Packet("x" * 20_000_000, key=CALL), 0.2)
+        assert link.broken
 
 
 def test_answer_that_is_late_never_answers_the_next_question() -> None:
@@ -118,7 +127,7 @@ def test_end_behind_unread_acknowledgements_is_noticed() -> None:
         for number in range(5):
             link.send(Packet([number]))
         read_messages(far, 5)
-        assert link.sender.unacknowledged
+        assert link.sender.window.open
         far.close()
         wait_until(link.ended)
         assert link.broken
@@ -139,6 +148,23 @@ def test_background_link_drops_what_comes_too_early() -> None:
         assert link.try_send(Packet([1]))
         assert link.wait_sent(5)
         assert total(link) == 51
+
+
+class Untouched:
+    """A value that must not be encoded."""
+
+    def to_wire(self) -> tuple[bytes]:
+        raise AssertionError("it is dropped, so it need not be encoded")
+
+
+@pytest.mark.parametrize("carrier", [Tcp, FastTcp, Text])
+def test_message_that_is_dropped_costs_no_encoding(carrier: type[Carrier]) -> None:
+    with connected(carrier) as (link, _):
+        link.start_background()
+        with link.sender.lock:  # nothing leaves meanwhile
+            assert link.try_send(Packet([0]))
+            assert not link.try_send(Packet(Untouched()))
+        assert link.counter.drops == 1
 
 
 def test_background_link_can_send_every_message() -> None:
@@ -200,7 +226,8 @@ def test_goodbye_to_a_peer_that_does_not_answer(monkeypatch: pytest.MonkeyPatch)
         link.close()
         assert time.monotonic() - started < 2
         assert link.counter.messages == 0
-        assert link.counter.drops == 1  # never acknowledged
+        assert link.counter.unconfirmed == 1  # never acknowledged
+        assert link.counter.drops == 0
         assert far.recv(1000)
 
 
@@ -259,6 +286,55 @@ def test_call_to_a_peer_that_does_not_acknowledge_has_its_limit() -> None:
         link.send(Packet([1]))
         with pytest.raises(Timeout, match="did not reply"):
             link.call(Packet(["ask"], key=CALL), 0.1)
+
+
+@pytest.mark.parametrize("trickles", [False, True])
+def test_reply_that_has_begun_must_come_along(
+    trickles: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without a time limit a reply may take as long as it likes to begin, not to end."""
+    monkeypatch.setattr(FastTcp, "limits", Limits(message_timeout=0.2))
+    with connected(FastTcp) as (link, far):
+
+        def answer() -> None:
+            time.sleep(0.5)
+            far.sendall(Bottle(["x" * 1000]).to_bytes()[:100])
+            with suppress(OSError):
+                while trickles:
+                    time.sleep(0.02)
+                    far.sendall(b"x")
+
+        thread = threading.Thread(target=answer)
+        thread.start()
+        with pytest.raises(RemoteProtocolError, match="a message"):
+            link.call(Packet(["ask"], key=CALL))
+        assert link.broken
+        thread.join(5)
+
+
+def test_reply_in_pieces_leaves_no_limit_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(FastTcp, "limits", Limits(message_timeout=0.2))
+    with connected(FastTcp) as (link, far):
+        link.intake.budget = Budget(1 << 20)
+        reply = Bottle(["x" * 300_000]).to_bytes()
+
+        def answer() -> None:
+            for _ in range(2):
+                far.sendall(reply[:1000])
+                time.sleep(0.05)
+                far.sendall(reply[1000:])
+                time.sleep(0.5)
+
+        thread = threading.Thread(target=answer)
+        thread.start()
+        for _ in range(2):
+            answered = link.call(Packet(["ask"], key=CALL))
+            assert answered is not None
+            assert len(answered.value[0]) == 300_000
+        assert link.intake.budget.total > 0
+        link.intake.leave()
+        assert link.intake.budget.total == 0
+        thread.join(5)
 
 
 def test_goodbye_waits_for_what_is_on_its_way() -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import threading
+import select
+import sys
 import time
 
 import pytest
@@ -15,8 +16,7 @@ from yarpy.carriers.base import Carrier
 from yarpy.carriers.tcp import FastTcp, Tcp
 from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed
-from yarpy.link import sender as module
-from yarpy.link.sender import WINDOW
+from yarpy.link import window
 from yarpy.wire import framing
 from yarpy.wire.message import Packet
 
@@ -87,48 +87,13 @@ def test_large_buffers_are_sent_from_where_they_are() -> None:
     assert seen == [True]
 
 
-def test_acknowledgements_are_read_late_but_within_a_window(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(module, "WINDOW_SECONDS", 60.0)  # a busy machine needs more for ten
-    with connected() as (link, far):
-        done = threading.Event()
-
-        def flood() -> None:
-            for number in range(2 * WINDOW):
-                link.send(Packet([number]))
-            done.set()
-
-        threading.Thread(target=flood, daemon=True).start()
-        read_messages(far, 10, ack=False)
-        assert not done.wait(0.1), "a sender runs ahead of a reader that does not acknowledge"
-        assert link.sender.unacknowledged <= WINDOW
-        far.sendall(ACK * 10)
-        read_messages(far, 2 * WINDOW - 10)
-        assert done.wait(5)
-        link.wait_acknowledged(5)
-        assert link.sender.unacknowledged == 0
-
-
-def test_slow_reader_holds_its_sender_up() -> None:
-    """After some milliseconds without an acknowledgement a send waits, as it does in C++."""
-    with connected() as (link, far):
-        link.send(Packet([1]))
-        time.sleep(2 * module.WINDOW_SECONDS)
-        threading.Timer(0.1, far.sendall, (ACK,)).start()
-        started = time.monotonic()
-        link.send(Packet([2]))
-        assert time.monotonic() - started > 0.05
-        assert link.sender.unacknowledged == 1
-
-
 @pytest.mark.parametrize("sends", [0, 1, 5, 17])
 @pytest.mark.parametrize("kind", [FastTcp, Tcp])
 def test_sent_is_delivered_and_drops(
     kind: type[Carrier], sends: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever number of sends succeed, no message is counted twice or not at all."""
-    monkeypatch.setattr(module, "WINDOW_SECONDS", 60.0)  # a busy machine is slow, not its peer
+    monkeypatch.setattr(window, "WINDOW_SECONDS", 60.0)  # a busy machine is slow, not its peer
     link, transport = open_link(kind)
     transport.fails_after = sends
     attempts = 0
@@ -175,8 +140,57 @@ def test_gathered_messages_that_never_left_are_drops() -> None:
     sent = attempts - waiting
     transport.fails_after = transport.sends
     wait_until(lambda: link.broken)
-    assert link.counter.messages == sent
+    assert (link.counter.unconfirmed, link.counter.drops) == (sent, waiting)
     assert total(link) == attempts
+
+
+def test_acknowledgements_that_came_before_the_end_count() -> None:
+    """Nobody had looked at them when the connection broke."""
+    link, transport = open_link(Tcp, ACK * 3)
+    for number in range(5):
+        link.send(Packet([number]))
+    assert link.sender.window.open == 5
+    transport.fails_after = transport.sends
+    with pytest.raises(LinkClosed):
+        link.send(Packet(["the end"]))
+    counter = link.counter
+    assert (counter.messages, counter.drops, counter.unconfirmed) == (3, 1, 2)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the system does not tell")
+@pytest.mark.parametrize("late", [0, 3])
+def test_without_acknowledgements_the_system_tells_what_a_dead_peer_had_read(late: int) -> None:
+    """It takes messages for a program that has ended, and loses them."""
+    with connected(FastTcp) as (link, far):
+        for number in range(10):
+            link.send(Packet([number]))
+        read_messages(far, 10, ack=False)
+        far.close()
+        wait_until(lambda: link.driver.transport.ended())
+        for number in range(late):
+            try:
+                link.send(Packet([number]))
+            except LinkClosed:
+                break
+        assert link.ended()
+        counter = link.counter
+        assert (counter.messages, counter.unconfirmed) == (10, 0)
+        assert counter.drops in range(min(late, 1), late + 1)
+
+
+def test_without_acknowledgements_an_answer_tells_what_came() -> None:
+    """The peer was reset with more to read: what it had not reported is open."""
+    with connected(FastTcp) as (link, far):
+        for number in range(10):
+            link.send(Packet([number]))
+        link.sender.confirmation.told(8, 6)
+        assert link.snapshot()["unacknowledged"] == 4
+        assert link.snapshot()["messages"] == 10
+        select.select([far], [], [], 5)
+        far.close()  # with everything unread
+        wait_until(link.ended)
+        counter = link.counter
+        assert (counter.messages, counter.drops, counter.unconfirmed) == (6, 0, 4)
 
 
 def test_interrupted_send_ends_the_connection_and_is_counted() -> None:

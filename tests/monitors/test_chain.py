@@ -7,8 +7,7 @@ import logging
 import pytest
 
 from yarpy import registry
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.errors import DecodeError, LocalProtocolError, UnknownPlugin
 from yarpy.monitors.base import DROP, Group, Place
 from yarpy.monitors.chain import Chain, from_carrier

@@ -83,7 +83,7 @@ def test_names_that_no_constraint_could_ask_for(events: Events, name: str) -> No
 def test_owner_has_only_so_many(events: Events, clock: Clock) -> None:
     for number in range(MOST):
         events.set("a", f"e{number}", 1.0)
-    with pytest.raises(LocalProtocolError, match="has them all"):
+    with pytest.raises(LocalProtocolError, match="cannot set more than"):
         events.set("a", "another")
     events.set("b", "another")
     events.set("a", "e1", 5.0)

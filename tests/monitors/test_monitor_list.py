@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.monitors.base import DROP, Place
 from yarpy.monitors.monitor_list import Series, places
 from yarpy.route import parse_carrier

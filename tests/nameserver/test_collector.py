@@ -23,7 +23,7 @@ os.kill(os.getpid(), 9)
 
 @pytest.fixture
 def server(monkeypatch):
-    monkeypatch.setattr(collector.Collector.__init__, "__defaults__", (0.1,))
+    monkeypatch.setattr(collector.Collector.__init__, "__defaults__", (0.1, 0.5))
     with yarpy.NameServer() as server:
         yield server
 
@@ -69,6 +69,38 @@ def test_a_port_that_listens_keeps_its_name_though_its_process_is_not_seen(serve
         time.sleep(1)
         assert yarpy.query("/boxed") is not None
     assert gone("/boxed")
+
+
+def test_number_that_nobody_listens_on_comes_back(server):
+    """Handed out to somebody who never came: ten thousand such would be all there are."""
+    client = server.client
+    client.register("/never/opened")
+    assert gone("/never/opened")
+    used = client.register("/foreign/but/there")
+    with socket.create_server(("127.0.0.1", used.port)):
+        time.sleep(1.5)
+        assert yarpy.query("/foreign/but/there") is not None
+    time.sleep(1)
+    assert yarpy.query("/foreign/but/there") is not None, "it was there once"
+
+
+def test_numbers_of_silent_hosts_come_back(server, monkeypatch):
+    """One of each host is tried, or ten thousand names would take hours."""
+    tried = []
+
+    def connect(address, timeout):
+        tried.append(address)
+        raise TimeoutError
+
+    monkeypatch.setattr(collector.socket, "create_connection", connect)
+    with server.service.lock:
+        for number in range(50):
+            server.service.store.register(f"/far/{number}", peer="192.0.2.1")
+    deadline = time.monotonic() + 10
+    while any(c.name.startswith("/far/") for c in server.service.store.contacts()):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    assert len([address for address in tried if address[0] == "192.0.2.1"]) < 5
 
 
 def test_a_complaint_has_the_name_looked_at(server, monkeypatch):

@@ -334,7 +334,7 @@ def sound(reply: Reply) -> None:
         event.to_bytes()
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 @given(st.lists(st.tuples(st.sampled_from(VERBS), st.lists(ITEMS, max_size=6)), max_size=6))
 def test_any_command_is_answered(commands: list[tuple[str, list[Any]]]) -> None:
     service = new_service()
@@ -345,7 +345,7 @@ def test_any_command_is_answered(commands: list[tuple[str, list[Any]]]) -> None:
             raise AssertionError("nothing a stranger sends raises") from error
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.binary(max_size=200))
 def test_any_line_is_answered(line: bytes) -> None:
     service = new_service()

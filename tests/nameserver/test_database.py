@@ -169,7 +169,7 @@ COMMANDS = st.lists(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(COMMANDS)
 def test_a_restart_changes_nothing(
     tmp_path_factory: pytest.TempPathFactory, commands: list[str]

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
-from http.client import HTTPConnection
+import tracemalloc
+from http.client import HTTPConnection, IncompleteRead
 from pathlib import Path
 
 import pytest
 
 import yarpy
-from yarpy.nameserver.folder import MAX_FILE, Folder
+from yarpy.carriers.http.page import Pieces
+from yarpy.nameserver import folder
+from yarpy.nameserver.folder import PIECE, Folder
 
 
 @pytest.fixture
@@ -89,12 +93,48 @@ def test_nothing_else_is(site: Path, path: str) -> None:
     assert "secret" not in str(page.body)
 
 
-def test_too_large_and_unreadable(site: Path) -> None:
-    with (site / "large").open("wb") as file:
-        file.truncate(MAX_FILE + 1)
-    page = Folder(site)("/web/large", {})
+def test_large_file_is_sent_in_pieces(site: Path, tmp_path: Path) -> None:
+    """It was read whole into memory, and limited for that reason."""
+    content = os.urandom(1 << 20) * 40
+    (site / "large.bin").write_bytes(content)
+    page = Folder(site)("/web/large.bin", {})
     assert page is not None
-    assert page.status == 404
+    assert isinstance(page.body, Pieces)
+    assert max(map(len, page.body.read())) == PIECE
+    with yarpy.NameServer(web=site) as server:
+        client = HTTPConnection("127.0.0.1", server.port, timeout=20)
+        tracemalloc.start()
+        try:
+            client.request("GET", "/web/large.bin")
+            answer = client.getresponse()
+            assert answer.headers["Content-Length"] == str(len(content))
+            got = hashlib.sha256()
+            while piece := answer.read(1 << 16):
+                got.update(piece)
+            assert tracemalloc.get_traced_memory()[1] < len(content) / 4
+        finally:
+            tracemalloc.stop()
+        assert got.digest() == hashlib.sha256(content).digest()
+        client.request("HEAD", "/web/large.bin")
+        answer = client.getresponse()
+        assert (answer.read(), answer.headers["Content-Length"]) == (b"", str(len(content)))
+        client.request("GET", "/web/picture.png")
+        assert client.getresponse().read() == b"\x89PNG"
+        client.close()
+
+
+def test_file_that_becomes_shorter_while_it_is_sent(
+    site: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The connection ends: the client must not take the next answer for the rest."""
+    (site / "large.bin").write_bytes(bytes(1 << 20))
+    monkeypatch.setattr(folder, "_read", lambda path: iter([b"x" * 1000]))
+    with yarpy.NameServer(web=site) as server:
+        client = HTTPConnection("127.0.0.1", server.port, timeout=20)
+        client.request("GET", "/web/large.bin")
+        with pytest.raises(IncompleteRead):
+            client.getresponse().read()
+        client.close()
 
 
 def test_the_rest_is_left_to_the_port(site: Path) -> None:

@@ -18,7 +18,10 @@ PORTS = [Contact("tcp", "/a<b>", "10.0.0.1", 10002), Contact("mcast", "fallback"
 
 def shown(page: NamePage, path: str, **fields: str) -> tuple[int, str] | None:
     found = page(path, fields)
-    return None if found is None else (found.status, found.to_bytes().decode())
+    if found is None:
+        return None
+    body = found.encoded()
+    return found.status, (body if isinstance(body, bytes) else b"".join(body)).decode()
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -22,8 +23,9 @@ from support.wait import wait_until
 import yarpy
 from yarpy import network
 from yarpy.data.bottle import Bottle
-from yarpy.nameserver.server import NameServer
+from yarpy.nameserver.server import MAX_COMMAND, MAX_UNFINISHED, NameServer
 from yarpy.wire import framing
+from yarpy.wire.message import Packet
 
 
 def test_who_comes_before_it_is_open_waits(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -382,3 +384,23 @@ def test_command_does_not_wait_for_a_port_that_is_stuck() -> None:
         server.client.announce("/stuck")
         assert server.client.query("/other") is not None
         assert time.monotonic() - started < 2
+
+
+def test_what_strangers_begin_is_limited_far_lower_than_in_a_port() -> None:
+    with NameServer() as server:
+        assert server.hub.budget.limit == MAX_UNFINISHED
+        head = b"".join(map(bytes, framing.encode(Packet(bytes(2 * MAX_COMMAND)))))
+        for said in (head, b"POST /form HTTP/1.1\r\nHost: x\r\nContent-Length: 2000000\r\n\r\n"):
+            with socket.create_connection(("127.0.0.1", server.port), 5) as sock:
+                if said is head:
+                    sock.sendall(framing.number(7777 + 3) + framing.encode_name("/stranger"))
+                    assert len(sock.recv(8, socket.MSG_WAITALL)) == 8
+                sock.sendall(said[: 1 << 16])
+                answer = b""
+                with suppress(OSError):
+                    if said is not head:
+                        sock.shutdown(socket.SHUT_WR)
+                    while more := sock.recv(1000):
+                        answer += more
+                assert said is head or b"413" in answer
+        assert server.client.query("/nobody") is None

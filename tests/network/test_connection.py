@@ -19,8 +19,10 @@ from yarpy.errors import (
     LinkClosed,
     LocalProtocolError,
     NoNameServer,
+    NotAllowed,
     UnknownName,
     UnknownPlugin,
+    WrongPort,
 )
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
@@ -83,6 +85,22 @@ def test_administration_from_outside(names: LocalNames) -> None:
     names.register("/dead", "tcp", "127.0.0.1", free_port())
     with pytest.raises(LinkClosed, match=r"yarpy clean"):
         network.admin("/dead", "ver", names=names)
+
+
+def test_nothing_is_changed_at_another_port(names: LocalNames) -> None:
+    """One that has the number by now which the name service remembers of a port that is gone."""
+    with Port("/motor", names=names) as motor, Port("/viewer", names=names):
+        motor.connect("/viewer")
+        names.register("/camera", "tcp", "127.0.0.1", motor.contact.port)
+        assert network.admin("/camera", "ver", names=names)  # by hand: an alias
+        names.set("/camera", "process", 1)  # as ports say of themselves
+        with pytest.raises(WrongPort, match=r'"/motor" listens .*, not "/camera"'):
+            network.admin("/camera", "prop", "set", "color", "red", names=names)
+        assert not network.exists("/camera", names=names)
+        with pytest.raises(WrongPort, match='not "/camera"'):
+            network.disconnect("/camera", "/viewer", names=names)
+        assert motor.outputs
+        assert not network.admin("/motor", "prop", "get", "color", names=names)
 
 
 def test_nobody_to_ask(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -168,7 +186,7 @@ def test_what_cannot_be_connected(names: LocalNames) -> None:
         assert not network.is_connected("/none", "/in", names=names)
 
 
-@pytest.mark.parametrize("carrier", ["shmem", "rossrv", "tpc"])
+@pytest.mark.parametrize("carrier", ["shmem", "mpi", "tpc"])
 def test_what_the_ends_can_do_is_for_them_to_say(carrier: str, names: LocalNames) -> None:
     """Who asks need not have the carrier; a refusal says so, since it may be a slip of the pen."""
     with Port("/out", names=names) as out, Port("/in", names=names):
@@ -178,13 +196,26 @@ def test_what_the_ends_can_do_is_for_them_to_say(carrier: str, names: LocalNames
         assert [link.carrier for link in out.outputs] == ["tcp"]  # the one that there is stays
 
 
+def test_local_is_not_asked_of_two_programs(names: LocalNames) -> None:
+    """A port of C++ YARP that is dialled so from another program crashes."""
+    with Port("/out", names=names) as out, Port("/in", callback=lambda message: None, names=names):
+        for name in ("/out", "/in"):
+            names.set(name, "process", 1)
+        network.connect("/out", "/in", "local", names=names)
+        assert network.disconnect("/out", "/in", names=names)
+        names.set("/in", "process", 2)
+        with pytest.raises(NotAllowed, match="two programs"):
+            network.connect("/out", "/in", "local", names=names)
+        assert not out.outputs
+
+
 def test_carriers_of_others_that_the_receiver_dials(names: LocalNames) -> None:
     with (
         Port("/out", names=names),
         Port("/in", names=names),
-        pytest.raises(UnknownPlugin, match="refused: Cannot connect to tcpros://out: no"),
+        pytest.raises(UnknownPlugin, match="refused: Cannot connect to h264://out: no"),
     ):
-        network.connect("/out", "/in", "tcpros", names=names)
+        network.connect("/out", "/in", "h264", names=names)
 
 
 def test_waiting_for_both_ports(names: LocalNames) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
+import warnings
 
 import pytest
 from support.wait import wait_until
@@ -184,3 +186,23 @@ def test_closed_port_refuses(names: LocalNames) -> None:
     with Port("/in", names=names), pytest.raises(PortClosed):
         port.connect("/in")
     assert port.outputs == []
+
+
+@pytest.mark.parametrize("kind", [Port, BufferedPort])
+def test_dropped_port_is_closed_and_named(
+    kind: type[Port] | type[BufferedPort], names: LocalNames
+) -> None:
+    port = kind("/dropped", names=names)
+    with pytest.warns(ResourceWarning, match='port "/dropped" was dropped without being closed'):
+        del port
+        gc.collect()
+    wait_until(lambda: names.query("/dropped") is None)
+
+
+def test_closed_port_may_be_dropped(names: LocalNames) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with Port("/it", names=names) as port:
+            pass
+        del port
+        gc.collect()

@@ -7,7 +7,9 @@ from support.patience import patience
 from support.wait import wait_until
 
 from yarpy.nameserver.local import LocalNames
+from yarpy.network.traffic import flows, read
 from yarpy.port.port import BufferedPort, Port
+from yarpy.port.report import report
 
 
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text", "unix_stream"])
@@ -29,10 +31,12 @@ def test_books_balance_over_broken_connections(carrier: str, names: LocalNames) 
         out.disconnect("/in")
         wait_until(lambda: not in_.inputs, timeout=patience(20))
         books = out.stats["past"]["outputs"]
-        assert books["messages"] + books["drops"] == taken + dropped
+        assert books["messages"] + books["drops"] + books["unconfirmed"] == taken + dropped
         read = 0
         while in_.poll():
             read += 1
+        assert books["messages"] <= read <= books["messages"] + books["unconfirmed"]
+        assert out.stats["unconnected"] == 0
         into = in_.stats["past"]["inputs"]
         assert into["messages"] == read
         assert into["drops"] == 0
@@ -49,3 +53,18 @@ def test_what_was_never_read_is_dropped_when_the_port_closes(names: LocalNames) 
         in_.close()
         past = in_.stats["past"]["inputs"]
         assert (past["messages"], past["drops"]) == (20, 20)
+
+
+def test_what_is_written_to_nobody_is_counted(names: LocalNames) -> None:
+    with BufferedPort("/out", names=names) as out, Port("/in", names=names) as in_:
+        for number in range(7):
+            assert out.write([number]) == 0
+        assert out.stats["unconnected"] == 7
+        out.connect("/in")
+        assert out.write([7]) == 1
+        in_.read(timeout=5)
+        assert out.stats["unconnected"] == 7
+        assert read(report(out._hub)[-1])[2].unconnected == 7
+        [flow] = [one for one in flows(names) if not one.target]
+        assert flow.sender is not None
+        assert (flow.source, flow.sender.unconnected, flow.drops) == ("/out", 7, 0)

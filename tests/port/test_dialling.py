@@ -10,7 +10,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.port import connecting
-from yarpy.port.dialling import Dialling
+from yarpy.port.dialling import ATTEMPTS, Attempts, Dialling
 from yarpy.port.hub import Hub
 
 
@@ -45,8 +45,35 @@ def test_a_failed_attempt_lets_the_next_one_in() -> None:
         assert alone
 
 
+def test_one_attempt_at_each_target_and_a_limited_number_in_all() -> None:
+    attempts = Attempts("dial")
+    go_on, done = threading.Event(), []
+
+    def attempt() -> None:
+        assert go_on.wait(10)
+        done.append(threading.current_thread().name)
+
+    assert attempts.begin("/a", attempt)
+    assert not attempts.begin("/a", attempt), "one at a time"
+    for number in range(ATTEMPTS - 1):
+        assert attempts.begin(f"/b{number}", attempt)
+    assert not attempts.begin("/c", attempt), "there are enough"
+    go_on.set()
+    wait_until(lambda: not attempts.under_way)
+    assert attempts.begin("/c", attempt)
+    wait_until(lambda: len(done) == ATTEMPTS + 1)
+    assert {"yarpy dial /a", "yarpy dial /c"} < set(done)
+
+
+def test_an_attempt_that_raises_is_logged_and_over(caplog: pytest.LogCaptureFixture) -> None:
+    attempts = Attempts("dial")
+    assert attempts.begin("/a", lambda: 1 // 0)
+    wait_until(lambda: not attempts.under_way)
+    assert "to dial /a failed" in caplog.text and "ZeroDivisionError" in caplog.text
+
+
 class Slow:
-    """`connecting.open_output`, but the first repair pauses inside until it is let go."""
+    """`connecting.open_output`, but the first reconnection pauses inside until it is let go."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.inside = threading.Event()
@@ -63,7 +90,7 @@ class Slow:
 
 @contextmanager
 def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[yarpy.Port, Slow]]:
-    """A port whose connection to /in broke and is just being repaired."""
+    """A port whose connection to /in broke and is just being made again."""
     slow = Slow(monkeypatch)
     with yarpy.NameServer(), yarpy.Port("/out") as out, yarpy.BufferedPort("/in", strict=True):
         out.connect("/in")
@@ -75,7 +102,7 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[yarpy.Port, Slow]]
             slow.go_on.set()
 
 
-def test_a_program_that_connects_during_a_repair_keeps_its_connection(
+def test_a_program_that_connects_during_a_reconnection_keeps_its_connection(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     with broken(monkeypatch) as (out, slow):
@@ -86,7 +113,7 @@ def test_a_program_that_connects_during_a_repair_keeps_its_connection(
         assert not out._hub.outputs[0].ended()
 
 
-def test_disconnecting_during_a_repair_ends_the_repair(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_disconnecting_during_a_reconnection_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     with broken(monkeypatch) as (out, slow):
         out.disconnect("/in")
         slow.go_on.set()

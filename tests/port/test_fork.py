@@ -73,7 +73,7 @@ def test_child_with_a_port_of_its_own_leaves_its_parents_connections_alone() -> 
         for count in range(1000):
             out.write([count])
             assert in_.read(timeout=20).value == [count]
-        in_._hub.inputs[0].driver.transport.interrupt()  # a failure: only one of the two mends it
+        in_._hub.inputs[0].driver.transport.interrupt()  # a failure; one of the two dials again
         wait_until(lambda: len(in_.inputs) == 2)
         os.write(free[1], b"x")
         os.waitpid(number, 0)

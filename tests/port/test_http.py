@@ -10,6 +10,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
 from http.client import HTTPConnection, HTTPResponse
 
 import numpy as np
@@ -109,18 +110,22 @@ def test_reader_that_answers_later(names: LocalNames) -> None:
         connection.close()
 
 
-def opened(port: yarpy.Port, target: str, count: int = 1) -> HTTPResponse:
-    connection = client(port)
-    connection.request("GET", target)
-    response = connection.getresponse()
-    assert port.wait_for_outputs(count, FAST)
-    return response
+@contextmanager
+def opened(port: yarpy.Port, target: str, count: int = 1) -> Iterator[HTTPResponse]:
+    """The response to a GET that makes its sender an output of the port."""
+    with closing(client(port)) as connection:
+        connection.request("GET", target)
+        with connection.getresponse() as response:
+            assert port.wait_for_outputs(count, FAST)
+            yield response
 
 
 def test_reading_a_port(names: LocalNames) -> None:
-    with yarpy.Port("/out", names=names) as port:
-        lines = opened(port, "/r")
-        events = opened(port, "/r?sse", 2)
+    with (
+        yarpy.Port("/out", names=names) as port,
+        opened(port, "/r") as lines,
+        opened(port, "/r?sse", 2) as events,
+    ):
         assert events.getheader("Content-Type") == "text/event-stream"
         assert events.readline() == b": reading\n"
         port.write(["hi", 3], yarpy.Stamp(7, 1.25))
@@ -143,8 +148,10 @@ def test_program_that_streams(names: LocalNames) -> None:
     def answer(message: yarpy.Message) -> None:
         message.reply([["web", "zero\n"], ["mime", "text/plain"], ["stream", 1]])
 
-    with yarpy.Port("/out", names=names, callback=answer) as port:
-        response = opened(port, "/my/stream")
+    with (
+        yarpy.Port("/out", names=names, callback=answer) as port,
+        opened(port, "/my/stream") as response,
+    ):
         assert response.getheader("Content-Type") == "text/plain"
         assert response.readline() == b" " * 2048 + b"zero\n"
         port.write([["web", "one\n"]])
@@ -157,8 +164,8 @@ def test_program_that_streams(names: LocalNames) -> None:
 
 def test_reader_that_goes_is_dropped(names: LocalNames) -> None:
     with yarpy.Port("/out", names=names) as port:
-        response = opened(port, "/r")
-        response.close()
+        with opened(port, "/r"):
+            pass
 
         def gone() -> bool:
             port.write([1])
@@ -169,14 +176,13 @@ def test_reader_that_goes_is_dropped(names: LocalNames) -> None:
 
 def test_stalled_browser_costs_the_port_nothing(names: LocalNames) -> None:
     with yarpy.Port("/out", names=names) as port:
-        stalled = opened(port, "/r")
-        started = time.monotonic()
-        for _ in range(200):
-            port.write(["x" * 100_000])
-        port.flush()
-        assert time.monotonic() - started < FAST
-        assert port.outputs[0].stats["drops"] > 50
-        stalled.close()
+        with opened(port, "/r"):
+            started = time.monotonic()
+            for _ in range(200):
+                port.write(["x" * 100_000])
+            port.flush()
+            assert time.monotonic() - started < FAST
+            assert port.outputs[0].stats["drops"] > 50
         started = time.monotonic()
     assert time.monotonic() - started < FAST
 
@@ -299,7 +305,8 @@ def test_refusal_reaches_who_still_sends(echo: yarpy.RpcServer) -> None:
     connection.send(b"x" * 500_000)
     assert connection.getresponse().status == 413
     connection.close()
-    assert get(client(echo), "/?req=x")[0] == 200
+    with closing(client(echo)) as another:
+        assert get(another, "/?req=x")[0] == 200
 
 
 def test_ports_talk_http(names: LocalNames, echo: yarpy.RpcServer) -> None:

@@ -49,9 +49,9 @@ def test_open_port_is_registered_and_says_what_it_is(names: LocalNames) -> None:
 
 
 def test_hub_knows_nobody_who_acts_on_it() -> None:
-    """What commands, administration and repair do is handed in."""
+    """What commands, administration and reconnecting do is handed in."""
     told: list[str] = []
-    repair = SimpleNamespace(
+    reconnect = SimpleNamespace(
         watch=lambda hub: told.append(f"watch {hub.name}"),
         forget=lambda hub: told.append(f"forget {hub.name}"),
         input_lost=lambda hub, route: None,
@@ -60,7 +60,7 @@ def test_hub_knows_nobody_who_acts_on_it() -> None:
         administer=lambda hub, message: Bottle(["as", "you", "like"]),
         obey=lambda hub, link, message: [f"{hub.name} heard {message.key}"],
         close_output=lambda hub, link: None,
-        repair=repair,  # type: ignore[arg-type]
+        reconnect=reconnect,  # type: ignore[arg-type]
     )
     registration = Registration("/here", None, "", register=False)
     hub = Hub(registration, Latest(), crew)

@@ -87,7 +87,7 @@ def test_a_name_with_the_number_of_another_port_is_not_connected(
 ) -> None:
     with BufferedPort("/camera", names=names) as camera, BufferedPort("/motor", names=names) as m:
         move(names, "/viewer", m)
-        with pytest.raises(WrongPort, match=r'not "/viewer" listens .* but the port "/motor"'):
+        with pytest.raises(WrongPort, match=r'"/motor" listens .*, not "/viewer"'):
             camera.connect("/viewer", carrier)
         assert not m.inputs and not camera.outputs and not camera.inputs and not m.outputs
 
@@ -146,7 +146,7 @@ def test_an_address_leads_to_the_same_port_again_or_nowhere(names: LocalNames) -
 def crash(port: BufferedPort) -> None:
     """End a port without a goodbye, and leave its name behind."""
     hub = port._hub
-    hub.closing = True  # nothing is mended, nobody is told
+    hub.closing = True  # nothing is dialled again, nobody is told
     hub.reception.close()
     break_inputs(port)
     wait_until(lambda: not hub.inputs)
@@ -208,7 +208,7 @@ def test_confirming(names: LocalNames) -> None:
         route = Route("/x", "/here", "tcp", peer="/here")
         identity.confirm_again(contact, route, b"")
         route.peer = "/there"
-        with pytest.raises(WrongPort, match=r'not "/there" .* but the port "/here"'):
+        with pytest.raises(WrongPort, match=r'"/here" listens .*, not "/there"'):
             identity.confirm_again(contact, route, b"")
     with pytest.raises(LinkClosed):
         identity.confirm(contact, names.get, b"")

@@ -5,14 +5,19 @@ from __future__ import annotations
 import logging
 import threading
 import time
+import tracemalloc
 
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
+import yarpy
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError, PortClosed
 from yarpy.link.counter import Counter
-from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox, Rendezvous
+from yarpy.nameserver.local import LocalNames
+from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox, Rendezvous, memory
+from yarpy.port.port import BufferedPort
 from yarpy.wire.message import CALL, DATA, Answer, Message
 
 
@@ -114,8 +119,44 @@ def test_fifo_keeps_everything_in_order() -> None:
     assert link.counter.drops == 0
 
 
+@pytest.mark.parametrize("carrier", ["tcp", "text_ack", "local"])
+@pytest.mark.parametrize("value", [[1], ["x" * 1000], [[n, n] for n in range(20)]])
+def test_fifo_counts_what_messages_really_take(carrier: str, value: list[object]) -> None:
+    """Small messages take several times their payload."""
+    names, count = LocalNames(), 2000
+    with (
+        BufferedPort("/in", strict=True, names=names) as in_,
+        BufferedPort("/out", strict=True, names=names) as out,
+    ):
+        out.connect("/in", carrier)
+        assert out.write(value, wait=carrier != "local")
+        in_.read(timeout=5)
+        tracemalloc.start()
+        try:
+            before, _ = tracemalloc.get_traced_memory()
+            for _ in range(count):
+                out.write(value)
+            wait_until(lambda: in_.waiting == count, timeout=patience(20))
+            taken = tracemalloc.get_traced_memory()[0] - before
+        finally:
+            tracemalloc.stop()
+        box = in_._hub.mailbox
+        assert isinstance(box, Fifo)
+        assert taken < 1.5 * box._bytes
+
+
+def test_fifo_counts_objects_that_came_as_they_are() -> None:
+    import numpy as np
+
+    assert memory(b"x" * 1000) > 1000
+    assert memory(np.zeros(1000)) > 8000
+    assert memory(["x" * 1000] * 100) > 100_000
+    assert memory([["x" * 100] * 10] * 10) > 10_000
+    assert memory(yarpy.Image(np.zeros((10, 10, 3), np.uint8))) > 300
+
+
 def test_fifo_that_is_full_makes_its_senders_wait() -> None:
-    box, link = Fifo(limit=1000), Link()
+    box, link = Fifo(limit=4000), Link()
     done = threading.Event()
 
     def write() -> None:

@@ -18,7 +18,7 @@ from support.live import PATIENCE, World, hear, nothing_more, replay, say
 from support.wait import wait_until
 
 from yarpy import registry
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.monitors.base import Place
 from yarpy.port.port import Port
 from yarpy.wire.message import Message

@@ -10,7 +10,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy import registry
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.data.value import Vocab
 from yarpy.monitors.base import Place
 from yarpy.port import probe

@@ -15,6 +15,8 @@ import pytest
 from support.wait import wait_until
 
 from yarpy import network
+from yarpy.carriers.base import Carrier
+from yarpy.link.driver import Driver
 from yarpy.nameserver.local import LocalNames
 from yarpy.nameserver.server import NameServer
 from yarpy.port.port import Port
@@ -25,10 +27,13 @@ from yarpy.wire import framing
 
 def test_who_comes_before_the_port_knows_its_name_waits() -> None:
     served: list[str] = []
+
+    def serve(driver: Driver, carrier: Carrier) -> None:
+        served.append(carrier.route.source)
+        driver.transport.close()
+
     registration = Registration("/here", None, "", register=False)
-    reception = Reception(
-        registration, 1000, lambda driver, carrier: served.append(carrier.route.source)
-    )
+    reception = Reception(registration, 1000, serve)
     registration.port = reception.listen(0)
     try:
         with socket.create_connection(("127.0.0.1", registration.port)) as sock:

@@ -5,6 +5,8 @@ import socket
 import sys
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
 from support.port import free_port
@@ -25,9 +27,9 @@ with yarpy.NameServer(int(sys.argv[1])):
 """
 WRITER = """
 import time, yarpy
-with yarpy.Port("/repair/out") as port:
+with yarpy.Port("/again/out") as port:
     if {connects}:
-        port.connect("/repair/in", timeout=10)
+        port.connect("/again/in", timeout=10)
     print("ready", flush=True)
     for count in range(10**9):
         port.write([count])
@@ -68,7 +70,7 @@ def number(monkeypatch: pytest.MonkeyPatch) -> int:
 def test_everything_may_be_killed_in_the_middle_of_a_stream(number: int) -> None:
     """Name server and sender are killed twenty times in turn; the reader goes on getting data."""
     server = start(SERVER, str(number))
-    with yarpy.BufferedPort("/repair/in") as reader:
+    with yarpy.BufferedPort("/again/in") as reader:
         writer = start(WRITER.format(connects=True))
         try:
             assert flows(reader)
@@ -81,7 +83,7 @@ def test_everything_may_be_killed_in_the_middle_of_a_stream(number: int) -> None
                     assert flows(reader), "a stream does not need the name server"
                     server = start(SERVER, str(number))
                     deadline = time.monotonic() + RECOVERY
-                    while None in (yarpy.query("/repair/in"), yarpy.query("/repair/out")):
+                    while None in (yarpy.query("/again/in"), yarpy.query("/again/out")):
                         assert time.monotonic() < deadline, f"turn {turn}: not registered again"
                         time.sleep(0.05)
                 assert flows(reader), f"turn {turn}: no data after a restart"
@@ -92,7 +94,7 @@ def test_everything_may_be_killed_in_the_middle_of_a_stream(number: int) -> None
 
 READER = """
 import sys, yarpy
-with yarpy.BufferedPort("/repair/in") as port:
+with yarpy.BufferedPort("/again/in") as port:
     print("ready", flush=True)
     for message in port:
         print("got", message.value[0], flush=True)
@@ -100,11 +102,11 @@ with yarpy.BufferedPort("/repair/in") as port:
 
 
 def test_a_killed_reader_is_connected_again(number: int) -> None:
-    with start(SERVER, str(number)), yarpy.Port("/repair/out") as writer:
+    with start(SERVER, str(number)), yarpy.Port("/again/out") as writer:
         for turn in range(3):
             with start(READER) as reader:
                 if turn == 0:
-                    writer.connect("/repair/in")
+                    writer.connect("/again/in")
                 assert writer.wait_for_outputs(timeout=RECOVERY), f"turn {turn}"
                 deadline = time.monotonic() + RECOVERY
                 while "got" not in reader.stdout and time.monotonic() < deadline:
@@ -123,6 +125,7 @@ def test_a_peer_that_hangs_delays_no_other(names: yarpy.LocalNames) -> None:
         with yarpy.BufferedPort("/in", names=names) as in_:
             out.connect("/hanging")
             other.connect("/in")
+            wait_until(lambda: hanging.inputs and in_.inputs)
             with socket.create_server(("127.0.0.1", 0)) as stopped:
                 names.register("/hanging", "tcp", "127.0.0.1", stopped.getsockname()[1])
                 for link in hanging._hub.inputs:
@@ -138,15 +141,110 @@ def test_a_peer_that_hangs_delays_no_other(names: yarpy.LocalNames) -> None:
             hanging.close()
 
 
+@contextmanager
+def silent() -> Iterator[int]:
+    """The number of a listener that accepts nobody and answers nothing."""
+    with socket.create_server(("127.0.0.1", 0), backlog=8) as stopped:
+        yield stopped.getsockname()[1]
+
+
+def restored(names: yarpy.LocalNames) -> float:
+    """How long a connection stays away that breaks now, in seconds."""
+    with yarpy.Port("/other", names=names) as other, yarpy.BufferedPort("/in", names=names) as in_:
+        other.connect("/in")
+        wait_until(lambda: in_.inputs)
+        before = other._hub.outputs
+        began = time.monotonic()
+        for link in in_._hub.inputs:
+            link.driver.transport.interrupt()
+        wait_until(lambda: other._hub.outputs not in ((), before))
+        return time.monotonic() - began
+
+
+def test_a_question_without_an_answer_delays_nobody(
+    names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A silent sender of datagrams is asked whether it still lives, and is stopped."""
+    asked = threading.Event()
+    real = probe.connection
+
+    def connection(contact, *arguments):
+        if contact.port == number:
+            asked.set()
+        return real(contact, *arguments)
+
+    monkeypatch.setattr(probe, "connection", connection)
+    patient = {**probe.ask.__kwdefaults__, "timeout": 8.0}
+    monkeypatch.setattr(probe.ask, "__kwdefaults__", patient)
+    with (
+        silent() as number,
+        yarpy.Port("/stopped", names=names) as sender,
+        yarpy.BufferedPort("/listener", names=names) as listener,
+    ):
+        sender.connect("/listener", "udp")
+        wait_until(lambda: listener.inputs)
+        names.register("/stopped", "tcp", "127.0.0.1", number)
+        assert asked.wait(RECOVERY)
+        assert restored(names) < 5.0, "the question takes 8 s"
+
+
+def test_a_name_server_that_hangs_delays_nobody(
+    names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One that went away, and hangs when it is dialled."""
+    dialled, go_on = threading.Event(), threading.Event()
+    with yarpy.NameServer() as server:
+        client = yarpy.YarpNameClient("127.0.0.1", server.port)
+        port = yarpy.Port("/port", names=client)
+        watched = reconnect.RECONNECTOR._servers._watched
+        wait_until(lambda: any(one.client is client and one.is_there() for one in watched.values()))
+
+    def connect() -> socket.socket:
+        dialled.set()
+        go_on.wait(RECOVERY)
+        raise yarpy.NoNameServer("it hung")
+
+    monkeypatch.setattr(client, "connect", connect)
+    try:
+        assert dialled.wait(RECOVERY)
+        assert restored(names) < 5.0
+    finally:
+        go_on.set()
+        port.close()
+
+
+def test_a_callback_that_takes_its_time_delays_nobody(names: yarpy.LocalNames) -> None:
+    told, go_on = threading.Event(), threading.Event()
+
+    def slow(event: yarpy.ConnectionEvent) -> None:
+        if not event.created:
+            told.set()
+            go_on.wait(RECOVERY)
+
+    with (
+        yarpy.Port("/slow", names=names, on_connection=slow) as port,
+        yarpy.BufferedPort("/reader", names=names) as reader,
+    ):
+        port.connect("/reader")
+        wait_until(lambda: reader.inputs)
+        for link in reader._hub.inputs:
+            link.driver.transport.interrupt()
+        try:
+            assert told.wait(RECOVERY)
+            assert restored(names) < 5.0
+        finally:
+            go_on.set()
+
+
 def test_what_was_disconnected_stays_disconnected() -> None:
     with (
         yarpy.NameServer(),
-        yarpy.Port("/repair/out") as writer,
-        yarpy.BufferedPort("/repair/in") as reader,
+        yarpy.Port("/again/out") as writer,
+        yarpy.BufferedPort("/again/in") as reader,
     ):
-        writer.connect("/repair/in")
+        writer.connect("/again/in")
         reader.wait_for_inputs(timeout=2)
-        assert writer.disconnect("/repair/in")
+        assert writer.disconnect("/again/in")
         time.sleep(1.2)
         assert not writer.outputs
         assert not reader.inputs
@@ -157,13 +255,13 @@ def test_what_the_receiver_disconnected_stays_disconnected(carrier: str) -> None
     """Its sender is told, and takes it for no failure."""
     with (
         yarpy.NameServer(),
-        yarpy.BufferedPort("/repair/out") as writer,
-        yarpy.BufferedPort("/repair/in") as reader,
+        yarpy.BufferedPort("/again/out") as writer,
+        yarpy.BufferedPort("/again/in") as reader,
     ):
-        writer.connect("/repair/in", carrier)
+        writer.connect("/again/in", carrier)
         assert reader.wait_for_inputs(timeout=2)
-        answer = probe.ask(reader.contact, ["del", "/repair/out"])
-        assert answer == [0, "Removing connection from /repair/out to /repair/in\r\n"]
+        answer = probe.ask(reader.contact, ["del", "/again/out"])
+        assert answer == [0, "Removing connection from /again/out to /again/in\r\n"]
         for _ in range(12):
             writer.write(["x"])
             time.sleep(0.1)
@@ -191,25 +289,25 @@ def test_camera_that_is_away_can_be_disconnected(names: yarpy.LocalNames) -> Non
 def test_the_way_back_is_another_connection() -> None:
     with (
         yarpy.NameServer(),
-        yarpy.BufferedPort("/repair/a") as a,
-        yarpy.BufferedPort("/repair/b") as b,
+        yarpy.BufferedPort("/again/a") as a,
+        yarpy.BufferedPort("/again/b") as b,
     ):
-        a.connect("/repair/b")
-        b.connect("/repair/a")
+        a.connect("/again/b")
+        b.connect("/again/a")
         assert a.wait_for_inputs(timeout=2) and b.wait_for_inputs(timeout=2)
-        probe.drop_input(b.contact, "/repair/a")
+        probe.drop_input(b.contact, "/again/a")
         time.sleep(0.7)
         assert not (b.inputs or a.outputs)
-        assert [link.name for link in a.inputs] == ["/repair/b"]
+        assert [link.name for link in a.inputs] == ["/again/b"]
 
 
 def test_a_closed_reader_is_not_dialled_again_under_the_same_name() -> None:
     """Closing says goodbye; a program of the same name that starts later begins unconnected."""
-    with yarpy.NameServer(), yarpy.Port("/repair/out") as writer:
-        with yarpy.BufferedPort("/repair/in"):
-            writer.connect("/repair/in")
+    with yarpy.NameServer(), yarpy.Port("/again/out") as writer:
+        with yarpy.BufferedPort("/again/in"):
+            writer.connect("/again/in")
         assert not writer.outputs
-        with yarpy.BufferedPort("/repair/in") as reader:
+        with yarpy.BufferedPort("/again/in") as reader:
             time.sleep(1.2)
             assert not reader.inputs
 
@@ -237,7 +335,7 @@ def _wait_until(condition) -> bool:
     return bool(condition())
 
 
-def test_nothing_is_mended_for_a_port_that_is_closed(names: yarpy.LocalNames) -> None:
+def test_nothing_is_dialled_for_a_port_that_is_closed(names: yarpy.LocalNames) -> None:
     """A connection that breaks while its port closes would be remembered for ever."""
     port = yarpy.Port("/out", names=names)
     port.close()
@@ -276,15 +374,15 @@ def test_why_something_stays_away_is_logged_once(
     """Another port has the number; then nobody; then a third port: two lines for all attempts."""
     with yarpy.Port("/out", names=names) as out:
         item = lost(names, out)
-        repairer = reconnect.Repairer()
-        repairer._lost.append(item)
+        reconnector = reconnect.Reconnector()
+        reconnector._lost.append(item)
 
         def attempts(number: int) -> None:
             names.register("/in", "tcp", "127.0.0.1", number)
             names.set("/in", "process", 1)
             for _ in range(3):
-                repairer._try_to_mend(item)
-            assert repairer._lost == [item] and not out.outputs
+                reconnector._attempt(item)
+            assert reconnector._lost == [item] and not out.outputs
 
         with yarpy.BufferedPort("/other", names=names) as other:
             attempts(other.contact.port)
@@ -295,5 +393,6 @@ def test_why_something_stays_away_is_logged_once(
         assert not other.inputs and not third.inputs
     told = [record.getMessage() for record in caplog.records if "/in" in record.getMessage()]
     assert len(told) == 2
-    assert told[0].startswith('/out: no connection to /in: not "/in" listens at 127.0.0.1:')
-    assert 'but the port "/other"' in told[0] and 'but the port "/third"' in told[1]
+    assert told[0].startswith('/out: no connection to /in: "/other" listens at 127.0.0.1:')
+    assert ', not "/in": start the program of /in again; ' in told[0]
+    assert '"/third" listens at 127.0.0.1:' in told[1]

@@ -8,6 +8,7 @@ import pytest
 
 from yarpy import errors
 from yarpy.errors import (
+    AccessRefused,
     AddressError,
     LinkClosed,
     LocalProtocolError,
@@ -34,6 +35,7 @@ ROWS = [
     (UnknownName("x"), "Do not know how to connect to tcp://b", UnknownName),
     (AddressError("x"), "Do not know how to connect to tcp://b", UnknownName),
     (LoginRefused("who?"), "Not admitted to tcp://b: who?", LoginRefused),
+    (AccessRefused("Access refused: x"), "No access to tcp://b: Access refused: x", AccessRefused),
     (NotAllowed("Outputs not allowed"), "Outputs not allowed", NotAllowed),
     (LocalProtocolError("no"), "Cannot connect to tcp://b: no", LinkClosed),
     (RemoteProtocolError("no"), "Cannot connect to tcp://b: no", LinkClosed),
@@ -55,6 +57,10 @@ def test_rows(error: YarpError, line: str, kind: type[YarpError]) -> None:
 @pytest.mark.parametrize("line", ["RPC output already connected", "", "something else"])
 def test_other_lines_are_reasons_of_a_port(line: str) -> None:
     assert type(refusal.error(line, "this")) is NotAllowed
+
+
+def test_a_port_refuses_the_request_itself() -> None:
+    assert type(refusal.error("Access refused: x may not ...", "this")) is AccessRefused
 
 
 def test_lines_of_cpp_have_no_reason() -> None:

@@ -6,7 +6,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy import registry
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.network.traffic import read
 from yarpy.port import probe
 from yarpy.port.report import report
@@ -43,6 +43,11 @@ def test_every_connection_with_a_port_and_no_visitor() -> None:
             assert end.qos == yarpy.Qos(packets="HIGH")
             assert end.latency is None
             end = read(came)[2]
+            assert came["received"] == 3
+            question = ["stat", "in", "/out"]
+            [alone] = map(Property.from_bottle, probe.ask(in_._hub.contact, question))
+            assert (alone["source"], alone["received"]) == ("/out", 3)
+            assert probe.ask(in_._hub.contact, ["stat", "in", "/other"]) == []
             assert (end.monitors, end.parameters) == (["level"], {"level": 3})
             assert end.state == {"filled": 0.5}
             assert end.qos.policy == "SCHED_OTHER"

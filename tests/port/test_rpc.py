@@ -9,8 +9,7 @@ import pytest
 from support.wait import wait_until
 
 from yarpy import network
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.data.vector import Vector

@@ -47,18 +47,23 @@ def recording(port: int) -> Iterator[tuple[int, bytearray]]:
         except OSError:
             pass  # it has gone
 
-    def serve() -> None:
+    def serve(near: socket.socket) -> None:
+        with near, socket.create_connection(("127.0.0.1", port)) as far:
+            back = threading.Thread(target=pump, args=(far, near), daemon=True)
+            back.start()
+            pump(near, far)
+            back.join()
+
+    def accept() -> None:
         while True:
             try:
                 near, _ = server.accept()
             except OSError:
                 return
-            far = socket.create_connection(("127.0.0.1", port))
-            for pair in ((near, far), (far, near)):
-                threading.Thread(target=pump, args=pair, daemon=True).start()
+            threading.Thread(target=serve, args=(near,), daemon=True).start()
 
     with socket.create_server(("127.0.0.1", 0)) as server:
-        threading.Thread(target=serve, daemon=True).start()
+        threading.Thread(target=accept, daemon=True).start()
         yield server.getsockname()[1], seen
         server.shutdown(socket.SHUT_RDWR)
 

@@ -73,5 +73,5 @@ def test_facts(body: Body):
     assert eye.image().array.shape == (48, 64, 3)
     assert eye.field_of_view == pytest.approx((64.0, 50.2), abs=0.1)
     assert eye.intrinsics["focalLengthX"] == pytest.approx(51.2)
-    with pytest.raises(ValueError, match="from 16 to 2048"):
+    with pytest.raises(ValueError, match="must be 16 to 2048"):
         eye.resolution = (5000, 10)

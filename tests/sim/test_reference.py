@@ -148,7 +148,7 @@ def test_switching_brings_it_to_rest():
     assert not reference.done
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     some.lists(
         some.tuples(

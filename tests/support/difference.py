@@ -97,10 +97,6 @@ DIFFERENT: dict[str, dict[int, Difference]] = {
     },
 }
 
-ROS_WORDS = (
-    "C++ acknowledges the words of ROS slaves twice and hangs up; we acknowledge once and stay: it "
-    "is the http connection of a ROS node that ends after one request"
-)
 MONITORS = "we say why a monitor does not start"
 WHY = "C++ does not say why it cannot connect; we do"
 KEPT = "C++ ends the connection to a port before it looks for the carrier of the next one"
@@ -172,18 +168,15 @@ LIVE_DIFFERENT: dict[str, dict[int, Difference]] = {
     "cli_sched_set_16_cap_in": {2: Difference(matching(GRANTED), MAY_BE_REFUSED)},
     "ns_admin": {12: Difference(matching(SELF), "another process on another machine")},
     "admin_ros_getPid": {
-        2: Difference(matching(r'1 "" \d+\r\n<ACK>\r\n'), ROS_WORDS),
-        4: Difference(b"<ACK>\r\n", ROS_WORDS),
-    },
-    "admin_ros_publisherUpdate": {
-        2: Difference(b"1 ok\r\n<ACK>\r\n", ROS_WORDS),
-        4: Difference(b"<ACK>\r\n", ROS_WORDS),
+        2: Difference(
+            matching(r'1 "" \d+\r\n<ACK>\r\n<ACK>\r\n'), "another process has another number"
+        ),
     },
     "admin_ros_requestTopic": {
         2: Difference(
-            matching(r'1 "/cap/out" \(TCPROS "127\.0\.0\.1" \d+\)\r\n<ACK>\r\n'), ROS_WORDS
+            matching(r'1 "/cap/out" \(TCPROS "127\.0\.0\.1" \d+\)\r\n<ACK>\r\n<ACK>\r\n'),
+            "the port has another number here",
         ),
-        4: Difference(b"<ACK>\r\n", ROS_WORDS),
     },
     "portmonitor_lua_admin_1": {2: Difference(matching(REFUSED), AT_ONCE)},
     "portmonitor_recv_dll_admin_1": {2: Difference(matching(REFUSED), AT_ONCE)},

@@ -53,7 +53,7 @@ class Owner:
     def reverse(self, link: Inbound) -> None:
         self.reversed.append(link)
 
-    def closed(self, link: Inbound, reason: str, quit_: bool) -> None:
+    def input_ended(self, link: Inbound, reason: str, quit_: bool) -> None:
         self.ended.append((reason, quit_))
 
 

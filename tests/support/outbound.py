@@ -13,7 +13,7 @@ from yarpy.carriers.tcp import Tcp
 from yarpy.link.driver import Driver
 from yarpy.link.outbound import Outbound
 from yarpy.route import Route
-from yarpy.transports.base import SocketTransport
+from yarpy.transports.tcp import TcpTransport
 from yarpy.wire import framing
 from yarpy.wire.message import Packet
 
@@ -30,7 +30,8 @@ def open_link(kind: type[Carrier], *incoming: bytes) -> tuple[Outbound, ScriptTr
 
 
 def total(link: Outbound) -> int:
-    return link.counter.messages + link.counter.drops
+    counter = link.counter
+    return counter.messages + counter.drops + counter.unconfirmed
 
 
 @contextmanager
@@ -40,7 +41,7 @@ def connected(kind: type[Carrier] = Tcp) -> Iterator[tuple[Outbound, socket.sock
         far, _ = listener.accept()
     far.settimeout(5)
     far.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    link = Outbound(Driver(SocketTransport(near)), kind(Route("/here", "/peer", kind.name)))
+    link = Outbound(Driver(TcpTransport(near)), kind(Route("/here", "/peer", kind.name)))
     try:
         yield link, far
     finally:

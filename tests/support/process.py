@@ -139,6 +139,7 @@ class Process:
         for pid in (*descendants(self.pid), self.pid):
             _send(pid, signal.SIGKILL)
         self._popen.wait(10)
+        self.end_input()
 
     def stop(self, patience: float = 2.0) -> None:
         """End the program and all it started: ask, wait `patience` seconds, then kill."""

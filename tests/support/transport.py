@@ -61,7 +61,14 @@ class ScriptTransport:
         self.sends += 1
         self.sent += [bytes(b) for b in buffers]
 
-    def limit_waiting(self, seconds: float | None) -> None:
+    def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
+        self.send(buffers)
+        return []
+
+    def wait_writable(self, seconds: float) -> bool:
+        return True
+
+    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         self.waits.append(seconds)
 
     def set_dscp(self, tos: int) -> None:
@@ -69,6 +76,9 @@ class ScriptTransport:
 
     def ended(self) -> bool:
         return not self.incoming and not self.open_ended
+
+    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
+        return None
 
     def interrupt(self) -> None:
         self.interrupted = True

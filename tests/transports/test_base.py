@@ -10,6 +10,7 @@ from collections.abc import Iterator
 import pytest
 
 from yarpy.transports.base import SocketTransport, address_of, send_all, timeval
+from yarpy.wire.stream import Buffer
 
 Pair = tuple[SocketTransport, SocketTransport]
 
@@ -154,3 +155,39 @@ def test_time_limits_are_never_nothing() -> None:
     assert timeval(None) == bytes(len(timeval(None)))
     for seconds in (0.0, 1e-9, 0.5, 3.25):
         assert timeval(seconds) != timeval(None)
+
+
+@pytest.mark.parametrize(
+    "sizes", [[1], [3_000_000], [1_000_000, 0, 5, 2_000_000], [2000] * 1500], ids=str
+)
+def test_what_finds_no_room_is_left(pair: Pair, sizes: list[int]) -> None:
+    left, right = pair
+    wanted = [bytes([number % 256]) * size for number, size in enumerate(sizes)]
+    rest: list[Buffer] = list(wanted)
+    found = b""
+    waits = 0
+    while rest := left.try_send(rest):
+        assert not left.wait_writable(0.01)
+        waits += 1
+        have = sum(sizes) - len(found) - sum(map(len, rest))
+        assert have
+        found += receive(right, have)
+        assert left.wait_writable(5.0)
+    assert waits or sum(sizes) < 1000
+    found += receive(right, sum(sizes) - len(found)) if len(found) < sum(sizes) else b""
+    assert found == b"".join(wanted)
+
+
+def test_end_is_told_to_who_waits_for_room(pair: Pair) -> None:
+    left, _ = pair
+    assert left.try_send([bytes(5_000_000)])
+    threading.Timer(0.1, left.interrupt).start()
+    started = time.monotonic()
+    assert left.wait_writable(20.0)
+    assert time.monotonic() - started < 10
+    with pytest.raises(OSError, match="pipe"):
+        left.try_send([b"more"])
+    left.close()
+    assert left.wait_writable(20.0)
+    with pytest.raises(OSError, match="descriptor"):
+        left.try_send([b"more"])

@@ -7,6 +7,7 @@ import ssl
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -24,7 +25,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return prepare(tmp_path, monkeypatch)
 
 
-def pair(host: str = "127.0.0.1") -> tuple[TlsTransport, TlsTransport]:
+def pair(host: str = "127.0.0.1", asks_names: bool = False) -> tuple[TlsTransport, TlsTransport]:
     """Both ends; raises what the dialling one does."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         one = socket.create_connection(server.getsockname())
@@ -33,21 +34,21 @@ def pair(host: str = "127.0.0.1") -> tuple[TlsTransport, TlsTransport]:
 
     def answer() -> None:
         try:
-            found.append(secured(TcpTransport(other), "", time.monotonic() + SOON))
+            found.append(secured(TcpTransport(other), "", time.monotonic() + SOON, asks_names))
         except OSError:
             pass
 
     thread = threading.Thread(target=answer)
     thread.start()
     try:
-        return secured(TcpTransport(one), host, time.monotonic() + SOON), *wait(thread, found)
+        near = secured(TcpTransport(one), host, time.monotonic() + SOON)
     finally:
         thread.join(SOON)
-
-
-def wait(thread: threading.Thread, found: list[TlsTransport]) -> tuple[TlsTransport]:
-    thread.join(SOON)
-    return (found[0],)
+    if not found:  # who dialled hears of it with the first bytes that do not come
+        with closing(near):
+            near.recv_into(memoryview(bytearray(4)))
+            raise ConnectionResetError
+    return near, found[0]
 
 
 @pytest.fixture
@@ -175,7 +176,60 @@ def test_both_show_certificates(monkeypatch: pytest.MonkeyPatch, folder: Path) -
         cafile=str(where / "ca.pem")
     )
     monkeypatch.setattr("yarpy.transports.tls.client_context", context)
-    with pytest.raises((ssl.SSLError, IndexError, ConnectionError)):
-        one, _ = pair()
-        if not one.recv_into(memoryview(bytearray(4))):
-            raise ConnectionResetError
+    with pytest.raises((ssl.SSLError, ConnectionError)):
+        pair()
+
+
+def test_who_shows_a_certificate_is_known_by_its_names(
+    monkeypatch: pytest.MonkeyPatch, folder: Path
+) -> None:
+    for asks_names, expected in ((True, ("127.0.0.1", "localhost")), (False, ())):
+        one, other = pair(asks_names=asks_names)
+        assert other.peer_names == expected
+        assert one.peer_names == ("127.0.0.1", "localhost")  # ours, which everybody sees
+        one.close()
+        other.close()
+
+
+def test_a_certificate_that_is_asked_for_may_be_missing(
+    monkeypatch: pytest.MonkeyPatch, folder: Path
+) -> None:
+    context: Callable[[], ssl.SSLContext] = lambda: ssl.create_default_context(  # noqa: E731
+        cafile=str(folder / "ca.pem")
+    )
+    monkeypatch.setattr("yarpy.transports.tls.client_context", context)
+    one, other = pair(asks_names=True)
+    assert other.peer_names == ()
+    one.close()
+    other.close()
+
+
+def test_a_certificate_of_another_authority_is_no_proof(
+    monkeypatch: pytest.MonkeyPatch, folder: Path, tmp_path: Path
+) -> None:
+    make(tmp_path / "evil", ["operator"])
+    context = ssl.create_default_context(cafile=str(folder / "ca.pem"))
+    context.load_cert_chain(tmp_path / "evil" / "cert.pem", tmp_path / "evil" / "key.pem")
+    monkeypatch.setattr("yarpy.transports.tls.client_context", lambda: context)
+    with pytest.raises((ssl.SSLError, ConnectionError)):
+        pair(asks_names=True)
+
+
+def test_what_finds_no_room_is_left_and_nothing_changes_places(
+    ends: tuple[TlsTransport, TlsTransport],
+) -> None:
+    near, far = ends
+    wanted = [bytes([number]) * 700_000 for number in range(12)]
+    rest = near.try_send(wanted)
+    while rest:  # nobody reads: at some time nothing more goes
+        before, rest = rest, near.try_send(rest)
+        if len(before) == len(rest) and not near.wait_writable(0.2):
+            break
+    assert rest[0] == b"", "it holds a part of a record back"
+    size = sum(map(len, wanted))
+    thread = threading.Thread(target=near.send, args=([*rest, b"the end"],))
+    thread.start()
+    assert read(far, size + 7) == b"".join(wanted) + b"the end"
+    thread.join(SOON)
+    assert near.try_send([b"more"]) == []
+    assert read(far, 4) == b"more"

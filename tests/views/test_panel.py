@@ -11,10 +11,12 @@ import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from support.access import allow
 from support.patience import patience
 from support.wait import wait_until
 
@@ -378,3 +380,77 @@ def test_questions_go_to_ports_of_the_robot_alone(robot: Robot, url: str, names:
     assert ask("", names.port, "list")[0] == "fail"  # the name server is no port of the robot
     with pytest.raises(urllib.error.HTTPError, match="403"):
         ask(*where, "get axes", Origin="http://evil.test")
+
+
+def test_commands_go_to_the_port_that_is_meant(names: Any) -> None:
+    """And not to one that has the number by now, while the name server remembers another."""
+    asked: list[Any] = []
+    with (
+        yarpy.RpcServer("/arm", lambda message: asked.append(message.value), names=names) as arm,
+        yarpy.Port("/panel/of/hand", names=names) as port,
+    ):
+        for end in ("rpc:i", "state:o"):
+            names.register(f"/hand/{end}", "tcp", "127.0.0.1", arm.contact.port)
+            names.set(f"/hand/{end}", "process", 1)  # as ports say of themselves
+        panel = Panel(port, "/hand", names)
+        panel.robot()
+        answer = panel._told("", arm.contact.port, "set pos 0 5")
+        assert "/arm" in str(answer) and "not" in str(answer)
+        assert not asked
+
+
+def test_command_to_a_robot_that_has_just_started(names: Any) -> None:
+    """The page hears of it, and may be used, before it asks again where the robot is."""
+    with yarpy.Port("/panel/of/just", names=names) as port:
+        panel = Panel(port, "/just", names)
+        panel.robot()
+        with yarpy.RpcServer("/just/rpc:i", lambda message: ["moved"], names=names) as arm:
+            assert panel._told("", arm.contact.port, "set pos 0 5") == ["moved"]
+            assert panel._told("", 1, "set pos 0 5")[0] == "fail"
+
+
+def test_questions_are_pages_and_move_nothing(robot: Robot, url: str, names: Any) -> None:
+    host, port = get(f"{url}robot")["boards"][0]["rpc"]
+
+    def asked(question: str, number: int = port) -> Any:
+        return get(f"{url}get?host={host}&port={number}&question={question}")
+
+    assert asked("get+axes")[:3] == ["is", "axes", 6]
+    assert asked("get+axes", names.port)[0] == "fail"  # no port of the robot
+    for bad in ("set+pos+0+5", "", "[set]+pos+0+5"):
+        with pytest.raises(urllib.error.HTTPError, match="400"):
+            asked(bad)
+    with pytest.raises(urllib.error.HTTPError, match="400"):
+        get(f"{url}get?host={host}&port=x&question=get+axes")
+
+
+def test_who_may_only_look_cannot_move_the_robot(
+    browser: Browser,
+    head: yarpy.RpcClient,
+    names: yarpy.YarpNameClient,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    allow(tmp_path, monkeypatch, "read")
+    with yarpy.Port("/panel/public", names=names) as port:
+        Panel(port, "/icubSim", names)
+        page = browser.open(f"http://{port.address}/")
+        page.locator("#state", has_text="read only").wait_for()
+        assert page.locator(".joint .name").all_inner_texts() == JOINTS
+        assert page.locator(".joint input:enabled").count() == 0
+        assert not page.get_by_role("button", name="All to zero").is_visible()
+        head.call("set", "pos", 2, -30)
+        page.locator(".joint .value", has_text="-30.0°").wait_for()  # it is live
+        wait_until(lambda: loaded(page), PATIENCE)
+        assert page.locator("#cameras .looks").count() == 0
+        browser.picture(page, "panel_read_only")
+        # Whoever tries all the same is refused.
+        host, number = get(f"http://{port.address}/robot")["boards"][0]["rpc"]
+        body = {"admin": 1, "req": ["ask", host, number, "set pos 0 5"]}
+        status = page.evaluate(
+            """async body => (await fetch("/form", {method: "POST", body: JSON.stringify(body),
+            headers: {"Content-Type": "application/json"}})).status""",
+            body,
+        )
+        assert status == 403
+        browser.excuse("403")

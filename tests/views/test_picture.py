@@ -65,7 +65,7 @@ def test_what_is_no_picture_is_counted_and_the_port_lives(
 ) -> None:
     for value, complaint in (
         (["hello", 1], "/cam: hello 1"),
-        (yarpy.Sound(np.zeros((1, 4), "i2")), "/cam: 48 bytes that are no picture"),
+        (yarpy.Sound(np.zeros((1, 4), "i2")), "/cam: 48 bytes that are not a picture"),
         (["x" * 200], f"/cam: {'x' * 80}..."),
         (yarpy.Image(np.zeros((0, 4), "u1")), "/cam: a picture without pixels"),
         (yarpy.Image(np.zeros((4, 4), "u1"), "yuva"), "/cam: pictures of pixels 'yuva' cannot "),

@@ -18,7 +18,7 @@ from support.steps import chop, finish, is_waiting, measured, output
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError, YarpError
+from yarpy.errors import AccessRefused, DecodeError, LinkClosed, RemoteProtocolError, YarpError
 from yarpy.wire import framing
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.stream import FIRST_GRANT, LARGE, ByteStream, run
@@ -628,3 +628,25 @@ def test_half_a_message_is_a_closed_link() -> None:
     data = captured("half_message", 2)
     with pytest.raises(LinkClosed, match="in the middle"):
         decode(data)
+
+
+@pytest.mark.parametrize("size", [1, 1000])
+def test_a_greeting_may_be_refused(size: int) -> None:
+    line = framing.encode_refusal("Access refused: you may not write to /arm \x1b[2J")
+    stream = ByteStream()
+    with pytest.raises(AccessRefused, match=r"^Access refused: you may .* /arm \\x1b\[2J$"):
+        run(framing.read_answer(stream), stream, chop(line, size))
+
+
+def test_other_answers_to_a_greeting_are_handed_on() -> None:
+    for answer in (framing.number(10002), b"* Access", b"* Error."):
+        stream = ByteStream()
+        data = answer + b"ories of a robot\r\n"
+        assert run(framing.read_answer(stream), stream, [data]) == answer
+
+
+def test_a_refusal_is_not_longer_than_a_name() -> None:
+    line = framing.encode_refusal("Access refused: " + 5000 * "x")
+    assert len(line) == framing.MAX_NAME + 2
+    assert framing.refused(line.rstrip()) is not None
+    assert framing.refused(b"Welcome") is None

@@ -6,15 +6,24 @@ import copy
 import pickle
 from collections.abc import Callable
 
+import numpy
 import pytest
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.data.vector import Vector
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError
-from yarpy.wire.message import CALL, DATA, UNSENDABLE, Answer, Lines, Message, Packet
+from yarpy.wire.message import (
+    CALL,
+    DATA,
+    UNSENDABLE,
+    Answer,
+    Lines,
+    Message,
+    Packet,
+    Spelling,
+)
 
 
 def nested(depth: int) -> list[object]:
@@ -54,6 +63,26 @@ def test_packet_keeps_large_arrays_where_they_are() -> None:
     blocks = Packet(pixels).blocks
     pixels[0, 0, 0] = 7
     assert 7 in bytes(blocks[-1][:100])
+
+
+@pytest.mark.parametrize("spelling", ["binary", "text"])
+def test_snapshot_does_not_change_with_the_array(spelling: Spelling) -> None:
+    array = numpy.arange(10000.0)
+    wanted = Packet(array.copy())
+    packet = Packet(array)
+    packet.snapshot(spelling)
+    array[:] = -1
+    assert packet.line == wanted.line
+    assert b"".join(packet.blocks) == b"".join(wanted.blocks)
+
+
+def test_snapshot_leaves_the_text_of_arrays_for_later() -> None:
+    """It takes a hundred times as long as copying, and is made in the thread that sends it."""
+    array, words = Packet(numpy.arange(10000.0)), Packet([1, "x"])
+    for packet in (array, words):
+        packet.snapshot("text")
+    assert array._line is None
+    assert words._line == b"1 x"
 
 
 def test_message_is_not_decoded_before_somebody_looks() -> None:

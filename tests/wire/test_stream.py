@@ -15,6 +15,7 @@ from yarpy.errors import LinkClosed, RemoteProtocolError
 from yarpy.wire.stream import (
     BUFFER_SIZE,
     FIRST_GRANT,
+    KEPT,
     LARGE,
     ByteStream,
     DatagramStream,
@@ -67,23 +68,27 @@ def test_large_read_takes_what_was_there_and_leaves_what_follows() -> None:
 def test_large_read_lands_in_its_final_place() -> None:
     """No copy after arrival: what `get_buffer` gave out is what the reader gets."""
     stream = ByteStream()
-    steps = stream.read_exact(100_000)
+    steps = stream.read_exact(50_000)
     assert is_waiting(steps)
     target = stream.get_buffer()
-    assert len(target) == 100_000
+    assert len(target) == 50_000
     target[:3] = b"abc"
-    stream.buffer_updated(100_000)
+    stream.buffer_updated(50_000)
     view = finish(steps)
     assert bytes(view[:3]) == b"abc"
     target[0] = ord("z")
     assert view[0] == ord("z")
 
 
-def receive_large(stream: ByteStream, byte: bytes) -> memoryview:
-    steps = stream.read_exact(50_000)
-    assert is_waiting(steps)
-    stream.get_buffer()[:] = byte * 50_000
-    stream.buffer_updated(50_000)
+def receive_large(stream: ByteStream, byte: bytes, size: int = 50_000) -> memoryview:
+    steps = stream.read_exact(size)
+    came = 0
+    while came < size:
+        assert is_waiting(steps)
+        room = len(stream.get_buffer())
+        stream.get_buffer()[:] = byte * room
+        stream.buffer_updated(room)
+        came += room
     view = finish(steps)
     assert isinstance(view, memoryview)
     return view
@@ -128,10 +133,7 @@ def test_flood_of_large_messages_takes_the_memory_of_two() -> None:
     stream = ByteStream()
     with measured() as peak:
         for _ in range(50):
-            steps = stream.read_exact(1 << 20)
-            assert is_waiting(steps)
-            stream.buffer_updated(len(stream.get_buffer()))
-            finish(steps)
+            receive_large(stream, b"x", 1 << 20)
     assert peak.bytes < 2.5 * (1 << 20)
 
 
@@ -159,22 +161,50 @@ def test_announced_length_takes_no_memory_before_bytes_arrive() -> None:
 
 def test_buffer_beyond_the_first_grant_grows_with_what_came() -> None:
     stream = ByteStream()
-    steps = stream.read_exact(4 * FIRST_GRANT)
+    size = 64 * FIRST_GRANT
+    steps = stream.read_exact(size)
     assert is_waiting(steps)
     came = 0
-    while came < 4 * FIRST_GRANT:
+    while came < size:
         room = stream.get_buffer()
         assert len(room) <= max(FIRST_GRANT, came)
-        part = min(len(room), 1 << 22)
-        room[:part] = bytes([came >> 22]) * part
+        part = min(len(room), FIRST_GRANT)
+        room[:part] = bytes([came // FIRST_GRANT]) * part
         stream.buffer_updated(part)
         came += part
         del room
-        if came < 4 * FIRST_GRANT:
+        if came < size:
             assert is_waiting(steps)
     view = finish(steps)
-    assert len(view) == 4 * FIRST_GRANT
-    assert [view[i << 22] for i in range(16)] == list(range(16))
+    assert len(view) == size
+    assert [view[i * FIRST_GRANT] for i in range(64)] == list(range(64))
+
+
+def test_peer_that_has_sent_a_large_message_gets_the_memory_for_one_at_once() -> None:
+    stream = ByteStream()
+    held = [receive_large(stream, b"a", 1_000_000)]
+    steps = stream.read_exact(1_000_000)
+    assert is_waiting(steps)
+    assert len(stream.get_buffer()) == 1_000_000
+    stream.feed(bytes(1_000_000))
+    held.append(finish(steps))
+    stream.forget()
+    steps = stream.read_exact(1_000_000)
+    assert is_waiting(steps)
+    assert len(stream.get_buffer()) == FIRST_GRANT
+
+
+def test_memory_of_a_very_large_message_without_a_length_is_given_back() -> None:
+    stream = ByteStream()
+    size = 2 * KEPT
+    steps = stream.read_parsed(lambda view: (b"", size) if len(view) >= size else size)
+    while len(stream.buffer) < size or stream.waiting < size:
+        assert is_waiting(steps)
+        stream.feed(bytes(len(stream.get_buffer())))
+    finish(steps)
+    assert len(stream.buffer) == BUFFER_SIZE
+    stream.feed(b"next")
+    assert finish(stream.read_exact(4)) == b"next"
 
 
 def test_length_beyond_the_limit_is_refused_at_once() -> None:
@@ -421,3 +451,16 @@ def test_any_mixture_of_reads_in_any_pieces(plan: list[Read], piece: int, size: 
             room = len(stream.get_buffer())
             stream.feed(rest[:room])
             rest = rest[room:]
+
+
+def test_output_that_could_not_be_sent_comes_first_and_may_be_copied() -> None:
+    stream = ByteStream()
+    array = bytearray(b"large")
+    stream.write(b"head", memoryview(array))
+    _, rest = stream.take_output()
+    stream.write(b"next")
+    stream.put_back([rest])
+    assert stream.pending
+    stream.snapshot_output()
+    array[:] = b"other"
+    assert stream.take_output() == [b"large", b"next"]

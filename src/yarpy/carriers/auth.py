@@ -1,7 +1,7 @@
-"""The optional proof, before any greeting, that both sides know the key of auth.conf.
+"""Optional authentication, before any greeting: both sides prove that they know auth.conf's key.
 
 Rules: three messages of eight random bytes and an HMAC-SHA256 over all random bytes so far; the
-acceptor begins. Nothing is encrypted by it.
+acceptor begins. It encrypts nothing.
 """
 
 from __future__ import annotations

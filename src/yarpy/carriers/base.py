@@ -1,10 +1,10 @@
 """The plug-in contract: what a wire protocol is.
 
 Rules: a carrier is a state machine over a ByteStream - generators, no sockets, threads or clock.
-Its facts are class attributes; each method has a default that does what the plain binary carriers
-do, so a carrier overrides only what is different about it. What it needs from the outside it yields
-as an effect (`wire/effects.py`), and what it reports is a message: it leaves no flags for others to
-look at. The link drives it, in this order:
+Its facts are class attributes; the methods default to what the plain binary carriers do, so a
+carrier overrides only what differs. It asks for anything outside by yielding an effect
+(`wire/effects.py`), and reports by returning messages; there are no flags for others to poll. The
+link drives it, in this order:
 
     initiator                       acceptor
     greet                     ->    (magic chosen) welcome
@@ -20,24 +20,26 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from yarpy.data import codec
+from yarpy.errors import AccessRefused
 from yarpy.route import Route
 from yarpy.wire import framing
+from yarpy.wire.effects import May
 from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
-MAGIC_SIZE = 8  # bytes by which protocols are told apart
+MAGIC_SIZE = 8  # bytes that identify the protocol
 PAGE = "page"  # what follows the port command `*` when a browser asks
 ASKS_FOR_KEY = "perhaps it wants a key (auth.conf) or TLS, which this side does not have"
 
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """How messages leave.
+    """How messages are sent.
 
     lossy: a slow consumer misses messages; its writer never waits. backlog: messages that may
-    wait for such a reader. interval: seconds between its messages, at least. coalesces: small
-    messages of a burst may leave in one send.
+    be queued for such a reader. interval: minimum seconds between its messages. coalesces: small
+    messages of a burst may share one send.
     """
 
     lossy: bool = False
@@ -48,33 +50,35 @@ class Delivery:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """A peer's timeouts, in seconds; None: it may take as long as it likes.
+    """A peer's timeouts, in seconds; None: no limit.
 
-    idle_timeout: for the silence of an accepted peer. ack_timeout: for an acknowledgement; messages
-    then go one at a time. (For the time of a message see the effect `Within`.)
+    idle_timeout: for an accepted peer that sends nothing. ack_timeout: for an acknowledgement;
+    messages then go one at a time. message_timeout: for silence in the middle of a message; within
+    twice that time 60 kB of it must arrive. (For a whole message's time see the effect `Within`.)
     """
 
     idle_timeout: float | None = None
     ack_timeout: float | None = None
+    message_timeout: float | None = 30.0
 
 
 class Carrier:
     """One connection's protocol. Subclass it, set the facts, override what differs.
 
     `route` says who talks to whom: `route.source` and `route.target` are port names,
-    `route.spec` the carrier string with what is added to it. The acceptor fills in the source.
-    `lost` counts messages that the protocol itself had to drop; the link adds it to its drops.
+    `route.spec` the parsed carrier string. The acceptor fills in the source. `lost` counts messages
+    that the protocol itself had to drop; the link adds it to its drops.
     """
 
     name: ClassVar[str] = ""
-    magic: ClassVar[bytes] = b""  # what such a connection begins with (eight bytes, or fewer)
+    magic: ClassVar[bytes] = b""  # the first bytes of such a connection (up to eight)
     push: bool = True
     acks: bool = False  # the receiver confirms each message
     replies: ClassVar[bool] = True
     spelling: Spelling = "binary"  # what `encode` uses of a packet
-    foreign: ClassVar[bool] = False  # the peer we dial may know nothing of YARP, nor of its keys
+    foreign: ClassVar[bool] = False  # the peer we dial need not know YARP, nor its keys
     introduces: ClassVar[bool] = True  # the initiator gives its name and modifiers
-    connectionless: ClassVar[bool] = False  # the peer must learn of the end some other way
+    connectionless: ClassVar[bool] = False  # the peer must be told of the end in some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
     delivery: Delivery = Delivery()
     limits: ClassVar[Limits] = Limits()
@@ -85,7 +89,7 @@ class Carrier:
 
     @classmethod
     def recognises(cls, first: bytes) -> int:
-        """How many of the `first` eight bytes say that this is our protocol; 0: it is not."""
+        """How many of the `first` eight bytes identify our protocol; 0: it is not ours."""
         return len(cls.magic) if cls.magic and first.startswith(cls.magic) else 0
 
     # -- beginning --------------------------------------------------------------------------------
@@ -99,20 +103,31 @@ class Carrier:
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[Carrier | None]:
         """The acceptor's answer; `first` are the eight bytes, already read.
 
-        If they did not decide it: returns the carrier whose connection it is, to welcome it anew.
+        Returns another carrier if the connection turns out to be that one's, which then welcomes.
         """
         magic = self.recognises(first)
         if 0 < magic < MAGIC_SIZE:
             stream.unread(MAGIC_SIZE - magic)  # they belong to the name
-        self.route.introduce((yield from framing.read_name(stream)))
+        yield from self.introduce(stream, (yield from framing.read_name(stream)))
         return None
+
+    def introduce(self, stream: ByteStream, specifier: str) -> Steps[None]:
+        """Take what the initiator says about itself. If it lacks a right, say so and raise
+        AccessRefused."""
+        route = self.route
+        route.introduce(specifier)
+        for right in to_write(route):
+            why = yield May(right)
+            if why:
+                stream.write(framing.encode_refusal(why))
+                raise AccessRefused(why)
 
     # -- messages ---------------------------------------------------------------------------------
 
     def prepare(self, packet: Packet) -> bool:
-        """Make what `encode` will write, in the thread of the writer, into memory of its own.
+        """Produce in the writer's thread, in separate memory, what `encode` will write.
 
-        False: this message is not for this protocol; it is dropped, and counted.
+        False: this protocol cannot carry the message; it is dropped, and counted.
         """
         packet.snapshot(self.spelling)
         return True
@@ -122,33 +137,32 @@ class Carrier:
         stream.write(*framing.encode(packet))
 
     def parse(self, stream: ByteStream) -> Message | None:
-        """A message that is already in the stream's buffer, if it can be had without waiting.
+        """A message that is already complete in the stream's buffer, or None; never waits.
 
-        With this shortcut, `decode` begins when bytes have come that it cannot read; else at once.
+        Carriers with this shortcut start `decode` only once bytes arrive that it cannot read.
         """
         return None
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         """Read one message. `Message(QUIT)` is the end, `Message("r")` makes the peer a reader: its
-        payload is the carrier that goes on, or empty for this one."""
+        payload is the carrier that continues, or empty for this one."""
         return (yield from framing.read_message(stream))
 
     def encode_quit(self, stream: ByteStream) -> None:
-        """Write the message that ends the connection in good order, if there is one."""
+        """Write the message that closes the connection cleanly, if there is one."""
         stream.write(framing.QUIT)
 
     def drain(self, stream: ByteStream) -> Steps[None]:
-        """Without acknowledgements: read what the peer says until it hangs up, after our goodbye.
+        """Without acknowledgements: after our goodbye, read whatever comes until the peer hangs up.
 
-        For peers whose last input may be unread: closing with unread input resets
-        the connection and loses our last output.
+        Closing with unread input resets the connection and loses our last output.
         """
         return
         yield
 
     def listen(self, stream: ByteStream) -> Steps[None] | None:
-        """Deal with what a reader says while we send to it, until it wants no more; None: nothing
-        is expected of it."""
+        """Handle what a reader sends while we write to it, until it wants no more; None: it is not
+        expected to send anything."""
         return None
 
     # -- what comes back --------------------------------------------------------------------------
@@ -158,14 +172,14 @@ class Carrier:
         stream.write(*codec.encode(value))
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
-        """Read a reply; None if the peer's acknowledgement shows that there is none."""
+        """Read a reply; None if the peer's acknowledgement shows that there will be none."""
         yield from stream.more(8)
         if stream.buffer.startswith(framing.ACK, stream.head):
             return None
         return Message(CALL, (yield from framing.read_payload(stream)))
 
     def parse_reply(self, stream: ByteStream) -> Message | None:
-        """A reply that is already in the stream's buffer, if it can be had without waiting."""
+        """A reply that is already complete in the stream's buffer, or None; never waits."""
         return None
 
     def encode_ack(self, stream: ByteStream, count: int) -> None:
@@ -173,23 +187,30 @@ class Carrier:
         stream.write(framing.ACK * count)
 
     def parse_acks(self, stream: ByteStream, most: int) -> int:
-        """Take up to `most` acknowledgements that have already come; returns how many."""
+        """Take up to `most` acknowledgements that have already arrived; returns how many."""
         return 0
 
     def expect_ack(self, stream: ByteStream) -> Steps[None]:
-        """Read one acknowledgement. A number n in it means that n more bytes follow."""
+        """Read one acknowledgement. A number n in it means that n bytes follow."""
         value = framing.parse_number((yield from stream.read_exact(8)))
         if value > 0:
             yield from stream.skip(min(value, stream.limit))
 
     def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
-        """Write what a port command answers to a person; binary carriers say nothing."""
+        """Write a port command's answer to a person; binary carriers write nothing."""
+
+
+def to_write(route: Route) -> list[str]:
+    """The rights that an initiator needs: a port wants to write, a tool (whose name has no leading
+    slash) may only ask; monitors are attached at our end."""
+    wanted = ["write"] if route.source.startswith("/") else []
+    return [*wanted, "attach"] if route.spec.recv else wanted
 
 
 class Indexed(Carrier):
-    """The carriers that put YARP's index before each message and know each other by a number.
+    """Carriers with YARP's index before each message, identified by a number.
 
-    `code` is that number: eight bytes with 7777 + code are the magic.
+    `code` is that number: the magic is eight bytes with 7777 + code.
     """
 
     code: ClassVar[int] = -1
@@ -201,8 +222,7 @@ class Indexed(Carrier):
 
     @classmethod
     def matches(cls, value: int) -> bool:
-        """Only the low four bits tell carriers apart; bit 7 says that acknowledgements are
-        wanted."""
+        """Only the low four bits identify the carrier; bit 7 asks for acknowledgements."""
         return value % 16 == cls.code % 16
 
     parse = staticmethod(framing.parse_plain)
@@ -211,7 +231,7 @@ class Indexed(Carrier):
     def parse_acks(self, stream: ByteStream, most: int) -> int:
         count = min(most, stream.waiting // len(framing.ACK))
         if not count or not stream.buffer.startswith(framing.ACK * count, stream.head):
-            return 0  # something else is among them; one by one, then
+            return 0  # not all are plain acknowledgements: read them one by one
         stream.head += count * len(framing.ACK)
         return count
 

@@ -1,7 +1,7 @@
 """local: both ports are in this process; objects pass by reference, nothing is encoded.
 
-Rules: the TCP connection only introduces the two ends to each other. A peer in another process has
-no end in the meeting place, so it is refused instead of waited for.
+Rules: the TCP connection only introduces the two ends to each other. A peer in another process
+cannot be found in this process's table, so it is refused at once.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """mcast: one sender, one group, any number of receivers.
 
 Rules: after its name the initiator sends the group's address and port (big-endian, unlike anything
-else here); both sides then leave TCP. All mcast connections of a port share a group and one of them
-sends for all.
+else here); both sides then leave TCP. All mcast connections of a port share a group, and one of
+them sends for all.
 """
 
 from __future__ import annotations

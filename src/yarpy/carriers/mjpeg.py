@@ -1,20 +1,20 @@
 """mjpeg: pictures for browsers, and from network cameras: JPEG files in an endless HTTP answer.
 
     GET /?action=stream HTTP/1.1            the dialling side is the watcher
-    GET /?action=snapshot HTTP/1.1          the next picture alone
+    GET /?action=snapshot HTTP/1.1          only the next picture
 
     HTTP/1.0 200 OK ... Content-Type: multipart/x-mixed-replace;boundary=boundarydonotcross
     --boundarydonotcross
     Content-Type: image/jpeg
     Content-Length: 734
 
-Rules: a slow watcher gets fewer pictures, the port never waits for it. A picture is
-compressed once for all watchers that want the same quality (`/?action=stream&quality=50&rate=10`,
-or `mjpeg+quality.50+rate.10` between ports; pictures per second). What is no picture is not sent,
-and counted; browsers, which are answered with the first message, are told that there are no
-pictures. The envelope is the comment in the JPEG file. Cameras may order, spell or leave out
-headers in their own way, or send in chunks; a damaged picture is dropped, and counted in `lost`. A
-camera that wants a password is dialled once more, with the answer that login.py knows.
+Rules: a slow watcher gets fewer pictures, the port never waits for it. A picture is compressed once
+for all watchers that want the same quality (`/?action=stream&quality=50&rate=10`, or
+`mjpeg+quality.50+rate.10` between ports; rate in pictures per second). Messages that are not
+pictures are dropped and counted; browsers, which get their answer with the first message, are told
+that there are no pictures. The envelope is the comment in the JPEG file. Cameras may reorder,
+misspell or omit headers, or send in chunks; a damaged picture is dropped, and counted in `lost`. A
+camera that asks for a password is dialled again with the answer from login.py.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from yarpy.carriers.http.header import CHALLENGES, MAX_LINE, read_headers
 from yarpy.carriers.http.login import refusal, take_login
 from yarpy.carriers.http.message import TEXT, response_head
 from yarpy.carriers.http.origin import not_ours, origins_of
-from yarpy.carriers.http.refusal import refuse
+from yarpy.carriers.http.refusal import refuse, screen
 from yarpy.data import jpeg
 from yarpy.data.image import Image, is_image
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
@@ -59,7 +59,7 @@ _LAST: Final = (
 
 
 class Mjpeg(Carrier):
-    """Images only, from the port that was dialled to the one that dialled."""
+    """Images only, from the dialled port to the one that dialled."""
 
     name = "mjpeg"
     magic = b"GET /?ac"
@@ -71,13 +71,13 @@ class Mjpeg(Carrier):
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self.quality = jpeg.QUALITY
-        self._mark = b"--"  # what a line between two pictures contains
-        self._past_mark = False  # that line has begun: its end is next
-        self._once = False  # one picture is asked for, not a stream
+        self._mark = b"--"  # marks the line between two pictures
+        self._past_mark = False  # inside that line: its end is next
+        self._once = False  # a single picture was requested, not a stream
         self._asked = False  # the answer begins with the first message
         self._done = False  # the answer is complete
         self._shared = b""  # a header of the answer
-        self._chunks: Chunks | None = None  # what a camera's server has put the pictures into
+        self._chunks: Chunks | None = None  # a camera's chunked encoding
 
     # -- the sender -------------------------------------------------------------------------------
 
@@ -87,26 +87,27 @@ class Mjpeg(Carrier):
         if origins_of().turns_away(headers, self.route.host):
             yield from refuse(stream, 421, not_ours(headers.get("host", "")))
         try:
-            wishes = read_wishes(line.decode("latin-1").split()[1])
+            target = line.decode("latin-1").split()[1]
+            options = read_stream_options((yield from screen(stream, target, headers, "read")))
         except ValueError as error:
             yield from refuse(stream, 400, str(error))
-        self.begin(stream, wishes, headers)
+        self.begin(stream, options, headers)
 
-    def begin(self, stream: ByteStream, wishes: Wishes, headers: Mapping[str, str]) -> None:
+    def begin(self, stream: ByteStream, options: StreamOptions, headers: Mapping[str, str]) -> None:
         """Answer a request."""
-        self.route.source = "null"  # as C++ calls it: watchers have no names
-        self._once = wishes.once
-        if wishes.quality:
-            self.quality = wishes.quality
+        self.route.source = "null"  # watchers have no names; C++ calls them that
+        self._once = options.once
+        if options.quality:
+            self.quality = options.quality
             self.route.spec = self.route.spec.plus(f"quality.{self.quality}")
-        if wishes.rate:
-            self.delivery = replace(self.delivery, interval=1 / wishes.rate)
-            self.route.spec = self.route.spec.plus(f"rate.{wishes.rate:g}")
-        # Scripts of other pages may read it too, like everything that ports show.
+        if options.rate:
+            self.delivery = replace(self.delivery, interval=1 / options.rate)
+            self.route.spec = self.route.spec.plus(f"rate.{options.rate:g}")
+        # Scripts of other pages may read it too, like everything that ports publish.
         self._shared = b"Access-Control-Allow-Origin: *\r\n" if "origin" in headers else b""
         agent = headers.get("user-agent", "yarp")
         if self._once or "yarp" not in agent.lower():
-            self._asked = True  # answered later: people are told if there are no pictures
+            self._asked = True  # answered later, to tell people if there are no pictures
         else:
             stream.write(_ANSWER + self._shared + b"\r\n" + _BOUNDARY)
 
@@ -118,20 +119,20 @@ class Mjpeg(Carrier):
 
     def prepare(self, packet: Packet) -> bool:
         if self._done:
-            raise LinkClosed("the picture that was asked for was sent")
+            raise LinkClosed("the requested picture was sent")
         return bool(self._frame(packet)) or self._asked
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         frame = self._frame(packet)
         if self._done:
-            return  # it waited behind the picture that was asked for
+            return  # it was queued behind the requested picture
         if not self._asked:
             stream.write(*frame)
             return
         self._asked = False
         if not frame:
             name = self.route.source
-            stream.write(self._plain(404, f"{name} sends no pictures; what it sends is at /r"))
+            stream.write(self._plain(404, f"{name} sends no pictures; see what it sends at /r"))
             self._done = True
         elif self._once:
             size = ("Content-Length", str(len(frame[1])))
@@ -142,7 +143,7 @@ class Mjpeg(Carrier):
             stream.write(_ANSWER + self._shared + b"\r\n" + _BOUNDARY, *frame)
 
     def _frame(self, packet: Packet) -> tuple[Buffer, ...]:
-        """The part of the answer that shows a packet's picture; empty if it is none."""
+        """The part of the answer with a packet's picture; empty if it is not a picture."""
         key = (self.name, self.quality)
         frame = packet.forms.get(key)
         if frame is None:
@@ -160,7 +161,7 @@ class Mjpeg(Carrier):
         admitted, headers = yield from self._ask(stream, path)
         if not admitted and login is not None:
             answer = login.answer(headers.get(CHALLENGES, ""), path.encode())
-            # Most cameras hang up after a refusal, so the answer takes a connection of its own.
+            # Most cameras hang up after a refusal, so the login goes over a new connection.
             again = yield Open("tcp", listen=False)
             stream = ByteStream(stream.limit)
             yield Switch(again, stream)
@@ -169,11 +170,11 @@ class Mjpeg(Carrier):
             raise refusal(headers.get(CHALLENGES, ""), login)
         kind, _, options = headers.get("content-type", "").partition(";")
         kind = kind.strip().lower()
-        # ffmpeg as a server says octet-stream, whatever it sends.
+        # As a server, ffmpeg always says octet-stream.
         if kind != "application/octet-stream" and not kind.startswith("multipart/"):
             raise RemoteProtocolError(
-                f"{path} is not a stream of pictures but {kind or 'of no known type'}"
-                "; the carrier mjpeg+path.<path> says what to ask for"
+                f"{path} is not a stream of pictures but {kind or 'of unknown type'}"
+                "; name the camera's stream with the carrier mjpeg+path.<path>"
             )
         if "chunked" in headers.get("transfer-encoding", "").lower():
             self._chunks = Chunks(stream.limit)  # which HTTP/1.0 does not have
@@ -185,22 +186,22 @@ class Mjpeg(Carrier):
     def _ask(
         self, stream: ByteStream, path: str, login: bytes = b""
     ) -> Steps[tuple[bool, dict[str, str]]]:
-        """Whether the camera lets us in, and the headers of its answer."""
+        """Whether the camera accepts us, and the headers of its answer."""
         stream.write(self._request(path, login))
         line = yield from stream.read_line(MAX_LINE)
         words = line.split(None, 2)
         if len(words) < 2 or not words[0].startswith(b"HTTP/") or words[1] not in (b"200", b"401"):
             text = line[:80].decode("utf-8", "replace")
             raise RemoteProtocolError(
-                f'asked for {path} the camera says "{text}"; the carrier '
-                "mjpeg+path.<path> says what to ask for"
+                f'the camera answers "{text}" to {path}; name its stream with the carrier '
+                "mjpeg+path.<path>"
             )
         return words[1] == b"200", (yield from read_headers(stream))
 
     def _request(self, path: str, login: bytes) -> bytes:
         route = self.route
         host = f"[{route.host}]" if ":" in route.host else route.host
-        # 1.0, so that the answer comes as it is, not in chunks.
+        # HTTP/1.0, so that the answer does not come in chunks.
         lines = [
             f"GET {path} HTTP/1.0",
             f"Host: {host}:{route.port}",
@@ -220,7 +221,7 @@ class Mjpeg(Carrier):
                 if value is not None:
                     path += f"&{wish}={value}"
         if not path.isprintable() or " " in path:
-            raise LocalProtocolError(f"a path without blanks, please, not {path!r}")
+            raise LocalProtocolError(f"the path {path!r} contains blanks: write %20 for each")
         return "/" + path.removeprefix("/")
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
@@ -248,6 +249,7 @@ class Mjpeg(Carrier):
             elif (yield from stream.read_line(MAX_LINE)).startswith(b"--"):
                 raise LinkClosed("the camera has ended its stream")
             self._past_mark = False
+            stream.pause()  # cameras send the separator of the next picture right after each one
             headers = yield from read_headers(stream)
             kind = headers.get("content-type", "image/jpeg").partition(";")[0].strip().lower()
             size = headers.get("content-length", "")
@@ -255,7 +257,7 @@ class Mjpeg(Carrier):
                 data: bytes | memoryview | bytearray = yield from self._read_unmeasured(stream)
             elif len(size) > 9 or int(size) > MAX_FRAME:
                 raise RemoteProtocolError(
-                    f"a picture of {size[:20]} bytes is announced; the limit is {MAX_FRAME} bytes"
+                    f"the camera announces a picture of {size[:20]} bytes; the limit is {MAX_FRAME}"
                 )
             else:
                 data = yield from stream.read_exact(int(size))
@@ -264,19 +266,21 @@ class Mjpeg(Carrier):
             self.lost += 1
 
     def _skip_to_mark(self, stream: ByteStream) -> Steps[None]:
-        """Read up to the line that begins a part, whatever is before it."""
+        """Skip everything up to the line that begins a part."""
         while True:
             line = yield from stream.read_line(MAX_FRAME)
             if line.startswith(b"--") and self._mark in line and len(line) < 200:
                 if line.endswith(b"--") and len(line) > len(self._mark) and line != self._mark:
                     raise LinkClosed("the camera has ended its stream")
                 return
+            if not line:
+                stream.pause()
 
     def _read_unmeasured(self, stream: ByteStream) -> Steps[bytearray]:
         """A JPEG file of unknown length: up to its end, or to the line that begins the next."""
         data = bytearray()
         extent = jpeg.Extent()
-        whole = True  # as far as it goes
+        whole = True  # so far
         mark = b"\n" + self._mark
         while True:
             yield from stream.more(1)
@@ -320,19 +324,19 @@ def _compressed(packet: Packet, quality: int) -> tuple[Buffer, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
-    """What a request for pictures asks for; 0: not given. once: one picture, no stream."""
+class StreamOptions:
+    """What a request for pictures asks for; 0: not given. once: one picture, not a stream."""
 
     once: bool = False
     quality: int = 0
     rate: float = 0.0
 
 
-def read_wishes(target: str) -> Wishes:
-    """The wishes in `/?action=stream&quality=50&rate=10`. Raises ValueError.
+def read_stream_options(target: str) -> StreamOptions:
+    """The options in `/?action=stream&quality=50&rate=10`. Raises ValueError.
 
-    >>> read_wishes("/?action=snapshot&quality=50")
-    Wishes(once=True, quality=50, rate=0.0)
+    >>> read_stream_options("/?action=snapshot&quality=50")
+    StreamOptions(once=True, quality=50, rate=0.0)
     """
     from urllib.parse import parse_qsl
 
@@ -342,8 +346,8 @@ def read_wishes(target: str) -> Wishes:
     found = dict(parse_qsl(query, keep_blank_values=True)) if query.count("&") < 20 else {}
     action = found.get("action", "stream")
     if action not in ("stream", "snapshot"):
-        raise ValueError(f"action is stream or snapshot, not {action[:40]!r}")
+        raise ValueError(f"action must be stream or snapshot, not {action[:40]!r}")
     quality = number_of("quality", found, 1, 100)
     if quality != int(quality):
-        raise ValueError("quality is a whole number from 1 to 100")
-    return Wishes(action == "snapshot", int(quality), number_of("rate", found, 0.001, 1000))
+        raise ValueError("quality must be a whole number from 1 to 100")
+    return StreamOptions(action == "snapshot", int(quality), number_of("rate", found, 0.001, 1000))

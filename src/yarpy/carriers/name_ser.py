@@ -1,8 +1,7 @@
 """name_ser: the line protocol of name servers, `NAME_SERVER command`, spoken by every C++ client.
 
-Rules: after the eight bytes of magic four more (`VER `) are swallowed, then a line is a message;
-the twelve bytes that follow each line are swallowed too, whatever they are. No sender, no port
-commands.
+Rules: after the eight bytes of magic, four more (`VER `) are skipped; then each line is a message,
+and the twelve bytes after it are skipped, whatever they are. No sender, no port commands.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from yarpy.wire.stream import ByteStream
 
 
 class FastTcp(Indexed):
-    """Messages follow one another; nothing comes back but replies."""
+    """Messages follow one another; only replies come back."""
 
     name = "fast_tcp"
     code = 3
@@ -26,9 +26,9 @@ class FastTcp(Indexed):
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         yield from super().greet(stream)
-        answer = yield from stream.read_exact(8)
+        answer = yield from framing.read_answer(stream)
         if framing.parse_number(answer) < 0:
-            raise RemoteProtocolError(f"a number was due, {bytes(answer)!r} came; {ASKS_FOR_KEY}")
+            raise RemoteProtocolError(f"expected a number, got {answer!r}; {ASKS_FOR_KEY}")
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
         yield from super().welcome(stream, first)
@@ -48,7 +48,7 @@ class Tcp(FastTcp):
 
 
 class Tls(Tcp):
-    """tcp in TLS, for the dialling side: `tcp+tls` in one word. The other side sees tcp, in TLS."""
+    """`tcp+tls` in one word, for the dialling side. The other side sees tcp inside TLS."""
 
     name = "tls"
 

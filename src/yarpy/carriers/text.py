@@ -1,13 +1,13 @@
 """text and text_ack: what a person types into telnet or netcat.
 
 Rules: a line with the port command, then, for data and admin, a line with the payload in Bottle
-text. A payload goes on over the next lines while a bracket or quote is open. `text_ack` answers
+text. A payload continues on the next lines while a bracket or quote is open. `text_ack` answers
 each command with a line `<ACK>`.
 """
 
 from __future__ import annotations
 
-from yarpy.carriers.base import ASKS_FOR_KEY, Carrier
+from yarpy.carriers.base import ASKS_FOR_KEY, Carrier, Limits
 from yarpy.data import codec
 from yarpy.data.text import Balance
 from yarpy.errors import RemoteProtocolError
@@ -26,6 +26,7 @@ class Text(Carrier):
     name = "text"
     magic = b"CONNECT "
     spelling = "text"
+    limits = Limits(message_timeout=600.0)  # people type slowly
     _welcomed = True  # whether the welcome that answers our greeting was read
 
     def greet(self, stream: ByteStream) -> Steps[None]:
@@ -40,7 +41,7 @@ class Text(Carrier):
         except RemoteProtocolError:
             stream.write(f"* Error. A name has at most {framing.MAX_NAME} bytes.".encode() + _END)
             raise
-        self.route.introduce(line.decode("utf-8", "replace"))
+        yield from self.introduce(stream, line.decode("utf-8", "replace"))
         stream.write(f"Welcome {self.route.source}".encode() + _END)
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
@@ -59,7 +60,7 @@ class Text(Carrier):
         stream.write(b"q" + _END)
 
     def drain(self, stream: ByteStream) -> Steps[None]:
-        while True:  # the welcome, and whatever else the peer says
+        while True:  # the welcome, and anything else the peer sends
             yield from stream.read_line(MAX_LINE)
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
@@ -67,7 +68,7 @@ class Text(Carrier):
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         if not self._welcomed:
-            # A C++ sender leaves the welcome unread; to wait for a reply, we must step over it.
+            # A C++ sender never reads the welcome; to find a reply, we must skip it.
             self._welcomed = True
             yield from stream.read_line(framing.MAX_NAME + 16)
         line = yield from read_text(stream, min(stream.limit, MAX_LINE))
@@ -79,7 +80,7 @@ class Text(Carrier):
     def expect_ack(self, stream: ByteStream) -> Steps[None]:
         line = yield from stream.read_line(MAX_LINE)
         if line != b"<ACK>":
-            raise RemoteProtocolError(f"an acknowledgement was due, {line[:40]!r} came")
+            raise RemoteProtocolError(f"expected an acknowledgement, got {line[:40]!r}")
 
     def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
         for line in lines:
@@ -97,11 +98,13 @@ class TextAck(Text):
         yield from super().greet(stream)
         line = yield from stream.read_line(framing.MAX_NAME + 16)
         if not line.startswith(b"Welcome"):
-            raise RemoteProtocolError(f"a welcome was due, {line[:40]!r} came; {ASKS_FOR_KEY}")
+            if (error := framing.refused(line)) is not None:
+                raise error
+            raise RemoteProtocolError(f"expected a welcome, got {line[:40]!r}; {ASKS_FOR_KEY}")
         self._welcomed = True
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
-        """A reply line, or None: the acknowledgement is then still to be read."""
+        """A reply line, or None if the acknowledgement comes next; it is left unread."""
         yield from stream.more(5)
         if stream.buffer.startswith(b"<ACK>", stream.head):
             return None
@@ -109,12 +112,12 @@ class TextAck(Text):
 
 
 def reply_text(value: object) -> bytes:
-    """A reply as it is shown to people: a line of text, or its own lines."""
+    """A reply as shown to people: a line of text, or its own lines."""
     return value.to_text() if isinstance(value, Lines) else codec.encode_text(value) + _END
 
 
 def read_text(stream: ByteStream, limit: int) -> Steps[bytes]:
-    """One payload: a line, and more lines while it has an open bracket or quote."""
+    """One payload: a line, and more lines while a bracket or quote is open."""
     text = bytearray((yield from stream.read_line(limit)))
     balance = Balance()
     closed = balance.feed(bytes(text))

@@ -1,8 +1,8 @@
 """udp: greets over TCP, then sends each message as datagrams with a checksum and a number.
 
 Rules: the acceptor opens a UDP socket and sends its port; the initiator sends from the UDP port
-with the number of its TCP port. Nothing comes back; a lost piece drops its message, which is
-counted. A datagram can be forged by anybody: none ends a connection, and none is a command.
+with the number of its TCP port. Nothing comes back; if a piece is lost, its message is dropped and
+counted. Anybody can forge a datagram: none ends a connection, and none is a command.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from yarpy.wire.stream import Buffer, ByteStream, DatagramStream
 
 
 class Datagrams(Indexed):
-    """What udp and mcast share: messages cut into datagrams."""
+    """What udp and mcast share: messages split into datagrams."""
 
     replies = False
     connectionless = True
@@ -49,15 +49,17 @@ class Datagrams(Indexed):
             if whole is not None and message is None:
                 assembler.lost += 1
             self.lost = assembler.lost
+            if assembler.idle:
+                stream.pause()
             if message is not None:
                 return message
 
     def encode_quit(self, stream: ByteStream) -> None:
-        """Not sent in datagrams: the closing side asks the peer's port over a text connection."""
+        """Not sent in datagrams: the closing side tells the peer's port over a text connection."""
 
 
 def parse_whole(data: Buffer, limit: int) -> Message | None:
-    """The message that `data` is from end to end, or None."""
+    """The message, if `data` is exactly one, or None."""
     stream = ByteStream(limit, size=max(len(data), 1))
     stream.feed(data)
     stream.feed_eof()
@@ -83,9 +85,9 @@ class Udp(Datagrams):
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         yield from super().greet(stream)
-        port = framing.parse_number((yield from stream.read_exact(8)))
+        port = framing.parse_number((yield from framing.read_answer(stream)))
         if not 0 < port < 65536:
-            raise RemoteProtocolError(f"the peer offers UDP port {port}, which does not exist")
+            raise RemoteProtocolError(f"the peer offers UDP port {port}, which is not a valid one")
         handle = yield Open("udp", listen=False, port=port)
         yield Switch(handle, DatagramStream(stream.limit))
 

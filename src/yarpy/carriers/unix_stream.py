@@ -1,8 +1,7 @@
 """unix_stream: greets over TCP, then both meet on a Unix socket of the same host.
 
-Rules: no index; a port command is followed at once by the payload, which shows its own end. With
-the modifier `+ack` (magic `UNIX_ACK`) each message, quit included, is answered with `ACK` and a
-NUL.
+Rules: no index; a port command is followed directly by the payload, which delimits itself. With the
+modifier `+ack` (magic `UNIX_ACK`) each message, quit included, is answered with `ACK` and a NUL.
 """
 
 from __future__ import annotations
@@ -47,7 +46,7 @@ class UnixStream(Carrier):
     def decode(self, stream: ByteStream) -> Steps[Message]:
         command = yield from framing.read_command(stream)
         if command is None:
-            raise RemoteProtocolError("a message that does not begin with a port command")
+            raise RemoteProtocolError("a message does not begin with a port command")
         message, _ = command
         if message.key in ("d", "D", "a"):
             message.payload = yield from framing.read_payload(stream)
@@ -68,4 +67,4 @@ class UnixStream(Carrier):
     def expect_ack(self, stream: ByteStream) -> Steps[None]:
         answer = yield from stream.read_exact(4)
         if answer != _ACK:
-            raise RemoteProtocolError(f"an acknowledgement was due, {bytes(answer)!r} came")
+            raise RemoteProtocolError(f"expected an acknowledgement, got {bytes(answer)!r}")

@@ -4,12 +4,12 @@
     new WebSocket("ws://host:port/?ws", "yarp.json")        each text frame is a message in JSON
     new WebSocket("ws://host:port/?ws&read", "yarp.json")   everything that the port writes, as JSON
 
-Rules: binary, the payloads of all frames are one stream of bytes, as on a unix_stream connection;
-what goes out has a frame for each block. In JSON a frame is a message, a reply is a frame;
-`&admin` sends them to the administration, `&envelope` shows what is read as
-`{"envelope": "7 1.5", "data": [...]}`; of a picture only its size and kind are told, with `&pixels`
-all of it. Pings are answered, a close is answered and ends the connection. A page that reads too
-slowly misses messages. `origin` says which pages may write. wsproto reads and writes the frames.
+Rules: in binary, the payloads of all frames form one byte stream, as on a unix_stream connection;
+each outgoing block is a frame. In JSON each frame is a message or a reply; `&admin` sends them to
+the administration, `&envelope` wraps what is read as `{"envelope": "7 1.5", "data": [...]}`;
+pictures are sent as size and kind only, or whole with `&pixels`. Pings are answered, a close is
+answered and ends the connection. A page that reads too slowly misses messages. `origin` says which
+pages may write. wsproto reads and writes the frames.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 from yarpy.carriers.base import Carrier, Delivery
 from yarpy.carriers.http.header import MAX_LINE, read_headers
 from yarpy.carriers.http.origin import not_ours, origins_of
-from yarpy.carriers.http.refusal import refuse
+from yarpy.carriers.http.refusal import refuse, screen
 from yarpy.data import codec
 from yarpy.data.json import from_json, to_json
 from yarpy.data.value import Vocab
@@ -63,14 +63,15 @@ class WebSocket(Carrier):
         self.json = False
         self.enveloped = False
         self.pixels = False
-        self._page = False  # the peer is a page, which we have answered
-        self._masks = False  # the client masks what it sends
+        self._page = False  # we are the server, and have accepted the page
+        self._masks = False  # the client masks its frames
         self._key = CALL
         self._frames: FrameDecoder | None = None
-        self._bytes = ByteStream()  # what the frames carry
-        self._rest = memoryview(b"")  # of a frame's payload
-        self._text = bytearray()  # of a message in JSON
-        self._inside = False  # of a message that comes in several frames
+        self._bytes = ByteStream()  # the frames' payloads, joined
+        self._rest = memoryview(b"")  # the rest of a frame's payload
+        self._text = bytearray()  # the JSON message so far
+        self._inside = False  # inside a message of several frames
+        self._begun = False  # a binary message has begun
         self._ended = False  # a close frame came
 
     # -- beginning --------------------------------------------------------------------------------
@@ -94,7 +95,7 @@ class WebSocket(Carrier):
             or headers.get("sec-websocket-accept") != accepted.decode()
         ):
             text = line[:80].decode("utf-8", "replace")
-            raise RemoteProtocolError(f'no WebSocket is offered there; the answer is "{text}"')
+            raise RemoteProtocolError(f'the peer offers no WebSocket; it answered "{text}"')
         self._masks = True
         self._begin(stream)
 
@@ -104,11 +105,12 @@ class WebSocket(Carrier):
         line = yield from stream.read_line(MAX_LINE)
         headers = yield from read_headers(stream)
         self.route.source = "web"
-        wishes = line.decode("latin-1").partition(" ")[0].split("&")
-        self.push = "read" not in wishes
-        self._key = ADMIN if "admin" in wishes else CALL
-        self.enveloped = "envelope" in wishes
-        self.pixels = "pixels" in wishes
+        wished = line.decode("latin-1").partition(" ")[0]
+        options = wished.split("&")
+        self.push = "read" not in options
+        self._key = ADMIN if "admin" in options else CALL
+        self.enveloped = "envelope" in options
+        self.pixels = "pixels" in options
         key = headers.get("sec-websocket-key", "")
         known = headers.get("sec-websocket-version", "13") == "13"
         if not (key and known and "websocket" in headers.get("upgrade", "").lower()):
@@ -118,8 +120,10 @@ class WebSocket(Carrier):
         if origins.turns_away(headers, self.route.host):
             yield from refuse(stream, 421, not_ours(headers.get("host", "")))
         if self.push and not origins.admits(headers, "tls" in self.route.spec.tokens):
-            text = "pages of this origin may only read (&read), see YARPY_WEB_ORIGINS"
+            text = "pages of this origin may only read (&read); see YARPY_WEB_ORIGINS"
             yield from refuse(stream, 403, text)
+        right = "read" if not self.push else "write" if self._key == CALL else "ask"
+        yield from screen(stream, f"/?ws{wished}", headers, right)
         offered = headers.get("sec-websocket-protocol", "").replace(",", " ").split()
         self.json = JSON in offered
         answer = (
@@ -182,6 +186,7 @@ class WebSocket(Carrier):
         try:
             if self.json:
                 return (yield from self._read_json(stream))
+            self._begun = bool(self._bytes.waiting)
             return (yield from self._through(stream, self._read_message()))
         except LinkClosed:
             if self._ended:
@@ -205,14 +210,15 @@ class WebSocket(Carrier):
     def _read_message(self) -> Steps[Message]:
         command = yield from framing.read_command(self._bytes)
         if command is None:
-            raise RemoteProtocolError("a message that does not begin with a port command")
+            raise RemoteProtocolError("a message does not begin with a port command")
         message, _ = command
         if message.key in ("d", "D", "a"):
             message.payload = yield from framing.read_payload(self._bytes)
         return message
 
     def _read_json(self, stream: ByteStream) -> Steps[Message]:
-        """The next message in JSON; a frame that is none gets an error, and the page may go on."""
+        """The next message in JSON; a frame that is not JSON is answered with an error, and the
+        connection stays open."""
         while True:
             complete = False
             while not complete:
@@ -223,7 +229,7 @@ class WebSocket(Carrier):
                 self._rest = memoryview(b"")
                 if len(self._text) > min(MAX_TEXT, stream.limit):
                     self._write(stream, _CLOSE, (1009).to_bytes(2, "big"))
-                    raise RemoteProtocolError(f"a message of more than {MAX_TEXT} bytes in JSON")
+                    raise RemoteProtocolError(f"a JSON message of more than {MAX_TEXT} bytes")
             text, self._text = self._text, bytearray()
             try:
                 value = from_json(text)
@@ -254,7 +260,7 @@ class WebSocket(Carrier):
             stream.write(head, payload)
 
     def _through(self, stream: ByteStream, steps: Steps[T]) -> Steps[T]:
-        """Run `steps`, which read what the frames carry."""
+        """Run `steps`, which read the frames' payloads."""
         while True:
             try:
                 next(steps)
@@ -265,14 +271,15 @@ class WebSocket(Carrier):
                 yield from self._next_payload(stream)
                 if self._ended:
                     raise LinkClosed("the peer has closed the connection")
+            self._begun = True
             room = len(self._bytes.get_buffer())
             self._bytes.feed(self._rest[:room])
             self._rest = self._rest[room:]
 
     def _next_payload(self, stream: ByteStream) -> Steps[bool]:
-        """Put the next piece of a data frame into `_rest`; whether a message ends with it.
+        """Put the next piece of a data frame into `_rest`; returns whether it ends a message.
 
-        Control frames are dealt with on the way.
+        Control frames are handled on the way.
         """
         from wsproto.frame_protocol import ParseFailed
 
@@ -295,9 +302,12 @@ class WebSocket(Carrier):
                 self._ended = True
                 self._write(stream, _CLOSE, payload[:2])
                 return True
-            elif frame.opcode == _PING:
-                self._write(stream, _PONG, payload)
-            elif frame.opcode != _PONG:
+            elif frame.opcode in (_PING, _PONG):
+                if frame.opcode == _PING:
+                    self._write(stream, _PONG, payload)
+                if not (self._inside or self._begun):
+                    stream.pause()
+            else:
                 if (frame.opcode == _CONTINUATION) != self._inside:
                     self._write(stream, _CLOSE, _PROTOCOL_ERROR)
                     raise RemoteProtocolError("WebSocket frames of two messages are mixed")

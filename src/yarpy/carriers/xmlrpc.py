@@ -2,13 +2,12 @@
 
     xmlrpc.client.ServerProxy("http://host:port/RPC2").get("encs")        get encs
 
-Rules: each message is a POST, its reply the response; a port that says nothing responds too, with
-an empty string. (A C++ port whose reader does not reply gives no response: a message waits for the
-response to the one before it, but not for ever.) The questions of ROS nodes (`getPid`,
-`requestTopic`, `getBusInfo`, `publisherUpdate`) go to the administration, and the connection ends
-after them. What is not XML-RPC is answered with a fault, what comes too slowly with a status. A
-POST to `/` belongs here if it brings XML, else to http. How values are spelled:
-`yarpy.data.xmlrpc`.
+Rules: each message is a POST, its reply the response; without a reply the response is an empty
+string. (A C++ port whose reader does not reply sends no response: a message waits for the response
+to the previous one, with a timeout.) The calls of ROS nodes (`getPid`, `requestTopic`,
+`getBusInfo`, `publisherUpdate`) go to the administration and end the connection. Anything that is
+not XML-RPC is answered with a fault, a request that is too slow with a status. A POST to `/`
+belongs here if its body is XML, else to http. Values are encoded by `yarpy.data.xmlrpc`.
 """
 
 from __future__ import annotations
@@ -19,12 +18,19 @@ from yarpy.carriers.base import MAGIC_SIZE, Carrier, Delivery, Limits
 from yarpy.carriers.http.header import MAX_LINE, read_headers
 from yarpy.carriers.http.message import CONTINUE, MAX_BODY, MAX_HEAD, next_event
 from yarpy.carriers.http.origin import not_ours, origins_of
-from yarpy.carriers.http.refusal import refuse
+from yarpy.carriers.http.refusal import refuse, screen
 from yarpy.data import codec, xmlrpc
 from yarpy.data.bottle import Bottle
-from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
+from yarpy.errors import (
+    AccessRefused,
+    DecodeError,
+    LinkClosed,
+    LocalProtocolError,
+    RemoteProtocolError,
+    Timeout,
+)
 from yarpy.route import Route
-from yarpy.wire.effects import Within
+from yarpy.wire.effects import May, Within
 from yarpy.wire.message import ADMIN, CALL, QUIT, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
@@ -33,7 +39,7 @@ if TYPE_CHECKING:
     import h11
 
 TIME: Final = 60.0  # seconds for a call from its first byte to its last
-NOT_UNDERSTOOD: Final = -32700  # the fault of a body that is no XML-RPC
+NOT_UNDERSTOOD: Final = -32700  # the fault for a body that is not XML-RPC
 ROS: Final = frozenset(("publisherUpdate", "requestTopic", "getPid", "getBusInfo"))
 
 _RESPONSE: Final = (
@@ -55,10 +61,12 @@ class XmlRpc(Carrier):
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self._terse = False  # the call came from a ROS node
+        declared = route.declared
+        self._is_node = bool(declared.node) and not declared.topic  # it answers nothing else
         self._finished = False  # the dialogue is complete
         self._last = False  # the peer wants no more calls on this connection
-        self._owed = False  # a call waits for its response
-        self._confirmed = False  # the response to our call was read with its reply
+        self._owed = False  # a call is waiting for its response
+        self._confirmed = False  # reading the reply was also the acknowledgement
 
     @classmethod
     def recognises(cls, first: bytes) -> int:
@@ -88,6 +96,7 @@ class XmlRpc(Carrier):
             yield from stream.more(1)
             if stream.buffer[stream.head] in b"\r\n":
                 stream.head += 1
+                stream.pause()
                 continue  # between two calls
             yield Within(TIME)
             try:
@@ -103,14 +112,16 @@ class XmlRpc(Carrier):
                 self._respond(stream, xmlrpc.encode_fault(NOT_UNDERSTOOD, str(error)))
                 continue
             name = call[0] if call else ""
-            self._terse = isinstance(name, str) and name in ROS
+            self._terse = isinstance(name, str) and (name in ROS or self._is_node)
             key = ADMIN if self._terse else CALL
+            if key == CALL and (why := (yield May("write"))):
+                yield from refuse(stream, 403, why, error=AccessRefused)
             self._owed = True
             return Message(key, b"".join(map(bytes, codec.encode(call))))
         return Message(QUIT)
 
     def _read_body(self, stream: ByteStream) -> Steps[bytearray]:
-        """The body of a call; h11 alone judges its head."""
+        """The body of a call; h11 parses and checks its head."""
         import h11
 
         talk = h11.Connection(h11.SERVER, max_incomplete_event_size=MAX_HEAD)
@@ -131,26 +142,29 @@ class XmlRpc(Carrier):
         return body
 
     def _judge(self, stream: ByteStream, head: h11.Request, most: int) -> Steps[None]:
-        """Go on only with an allowed call, of at most `most` bytes."""
+        """Continue only with an allowed call of at most `most` bytes."""
         headers = {key.decode("ascii"): value.decode("latin-1") for key, value in head.headers}
         connection = headers.get("connection", "").lower()
         self._last = "close" in connection or (
             head.http_version == b"1.0" and "keep-alive" not in connection
         )
         if head.method != b"POST":
-            yield from refuse(stream, 405, "a call of XML-RPC is a POST", [("Allow", "POST")])
+            yield from refuse(stream, 405, "an XML-RPC call is a POST", [("Allow", "POST")])
         size = headers.get("content-length", "")
         if not size or "transfer-encoding" in headers:
-            yield from refuse(stream, 411, "a call of XML-RPC has a Content-Length, and no chunks")
+            yield from refuse(stream, 411, "an XML-RPC call needs a Content-Length, not chunks")
         if int(size) > most:
-            text = f"a call of XML-RPC has at most {most} bytes"
+            text = f"an XML-RPC call has at most {most} bytes"
             yield from refuse(stream, 413, text, rest=int(size) - stream.waiting)
         origins = origins_of()
         if origins.turns_away(headers, self.route.host):
             yield from refuse(stream, 421, not_ours(headers.get("host", "")), rest=int(size))
         if not origins.admits(headers, "tls" in self.route.spec.tokens):
-            text = "pages of this origin may only read, see YARPY_WEB_ORIGINS"
+            text = "pages of this origin may only read; see YARPY_WEB_ORIGINS"
             yield from refuse(stream, 403, text, rest=int(size))
+        # What the call itself needs shows in its body.
+        target = head.target.decode("latin-1")
+        yield from screen(stream, target, headers, "ask", rest=int(size))
 
     def _respond(self, stream: ByteStream, body: bytes) -> None:
         stream.write(_RESPONSE.format(status="200 OK", size=len(body)).encode() + body)
@@ -177,7 +191,7 @@ class XmlRpc(Carrier):
         path = route.spec.value("path")
         path = "/RPC2" if path is None else "/" + path.removeprefix("/")
         if not path.isprintable() or " " in path:
-            raise LocalProtocolError(f"a path without blanks, please, not {path!r}")
+            raise LocalProtocolError(f"the path {path!r} contains blanks: write %20 for each")
         host = f"[{route.host}]" if ":" in route.host else route.host
         return (
             f"POST {path} HTTP/1.1\r\nUser-Agent: yarpy\r\nHost: {host}:{route.port}\r\n"
@@ -188,14 +202,17 @@ class XmlRpc(Carrier):
         key = (self.name,)
         if key not in packet.forms:
             packet.forms[key] = (xmlrpc.encode_call(packet.value),)
-        body = bytes(packet.forms[key][0])
+        self.post(stream, bytes(packet.forms[key][0]))
+
+    def post(self, stream: ByteStream, body: bytes) -> None:
+        """Write a call."""
         stream.write(self._request(len(body)) + body)
 
     def encode_quit(self, stream: ByteStream) -> None:
         """Only closing ends the dialogue."""
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
-        body = yield from self._read_response(stream)
+        body = yield from self.read_response(stream)
         try:
             value = xmlrpc.decode_answer(body)
         except DecodeError as error:
@@ -209,24 +226,25 @@ class XmlRpc(Carrier):
         if self._confirmed:
             self._confirmed = False
         else:
-            yield from self._read_response(stream)
+            yield from self.read_response(stream)
 
-    def _read_response(self, stream: ByteStream) -> Steps[bytes | memoryview]:
+    def read_response(self, stream: ByteStream) -> Steps[bytes | memoryview]:
+        """The body of an answer. Raises RemoteProtocolError."""
         line = yield from stream.read_line(MAX_LINE)
         headers = yield from read_headers(stream)
         size = headers.get("content-length", "")
         if line.split()[1:2] != [b"200"]:
             text = line[:80].decode("utf-8", "replace")
-            raise RemoteProtocolError(f'the XML-RPC server says "{text}"')
+            raise RemoteProtocolError(f'the XML-RPC server answers "{text}"')
         if not (size.isascii() and size.isdigit()):
-            raise RemoteProtocolError("the XML-RPC server does not say how long its answer is")
+            raise RemoteProtocolError("the XML-RPC server's answer has no Content-Length")
         if len(size) > 9 or int(size) > min(MAX_BODY, stream.limit):
             raise RemoteProtocolError(f"an answer of more than {MAX_BODY} bytes")
         return (yield from stream.read_exact(int(size)))
 
 
 def _head(stream: ByteStream) -> bytes:
-    """The head of the request, if all of it has come."""
+    """The head of the request, once it is complete."""
     data = bytes(stream.buffer[stream.head : stream.tail])
     for end in (b"\r\n\r\n", b"\n\n"):
         head, found, _ = data.partition(end)

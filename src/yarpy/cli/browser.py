@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from yarpy.cli.output import print_line
+from yarpy.transports.tls_setting import required
 
 if TYPE_CHECKING:
     from yarpy.port.base import BasePort
@@ -16,10 +17,15 @@ if TYPE_CHECKING:
 
 def show_page(port: BasePort, browser: bool = True) -> None:
     """Print where the page of `port` is, and open it unless `browser` is False."""
-    url = f"http://{port.address}/"
+    url = url_of(port.address)
     print_line(f"{port.name} is shown at {url}")
     if browser:
         open_page(url)
+
+
+def url_of(address: str) -> str:
+    """Where browsers find a page of this program: by https if it takes nothing else."""
+    return f"http{'s' if required() else ''}://{address}/"
 
 
 def open_page(url: str) -> None:

@@ -51,6 +51,10 @@ def complete(line: str) -> list[Candidate]:
         found = _options(context)
     elif isinstance(context.command, click.Group):
         found = () if context.args else _verbs(context)
+    elif context.info_name == "name" and not context.args:
+        from yarpy.cli.verbs.name import COMMANDS
+
+        found = map(Candidate, COMMANDS)
     else:
         found = _values(parameter, word) if (parameter := _next_argument(context)) else ()
     return [each for each in found if each.value.startswith(word) or each.value == FILES]

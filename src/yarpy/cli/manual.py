@@ -23,7 +23,9 @@ def manual(root: click.Group) -> str:
 
 
 def _page(root: click.Group) -> Iterator[str]:
-    top = click.Context(root, info_name="yarpy", max_content_width=WIDTH, terminal_width=WIDTH)
+    top = click.Context(
+        root, info_name="yarpy", max_content_width=WIDTH, terminal_width=WIDTH, show_default=True
+    )
     yield '.\\" Made by `yarpy help --man`.'
     yield f'.TH YARPY 1 "" "yarpy {__version__}" "YARP in Python"'
     yield ".SH NAME"

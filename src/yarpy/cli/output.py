@@ -42,7 +42,7 @@ def print_json(value: Any) -> None:
 
 
 def print_line(text: str) -> None:
-    """One line on standard output, flushed: whoever reads a pipe sees it at once."""
+    """One line on standard output, flushed: the reader of a pipe sees it at once."""
     out = sys.stdout
     if out.isatty():  # a terminal would obey what is in it; a program gets it as it is
         text = readable(text, keep="\n\t")

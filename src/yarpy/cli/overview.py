@@ -42,6 +42,8 @@ COLUMNS: Final = (
     Column("msg/s", 1, numeric=True),
     Column("MB/s", 3, numeric=True),
     Column("drops", 0, numeric=True),
+    Column("unconfirmed", 0, numeric=True, wide=True),
+    Column("unconnected", 0, numeric=True, wide=True),
     Column("jitter ms", 0, numeric=True, wide=True),
     Column("latency ms", 4, numeric=True),
     Column("thread", 0, wide=True),
@@ -49,6 +51,7 @@ COLUMNS: Final = (
     Column("monitors", 0, wide=True),
 )
 DROPS: Final = "drops"
+NOBODY: Final = "(past)"  # connections that have ended, and what was written without any
 GAP: Final = "  "
 
 
@@ -84,9 +87,9 @@ class Overview:
             seen[key] = (now, messages, size)
         self._before = seen
 
-    def rows(self) -> list[tuple[str, ...]]:
-        """What the table shows."""
-        return [self._row(flow) for flow in self.flows]
+    def rows(self, wide: bool) -> list[tuple[str, ...]]:
+        """What the table shows. That somebody writes while nobody listens is no trouble."""
+        return [self._row(flow) for flow in self.flows if wide or flow.target or flow.drops]
 
     def _row(self, flow: Flow) -> tuple[str, ...]:
         rate, speed = self.rates[(flow.source, flow.target)]
@@ -98,12 +101,14 @@ class Overview:
         ]
         return (
             flow.source,
-            flow.target,
-            parse_carrier(flow.carrier).base,
+            flow.target or NOBODY,
+            parse_carrier(flow.carrier).base if flow.target else "",
             _number(flow.measured("messages"), 0),
             _number(rate, 1),
             _number(None if speed is None else speed / 1e6, 2),
             _number(flow.drops, 0),
+            _number(flow.sender.unconfirmed if flow.sender else None, 0),
+            _number(flow.sender.unconnected if flow.sender else None, 0),
             _number(flow.measured("jitter"), 2, 1e3),
             _number(flow.measured("latency"), 2, 1e3),
             _pair(flow, _thread),
@@ -165,7 +170,7 @@ def _repeat(overview: Overview, watch: bool, tell: Callable[[], None]) -> int:
 
 
 def _print_lines(overview: Overview, wide: bool) -> None:
-    for cells in layout(overview.rows(), None, wide):
+    for cells in layout(overview.rows(wide), None, wide):
         print_line(GAP.join(text for text, _ in cells).rstrip())
 
 
@@ -199,13 +204,13 @@ def _text(overview: Overview, width: int, wide: bool) -> Text:
     from rich.text import Text
 
     whole = Text(no_wrap=True)
-    for number, cells in enumerate(layout(overview.rows(), width, wide)):
+    for number, cells in enumerate(layout(overview.rows(wide), width, wide)):
         for text, column in cells:
             dropped = number and column.title == DROPS and text.strip() not in ("", "0")
             whole.append(text, "bold" if not number else "bold red" if dropped else "")
             whole.append(GAP)
         whole.append("\n")
-    if not overview.flows:
+    if not overview.rows(wide):
         whole.append("no connections\n")
     whole.rstrip()
     return whole

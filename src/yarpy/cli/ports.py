@@ -16,6 +16,7 @@ from yarpy.cli import log, signals
 from yarpy.cli.stderr import warn
 
 if TYPE_CHECKING:
+    from yarpy.names.node_name import Category
     from yarpy.port.base import BasePort
 
 P = TypeVar("P", bound="BasePort")
@@ -23,12 +24,15 @@ P = TypeVar("P", bound="BasePort")
 ANY = "..."
 
 
-def open_port(kind: Callable[..., P], name: str, **options: Any) -> P:
+def open_port(kind: Callable[..., P], name: str, category: Category = "", **options: Any) -> P:
     """`kind(name, **options)`, with the library's log shown. Raises AddressError, NoNameServer.
+
+    category: what the port does with a topic, if that is its name (`/topic@/node`).
 
     The port closes with the command, at the latest: also when a signal comes while it opens.
     """
     log.show()
+    name = _with_category(name, category)
     with signals.held():
         try:
             port = kind(name, **options)
@@ -39,6 +43,16 @@ def open_port(kind: Callable[..., P], name: str, **options: Any) -> P:
             warn(f"no name server: this port has no name, others reach it at /{port.address}")
         click.get_current_context().call_on_close(port.close)
     return port
+
+
+def _with_category(name: str, category: Category) -> str:
+    """The name of a port, with what it does if it is that of a topic."""
+    from yarpy.names.node_name import parse_node_name
+
+    found = parse_node_name(name) if category else None
+    if found is None or found.category:
+        return name
+    return f"{found.having(category)}" + (f"~{found.type}" if found.type else "")
 
 
 def send_to(port: BasePort, target: str, carrier: str | None = None) -> None:

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from yarpy.errors import LocalProtocolError
 from yarpy.names.client import YarpNameClient
 from yarpy.names.default import DEFAULT
+
+if TYPE_CHECKING:
+    from yarpy.names.ros import RosNames
 
 
 def server() -> YarpNameClient:
@@ -14,3 +19,12 @@ def server() -> YarpNameClient:
     if not isinstance(found, YarpNameClient):
         raise LocalProtocolError("this takes a name server; start one with `yarpy server`")
     return found
+
+
+def masters() -> list[RosNames]:
+    """The ROS masters among the name services in use. Raises NoNameServer when none is
+    configured."""
+    from yarpy.names.ros import RosNames
+
+    found = DEFAULT.current()
+    return [item for item in getattr(found, "clients", [found]) if isinstance(item, RosNames)]

@@ -1,8 +1,8 @@
 """A port that a command wants to hear from: connected as soon as it is there, also when it returns.
 
-Rules: what is wrong in itself (a name that cannot be one, an unknown carrier) is an error at once;
-what is not there yet is waited for. Somebody who disconnects the two means it: only a source that
-was gone meanwhile is connected again. Cameras, which have an address and no name, are dialled again
+Rules: what can never work (an invalid name, an unknown carrier) is an error at once; what is not
+there yet is waited for. A disconnection on request is respected: only a source that was gone
+meanwhile is connected again. Cameras, which have an address and no name, are dialled again
 by the port itself.
 """
 

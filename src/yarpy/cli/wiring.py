@@ -19,8 +19,7 @@ from pathlib import Path
 
 import yarpy
 from yarpy.config.ini import read_ini
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.link.handshake import find_carrier

@@ -1,1 +1,1 @@
-"""Configuration: the files and words that tell programs what to do, as C++ YARP reads them."""
+"""Configuration: files, variables and command lines, as C++ YARP reads them."""

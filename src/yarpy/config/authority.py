@@ -1,10 +1,10 @@
-"""A laboratory's own authority, and the certificates that it gives to computers.
+"""A laboratory's own certificate authority, and the certificates that it issues to computers.
 
     ca.pem  ca-key.pem      the authority; the key stays where it was made
     cert.pem  key.pem       one computer, by its names and addresses
 
-Rules: keys are of P-256 and readable by their owner alone. Nothing is overwritten except a
-certificate that is renewed. Only making certificates needs the package cryptography.
+Rules: keys are P-256 and readable only by their owner. Nothing is overwritten except a certificate
+that is renewed. Only making certificates needs the package cryptography.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ DAYS: Final = 825  # of a certificate, the most that browsers take
 
 
 def make(directory: Path, names: Sequence[str], authority: Path | None = None) -> bool:
-    """A certificate for a computer of these names and addresses, in `directory`.
+    """Make a certificate for a computer with these names and addresses, in `directory`.
 
-    authority: where the authority is, else `directory`; one is made if there is none. Returns
-    whether it was made. Raises LocalProtocolError.
+    authority: where the authority is, default `directory`; one is made if there is none. Returns
+    whether one was made. Raises LocalProtocolError.
     """
     where = directory if authority is None else authority
     x509, _, hashes, _ = _library()
@@ -55,7 +55,7 @@ def make(directory: Path, names: Sequence[str], authority: Path | None = None) -
 
 
 def _authority(where: Path) -> tuple[Any, Any, bool]:
-    """The authority's key and certificate, and whether they were made just now."""
+    """The authority's key and certificate, and whether they are new."""
     x509, _, hashes, serialization = _library()
     key_file, file = where / "ca-key.pem", where / "ca.pem"
     if key_file.exists():
@@ -66,8 +66,8 @@ def _authority(where: Path) -> tuple[Any, Any, bool]:
             raise LocalProtocolError(f"{key_file} and {file} cannot be used: {error}") from error
     if file.exists():
         raise LocalProtocolError(
-            f"{file} is the authority of somebody else: its key is not here. Ask where ca-key.pem "
-            "is for a certificate (yarpy cert NAME --out DIR), or delete the file"
+            f"the key of the authority {file} is not here. Make the certificate where ca-key.pem "
+            "is (yarpy cert NAME --out DIR), or delete the file"
         )
     key, now = _key(), datetime.now(UTC)
     subject = _name("yarpy laboratory")
@@ -141,7 +141,7 @@ def _public(certificate: Any) -> bytes:
 
 
 def _write(file: Path, data: bytes, mode: int) -> None:
-    """Write it whole or not at all; others cannot read it even for a moment."""
+    """Write it atomically; others cannot read it even for a moment."""
     fresh = file.with_name(f".{file.name}.new")
     fresh.unlink(missing_ok=True)
     with open(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as out:

@@ -2,7 +2,7 @@
 
 Rules (nameserver spec 7.1, checked against C++ YARP): every argument is one value, so that
 `--list "(1 2)"` is a list and `--text "a b"` one string; `--a::b 3` means `(a (b 3))`; backslashes
-are letters; a later `--key` replaces an earlier one. What stands before the first `--` is not an
+are literal; a later `--key` replaces an earlier one. Anything before the first `--` is not an
 option and is skipped.
 """
 
@@ -11,8 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.errors import DecodeError
 
@@ -43,7 +42,7 @@ def parse_value(text: str) -> Any:
         words = Bottle.from_text(text.replace("\\", "\\\\"))
     except DecodeError:
         return text
-    # A word may hold commas, equal signs or quotes that C++ would not take apart here.
+    # A word may contain commas, equal signs or quotes at which C++ would not split it here.
     one = len(words) == 1 and (type(words[0]) is not str or text.startswith('"'))
     return words[0] if one else text
 

@@ -1,4 +1,4 @@
-"""Where the name servers are, read from the same files and variables as C++ YARP uses.
+"""Where the name servers are, read from the same files and variables that C++ YARP uses.
 
 Rules: functions of an environment mapping and a directory, so that nothing here depends on the
 process it runs in. Nothing is printed. Source: nameserver spec 6.1-6.5.
@@ -7,7 +7,7 @@ process it runs in. Nothing is printed. Source: nameserver spec 6.1-6.5.
     yarp.conf             the address of the server of /root: `HOST PORT [MODE]`
     _name.conf            the same for namespace /name
 
-`YARPY_SERVER=HOST:PORT` goes before every file and may list several, separated by commas.
+`YARPY_SERVER=HOST:PORT` takes precedence over every file and may list several, separated by commas.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ class Server:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """What a program was told about name servers.
+    """The name servers configured for a program.
 
-    `servers` in order of preference, empty when the first namespace has no address: C++ programs
-    count as not configured then. `missing` are the namespaces without an address file.
+    `servers` in order of preference, empty if the first namespace has no address, in which case C++
+    programs count as not configured. `missing` are the namespaces without an address file.
     """
 
     servers: tuple[Server, ...]
@@ -62,7 +62,7 @@ class Configuration:
 def configuration(environment: Mapping[str, str], directory: Path | None = None) -> Configuration:
     """Everything the environment and the files in `directory` say about name servers.
 
-    Raises AddressError for an address that makes no sense, naming where it stands.
+    Raises AddressError for an invalid address, naming its source.
     """
     directory = conf_directory(environment) if directory is None else directory
     listed = environment.get("YARPY_SERVER", "").strip()
@@ -173,7 +173,7 @@ def clear_server(directory: Path, namespace: str = ROOT) -> Path:
 
 
 def parse_server(text: str) -> Server | None:
-    """The content of an address file: `HOST PORT [MODE]` or the ini form; None when not given.
+    """The content of an address file: `HOST PORT [MODE]` or the ini form; None if it has none.
 
     >>> parse_server("127.0.0.1 10000").mode
     'yarp'
@@ -187,7 +187,7 @@ def parse_server(text: str) -> Server | None:
     mode = words[2] if len(words) > 2 and words[2] else "yarp"
     mode = "yarp" if mode == "//" else mode
     if mode not in MODES:
-        raise AddressError(f'mode "{mode}" of a name server: known are {", ".join(MODES)}')
+        raise AddressError(f'no mode "{mode}" of a name server: use one of {", ".join(MODES)}')
     return Server(words[0], _number(words[1]), mode)
 
 
@@ -202,7 +202,7 @@ def default_port(environment: Mapping[str, str]) -> int:
 def port_name(name: str, environment: Mapping[str, str]) -> str:
     """The name under which a port opened as `name` is known: renamed, then prefixed.
 
-    `YARP_RENAME_cam=/eye` renames /cam; `YARP_PORT_PREFIX=/robot` goes before every name.
+    `YARP_RENAME_cam=/eye` renames /cam; `YARP_PORT_PREFIX=/robot` is put before every name.
     """
     renamed = environment.get(f"YARP_RENAME{safe_name(name)}") or name
     return environment.get("YARP_PORT_PREFIX", "") + renamed
@@ -249,7 +249,7 @@ def _parse_section(text: str) -> list[str]:
 
 
 def _number(text: str) -> int:
-    """A TCP port number; 0 for everything else."""
+    """A TCP port number; 0 for anything else."""
     text = text.strip()
     number = int(text) if text.isascii() and text.isdigit() and len(text) < 6 else 0
     return number if number <= 65535 else 0

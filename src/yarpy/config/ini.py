@@ -1,17 +1,17 @@
 """The configuration files of YARP ("ini" syntax) as a `Property`.
 
-    name value value (a list) "two words"     a key and what it stands for
-    [section]                                 what follows belongs to a list of that name
+    name value value (a list) "two words"     a key and its values
+    [section]                                 the following lines belong to a list of that name
     [type section]                            the same, and `section` joins the list `type`
     []                                        back to the top
     [include "file"]  [include section "file"]  [include type section "file"]
     [import context "file"]                   a file found in a context
     // comment      # comment      $VARIABLE ${VARIABLE} $(VARIABLE)
 
-Rules (nameserver spec 7.1, checked against C++ YARP): reading never fails on what is in a file; an
-included file that is not there is skipped with a warning. Beware, as in C++: `//` begins a comment
-even inside a URL unless quoted, `a=b` without blanks is one key, and an open bracket or quote
-swallows the rest of the file.
+Rules (nameserver spec 7.1, checked against C++ YARP): reading never fails on a file's content; a
+missing included file is skipped with a warning. Beware, as in C++: `//` begins a comment even
+inside a URL unless quoted, `a=b` without blanks is one key, and an open bracket or quote swallows
+the rest of the file.
 """
 
 from __future__ import annotations
@@ -20,8 +20,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import Balance, plain_text
 from yarpy.errors import DecodeError
 
@@ -29,11 +28,11 @@ DEEPEST = 20  # files that include one another
 LARGEST = 16 << 20  # bytes of one file
 LONGEST = 1 << 20  # characters that the variables in a line may add to it
 
-# Finds a file in a context (a name; "" for none); None when there is none.
+# Finds a file in a context (a name; "" for none); None if there is none.
 Find = Callable[[str, str], Path | None]
 
 _NESTING = re.compile(r'[\\"(){}]')
-# (names are bounded: in a file of nothing but `${` each would otherwise search the whole rest)
+# (names are bounded: in a file full of `${` each would otherwise search the whole rest)
 _VARIABLE = re.compile(r"\\.|\$(?:\{([^}]{0,255}+)\}|\(([^)]{0,255}+)\)|([A-Za-z0-9_]{0,255}+))")
 
 
@@ -95,7 +94,7 @@ class _Reader:
             if whole:
                 self._line(_without_comment(line), parents)
             else:
-                self._put(line)  # never closed: taken as it is, and most of it vanishes
+                self._put(line)  # never closed: taken as it is, and most of it is dropped
 
     def _line(self, line: str, parents: list[Path]) -> None:
         line = self._expand(line)
@@ -143,7 +142,7 @@ class _Reader:
             self._merge(path, parents)
             return
         section = self._enter(names[-2], names[-3] if len(names) > 2 else "")
-        # The file is merged into what the section holds, and the result becomes the section.
+        # The file is merged into the section's content, and the result becomes the section.
         inner = _Reader(self._environment, self._values, self._find)
         for item in section[1:]:
             if isinstance(item, Bottle) and item:
@@ -178,7 +177,7 @@ class _Reader:
             from yarpy.log import logger
 
             logger("yarpy.names").warning(
-                "the variables in a line make it longer than %d characters: those that go beyond "
+                "the variables in a line expand to more than %d characters: the ones beyond that "
                 "count as empty (%.60s)",
                 LONGEST,
                 line,
@@ -206,9 +205,9 @@ def _words(text: str) -> Bottle:
 
 
 def _joined(lines: Iterable[str]) -> Iterator[tuple[str, bool]]:
-    """Lines, joined at a backslash, an open bracket or an open quote; whether all was closed.
+    """Lines, joined at a backslash, an open bracket or an open quote; whether all were closed.
 
-    Every character is looked at once, however many lines there are."""
+    Every character is read once, however many lines there are."""
     parts: list[str] = []
     balance = Balance()
     slashes = 0  # backslashes at the end of what has come
@@ -234,7 +233,7 @@ def _joined(lines: Iterable[str]) -> Iterator[tuple[str, bool]]:
 
 
 def _without_comment(line: str) -> str:
-    """The line up to `//` outside quotes, or to a `#` at its start or behind a blank."""
+    """The line up to `//` outside quotes, or to a `#` at its start or after a blank."""
     quoted = False
     for place, char in enumerate(line):
         if char == '"':
@@ -249,7 +248,7 @@ def _without_comment(line: str) -> str:
 
 
 def _locate(name: str, parents: Iterable[Path]) -> Path:
-    """A file as named, or beside the files that lead to it."""
+    """A file as named, or next to the files that include it."""
     path = Path(name)
     if path.is_absolute() or path.exists():
         return path

@@ -3,14 +3,14 @@
 Rules (nameserver spec 6.6): a file is the first that exists of
 
     1. ./NAME
-    2. beside the program's configuration file, if that one was found in the current directory
+    2. next to the program's configuration file, if that was found in the current directory
     3. robots/ROBOT/NAME           in every base directory
     4. contexts/CONTEXT/NAME       in every base directory, unless 2 applies
     5. NAME                        in every base directory
 
 The base directories are, in order: the user's configuration, the user's data, the system's
 configuration, the system's data, and those named by `*.ini` files in `config/path.d` of the
-system's data. Nothing is cached and nothing is printed. An absolute name is taken as it is.
+system's data. Nothing is cached and nothing is printed. An absolute name is used as it is.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Search:
 
     contexts: in order of preference. robot: "" means `YARP_ROBOT_NAME`, or `default`.
     near: directory of the main configuration file, if it was found in `directory` (case 2).
-    values: options; one with the same name as the file says what to look for instead.
+    values: options; one with the same name as the file gives the name to look for instead.
     """
 
     environment: Mapping[str, str] = field(default_factory=lambda: os.environ)
@@ -49,7 +49,7 @@ class Search:
         return next((path for path in self.candidates(name) if path.is_dir()), None)
 
     def find_all(self, name: str) -> list[Path]:
-        """Every file of that name, the one to be used first."""
+        """Every file of that name, the preferred one first."""
         return [path for path in self.candidates(name) if path.is_file()]
 
     def candidates(self, name: str) -> Iterator[Path]:
@@ -120,12 +120,12 @@ def data_directories(environment: Mapping[str, str]) -> list[Path]:
 
 
 def context_home(environment: Mapping[str, str], context: str) -> Path:
-    """Where this user's files of a context are kept; not made here."""
+    """Where this user's files of a context are kept; not created here."""
     return data_home(environment) / "contexts" / context
 
 
 def robot_home(environment: Mapping[str, str], robot: str = "") -> Path:
-    """Where this user's files of a robot are kept; not made here."""
+    """Where this user's files of a robot are kept; not created here."""
     robot = robot or environment.get("YARP_ROBOT_NAME") or "default"
     return data_home(environment) / "robots" / robot
 
@@ -138,7 +138,7 @@ def _directories(environment: Mapping[str, str], name: str, default: list[str]) 
 
 
 def _listed(directories: Sequence[Path]) -> list[Path]:
-    """What `[search NAME]` sections of `config/path.d/*.ini` add as `path DIR DIR`."""
+    """The directories that `[search NAME]` sections of `config/path.d/*.ini` add."""
     files = [
         file
         for directory in directories

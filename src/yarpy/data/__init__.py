@@ -10,11 +10,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from yarpy.data.bottle import Bottle
+    from yarpy.data.bottle import Bottle, Property
     from yarpy.data.image import FlexImage, Image
     from yarpy.data.matrix import Matrix
     from yarpy.data.pointcloud import PointCloud
-    from yarpy.data.property import Property
     from yarpy.data.sound import Sound
     from yarpy.data.stamp import Stamp
     from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
@@ -42,6 +41,7 @@ __all__ = [
 _MODULES = {
     **dict.fromkeys(("Float32", "Int8", "Int16", "Int64", "Vocab"), "value"),
     "FlexImage": "image",
+    "Property": "bottle",
 }
 
 

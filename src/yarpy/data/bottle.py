@@ -1,14 +1,24 @@
-"""Bottle: the list that every YARP program can read.
+"""Bottle and Property: the list and the dictionary that every YARP program can read.
 
-Rules: it is a Python list of the objects named in `yarpy.data.value`; nothing is converted when an
-element is stored, only when the Bottle is written. The spellings live in `reader`, `writer` and
-`text`, which know this class; the methods here import them when called, because two modules cannot
-import each other at load time.
+Rules: a Bottle is a Python list of the objects named in `yarpy.data.value`; nothing is converted
+when an element is stored, only when it is written. A Property as a message is the Bottle of its
+text, lists `(key value ...)` sorted by key, so kinds that text cannot express become the nearest
+kind on the way out (an Int8 an int32, a Float32 a double, a dict a list of lists). Reading one
+takes list elements only; a later key wins.
+
+Both are in one file because each may hold the other. The spellings are in `reader`, `writer` and
+`text`, which know neither and are handed the classes to make.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Self
+
+from yarpy.data.reader import read_leading, read_list
+from yarpy.data.text import Groups, parse_text, plain_text, print_text, text_of
+from yarpy.data.value import Buffer
+from yarpy.data.writer import dict_elements, list_blocks
 
 
 class Bottle(list[Any]):
@@ -23,28 +33,20 @@ class Bottle(list[Any]):
     @classmethod
     def from_text(cls, text: str | bytes) -> Self:
         """Read YARP's notation. Unfinished and unbalanced parts vanish, as in C++."""
-        from yarpy.data.text import parse_text
-
-        return cls(parse_text(text))
+        return cls(parse_text(text, Bottle))
 
     def to_text(self) -> str:
         """YARP's notation of the elements, on one line and without brackets around it."""
-        from yarpy.data.text import print_text
-
         return print_text(self)
 
     @classmethod
     def from_bytes(cls, data: bytes | bytearray | memoryview) -> Self:
         """Read a binary message; DecodeError or Truncated if it is none."""
-        from yarpy.data.reader import read_bottle
-
         bottle = read_bottle(data)
         return bottle if type(bottle) is cls else cls(bottle)
 
     def to_bytes(self) -> bytes:
         """The binary message; TypeError for elements that no message can hold."""
-        from yarpy.data.writer import list_blocks
-
         return b"".join(list_blocks(self))
 
     def find(self, key: str, default: Any = None) -> Any:
@@ -52,8 +54,6 @@ class Bottle(list[Any]):
 
         The first element that matches decides; `default` if it has no value beside it.
         """
-        from yarpy.data.text import plain_text
-
         for index, item in enumerate(self):
             if isinstance(item, (list, tuple)):
                 if item and plain_text(item[0]) == key:
@@ -68,8 +68,6 @@ class Bottle(list[Any]):
 
     def group(self, key: str) -> Bottle | None:
         """The whole list `(key ...)`; None if there is none, or if plain `key` stands before it."""
-        from yarpy.data.text import plain_text
-
         for item in self:
             if isinstance(item, (list, tuple)):
                 if item and plain_text(item[0]) == key:
@@ -80,3 +78,90 @@ class Bottle(list[Any]):
 
     def __repr__(self) -> str:
         return f"Bottle({super().__repr__()})"
+
+
+class Property(Groups):
+    """Named values. The value of `(key)` alone is None; `group(key)` gives all of `(key a b c)`."""
+
+    __slots__ = ("_groups",)
+    # Lists that say more than key and value, kept with the value they belong to: when another value
+    # is put under the key, the rest of the old list no longer counts.
+    _groups: dict[str, tuple[Any, Bottle]]
+
+    def __init__(self, *args: Any, **values: Any) -> None:
+        super().__init__(*args, **values)
+        self._groups = dict(args[0]._groups) if args and isinstance(args[0], Property) else {}
+
+    @classmethod
+    def from_bottle(cls, items: Iterable[Any]) -> Self:
+        """Take the `(key value ...)` lists among `items` and nothing else."""
+        self = cls()
+        for item in items:
+            if not isinstance(item, (list, tuple)):
+                continue
+            key = plain_text(item[0]) if item else ""
+            value = item[1] if len(item) > 1 else None
+            self[key] = value
+            if len(item) != 2 or type(item[0]) is not str:
+                self._groups[key] = (value, item if isinstance(item, Bottle) else Bottle(item))
+            else:
+                self._groups.pop(key, None)
+        return self
+
+    @classmethod
+    def from_text(cls, text: str | bytes) -> Self:
+        """Read `(key value) (key value)`; elements that are not lists are skipped."""
+        return cls.from_bottle(parse_text(text, Bottle))
+
+    def to_text(self) -> str:
+        """YARP's notation, sorted by key."""
+        return text_of(self)
+
+    @classmethod
+    def from_bytes(cls, data: bytes | bytearray | memoryview) -> Self:
+        """Read a binary message; DecodeError or Truncated if it is none."""
+        return cls.from_bottle(Bottle.from_bytes(data))
+
+    def to_bytes(self) -> bytes:
+        """The binary message: the Bottle of the text."""
+        return b"".join(list_blocks(dict_elements(self)))
+
+    def group(self, key: str) -> Bottle | None:
+        """The whole list `(key ...)`, or None."""
+        if key not in self:
+            return None
+        value = self[key]
+        known, group = self._groups.get(key, (None, None))
+        if group is not None and known is value:
+            return group
+        return Bottle([key]) if value is None else Bottle([key, value])
+
+    def find(self, key: str, default: Any = None) -> Any:
+        """The value of `key`, or `default`: the same as `get`, under the name Bottles have."""
+        return self.get(key, default)
+
+    def check(self, key: str) -> bool:
+        """Is there such a key, with or without a value?"""
+        return key in self
+
+    def update(self, *args: Any, **values: Any) -> None:
+        """As for any dict; from another Property the whole lists are taken."""
+        super().update(*args, **values)
+        if args and isinstance(args[0], Property):
+            self._groups.update(args[0]._groups)
+
+    def copy(self) -> Self:
+        return type(self)(self)
+
+    def __repr__(self) -> str:
+        return f"Property({super().__repr__()})"
+
+
+def read_bottle(view: Buffer) -> Bottle:
+    """The Bottle at the start of `view`; Truncated or DecodeError if there is none."""
+    return read_list(Bottle, Property.from_bottle, view)
+
+
+def read_leading_bottle(buffer: bytes) -> tuple[Bottle, int] | None:
+    """The Bottle that `buffer` begins with and the bytes it takes; None if it is incomplete."""
+    return read_leading(Bottle, Property.from_bottle, buffer)

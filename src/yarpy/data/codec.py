@@ -25,12 +25,11 @@ from collections.abc import Callable
 from struct import Struct
 from typing import Any, Final, TypeVar, cast
 
-from yarpy.data.bottle import Bottle
+from yarpy.data.bottle import Bottle, Property, read_bottle, read_leading_bottle
+from yarpy.data.embedded import with_article
 from yarpy.data.image import Image
-from yarpy.data.property import Property, bottle_of, text_of
-from yarpy.data.reader import read_bottle, read_leading
 from yarpy.data.stamp import Stamp
-from yarpy.data.text import parse_text, print_text
+from yarpy.data.text import print_text, text_of
 from yarpy.data.value import (
     FLOAT32,
     FLOAT64,
@@ -47,7 +46,7 @@ from yarpy.data.value import (
 )
 from yarpy.data.vector import Vector
 from yarpy.data.walker import Walker
-from yarpy.data.writer import list_blocks, value_blocks, with_article
+from yarpy.data.writer import dict_elements, list_blocks, value_blocks
 from yarpy.errors import DecodeError
 
 __all__ = [
@@ -68,6 +67,7 @@ _read_i32 = Struct("<i").unpack_from
 
 _MAT: Final = 0x0074616D
 _EMPTY: Final = Struct("<ii").pack(LIST, 0)
+_OWN_TEXT: Final = (list, tuple, dict, Stamp, str, int, float, bytes)
 
 
 # ---------------------------------------------------------------------------------- sending
@@ -82,7 +82,7 @@ def encode(obj: Any) -> Blocks:
     if to_wire is not None and kind is not type:
         return cast(Blocks, to_wire())
     if isinstance(obj, dict):
-        return list_blocks(bottle_of(obj))
+        return list_blocks(dict_elements(obj))
     if isinstance(obj, (list, tuple)):
         return list_blocks(obj)
     if obj is None:
@@ -119,12 +119,22 @@ def encode_text(obj: Any) -> bytes:
     elif isinstance(obj, (str, int, float, bytes)):
         text = print_text([obj])
     else:
-        message = b"".join(encode(obj))
-        try:
-            text = print_text(read_bottle(message))
-        except DecodeError:
-            text = ""
+        return encode_as_text(b"".join(encode(obj)))
     return text.encode("utf-8", "surrogateescape")
+
+
+def encode_as_text(message: Buffer) -> bytes:
+    """The text spelling of a message that is in the binary one."""
+    try:
+        text = print_text(read_bottle(message))
+    except DecodeError:
+        text = ""
+    return text.encode("utf-8", "surrogateescape")
+
+
+def has_own_text(obj: object) -> bool:
+    """Whether the text spelling is made from the object, not from its binary spelling."""
+    return isinstance(obj, _OWN_TEXT)
 
 
 # ---------------------------------------------------------------------------------- receiving
@@ -169,7 +179,7 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
     code, count = _read_head(buffer)
     if code != LIST or count == 4:  # four elements may be an Image or a Sound
         return None
-    found = read_leading(buffer)
+    found = read_leading_bottle(buffer)
     if found is None or count != 1 or _read_i32(buffer, 8)[0] & GROUP_MASK:
         return found
     return found[0][0], found[1]
@@ -177,7 +187,7 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
 
 def decode_text(line: bytes | str) -> Bottle:
     """The Bottle of a line; what is not Bottle text is left out."""
-    return Bottle(parse_text(line))
+    return Bottle.from_text(line)
 
 
 def decode_as(view: Buffer, type_: type[T]) -> T:

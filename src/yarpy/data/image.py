@@ -117,6 +117,25 @@ class Image(Wired):
         self._pixels = memoryview(view)[_HEAD.size : end]
         return self
 
+    @classmethod
+    def over(
+        cls, pixels: memoryview, width: int, height: int, code: str | int, quantum: int = QUANTUM
+    ) -> Self:
+        """An Image over memory that is laid out as on the wire, rows from the top, each a multiple
+        of `quantum` bytes; uncopied. ValueError if there are too few bytes."""
+        kind = pixel_of(code)
+        size = _row_bytes(width, kind, quantum) * height
+        if width < 0 or height < 0 or len(pixels) < size:
+            raise ValueError(
+                f"{width} times {height} pixels take {size} bytes, here are {len(pixels)}"
+            )
+        self = cls.__new__(cls)
+        self.width, self.height, self.code, self.quantum = width, height, kind.vocab, quantum
+        self.top_down = True
+        self._array = None
+        self._pixels = pixels[:size]
+        return self
+
     def to_wire(self) -> tuple[bytes | memoryview, ...]:
         """Header and pixels, two blocks; the pixels are the memory of the image itself."""
         code = self.code.code

@@ -81,6 +81,8 @@ def decode(data: bytes | bytearray | memoryview, limit: int = 1 << 30) -> memory
             pixels[...] = simplejpeg.decode_jpeg(data, shades)
     except DecodeError:
         raise
+    except KeyError as error:  # simplejpeg on a subsampling that is unusual
+        raise DecodeError(f"not a readable JPEG: subsampling {error} is not known") from error
     except (ValueError, MemoryError) as error:
         raise DecodeError(f"not a readable JPEG: {error}") from error
     image = Image(pixels if depth == 3 else pixels[..., 0])

@@ -149,6 +149,21 @@ class PointCloud(Wired):
         self._data = memoryview(view)[_HEAD.size : end]
         return self
 
+    @classmethod
+    def over(
+        cls, data: memoryview, width: int, height: int, kind: str, *, dense: bool = True
+    ) -> Self:
+        """A PointCloud over the bytes of its points, row after row, uncopied. ValueError if there
+        are too few."""
+        end = KINDS[kind].size * width * height
+        if width < 0 or height < 0 or len(data) < end:
+            raise ValueError(f"{width} times {height} points take {end} bytes, not {len(data)}")
+        self = cls.__new__(cls)
+        self.width, self.height, self.kind, self.dense = width, height, kind, dense
+        self._array = None
+        self._data = data[:end]
+        return self
+
     def to_wire(self) -> tuple[bytes | memoryview, ...]:
         """Header and points, two blocks; the points are the memory of the cloud itself."""
         code, count = KINDS[self.kind].code, self.width * self.height

@@ -6,7 +6,8 @@
 
 Rules: a count or length is checked against the bytes that are there before memory is taken for it.
 Only DecodeError and Truncated come out. Bytes after the end are ignored here. Like a C++ reader,
-this one looks only at the low byte of the first code. (Protocol of YARP 3.x.)
+this one looks only at the low byte of the first code. What lists and dicts are made of, the caller
+says: this file knows neither Bottle nor Property. (Protocol of YARP 3.x.)
 """
 
 from __future__ import annotations
@@ -14,11 +15,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from struct import Struct, unpack_from
 from struct import error as struct_error
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
-from yarpy.data.bottle import Bottle
 from yarpy.data.limit import limits
-from yarpy.data.property import Property
 from yarpy.data.value import (
     BLOB,
     DICT,
@@ -54,33 +53,43 @@ _read_f64 = Struct("<d").unpack_from
 _read_f32 = Struct("<f").unpack_from
 _read_i16 = Struct("<h").unpack_from
 
+L = TypeVar("L", bound=list[Any])
 
-def read_bottle(view: Buffer) -> Bottle:
-    """The Bottle at the start of `view`; Truncated or DecodeError if there is none."""
+
+def read_list(make_list: type[L], make_dict: Callable[[L], Any], view: Buffer) -> L:
+    """The list at the start of `view`; Truncated or DecodeError if there is none.
+
+    It and the lists within are made by `make_list()`, a dict by `make_dict` of the list of its
+    `(key value ...)` lists.
+    """
     size = len(view)
     if size < 8:
         raise Truncated(f"a Bottle takes at least 8 bytes, here are {size}", 8)
     buffer = bytes(view) if size <= _SMALL else memoryview(view)
     code, count = _read_pair(buffer)
-    items = Bottle()
+    items = make_list()
     try:
-        _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, _room(size))
+        room = _room(size)
+        _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room, make_list, make_dict)
     except struct_error:
         raise Truncated(f"the Bottle goes on beyond its {size} bytes", size + 1) from None
     return items
 
 
-def read_leading(buffer: bytes) -> tuple[Bottle, int] | None:
-    """The Bottle that `buffer` begins with and the bytes it takes; None if it is incomplete."""
+def read_leading(
+    make_list: type[L], make_dict: Callable[[L], Any], buffer: bytes
+) -> tuple[L, int] | None:
+    """The list that `buffer` begins with and the bytes it takes; None if it is incomplete."""
     if len(buffer) < 8:
         return None
     code, count = _read_pair(buffer)
-    items = Bottle()
+    items = make_list()
     try:
         room = _room(len(buffer))
-        return items, _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room)
+        end = _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room, make_list, make_dict)
     except (struct_error, DecodeError):
         return None
+    return items, end
 
 
 def _room(size: int) -> list[int] | None:
@@ -99,8 +108,10 @@ def _read_items(
     kind: int,
     count: int,
     depth: int,
-    items: list[Any],
+    items: L,
     room: list[int] | None,
+    make_list: type[L],
+    make_dict: Callable[[L], Any],
 ) -> int:
     """Append `count` elements to `items`; gives the position after them."""
     if count <= 0:
@@ -144,15 +155,16 @@ def _read_items(
         elif LIST <= tag < 2 * DICT:
             if depth >= MAX_DEPTH:
                 raise DecodeError(f"lists nested more than {MAX_DEPTH} deep")
-            inner = Bottle()
+            inner = make_list()
             if tag & DICT:
-                count_in = _read_i32(buffer, pos + 8)[0]
-                unit = word & UNIT_MASK
-                pos = _read_items(buffer, pos + 12, unit, count_in, depth + 1, inner, room)
-                add(Property.from_bottle(inner))
+                kind, start = word & UNIT_MASK, pos + 12
+                word = _read_i32(buffer, pos + 8)[0]
             else:
-                pos = _read_items(buffer, pos + 8, tag & UNIT_MASK, word, depth + 1, inner, room)
-                add(inner)
+                kind, start = tag & UNIT_MASK, pos + 8
+            pos = _read_items(
+                buffer, start, kind, word, depth + 1, inner, room, make_list, make_dict
+            )
+            add(make_dict(inner) if tag & DICT else inner)
         elif tag == BLOB:
             end = pos + 8 + word
             if word < 0 or end > size:

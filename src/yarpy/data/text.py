@@ -5,20 +5,21 @@
 Rules: reading works on bytes and never fails: unfinished and unbalanced parts vanish. The single
 exception is nesting beyond MAX_DEPTH, a DecodeError. Printing chooses the form that reads back; the
 words `null`, `inf` and `nan` are printed bare although they read back as something else, and a
-negative NaN prints as `-nan.0`, because peers do so.
+negative NaN prints as `-nan.0`, because peers do so. A dict prints as the lists `(key value ...)`
+sorted by key. What the lists read are made of, the caller says: this file does not know Bottle.
 """
 
 from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import copysign, isfinite, isnan
 from typing import Any, Final
 
-from yarpy.data.bottle import Bottle
+from yarpy.data.embedded import message_of, plain
 from yarpy.data.limit import limits
-from yarpy.data.property import text_of
+from yarpy.data.reader import read_list
 from yarpy.data.value import (
     MAX_DEPTH,
     Float32,
@@ -59,10 +60,13 @@ _QUOTED: Final = str.maketrans({"\n": "\\n", "\r": "\\r", "\0": "\\0", "\\": "\\
 # ---------------------------------------------------------------------------------- reading
 
 
-def parse_text(text: str | bytes) -> list[Any]:
-    """The elements that a line of text stands for; DecodeError only for hundreds of brackets."""
+def parse_text(text: str | bytes, make_list: type[list[Any]] = list) -> list[Any]:
+    """The elements that a line of text stands for; DecodeError only for hundreds of brackets.
+
+    Lists among them are made by `make_list(elements)`.
+    """
     data = text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
-    return _parse(data, [max(_FREE_WORK, 8 * len(data)), limits().elements])
+    return _parse(data, [max(_FREE_WORK, 8 * len(data)), limits().elements], make_list)
 
 
 def balanced(text: str | bytes) -> bool:
@@ -99,7 +103,7 @@ class Balance:
         return not (self._quoted or self._round or self._curly)
 
 
-def _parse(data: bytes, work: list[int]) -> list[Any]:
+def _parse(data: bytes, work: list[int], make_list: type[list[Any]]) -> list[Any]:
     # The inside of a list is read once more for every list around it. `work` is how many bytes may
     # still be read, so that deep and long text cannot keep us busy for minutes, and how many
     # elements may still be made.
@@ -108,7 +112,7 @@ def _parse(data: bytes, work: list[int]) -> list[Any]:
         raise DecodeError("text with lists too deeply nested for its length")
     found = tokens(data, work[1])
     work[1] -= len(found)
-    return [_classify(token, work) for token in found]
+    return [_classify(token, work, make_list) for token in found]
 
 
 def tokens(data: bytes, most: int = sys.maxsize) -> list[bytes]:
@@ -156,7 +160,7 @@ def _too_many() -> DecodeError:
     return DecodeError(f"a text of more than {limits().elements} elements (YARPY_MAX_ELEMENTS)")
 
 
-def _classify(token: bytes, work: list[int]) -> Any:
+def _classify(token: bytes, work: list[int], make_list: type[list[Any]]) -> Any:
     first = token[:1]
     if first in b"0123456789+-.in":
         number = _number(token)
@@ -165,7 +169,7 @@ def _classify(token: bytes, work: list[int]) -> Any:
         if token == b"null":
             return Vocab("null")
     elif first == b"(":
-        return Bottle(_parse(token[1:-1], work))
+        return make_list(_parse(token[1:-1], work, make_list))
     elif first == b"[":
         return vocab_of(vocab_code(token[1:-1]))
     elif first == b"{":
@@ -264,6 +268,43 @@ def print_text(items: Sequence[Any], depth: int = 0) -> str:
     return " ".join([_print(item, depth) for item in items])
 
 
+class Groups(dict[str, Any]):
+    """A dict that knows more of a key than its value: the whole list `(key value ...)`."""
+
+    __slots__ = ()
+
+    def group(self, key: str) -> list[Any] | None:
+        """The whole list `(key ...)`, or None."""
+        raise NotImplementedError
+
+
+def sorted_groups(values: Mapping[str, Any]) -> list[list[Any]]:
+    """The lists `(key value ...)` that a mapping is in YARP, sorted by the bytes of the keys."""
+    return [_group(values, key) for key in _sorted(values)]
+
+
+def text_of(values: Mapping[str, Any], depth: int = 0) -> str:
+    """The text of any mapping with string keys: its sorted lists."""
+    return " ".join([f"({print_text(group, depth + 1)})" for group in sorted_groups(values)])
+
+
+def _sorted(values: Mapping[str, Any]) -> list[str]:
+    """The keys in the order of their bytes."""
+    for key in values:
+        if not isinstance(key, str):
+            raise TypeError(f"the key {key!r} is not a string: YARP Properties have string keys")
+    return sorted(values, key=lambda key: key.encode("utf-8", "surrogateescape"))
+
+
+def _group(values: Mapping[str, Any], key: str) -> list[Any]:
+    if isinstance(values, Groups):
+        whole = values.group(key)
+        if whole is not None:
+            return whole
+    value = values[key]
+    return [key] if value is None else [key, value]
+
+
 def plain_text(value: Any) -> str:
     """A value on its own as text: without quotes or brackets, as keys are compared."""
     if isinstance(value, Vocab):
@@ -292,10 +333,17 @@ def _print(value: Any, depth: int) -> str:
     for kind in (Vocab, str, int, float, bytes, bytearray):
         if isinstance(value, kind):
             return _PRINTERS[kind](value)
-    from yarpy.data.reader import read_bottle
-    from yarpy.data.writer import list_blocks
+    number = plain(value)
+    if number is not value:
+        return _print(number, depth)
+    items = read_list(list, _newest_groups, message_of(value))
+    return f"({print_text(items, depth + 1)})"
 
-    return print_text(read_bottle(b"".join(list_blocks([value]))), depth)
+
+def _newest_groups(items: list[Any]) -> list[Any]:
+    """A dict as it prints, from all its lists: one for each key, the last of it."""
+    found = {plain_text(item[0]) if item else "": item for item in items if isinstance(item, list)}
+    return [found[key] for key in _sorted(found)]
 
 
 def _print_str(value: str) -> str:

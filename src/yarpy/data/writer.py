@@ -7,15 +7,15 @@ packing plan for every combination of element types that came up lately.
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache, partial
 from struct import Struct
 from struct import error as struct_error
 from typing import Any, Final, TypeAlias
 
-from yarpy.data.property import bottle_of
-from yarpy.data.reader import read_bottle
+from yarpy.data.embedded import message_of, plain
+from yarpy.data.reader import read_list
+from yarpy.data.text import parse_text, sorted_groups, text_of
 from yarpy.data.value import (
     BIG,
     BLOB,
@@ -73,6 +73,32 @@ def value_blocks(value: Any) -> Blocks:
     if isinstance(payload, bytes):
         return (head + payload,)
     return _joined([head, *payload])
+
+
+def dict_elements(values: Mapping[str, Any]) -> list[Any]:
+    """The elements that a dict is sent as: its text, read back."""
+    try:
+        return [[_through_text(item) for item in group] for group in sorted_groups(values)]
+    except _NotPlain:
+        return parse_text(text_of(values))
+
+
+class _NotPlain(Exception):
+    """Only printing and reading it back shows what this value becomes."""
+
+
+def _through_text(value: Any) -> Any:
+    """A value after it was printed and read back: mostly unchanged."""
+    kind = type(value)
+    if kind is int or kind is bool or kind is bytes:
+        return value
+    if kind is str and value not in ("null", "inf", "nan"):
+        return value
+    if kind is float and value == value:
+        return value
+    if isinstance(value, (list, tuple)):
+        return [_through_text(item) for item in value]
+    raise _NotPlain
 
 
 # ---------------------------------------------------------------------------------- short ways
@@ -215,26 +241,19 @@ def _element(value: Any, depth: int) -> tuple[int, _Payload]:
     if isinstance(value, (bytes, bytearray, memoryview)):
         return _blob(value)
     if isinstance(value, dict):
-        code, payload = _list(bottle_of(value), depth + 1)
+        code, payload = _list(dict_elements(value), depth + 1)
         head = _I32.pack(code)
         return LIST + DICT, head + payload if isinstance(payload, bytes) else [head, *payload]
     if isinstance(value, int):
         return _int(value) if not isinstance(value, (Int8, Int16, Int64)) else _odd(value)
     if isinstance(value, (str, float)):
         return _odd(value)
-    numpy = sys.modules.get("numpy")
-    if numpy is not None and isinstance(value, (numpy.generic, numpy.ndarray)):
-        from yarpy.data import array
-
-        if value.ndim == 0:
-            return _element(array.scalar(value), depth)
-        return _message(array.blocks(value))
-    if hasattr(value, "to_wire") and not isinstance(value, type):
-        return _message(value.to_wire())
-    raise TypeError(
-        f"{with_article(kind.__name__)} cannot be an element of a Bottle; int, float, str, bool, "
-        "bytes, Vocab, lists, dicts, numpy arrays and yarpy.data objects can"
-    )
+    number = plain(value)
+    if number is not value:
+        return _element(number, depth)
+    message = message_of(value)
+    read_list(list, list, message)  # it has to be a Bottle: DecodeError
+    return _I32.unpack_from(message)[0], message[4:]  # the code of a message is the tag of a list
 
 
 def _int(value: int) -> tuple[int, bytes]:
@@ -281,13 +300,6 @@ def _blob(value: Buffer) -> tuple[int, _Payload]:
     return BLOB, [_I32.pack(size), memoryview(value)]
 
 
-def _message(blocks: Blocks) -> tuple[int, bytes]:
-    """A whole message as an element: the header of a message is the tag of a list."""
-    message = b"".join(blocks)
-    read_bottle(message)
-    return _I32.unpack_from(message)[0], message[4:]
-
-
 def _joined(parts: Sequence[bytes | memoryview]) -> Blocks:
     """The pieces with all small neighbours joined; the views among them are kept."""
     if memoryview not in map(type, parts):
@@ -303,8 +315,3 @@ def _joined(parts: Sequence[bytes | memoryview]) -> Blocks:
     if run:
         blocks.append(b"".join(run))
     return tuple(blocks)
-
-
-def with_article(name: str) -> str:
-    """`an Image`, `a list`: a type's name for error texts."""
-    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"

@@ -51,6 +51,10 @@ def encode_call(message: object) -> bytes:
 def encode_answer(value: object, terse: bool = False) -> bytes:
     """The answer with one value. A list of one element is that element, an empty one an empty
     string. `terse`: empty lists inside are left out, as ROS expects it of YARP."""
+    if isinstance(value, Plain):
+        from xmlrpc.client import dumps
+
+        return dumps(([*value],), methodresponse=True).encode()
     text = _top(value, terse)
     return _encode(
         f"<methodResponse><params><param>\r\n\t{text}\r\n</param></params></methodResponse>"
@@ -91,6 +95,31 @@ def decode_answer(data: bytes | memoryview) -> Bottle | None:
         return Bottle(_some(values[0]))
     value = _read(values[0], 1)
     return value if isinstance(value, Bottle) else Bottle([value])
+
+
+class Plain(Bottle):
+    """An answer of a node of ROS, which is spelled as it is: lists are arrays, dicts structs, and
+    nothing is left out. The connection ends behind it."""
+
+    is_last = True
+
+
+def encode_plain_call(name: str, arguments: Sequence[Any]) -> bytes:
+    """A call with just these arguments. TypeError or OverflowError for what XML-RPC cannot say."""
+    from xmlrpc.client import dumps
+
+    return dumps(tuple(arguments), name).encode()
+
+
+def decode_plain_answer(data: bytes | memoryview) -> Any:
+    """The value of an answer, as the standard library reads it; DecodeError for faults too."""
+    from xmlrpc.client import Fault
+
+    try:
+        values, _ = _parse(data)
+    except Fault as fault:
+        raise DecodeError(f"a fault: {str(fault.faultString)[:200]}") from fault
+    return values[0] if values else None
 
 
 # -------------------------------------------------------------------------------------- writing

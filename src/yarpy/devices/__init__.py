@@ -1,12 +1,12 @@
-"""Robot devices over ports: control boards, cameras, sensors - yours as a server, others as client.
+"""Robot devices over ports: control boards, cameras, sensors - serve your own, use others'.
 
     control_board       motors and encoders of joints
     frame_grabber       cameras
     multi_sensor        sensors, such as inertial units
 
-Each folder has `interface` (what a class of yours may have), `server` (serves it on ports) and
-`client` (uses one elsewhere); beside the folders is what they share. The names below can be
-imported from here; each module is loaded when its name is first used.
+Each folder has `interface` (what your class may have), `server` (serves it on ports) and `client`
+(uses a remote one); next to the folders is what they share. The names below can be imported from
+here; each module is loaded when its name is first used.
 """
 
 from __future__ import annotations

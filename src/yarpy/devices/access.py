@@ -1,9 +1,8 @@
-"""A user's device of any kind, used by the rules that the `interface` of each kind states.
+"""Access to a user's device of any kind, by the rules in the `interface` of each kind.
 
-Rules: one thread at a time, but for what may take long. Nothing gets to the device that was not
-checked, nothing from it goes on that is not what was promised. Whatever a device raises becomes
-`Refused`, with one line in the log; NotImplementedError means that it does not have this, and
-needs none.
+Rules: one thread at a time, except for calls that may take long. Everything passed to the device
+and everything it returns is checked. Whatever a device raises becomes `Refused`, with one line in
+the log; NotImplementedError means that the device lacks this member, and is not logged.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from yarpy.errors import LocalProtocolError
 
 T = TypeVar("T")
 
-#: What may take long is called beside everything else.
+#: Calls that may take long run concurrently with everything else.
 _LONG: Final = frozenset(
     ("calibrate", "calibrate_joint", "home", "park", "quit_calibration", "quit_parking")
 )
@@ -35,13 +34,13 @@ class Access:
         self.target = target
         self.count = count
         self._complain = complain
-        # Users write classes without a thought of threads: requests, commands and the publisher
-        # come from different ones.
+        # Users' classes are not thread-safe, and requests, commands and the publisher come from
+        # different threads.
         self._lock = lock
 
     def has(self, member: str) -> bool:
-        """Whether the device can do this, or has it."""
-        # A property of the class is there even if it fails now; looking at it could run long.
+        """Whether the device has this method or attribute."""
+        # A property of the class counts even if it would fail now; reading it could take long.
         return hasattr(type(self.target), member) or hasattr(self.target, member)
 
     def offers(self, members: Iterable[str]) -> bool:
@@ -64,7 +63,7 @@ class Access:
         return self.use(member, lambda found: found(*arguments) if callable(found) else found)
 
     def use(self, member: str, action: Callable[[Any], T]) -> T:
-        """Do something with a member, whatever may happen. Raises Refused."""
+        """Call `action` with a member; any error becomes Refused."""
         try:
             if member in _LONG:
                 return action(self._get(member))
@@ -98,7 +97,7 @@ class Access:
 
     def _check(self, joints: Sequence[int]) -> None:
         if not joints:
-            raise Refused("no joints are named")
+            raise Refused("no joints are given")
         for joint in joints:
             if not 0 <= joint < self.count:
                 raise Refused(f"no joint {joint} (there are 0 to {self.count - 1})")

@@ -1,7 +1,7 @@
-"""Attributes of remote devices: reading one asks, assigning to one sets.
+"""Attributes of remote devices: reading one asks the device, assigning to one sets it there.
 
-Rules: the owner has `read(member)` and `write(member, joints, values)`, at `_ask`, and `axes`.
-What is read is a tuple: changing an entry of a list would change nothing at the other end.
+Rules: the owner has `axes`, and `_ask` with `read(member)` and `write(member, joints, values)`.
+Values are tuples, because changing an entry of a list would not change it on the device.
 """
 
 from __future__ import annotations

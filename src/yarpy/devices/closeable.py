@@ -1,4 +1,4 @@
-"""What has ports and threads open until it is closed, as all servers and clients of devices do."""
+"""A base for servers and clients of devices, which hold ports and threads until closed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Closeable:
     _resources: ExitStack
 
     def close(self) -> None:
-        """Close the ports, and end what runs for them. Idempotent."""
+        """Close the ports and end their threads. Idempotent."""
         self._resources.close()
 
     def __enter__(self) -> Self:
@@ -27,10 +27,10 @@ class Closeable:
 
 
 def prefix(name: str) -> str:
-    """The name of a device as ports begin with it: one slash before, none behind."""
+    """The prefix of a device's port names: one leading slash, no trailing one."""
     return "/" + name.strip("/")
 
 
 def local_prefix(local: str, remote: str) -> str:
-    """The prefix of a client's own ports: `local`, or one that nobody else has."""
+    """The prefix of a client's own ports: `local`, or a unique one."""
     return prefix(local or f"yarpy/{os.getpid()}-{next(_numbers)}{remote}")

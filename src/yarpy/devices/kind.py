@@ -1,14 +1,14 @@
-"""How values are spelled in requests and replies of devices: numbers, pairs, words, lists.
+"""How values are encoded in requests and replies of devices: numbers, pairs, words, lists.
 
-    read(elements)      the value that elements of a request stand for; Refused if they do not
+    read(elements)      the value of a request's elements; Refused if there is none
     read_all(element)   the values of a list, one for each joint
     write(value)        the elements of a reply
     write_all(values)   ... for several joints
-    check(value)        what a user's class gave, as it is wanted; TypeError, ValueError
-    parse(elements)     the value in the reply of another device: the opposite of `write`
+    check(value)        a result of a user's class, converted; TypeError, ValueError
+    parse(elements)     the value in another device's reply: the inverse of `write`
 
-Rules: numbers that are commanded are finite, and true and false are no numbers. Words count four
-letters, and it does not matter whether they come as strings or as vocabs.
+Rules: commanded numbers are finite, and true and false are not numbers. Only the first four letters
+of a word count, whether it is a string or a vocab.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ def number(element: object) -> float:
             raise Refused(f"{shown(element)} is too large") from None
         if isfinite(value):
             return value
-    raise Refused(f"{shown(element)} is no finite number")
+    raise Refused(f"{shown(element)} is not a finite number")
 
 
 def whole(element: object) -> int:
-    """A whole number; 2.0 is one too, for those whose numbers are all floats."""
+    """A whole number; 2.0 is one too, for senders that only use floats."""
     value = number(element)
     if value != int(value):
-        raise Refused(f"{shown(element)} is no whole number")
+        raise Refused(f"{shown(element)} is not a whole number")
     return int(value)
 
 
 def word(element: object) -> str:
-    """A word of up to four letters, "" for anything else: two letters differ, not two types."""
+    """A word of up to four letters, of either type; "" for anything else."""
     if isinstance(element, Vocab):
         return str.__str__(element)
     return str.__str__(Vocab(element)) if isinstance(element, str) else ""
@@ -53,16 +53,16 @@ def word(element: object) -> str:
 def items(element: object, count: int | None = None) -> Sequence[Any]:
     """The elements of a list of `count`."""
     if not isinstance(element, (list, tuple)):
-        raise Refused(f"{shown(element)} is no list")
+        raise Refused(f"{shown(element)} is not a list")
     if count is not None and len(element) != count:
         raise Refused(f"a list of {len(element)}, not of {count}")
     return element
 
 
 class Kind:
-    """A number, as float64: what most values are."""
+    """A number, as float64, like most values."""
 
-    #: elements of a request that one value takes
+    #: number of request elements for one value
     count = 1
 
     def read(self, elements: Sequence[Any]) -> Any:
@@ -95,7 +95,7 @@ class Whole(Kind):
 
 
 class Flag(Whole):
-    """True or false, as 1 or 0; of several joints: whether it is true for all."""
+    """True or false, as 1 or 0; for several joints: whether it is true for all."""
 
     def read(self, elements: Sequence[Any]) -> Any:
         return bool(whole(elements[0]))
@@ -116,7 +116,7 @@ class Word(Kind):
     def read(self, elements: Sequence[Any]) -> Any:
         found = word(elements[0])
         if not found:
-            raise Refused(f"{shown(elements[0])} is no word")
+            raise Refused(f"{shown(elements[0])} is not a word")
         return found
 
     def write(self, value: Any) -> list[Any]:
@@ -124,7 +124,7 @@ class Word(Kind):
 
     def check(self, value: Any) -> Any:
         if not isinstance(value, str):
-            raise TypeError(f"{value!r} is no word")
+            raise TypeError(f"{value!r} is not a word")
         return word(value)
 
 
@@ -136,7 +136,7 @@ class Text(Kind):
 
 
 class Pair(Kind):
-    """Lowest and highest, one after the other; of several joints: two lists."""
+    """Lowest and highest in order; for several joints: two lists."""
 
     count = 2
 
@@ -214,7 +214,7 @@ class JointType(Kind):
 
     def check(self, value: Any) -> Any:
         if value not in self.words:
-            raise ValueError(f"{value!r} is none of {', '.join(self.words)}")
+            raise ValueError(f"{value!r} is not one of {', '.join(self.words)}")
         return value
 
     def parse(self, elements: Sequence[Any]) -> Any:
@@ -223,7 +223,7 @@ class JointType(Kind):
 
 
 class Fixed(Kind):
-    """Nothing in the request: the value follows from the word. None: the method takes none."""
+    """Nothing in the request: the word implies the value. None: the method takes no value."""
 
     count = 0
 

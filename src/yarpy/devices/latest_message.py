@@ -1,7 +1,7 @@
-"""The latest message of an output elsewhere, as long as it is fresh.
+"""The latest message of a remote output, as long as it is fresh.
 
-Rules: only the latest counts, and it is decoded when somebody asks, once. Who asks too early waits
-a moment; who asks in vain learns why. A sender that was away is asked to send again.
+Rules: only the latest counts; it is decoded once, on first access. Access before the first message
+waits for it; a timeout says why none came. After a sender restarts, its output is connected again.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class LatestMessage(Closeable, Generic[T]):
         self._carrier = carrier
         self._timeout = timeout
         self._decode = decode
-        self._changed = threading.Condition()  # around the three below
+        self._changed = threading.Condition()  # guards the three below
         self._message: Message | None = None
         self._arrival = 0.0
         self._count = 0
@@ -50,7 +50,7 @@ class LatestMessage(Closeable, Generic[T]):
             self._resources = resources.pop_all()
 
     def value(self) -> T:
-        """What came last. Raises Timeout (nothing fresh), DecodeError."""
+        """The latest message. Raises Timeout (nothing fresh), DecodeError."""
         message = self._fresh()
         known = self._known
         if known is None or known[0] is not message:
@@ -58,7 +58,7 @@ class LatestMessage(Closeable, Generic[T]):
         return known[1]
 
     def time(self) -> float:
-        """When that was: the sender's time, or without one the time of arrival. Raises Timeout."""
+        """Its time: the sender's, or else the time of arrival. Raises Timeout."""
         message = self._fresh()
         stamp = message.stamp
         if stamp is not None:
@@ -66,9 +66,9 @@ class LatestMessage(Closeable, Generic[T]):
         return time.time() - (time.monotonic() - self._arrival)
 
     def renew(self) -> None:
-        """Wait until `value` is of a later time than this call; at most the timeout."""
+        """Wait until `value` is newer than this call, at most the timeout."""
         with self._changed:
-            # The next message may have been measured already, the one after that not.
+            # The next message may have been measured before this call; the one after it was not.
             enough = self._count + 2
             self._changed.wait_for(lambda: self._count >= enough, self._timeout)
 
@@ -87,8 +87,8 @@ class LatestMessage(Closeable, Generic[T]):
         message = self._message
         if message is None or not self._is_fresh():
             raise Timeout(
-                f'nothing came from "{self.source}" for {self._timeout} s: the robot stands still '
-                "or publishes more slowly (then a larger timeout helps)"
+                f'nothing came from "{self.source}" for {self._timeout} s: the robot has stopped '
+                "or publishes more slowly (then use a larger timeout)"
             )
         return message
 
@@ -96,7 +96,7 @@ class LatestMessage(Closeable, Generic[T]):
         return self._message is not None and time.monotonic() - self._arrival <= self._timeout
 
     def _listen_again(self) -> None:
-        """The connection has gone: the sender was restarted perhaps."""
+        """Connect again after the connection was lost: perhaps the sender was restarted."""
         try:
             self._listen()
         except YarpError as error:

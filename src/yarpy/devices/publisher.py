@@ -1,7 +1,7 @@
-"""A thread that does something at a fixed rate, for servers that publish.
+"""A thread that calls a function at a fixed rate, for servers that publish.
 
-Rules: the thread is named after its server; a step that takes too long delays the next one and
-nothing is caught up; what a step raises is logged, and the next one comes all the same.
+Rules: the thread is named after its server; a step that takes too long delays the next one, and
+missed steps are skipped; what a step raises is logged, and the next one still runs.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Final
 
 from yarpy.devices.refusal import Complaints
 
-#: Seconds that a step may still take when its server is closed.
+#: Seconds that a running step may take once its server is being closed.
 PATIENCE: Final = 5.0
 
 
@@ -23,7 +23,7 @@ class Publisher:
 
     def __init__(self, name: str, period: float, step: Callable[[], object]) -> None:
         if not (isfinite(period) and period > 0):
-            raise ValueError(f"{name}: a period of {period} s; it is a positive number of seconds")
+            raise ValueError(f"{name}: the period must be a positive number of seconds: {period}")
         self.period = period
         self._step = step
         self._complain = Complaints(name)
@@ -43,7 +43,7 @@ class Publisher:
             due = max(due + self.period, time.monotonic())
 
     def close(self) -> None:
-        """End the thread and wait until it has ended; not for ever, if it is stuck in a device."""
+        """End the thread and wait for it, but not forever if it is stuck in a device."""
         self._ended.set()
         if self._thread is not threading.current_thread():
             self._thread.join(PATIENCE)

@@ -10,19 +10,19 @@ from yarpy.log import logger
 
 log = logger("yarpy.devices")
 
-#: The same complaint is logged again after this many seconds.
+#: The same error is logged again after this many seconds.
 QUIET: Final = 5.0
-_MOST: Final = 200  # complaints that are remembered: anybody can cause them, under any name
+_MOST: Final = 200  # errors remembered: anybody can cause them, under any name
 
 
 class Refused(Exception):
-    """Asked for what the device does not have, or in a wrong way."""
+    """A request for something the device does not have, or a malformed one."""
 
 
 class Complaints:
-    """Log lines about a user's device: one for each thing that goes wrong, not one for each time.
+    """Log lines about a user's device: one for each kind of error, not for each occurrence.
 
-    A sensor that fails fifty times a second would otherwise bury every other line.
+    A sensor that fails fifty times per second would otherwise bury all other lines.
     """
 
     def __init__(self, name: str) -> None:
@@ -30,7 +30,7 @@ class Complaints:
         self._said: dict[str, tuple[str, float]] = {}
 
     def __call__(self, about: str, error: Exception) -> None:
-        """Log that `about` (a method of the device) failed, unless that was said just now."""
+        """Log that `about` (a method of the device) failed, unless that was logged just now."""
         text = str(error)
         if not isinstance(error, (Refused, YarpError)):
             text = f"{type(error).__name__}: {error}"

@@ -51,13 +51,19 @@ class Background:
         waiting = len(self._waiting)
         return not self._stopped and (waiting < backlog or not (waiting or self._busy))
 
-    def wait_put(self, packet: Packet) -> bool:
+    @property
+    def stopped(self) -> bool:
+        """Whether nothing is taken any more."""
+        return self._stopped
+
+    def wait_put(self, packet: Packet, deadline: float | None = None) -> bool:
         """Take the packet, once an earlier one has begun to leave. False, and counted, if the queue
-        was stopped.
+        was stopped, or that takes until `deadline` (of time.monotonic).
         """
         with self._changed:
-            self._changed.wait_for(lambda: not self._waiting or self._stopped)
-            if self._stopped:
+            timeout = None if deadline is None else deadline - time.monotonic()
+            room = self._changed.wait_for(lambda: not self._waiting or self._stopped, timeout)
+            if self._stopped or not room:
                 self._counter.drops += 1
                 return False
             self._waiting.append(packet)
@@ -88,13 +94,16 @@ class Background:
                 self._changed.wait_for(lambda: bool(self._waiting) or self._stopped)
                 if self._stopped:
                     return
+                self._busy = True  # first, for `has_room` looks without the lock
                 packet = self._waiting.popleft()
-                self._busy = True
                 self._changed.notify_all()
             try:
                 self._send(packet)
             except YarpError:
                 self.stop()
+            except BaseException:  # a defect: nobody may wait for this thread
+                self.stop()
+                raise
 
 
 class Sweeper:

@@ -14,12 +14,15 @@ from dataclasses import asdict, dataclass
 from typing import Final
 
 _SMOOTHING = 1 / 16  # the gain RFC 3550 uses for jitter
+SUMMED: Final = ("messages", "bytes", "drops", "unconfirmed")
 KEEP: Final = 64  # counters of ended links, which may still change a little
 
 
 @dataclass(slots=True)
 class Counter:
-    """`messages` and `bytes` carried, `drops` (messages this side did not pass on), and timing.
+    """`messages` and `bytes` carried, `drops` (messages this side did not pass on), `unconfirmed`
+    (on their way when the connection broke: some may have arrived), and timing. No message is in
+    two of these.
 
     `period` is the smoothed time between messages, `jitter` the smoothed change of it (as RFC 3550
     does it), `latency` the smoothed time from sending to the reply or acknowledgement. Seconds;
@@ -29,6 +32,7 @@ class Counter:
     messages: int = 0
     bytes: int = 0
     drops: int = 0
+    unconfirmed: int = 0
     period: float = 0.0
     jitter: float = 0.0
     latency: float = 0.0
@@ -70,14 +74,14 @@ class Counter:
 
 
 class Past:
-    """Sums of `messages`, `bytes` and `drops` over connections that have ended.
+    """Sums of `messages`, `bytes`, `drops` and `unconfirmed` over connections that have ended.
 
     The last counters may still change, when what waited unread is dropped later; older ones are
     added up for good.
     """
 
     def __init__(self) -> None:
-        self._sums = [0, 0, 0]
+        self._sums = [0, 0, 0, 0]
         self._last: deque[tuple[Counter, int]] = deque()
         self._lock = threading.Lock()  # connections end in threads of their own
 
@@ -94,9 +98,10 @@ class Past:
             sums = self._sums
             for counter, lost in self._last:
                 sums = _sum(sums, counter, lost)
-        return dict(zip(("messages", "bytes", "drops"), sums, strict=True))
+        return dict(zip(SUMMED, sums, strict=True))
 
 
 def _sum(sums: list[int], counter: Counter, lost: int) -> list[int]:
-    messages, size, drops = sums
-    return [messages + counter.messages, size + counter.bytes, drops + counter.drops + lost]
+    found = [before + getattr(counter, key) for before, key in zip(sums, SUMMED, strict=True)]
+    found[SUMMED.index("drops")] += lost
+    return found

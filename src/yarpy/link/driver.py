@@ -6,20 +6,24 @@ One thread at a time uses a driver; the link decides which. No protocol is known
 
 from __future__ import annotations
 
+import errno
 import os
 import time
 from collections.abc import Callable
 from typing import Any, Final, TypeVar
 
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
+from yarpy.link.admission import Admission
+from yarpy.link.intake import Intake
 from yarpy.transports.base import Transport
 from yarpy.transports.datagram import open_mcast, open_udp
 from yarpy.transports.inproc import InprocTransport, open_inproc
 from yarpy.transports.tcp import CONNECT_TIMEOUT, dial
 from yarpy.transports.unix import open_unix
-from yarpy.wire.effects import Group, Open, Switch
+from yarpy.wire.effects import Claim, Group, May, Open, Switch
+from yarpy.wire.framing import REFUSED, refused
 from yarpy.wire.steps import Steps
-from yarpy.wire.stream import DEFAULT_LIMIT, ByteStream, ObjectStream
+from yarpy.wire.stream import DEFAULT_LIMIT, Buffer, ByteStream, ObjectStream
 
 T = TypeVar("T")
 
@@ -45,6 +49,7 @@ class Driver:
     ) -> None:
         self.transport = transport
         self.stream = ByteStream(limit)
+        self.admission = Admission()  # what the peer may do with our port
         self.eager = _CORES > 1  # whether polling may beat sleeping
         self._looks = False  # poll for the next bytes instead of sleeping
         self._skip = 0  # waits to pass before polling is tried again
@@ -54,21 +59,30 @@ class Driver:
         self._objects: InprocTransport | None = None
         self._group = group
 
-    def run(self, steps: Steps[T], deadline: float | None = None) -> T:
+    def run(
+        self, steps: Steps[T], deadline: float | None = None, intake: Intake | None = None
+    ) -> T:
         """Run `steps` to its end, waiting for bytes as needed; what it wrote is sent.
 
-        `deadline` is a time of `time.monotonic`. Raises Timeout, LinkClosed, or what the steps
-        raise.
+        `deadline` is a time of `time.monotonic`. `intake`: they read a message, which must come
+        along once it has begun. Raises Timeout, LinkClosed, or what the steps raise.
         """
         answer: Any = None
+        before = self.bytes_in - self.stream.waiting
         try:
             while True:
                 effect = steps.send(answer)
                 if effect is None:
                     self.flush()
                     try:
+                        if intake is not None and self.bytes_in > before:
+                            intake.advance(self.bytes_in - before)
+                            if deadline is None:
+                                self.transport.limit_waiting(intake.silence, sends=False)
                         self.fill(deadline)
                     except Timeout as error:
+                        if intake is not None and deadline is None:
+                            intake.wait()
                         self.tell_late(steps, error)
                         raise
                     answer = None
@@ -78,9 +92,17 @@ class Driver:
             self.flush()
             value: T = stop.value
             return value
+        except LinkClosed as error:
+            if intake is not None and intake.reason:
+                raise RemoteProtocolError(intake.reason) from error
+            raise
         finally:
             if deadline is not None:
                 self.transport.limit_waiting(None)
+            if intake is not None:
+                if intake.since and deadline is None:
+                    self.transport.limit_waiting(None, sends=False)
+                intake.since = 0.0
 
     def tell_late(self, steps: Steps[Any], error: Timeout) -> None:
         """Let a protocol that waits say goodbye to a peer that was too slow."""
@@ -93,17 +115,42 @@ class Driver:
         except YarpError:
             pass  # nobody listens
 
-    def flush(self) -> None:
-        """Send what the protocol wrote."""
+    def flush(self, deadline: float | None = None) -> None:
+        """Send what the protocol wrote.
+
+        `deadline` is a time of `time.monotonic`; 0.0: no waiting. Raises Timeout when it has come:
+        what is left by then stays in the stream, and leaves with the next flush.
+        """
         output = self.stream.take_output()
-        if output:
-            try:
+        if not output:
+            return
+        left: list[Buffer] = []
+        try:
+            if deadline is None:
                 self.transport.send(output)
-            except OSError as error:
-                raise closed(error) from error
-            if self._objects is None:
-                for piece in output:
-                    self.bytes_out += len(piece)
+            else:
+                left = self.transport.try_send(output)
+                if left and deadline:
+                    left = self._send_until(left, deadline)
+        except OSError as error:
+            raise link_error(error) from error
+        if self._objects is None:
+            for piece in output:
+                self.bytes_out += len(piece)
+            for piece in left:
+                self.bytes_out -= len(piece)
+        if left:
+            self.stream.put_back(left)
+            raise Timeout("the peer does not read what is sent")
+
+    def _send_until(self, left: list[Buffer], deadline: float) -> list[Buffer]:
+        """What of it could not be sent by then."""
+        transport = self.transport
+        while left and (wait := deadline - time.monotonic()) > 0:
+            if not transport.wait_writable(wait):
+                break
+            left = transport.try_send(left)
+        return left
 
     def fill(self, deadline: float | None = None) -> None:
         """Wait for more bytes, or the end, and put them into the stream."""
@@ -120,11 +167,11 @@ class Driver:
             count = self._look(buffer) if self._looks else -1
             if count < 0:
                 count = self._sleep(buffer)
-        except (BlockingIOError, TimeoutError) as error:
-            raise Timeout("the peer is silent") from error
         except OSError as error:
             if isinstance(error, YarpError):
                 raise
+            if isinstance(error, BlockingIOError | TimeoutError) or is_dead(error):
+                raise link_error(error, "the peer is silent") from error
             count = 0  # a reset is an end: the stream reports a message that it cut off
         if count:
             self.stream.buffer_updated(count)
@@ -198,12 +245,28 @@ class Driver:
             nonlocal hung_up
             if not hung_up and self.try_fill():
                 if stream.waiting:
-                    raise RemoteProtocolError(f'the peer answers "{_first_line(stream)}"')
+                    line = _first_line(stream)
+                    error = RemoteProtocolError(f'the peer answers "{line[:80]}"')
+                    raise refused(line.encode()) or error
                 hung_up = time.monotonic()
             if hung_up and time.monotonic() - hung_up > LATE:
                 raise RemoteProtocolError("the peer hung up; it does not take this carrier")
 
         return look
+
+    def judge(self, effect: May | Claim) -> str | bool | None:
+        """Answer what a protocol asks about its peer's rights."""
+        if isinstance(effect, May):
+            if effect.asking:
+                return "" if self.admission.allows(effect.right) else REFUSED
+            return self.admission.refusal(effect.right)
+        if not self.admission.takes_tokens:
+            return None
+        admission = self.admission.showing(effect.token)
+        if admission is None:
+            return False
+        self.admission = admission
+        return True
 
     def _perform(self, effect: object, deadline: float | None) -> Any:
         transport = self.transport
@@ -217,8 +280,11 @@ class Driver:
                 raise
             transport.close()
             self.transport, self.stream = handle, effect.stream
+            self.bytes_in = self.bytes_out = 0  # on this one
             self._objects = handle if isinstance(handle, InprocTransport) else None
             return None
+        if isinstance(effect, May | Claim):
+            return self.judge(effect)
         if isinstance(effect, Group):
             if self._group is None:
                 raise LocalProtocolError("this connection cannot choose a multicast group")
@@ -248,15 +314,23 @@ class Driver:
 
 def _first_line(stream: ByteStream) -> str:
     """What a peer has said, for people."""
-    start = bytes(stream.buffer[stream.head : stream.head + 200])
+    start = bytes(stream.buffer[stream.head : stream.head + 1000])
     text = start.partition(b"\n")[0].decode("utf-8", "replace")
-    return "".join(c for c in text if c.isprintable())[:80]
+    return "".join(c for c in text if c.isprintable())
 
 
-def closed(error: OSError) -> YarpError:
-    """Our error for what the operating system says about a connection."""
+def is_dead(error: OSError) -> bool:
+    """Whether the peer's host gives no answer any more (`transports/peer_timeout.py`)."""
+    return error.errno in (errno.ETIMEDOUT, errno.EHOSTUNREACH, errno.ENETUNREACH)
+
+
+def link_error(error: OSError, late: str = "the peer does not read what is sent") -> YarpError:
+    """Our error for what the operating system says about a connection; `late`: when it says that
+    the time is over."""
     if isinstance(error, YarpError):
         return error
+    if is_dead(error):
+        return LinkClosed(f"the peer's host does not answer any more ({error.strerror})")
     if isinstance(error, BlockingIOError | TimeoutError):
-        return Timeout("the peer does not read what is sent")
+        return Timeout(late)
     return LinkClosed(f"the peer is gone ({error.strerror or error})")

@@ -25,8 +25,9 @@ from yarpy.errors import (
     UnknownPlugin,
     YarpError,
 )
+from yarpy.link.admission import Gate, peer_of
 from yarpy.link.driver import Driver
-from yarpy.route import Route
+from yarpy.route import UNDECLARED, Declared, Route
 from yarpy.transports.tcp import TcpTransport, dial
 from yarpy.transports.tls_setting import FIRST_BYTE, WORD, has_certificate, required
 from yarpy.wire.stream import DEFAULT_LIMIT
@@ -161,17 +162,20 @@ def welcome(
     key: bytes = b"",
     limit: int = DEFAULT_LIMIT,
     carriers: Iterable[type[Carrier]] | None = None,
+    gate: Gate | None = None,
+    declared: Declared = UNDECLARED,
 ) -> tuple[Driver, Carrier] | None:
-    """Answer whoever dialled the port called `target`; None if they hung up without a word.
+    """Answer a peer that dialled the port called `target`; None if it hung up without a word.
 
-    Raises RemoteProtocolError for bytes that no carrier knows (the peer was told), LinkClosed,
-    Timeout.
+    gate: who may do what there. declared: what the port says of itself. Raises RemoteProtocolError
+    for bytes that no carrier knows (the peer was told), AccessRefused, LinkClosed, Timeout.
     """
     deadline = time.monotonic() + PATIENCE
     opening = _opening(transport, bool(key), deadline)
     secure = opening == FIRST_BYTE
+    asks_names = gate is not None and gate.asks_names
     if secure:
-        transport = _in_tls(transport, "", deadline)
+        transport = _in_tls(transport, "", deadline, asks_names)
     elif opening == HUNG_UP:
         return None
     elif required():
@@ -189,8 +193,11 @@ def welcome(
         driver.flush()
         raise RemoteProtocolError(f"no carrier begins with the bytes {first!r}")
     reached = _reached(transport)
+    if gate is not None:
+        names = getattr(transport, "peer_names", ())
+        driver.admission = gate.admit(peer_of(_dialler(transport), reached, names, bool(key)))
     added = f"+{WORD}" if secure else ""
-    carrier = kind(Route("", target, kind.name + added, port, reached))
+    carrier = kind(Route("", target, kind.name + added, port, reached, declared=declared))
     try:
         while (other := driver.run(carrier.welcome(driver.stream, first), deadline)) is not None:
             carrier = other  # the first bytes alone did not decide it
@@ -222,12 +229,14 @@ def _opening(transport: TcpTransport, speaks_first: bool, deadline: float) -> in
         transport.limit_waiting(None)
 
 
-def _in_tls(transport: TcpTransport, host: str, deadline: float) -> TcpTransport:
+def _in_tls(
+    transport: TcpTransport, host: str, deadline: float, asks_names: bool = False
+) -> TcpTransport:
     """TLS on a new connection. Raises RemoteProtocolError, which says what to do, and Timeout."""
     from yarpy.transports.tls import explained, secured
 
     try:
-        return secured(transport, host, deadline)
+        return secured(transport, host, deadline, asks_names)
     except (BlockingIOError, TimeoutError) as error:
         raise Timeout("the peer is silent in the middle of TLS") from error
     except OSError as error:
@@ -248,4 +257,12 @@ def _reached(transport: TcpTransport) -> str:
     try:
         return transport.local[0]
     except OSError:
-        return ""  # closed meanwhile, as whoever reads will notice
+        return ""  # closed meanwhile; the next read finds out
+
+
+def _dialler(transport: TcpTransport) -> str:
+    """The address of the peer that dialled us."""
+    try:
+        return transport.remote[0]
+    except OSError:
+        return ""

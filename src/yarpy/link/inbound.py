@@ -47,7 +47,7 @@ class Owner(Protocol):
     def reverse(self, link: Inbound) -> None:
         """The peer wants to read: make its connection an output."""
 
-    def closed(self, link: Inbound, reason: str, quit_: bool) -> None:
+    def input_ended(self, link: Inbound, reason: str, quit_: bool) -> None:
         """The link has ended; in good order if `quit_`."""
 
 
@@ -98,6 +98,8 @@ class Inbound:
             reason = str(error)
         except YarpError as error:
             reason = f"{error}"
+            if self.receiver.intake.reason:
+                self.counter.drops += 1  # the message that had begun
             if idle_timeout is None or not isinstance(error, Timeout):
                 self._tell(error)  # silence beyond a carrier's idle timeout is no fault
         except BaseException as error:  # even a callback's sys.exit() ends this link alone
@@ -105,10 +107,11 @@ class Inbound:
             log.exception("%s: connection %s fails on a defect", self.owner.name, self.route)
         if self._reversed:
             self.receiver.limit(idle_timeout)
+            self.receiver.intake.leave()
             self.owner.reverse(self)
             return
         self.receiver.finish()
-        self.owner.closed(self, reason, self._quit)
+        self.owner.input_ended(self, reason, self._quit)
 
     def _read_on(self) -> bool:
         """Read and hand on until the link ends, or a reader has the lease: then True, and each
@@ -148,7 +151,9 @@ class Inbound:
 
     def _answer(self, message: Message) -> Bottle | list[str] | None:
         if message.key == "a":
-            return self.owner.administer(self, message)
+            answered = self.owner.administer(self, message)
+            self._quit = self._quit or getattr(answered, "is_last", False)
+            return answered
         if message.key == QUIT:
             self._quit = True
         elif message.key == "r":

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import threading
 import time
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from yarpy.errors import LocalProtocolError, Timeout, YarpError
 from yarpy.link.background import Background
+from yarpy.link.intake import Intake
+from yarpy.link.patience import ALL, NOTHING, PART, STRANGERS
 from yarpy.link.sender import Sender, interrupts, seconds
 from yarpy.qos import Sched, schedule
 from yarpy.transports.tcp import TcpTransport
@@ -31,6 +33,13 @@ LISTEN_PATIENCE: Final = 0.1  # seconds for an answer to what a reader says whil
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
 
+class Rest(NamedTuple):
+    """What is left to do for a message: all of it, or (None) its second part."""
+
+    packet: Packet | None
+    passed: bool = False  # the monitors have seen it
+
+
 class Outbound:
     """One connection out of a port."""
 
@@ -38,8 +47,13 @@ class Outbound:
         self.driver = driver
         self.carrier = carrier
         self.route: Route = carrier.route
-        self.sender = Sender(driver, carrier)
+        self.sender = Sender(driver, carrier, None if dialled else STRANGERS)
         self.counter: Counter = self.sender.counter
+        self.intake = Intake(  # of a reply
+            carrier.limits.message_timeout,
+            lambda: driver.transport.interrupt(),
+            lambda: driver.stream.forget(),
+        )
         self.dialled = dialled  # by us; else the reader dialled us, and has to dial again
         self.sched = Sched()  # as requested; -1: nothing was
         self.tos = 0
@@ -56,30 +70,74 @@ class Outbound:
         """Whether it has failed, or was closed."""
         return self.sender.broken
 
+    @property
+    def reason(self) -> str:
+        """Why it has ended."""
+        return self.sender.reason or "the peer hung up"
+
     # -- sending ----------------------------------------------------------------------------------
 
-    def send(self, packet: Packet) -> bool:
+    def send(self, packet: Packet, deadline: float | None = None, passed: bool = False) -> bool:
         """Send one message; False if it was dropped.
 
         Returns once the kernel, or the gathering of a burst, has it. Blocks while the peer is
         WINDOW acknowledgements behind; where the carrier is lossy it never blocks, and the message
-        may be dropped instead. Raises LinkClosed.
+        may be dropped instead, as it is where it has not begun to leave by `deadline` (of
+        time.monotonic). What has, follows by itself. `passed`: monitors have seen it. Raises
+        LinkClosed.
         """
         if self.carrier.delivery.lossy:
             if self.sender.broken:
                 raise self.sender.gone()
             return self.try_send(packet)
-        if self.chain is not None:
-            passed = self._pass(self.chain, packet)
-            if passed is None:
+        if self.chain is not None and not passed:
+            seen = self._pass(self.chain, packet)
+            if seen is None:
                 return False
-            packet = passed
+            packet = seen
         if self._queue is not None:
             packet.snapshot(self.carrier.spelling)  # what cannot be sent is the writer's error
-            if not self._queue.wait_put(packet):
+            if self._queue.wait_put(packet, deadline):
+                return True
+            if self._queue.stopped:
                 raise self.sender.gone()
+            return False
+        if deadline is None:
+            self.sender.send(packet)
+        elif self.sender.send(packet, deadline, copies=True) is NOTHING:
+            self.counter.drops += 1
+            return False
+        return True
+
+    def begin(self, rest: Rest, copies: bool = False) -> bool | Rest:
+        """As `send`, without waiting: what is left to do, if that takes waiting.
+
+        With `copies`, a message of which a part has left follows by itself.
+        """
+        packet, passed = rest
+        if packet is None:
+            return self.sender.finish(0.0) or rest
+        if self.carrier.delivery.lossy:
+            return self.send(packet)
+        if self._queue is not None:
+            return self.send(packet, passed=passed) if self._queue.has_room(1) else rest
+        if self.chain is not None and not passed:
+            if self.sender.busy:
+                return rest
+            seen = self._pass(self.chain, packet)
+            if seen is None:
+                return False
+            packet = seen
+        sent = self.sender.send(packet, 0.0, copies)
+        if sent is ALL or (copies and sent is PART):
             return True
-        self.sender.send(packet)
+        return Rest(packet if sent is NOTHING else None, passed=True)
+
+    def finish(self, rest: Rest, deadline: float | None = None) -> bool:
+        """Do what `begin` left to do; as `send`."""
+        if rest.packet is not None:
+            return self.send(rest.packet, deadline, rest.passed)
+        self.sender.finish(deadline)
         return True
 
     def try_send(self, packet: Packet) -> bool:
@@ -87,12 +145,12 @@ class Outbound:
         count."""
         if self._queue is None:
             self.start_background()
-        if self.sender.unacknowledged and not self.sender.caught_up():
+        if self.sender.window.open and not self.sender.caught_up():
             self.counter.drops += 1
             return False
         queue, carrier, delivery = self._queue, self.carrier, self.carrier.delivery
         assert queue is not None
-        if delivery.lossy and not (queue.has_room(delivery.backlog) and self._timely()):
+        if not queue.has_room(delivery.backlog) or (delivery.lossy and not self._timely()):
             self.counter.drops += 1  # before any work on a message that will not be sent
             return False
         if self.chain is not None:
@@ -172,16 +230,16 @@ class Outbound:
             started = time.perf_counter()
             driver = self.driver
             try:
-                if self.sender.unacknowledged:
-                    self.sender.collect(wait=True, deadline=deadline)
+                if self.sender.window.open:
+                    self.sender.window.collect(wait=True, until=deadline)
                 carrier, stream = self.carrier, driver.stream
                 carrier.encode(stream, packet)
-                self.sender.flush()
+                self.sender.flush(deadline)
                 if not stream.waiting:
                     driver.fill(deadline)
                 reply = carrier.parse_reply(stream)
                 if reply is None:
-                    reply = driver.run(carrier.expect_reply(stream), deadline)
+                    reply = driver.run(carrier.expect_reply(stream), deadline, self.intake)
                 if carrier.acks and not carrier.parse_acks(stream, 1):
                     driver.run(carrier.expect_ack(stream), deadline)
             except Timeout:
@@ -197,6 +255,8 @@ class Outbound:
             finally:
                 if deadline is not None:
                     driver.transport.limit_waiting(None)
+                if self.broken:
+                    self.intake.leave()
             now = time.perf_counter()
             self.counter.count(now)
             self.counter.bytes = driver.bytes_out
@@ -218,7 +278,7 @@ class Outbound:
         deadline = None if timeout is None else time.monotonic() + timeout
         self._take_lock(timeout)
         try:
-            self.sender.collect(wait=True, all_=True, deadline=deadline)
+            self.sender.window.collect(wait=True, all_=True, until=deadline)
         except Timeout:
             raise
         except YarpError:
@@ -240,14 +300,22 @@ class Outbound:
 
     # -- ending -----------------------------------------------------------------------------------
 
+    def watch(self) -> bool:
+        """As `ended`, for whoever looks now and then while others send."""
+        transport = self.driver.transport
+        if self.dialled and isinstance(transport, TcpTransport):
+            transport.spare_slow_reader()
+        return self.ended()
+
     def ended(self) -> bool:
         """Whether the peer has hung up, found out without sending anything."""
-        if self.sender.unacknowledged:
+        if self.sender.window.open:
             self.sender.caught_up()  # unread acknowledgements hide the end behind them
         if self._listening is not None:
             self._listen(self._listening)
-        if not self.broken and self.driver.transport.ended():
-            self.driver.transport.interrupt()  # frees a thread that is stuck in sending
+        transport = self.driver.transport
+        if not self.broken and transport.ended():
+            transport.interrupt()  # frees a thread that is stuck in sending
             with self.sender.lock:
                 self.sender.give_up()
         return self.broken
@@ -287,26 +355,47 @@ class Outbound:
             self.driver.transport.interrupt()  # free a thread that is stuck in sending
         if self._queue is not None:
             self._queue.stop()
-        with self.sender.lock:
+        sender, driver = self.sender, self.driver
+        with sender.lock:
             if self.broken:
                 return
-            driver = self.driver
-            try:
-                if quit_:
-                    self.carrier.encode_quit(driver.stream)
-                    deadline = time.monotonic() + CLOSE_PATIENCE
-                    driver.flush()
-                    if self.carrier.acks:
-                        self.sender.unacknowledged += 1
-                        self.sender.collect(wait=True, all_=True, deadline=deadline)
-                    else:
-                        driver.run(self.carrier.drain(driver.stream), deadline)
-            except (YarpError, OSError):
-                lost = max(self.sender.unacknowledged - 1, 0)
-                self.counter.messages -= lost
-                self.counter.drops += lost
-            self.sender.end()
+            known = self.carrier.acks or not (
+                self.carrier.connectionless or driver.transport.ended()
+            )
+            if quit_ and known:
+                try:
+                    self._say_goodbye()
+                except (YarpError, OSError):
+                    known = False
+            if quit_ and known:
+                sender.end()
+            else:
+                sender.give_up()
+
+    def _say_goodbye(self) -> None:
+        sender, driver = self.sender, self.driver
+        self.carrier.encode_quit(driver.stream)
+        deadline = time.monotonic() + CLOSE_PATIENCE
+        driver.flush()
+        if not self.carrier.acks:
+            driver.run(self.carrier.drain(driver.stream), deadline)
+            return
+        sender.window.open += 1
+        try:
+            sender.window.collect(wait=True, all_=True, until=deadline)
+        except (YarpError, OSError):
+            sender.window.open = max(sender.window.open - 1, 0)  # the goodbye is no message
+            raise
 
     def snapshot(self) -> dict[str, Any]:
         """Counters as plain numbers."""
-        return {**self.counter.as_dict(), "unacknowledged": self.sender.unacknowledged}
+        found, sender = self.counter.as_dict(), self.sender
+        found["unacknowledged"] = sender.window.open
+        found["messages"] -= self.carrier.lost  # what was no message of its protocol
+        found["drops"] += self.carrier.lost
+        if not (self.carrier.acks or self.broken):
+            fate = sender.fate
+            found["messages"] -= fate.lost
+            found["drops"] += fate.lost
+            found["unacknowledged"] = fate.open
+        return found

@@ -1,7 +1,9 @@
 """Receiver: reads the messages of a connection one after the other, acknowledges and answers them.
 
 Rules: one thread at a time; `Turn` says which. Acknowledgements leave when there is nothing more to
-read at once, so a burst costs one send; and always before the answer to a later message.
+read at once, so a burst costs one send; and always before the answer to a later message. A message
+that has begun must come along (`Intake`); a time limit that a wait got for that stays until it is
+over in vain, so that a stream of messages pays for one.
 """
 
 from __future__ import annotations
@@ -14,7 +16,8 @@ from yarpy.data.bottle import Bottle
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.counter import Counter
 from yarpy.link.driver import Driver
-from yarpy.wire.effects import Show, Within
+from yarpy.link.intake import Intake
+from yarpy.wire.effects import Claim, Flush, May, Show, Within
 from yarpy.wire.message import CALL, Answer, Message
 from yarpy.wire.stream import LARGE
 
@@ -41,7 +44,14 @@ class Receiver:
         self.question: Answer | None = None  # open: nothing is read before it is answered
         self._steps: Steps[Message] | None = None
         self._parses = type(carrier).parse is not Carrier.parse
+        self.intake = Intake(
+            None if carrier.connectionless else carrier.limits.message_timeout,
+            lambda: driver.transport.interrupt(),
+            lambda: driver.stream.forget(),
+        )
+        self._begins = 0  # how many bytes had come before the message that `_steps` read
         self._wait: float | None = None  # seconds that each wait for bytes may take
+        self._armed = False  # a wait is limited for the sake of a message that had begun
         self._due = 0.0  # deadline of a message that has begun; 0: none has
         self._unsent_acks = 0
 
@@ -58,7 +68,7 @@ class Receiver:
             elif self._unsent_acks and not self._parses:
                 self.send_acks()
             if message is None and (come or not self._parses):
-                self._steps = carrier.decode(driver.stream)
+                self._steps = self._decode()
         while message is None:
             if self._steps is not None:
                 try:
@@ -69,23 +79,47 @@ class Receiver:
                     self._steps = None
                     message = stop.value
                     break
-                except BaseException:
-                    self._steps = None  # whoever reads next meets the same end
+                except BaseException as error:
+                    self._steps = None  # the next read meets the same end
+                    if self.intake.reason:
+                        raise RemoteProtocolError(self.intake.reason) from error
                     raise
             if self._unsent_acks or driver.stream.pending:
                 self.send_acks()
             if self._due:
                 self._fill_in_time(deadline)
+            elif self._steps is not None and (
+                driver.bytes_in > self._begins if not driver.stream.paused else self._is_begun()
+            ):
+                self._fill_on(deadline)
             else:
-                driver.fill(deadline)
+                try:
+                    driver.fill(deadline)
+                except Timeout:
+                    if not self._armed:
+                        raise
+                    self.limit(None)  # no message has begun: the silence may last
+                    continue
             if self._steps is None:
                 message = carrier.parse(driver.stream)
                 if message is None:  # there is a part of it, or the end; `decode` says which
-                    self._steps = carrier.decode(driver.stream)
+                    self._steps = self._decode()
         if self._due:
             self._allow(None)
+        self.intake.since = 0.0  # whole
         self.count(message)
         return message
+
+    def _decode(self) -> Steps[Message]:
+        """Begin to read a message."""
+        self._pause()
+        return self.carrier.decode(self.driver.stream)
+
+    def _pause(self) -> None:
+        """No message is under way; what waits in the stream is of the next one."""
+        self.intake.since = 0.0
+        self.driver.stream.paused = False
+        self._begins = self.driver.bytes_in - self.driver.stream.waiting
 
     @property
     def waiting(self) -> bool:
@@ -97,8 +131,13 @@ class Receiver:
         if isinstance(effect, Within):
             self._allow(effect.seconds)
             return None
+        if isinstance(effect, Flush):
+            self.send_acks()
+            return None
         if isinstance(effect, Show):
             return self.page(effect.path, effect.fields)
+        if isinstance(effect, May | Claim):
+            return self.driver.judge(effect)
         raise LocalProtocolError(f"{effect} is nothing that a message can ask for")
 
     def count(self, message: Message) -> None:
@@ -112,9 +151,29 @@ class Receiver:
         """A message has begun and must end within `seconds`; None: none has begun."""
         if seconds is not None:
             self._due = time.monotonic() + seconds
-        elif self._due:
+            return
+        self._pause()
+        if self._due:
             self._due = 0.0
             self.limit(self._wait)
+
+    def _is_begun(self) -> bool:
+        """Whether some of a message has come, after what was read before it and is done with."""
+        self._pause()
+        return self.driver.bytes_in > self._begins
+
+    def _fill_on(self, deadline: float | None) -> None:
+        """Wait for more bytes of a message, and see that it comes along."""
+        driver, intake = self.driver, self.intake
+        intake.advance(driver.bytes_in - self._begins)
+        if self._wait is None and not self._armed and intake.silence is not None:
+            self._armed = True
+            driver.transport.limit_waiting(intake.silence, sends=False)
+        try:
+            driver.fill(deadline)
+        except Timeout:
+            intake.wait()
+            raise
 
     def _fill_in_time(self, deadline: float | None) -> None:
         """Wait for more bytes of a message, but no longer than it may take."""
@@ -124,6 +183,7 @@ class Receiver:
                 raise Timeout("the peer is too slow")
             if self._wait is None or left < self._wait:
                 self.driver.transport.limit_waiting(left)
+            self.intake.advance(self.driver.bytes_in - self._begins)
             self.driver.fill(deadline)
         except Timeout as error:
             steps = self._steps
@@ -136,6 +196,7 @@ class Receiver:
     def limit(self, seconds: float | None) -> None:
         """Limit each wait for bytes to `seconds`."""
         self._wait = seconds
+        self._armed = False
         try:
             self.driver.transport.limit_waiting(seconds)
         except OSError:
@@ -157,13 +218,13 @@ class Receiver:
             if answer is not self.question:
                 return  # answered in time, or long ago
             answer.open = False
-            self.question = None
             # Without any answer a caller waits for ever; one in C++ takes the acknowledgement for
             # it. For a person at a text prompt, a name service or a page, silence is better than an
             # empty answer.
             if self.carrier.spelling != "text" and not self.carrier.delivery.lossy:
                 self._reply(Bottle())
                 return
+            self.question = None
         if self.carrier.acks:
             self._unsent_acks += 1
             # The sender of a large message is likely to wait: acknowledge soon.
@@ -191,17 +252,20 @@ class Receiver:
         elif answered is not None:
             carrier.encode_lines(stream, answered)
         if carrier.acks:
-            carrier.encode_ack(stream, 1)
+            # As C++ does behind the words of ROS, before it hangs up.
+            carrier.encode_ack(stream, 2 if getattr(answered, "is_last", False) else 1)
         self.driver.flush()
 
     def _reply(self, value: object) -> None:
         stream = self.driver.stream
         self._owe_acks()
         self.carrier.encode_reply(stream, value)  # a TypeError leaves the question open
-        self.question = None
-        if self.carrier.acks:
-            self.carrier.encode_ack(stream, 1)
-        self.driver.flush()
+        try:
+            if self.carrier.acks:
+                self.carrier.encode_ack(stream, 1)
+            self.driver.flush()
+        finally:
+            self.question = None  # not before: a port that closes waits for that
 
     def send_acks(self) -> None:
         """Acknowledge what was held back, and send what else was written."""
@@ -217,6 +281,7 @@ class Receiver:
         except YarpError:
             pass  # the peer has gone
         self.driver.transport.close()
+        self.intake.leave()
 
     def _owe_acks(self) -> None:
         """Put acknowledgements that were held back in front of what is written next."""

@@ -1,9 +1,10 @@
 """Sender: puts the messages of a connection on the wire, and takes in its acknowledgements.
 
-Rules: the caller holds `lock`, for one message at a time. Acknowledgements are read late: up to
-`WINDOW` messages may be on their way unconfirmed, then a send waits. When messages follow each
-other without a pause, the first leaves at once and those behind it are gathered into one send; a
-short timer sends what a writer leaves behind.
+Rules: one message at a time, under `lock`. When messages follow each other without a pause, the
+first leaves at once and those behind it are gathered into one send; a short timer sends what a
+writer leaves behind. Of a message of which a part has left the rest waits
+in the stream, and leaves before any other. A reader that keeps its writer waiting for longer than
+its `patience` is cut off.
 """
 
 from __future__ import annotations
@@ -14,7 +15,10 @@ from typing import TYPE_CHECKING, Final
 
 from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.link.background import GATHER_SECONDS, Sweeper
+from yarpy.link.confirmation import Confirmation, Fate
 from yarpy.link.counter import Counter
+from yarpy.link.patience import ALL, NOTHING, PART, Patience, Sent
+from yarpy.link.window import WINDOW, Window
 from yarpy.log import logger
 from yarpy.wire.message import UNSENDABLE, Packet
 
@@ -22,16 +26,8 @@ if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
     from yarpy.link.driver import Driver
     from yarpy.route import Route
-    from yarpy.wire.steps import Steps
 
 log = logger("yarpy.link")
-
-# How far a sender may be ahead of acknowledgements: in messages, bytes, seconds. Thus a slow reader
-# holds its sender up (backpressure), as in C++, instead of getting old data.
-WINDOW: Final = 256
-WINDOW_BYTES: Final = 1 << 16
-WINDOW_SECONDS: Final = 0.005
-ASK_EVERY: Final = 32  # messages after which acknowledgements are looked for
 
 # Gathering. A writer that comes back within RUSH times what a send takes on this machine, BURST
 # times in a row, is flooding.
@@ -43,57 +39,125 @@ GATHER: Final = 64  # messages
 class Sender:
     """The sending end of one connection."""
 
-    def __init__(self, driver: Driver, carrier: Carrier) -> None:
+    def __init__(self, driver: Driver, carrier: Carrier, limit: float | None = None) -> None:
         self.driver = driver
         self.carrier = carrier
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
         self.lock = threading.Lock()  # one message at a time on the wire
+        self.patience = Patience(limit)
         self.broken = False
-        self.unacknowledged = 0
-        self._acks: Steps[None] | None = None
-        self._mute = False  # the peer does not acknowledge: nothing waits for it to
-        self._ahead_since = 0.0
-        self._ahead_from = 0
+        self.reason = ""  # why we have ended it
+        self.halfway = False  # the rest of a message waits in the stream
+        self.window = Window(driver, carrier, self._flush_gathered)
+        self.confirmation = Confirmation(mute(carrier))  # of a carrier without acknowledgements
         self._rush = 0
         self._cost = 12e-6  # what a send takes when nothing holds it up: the least seen, in seconds
         self._left = 0.0  # when the last send ended
         self.gathered = 0  # messages that wait in the stream for the next send
         self._gathered_since = 0.0
+        self._gathered_bytes = self._pieces = 0  # of those, without acknowledgements
         self._sweeper: Sweeper | None = None
 
     # -- sending ----------------------------------------------------------------------------------
 
-    def send(self, packet: Packet) -> None:
-        """Send a message, or gather it. Raises LinkClosed."""
-        with self.lock:
-            self._send(packet)
+    def send(self, packet: Packet, deadline: float | None = None, copies: bool = False) -> Sent:
+        """Send a message, or gather it, by `deadline`; how much of it has left by then.
 
-    def _send(self, packet: Packet) -> None:
+        If that is a part, `finish` sends the rest. With `copies` it follows by itself, and the
+        message may be changed. Raises LinkClosed.
+        """
+        if self.patience.limit is None:
+            if deadline is None:
+                with self.lock:
+                    return self._send(packet, None, copies)
+            if not self._lock_by(deadline):
+                return NOTHING
+            try:
+                return self._send(packet, deadline, copies)
+            finally:
+                self.lock.release()
+        until = self.patience.until(deadline)
+        sent = NOTHING
+        if self._lock_by(until):
+            try:
+                sent = self._send(packet, until, copies)
+            finally:
+                self.lock.release()
+        if self.patience.over(sent is ALL):
+            self.counter.drops += sent is NOTHING
+            raise self.cut()
+        return sent
+
+    def finish(self, deadline: float | None = None) -> bool:
+        """Send the rest of a message by `deadline`; whether it has left. Raises LinkClosed."""
+        until = self.patience.until(deadline)
+        done = False
+        if self._lock_by(until):
+            try:
+                if self.broken:
+                    raise self.gone()
+                done = not self.halfway or self._flush_by(until)
+            finally:
+                self.lock.release()
+        if self.patience.over(done):
+            raise self.cut()
+        return done
+
+    def leave(self) -> None:
+        """The writer does not come back for `finish`: what is halfway follows by itself."""
+        if self.lock.acquire(blocking=False):  # else another thread is sending it
+            try:
+                if self.halfway:
+                    self.driver.stream.snapshot_output()
+                    self._watch()
+            finally:
+                self.lock.release()
+
+    @property
+    def busy(self) -> bool:
+        """Whether another message would have to wait."""
+        return self.halfway or self.lock.locked()
+
+    def _lock_by(self, until: float | None) -> bool:
+        if until is None:
+            return self.lock.acquire()
+        if not until:
+            return self.lock.acquire(blocking=False)
+        return self.lock.acquire(timeout=max(0.0, until - time.monotonic()))
+
+    def _send(self, packet: Packet, until: float | None, copies: bool) -> Sent:
         if self.broken:
             self.counter.drops += 1
             raise self.gone()
-        carrier, driver = self.carrier, self.driver
+        carrier, driver, window = self.carrier, self.driver, self.window
+        sent = ALL
         now = time.perf_counter()
+        full = window.open and (
+            now > window.until or driver.bytes_out > window.reach or window.open >= WINDOW
+        )
         try:
-            if self.unacknowledged and carrier.limits.ack_timeout is not None:
-                self._confirm(carrier.limits.ack_timeout)
-            elif self.unacknowledged and (
-                now - self._ahead_since > WINDOW_SECONDS
-                or driver.bytes_out - self._ahead_from > WINDOW_BYTES
-            ):
-                self.collect(wait=True, all_=True)
+            if (full or self.halfway) and not self._has_room(bool(full), until):
+                return NOTHING  # before any work on it
             carrier.encode(driver.stream, packet)
-            if now - self._left > RUSH * self._cost:
-                self._rush = 0
-                self._flush_at_once(now)
-            elif self._rush < BURST:
-                self._rush += 1
-                self._flush_at_once(now)
-            elif carrier.delivery.coalesces and packet.small:
-                self._gather(now)
-            else:
-                self.flush()
+            try:
+                if now - self._left > RUSH * self._cost:
+                    self._rush = 0
+                    self._flush_at_once(now, until)
+                elif self._rush < BURST:
+                    self._rush += 1
+                    self._flush_at_once(now, until)
+                elif carrier.delivery.coalesces and packet.small:
+                    self._gather(now, until)
+                else:
+                    self.flush(until)
+            except Timeout:
+                if until is None:
+                    raise
+                sent = PART
+                if copies:
+                    driver.stream.snapshot_output()
+                    self._watch()
         except BaseException as error:
             if interrupts(error):
                 self.counter.drops += 1
@@ -103,53 +167,96 @@ class Sender:
         counter.count(now)
         counter.bytes = driver.bytes_out
         if carrier.acks:
-            if not self.unacknowledged:
-                self._ahead_since = now
-                self._ahead_from = driver.bytes_out
-            self.unacknowledged += 1
-            if self.unacknowledged % ASK_EVERY == 0:
-                self._look_for_acks()
+            if window.count(now) and not self.halfway:
+                self._look_for_acks(until)
+        else:
+            if self.gathered:
+                size, self._pieces = driver.stream.written(self._pieces)
+                self._gathered_bytes += size
+            self.confirmation.ends.append(driver.bytes_out + self._gathered_bytes)
         self._left = time.perf_counter()
+        return sent
+
+    def _has_room(self, full: bool, until: float | None) -> bool:
+        """Whether the next message may go: what is halfway has left, and acknowledgements have
+        come where the window is `full`, which is waited for."""
+        try:
+            if self.halfway and until is not None:
+                self.flush(until)
+            if full:
+                self.window.wait(until)
+        except Timeout:
+            if until is None:
+                raise
+            return False
+        return True
 
     def gone(self) -> LinkClosed:
         """The error that a writer gets once the link is broken."""
-        return LinkClosed(f'the connection to "{self.route.target}" is gone')
+        why = f": {self.reason}" if self.reason else ""
+        return LinkClosed(f'the connection to "{self.route.target}" is gone{why}')
 
-    def flush(self) -> None:
-        """Send what was written, and what was gathered before it."""
-        self.driver.flush()
-        self.gathered = 0
+    def flush(self, until: float | None = None) -> None:
+        """Send what was written, and what was gathered before it. Raises Timeout: the rest waits
+        in the stream."""
+        try:
+            self.driver.flush(until)
+        except Timeout:
+            self.halfway, self.gathered = True, 1  # of those before it, some have left
+            self._pieces = self._gathered_bytes = 0
+            raise
+        self.halfway = False
+        self.gathered = self._pieces = self._gathered_bytes = 0
 
-    def _flush_at_once(self, now: float) -> None:
+    def _flush_by(self, until: float | None) -> bool:
+        """Whether what waits has left by then. Raises LinkClosed."""
+        try:
+            self.flush(until)
+        except Timeout:
+            if until is None:
+                self.give_up()
+                raise
+            return False
+        except BaseException:
+            self.give_up()
+            raise
+        return True
+
+    def _flush_at_once(self, now: float, until: float | None) -> None:
         """Send, and learn how long that takes; it seems longer when the reader runs first."""
-        self.flush()
+        self.flush(until)
         self._cost = min(self._cost, time.perf_counter() - now)
 
-    def _gather(self, now: float) -> None:
+    def _gather(self, now: float, until: float | None) -> None:
         """Coalesce: leave the message in the stream for the next send, which comes soon."""
         if not self.gathered:
             self._gathered_since = now
-            if self._sweeper is None:
-                self._sweeper = Sweeper(f"yarpy sweep {self.route}", self._sweep_up)
-            self._sweeper.watch()
+            self._watch()
         if self.gathered + 1 >= GATHER or now - self._gathered_since >= GATHER_SECONDS:
-            self.flush()
+            self.flush(until)
         else:
             self.gathered += 1
 
+    def _watch(self) -> None:
+        """Let the sweeper send what is left in the stream."""
+        if self._sweeper is None:
+            self._sweeper = Sweeper(f"yarpy sweep {self.route}", self._sweep_up)
+        self._sweeper.watch()
+
     def sweep(self, timeout: float | None = None) -> bool:
-        """Send what a burst left behind; False if a thread is stuck in sending for `timeout`
-        seconds."""
-        if not self.lock.acquire(timeout=seconds(timeout)):
+        """Send what a burst left behind; False if that takes longer than `timeout` seconds."""
+        until = self.patience.until(None if timeout is None else time.monotonic() + timeout)
+        if not self._lock_by(until):
             return False
         try:
-            if self.gathered and not self.broken:
-                self.flush()
+            done = self.broken or not self.gathered or self._flush_by(until)
         except YarpError:
-            self.give_up()
+            done = True  # as far as ever
         finally:
             self.lock.release()
-        return True
+        if self.patience.over(done):
+            self.cut()
+        return done
 
     def _sweep_up(self) -> bool:
         """Sweep for the sweeper: whether the burst may still go on."""
@@ -158,96 +265,90 @@ class Sender:
 
     # -- what comes back --------------------------------------------------------------------------
 
-    def _confirm(self, limit: float) -> None:
-        """Wait for the acknowledgement of the last message before the next one goes, `limit`
-        seconds at most."""
-        if self._mute:
-            self.collect(wait=False)
-            return
-        try:
-            self.collect(wait=True, all_=True, deadline=time.monotonic() + limit)
-        except Timeout:
-            self._fall_mute(limit)
-        finally:
-            self.driver.transport.limit_waiting(None)
+    def _flush_gathered(self, until: float | None) -> None:
+        if self.gathered:
+            self.flush(until)
 
-    def _fall_mute(self, limit: float) -> None:
-        self._mute = True
-        log.warning(
-            '%s: "%s" does not respond to messages over %s within %g s; from now on '
-            "acknowledgements are not waited for, and missing ones count as drops when the "
-            "connection ends. Connect with tcp if you can",
-            self.route.source,
-            self.route.target,
-            self.carrier.name,
-            limit,
-        )
-
-    def _look_for_acks(self) -> None:
+    def _look_for_acks(self, until: float | None) -> None:
         try:
-            self.collect(wait=self.unacknowledged >= WINDOW and not self._mute)
+            self.window.look(until)
         except YarpError:
             self.give_up()
             raise
-
-    def collect(self, wait: bool, all_: bool = False, deadline: float | None = None) -> None:
-        """Read acknowledgements: those that are there; with `wait`, until half the window is
-        free."""
-        target = 0 if all_ or (wait and self.unacknowledged < WINDOW) else WINDOW // 2
-        driver = self.driver
-        if self.gathered:
-            self.flush()
-        before = self.unacknowledged
-        while self.unacknowledged > (target if wait else 0):
-            if self._acks is None:
-                found = self.carrier.parse_acks(driver.stream, self.unacknowledged)
-                if found:
-                    self.unacknowledged -= found
-                    continue
-                self._acks = self.carrier.expect_ack(driver.stream)
-            try:
-                next(self._acks)
-            except StopIteration:
-                self._acks = None
-                self.unacknowledged -= 1
-                continue
-            if wait:
-                driver.fill(deadline)
-            elif not driver.try_fill():
-                break
-        if self.unacknowledged < before:
-            self._ahead_since = time.perf_counter()
-            self._ahead_from = driver.bytes_out
-        if not self.unacknowledged:
-            self._mute = False
-        if deadline is not None:
-            driver.transport.limit_waiting(None)
 
     def caught_up(self) -> bool:
         """Whether the reader has taken the last message, or does not acknowledge."""
         if not self.lock.acquire(blocking=False):
             return False
         try:
-            self.collect(wait=False)
+            self.window.collect(wait=False)
         except YarpError:
             self.give_up()
             return True  # sending finds out, and says so
         finally:
             self.lock.release()
-        limit = self.carrier.limits.ack_timeout
-        late = limit is not None and time.perf_counter() - self._ahead_since > limit
-        if self.unacknowledged and late and limit is not None and not self._mute:
-            self._fall_mute(limit)
-        return not self.unacknowledged or self._mute
+        return self.window.free()
 
     def give_up(self) -> None:
-        """The connection failed: what was never acknowledged is lost, and counted."""
-        if not self.broken:
-            lost = self.unacknowledged if self.carrier.acks else self.gathered
-            self.counter.messages -= lost
-            self.counter.drops += lost
-            self.unacknowledged = self.gathered = 0
-            self.end()
+        """The connection failed: what never left is dropped, and what may have arrived or not is
+        unconfirmed."""
+        if self.broken:
+            return
+        counter, gathered = self.counter, self.gathered
+        self.gathered = 0
+        counter.messages -= gathered
+        counter.drops += gathered
+        if self.carrier.acks:
+            self._take_last_acks()
+            left = max(self.window.open - gathered, 0)
+            counter.messages -= left
+            counter.unconfirmed += left
+            self.window.open = 0
+        else:
+            self.confirmation.recall(gathered)
+            driver = self.driver
+            taken = driver.transport.taken(driver.bytes_out, driver.bytes_in)
+            self._settle(self.fate if taken is None else self._end(*taken))
+        self.end()
+
+    def _take_last_acks(self) -> None:
+        """Those that came before the end."""
+        try:
+            self.window.collect(wait=False)
+        except YarpError:
+            pass  # that was all
+
+    @property
+    def fate(self) -> Fate:
+        """What is known to have become of the messages of a carrier without acknowledgements."""
+        in_order = not self.carrier.connectionless
+        return self.confirmation.fate(self.counter.messages - self.gathered, in_order)
+
+    def _end(self, taken: int, certain: bool) -> Fate:
+        return self.confirmation.end(self.counter.messages, taken, certain)
+
+    def _settle(self, fate: Fate) -> None:
+        """Count messages that nobody will tell more about."""
+        counter = self.counter
+        counter.messages -= fate.lost + fate.open
+        counter.drops += fate.lost
+        counter.unconfirmed += fate.open
+
+    def cut(self) -> LinkClosed:
+        """End the connection to a reader that does not read; the error that says so."""
+        self.driver.transport.interrupt()  # frees a thread that is stuck in sending
+        with self.lock:
+            if not self.broken:
+                limit = self.patience.limit
+                self.reason = f"it did not take a message within {limit:g} s"
+                log.warning(
+                    "%s: %s does not read, and is disconnected: %s",
+                    self.route.source,
+                    self.route.target,
+                    self.reason,
+                )
+                self.give_up()
+        return self.gone()
 
     def end(self) -> None:
         """Nothing is sent any more."""
@@ -255,6 +356,12 @@ class Sender:
         if self._sweeper is not None:
             self._sweeper.stop()
         self.driver.transport.close()
+
+
+def mute(carrier: Carrier) -> bool:
+    """Whether a receiver says nothing by itself of what came, and can be asked."""
+    says = carrier.acks or carrier.delivery.lossy or carrier.spelling == "object"
+    return not (says or carrier.foreign)
 
 
 def interrupts(error: BaseException) -> bool:

@@ -6,8 +6,8 @@ reader that comes back at once for the next message reads it itself, under a dir
 1. The reader asks. Nothing happens before the thread has a message in hand.
 2. The thread grants the lease before it hands that message over, then it parks: when the reader
    comes back, the lock is free or about to be.
-3. Whoever holds the lock reads, acknowledges and obeys commands. The reader releases it with each
-   message.
+3. The thread that holds the lock reads, acknowledges and obeys commands. The reader releases it
+   with each message.
 4. The lease ends when nothing has come for SILENCE, when the reader stays away for AWAY, when it is
    revoked (another connection came, the thread got a priority), and with the connection.
 5. Nothing is read while a question is open that came under the lease; its end wakes the thread.

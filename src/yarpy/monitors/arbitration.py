@@ -1,8 +1,8 @@
-"""Arbitration: which of several connections may speak - the equations behind the priority monitor.
+"""Arbitration: which of several connections may deliver - the equations of the priority monitor.
 
-Rules: pure; the caller gives the time. Messages stimulate their connection, stimulation
-decays, active connections excite and inhibit each other, and the one with the largest output wins.
-Ties go to the one that came first. (Paikan, Metta, Natale: A port-arbitrated mechanism for behavior
+Rules: pure; the caller passes the time. Messages stimulate their connection, stimulation decays,
+active connections excite and inhibit each other, and the one with the largest output wins. Ties go
+to the one that came first. (Paikan, Metta, Natale: A port-arbitrated mechanism for behavior
 selection in humanoid robotics, ICAR 2013; constants as in C++ YARP.)
 """
 
@@ -14,21 +14,21 @@ from math import exp
 from typing import Final
 
 THRESHOLD: Final = 1.0  # stimulation that makes a connection active
-_STEEP: Final = 5.0  # how sharply stimulation falls off towards the end of its time
+_STEEP: Final = 5.0  # how sharply stimulation falls off towards its end
 _TAIL: Final = exp(-_STEEP)
 _SINGULAR: Final = 1e-12
 _KNOWN: Final = 1024  # outcomes that are remembered
 
 
 class Inconsistent(ArithmeticError):
-    """The weights have no solution: mostly, connections excite each other in a circle."""
+    """The weights have no solution, usually because connections excite each other in a circle."""
 
 
 @dataclass(slots=True, eq=False)
 class Competitor:
     """One connection, from `source`. Times in seconds.
 
-    `fade` is how long stimulation lasts, `rest` how long a neuron recovers (0: it is not a neuron),
+    `fade` is how long stimulation lasts, `rest` how long a neuron recovers (0: not a neuron),
     `strength` what a message adds, `weights` how strongly it excites (above 0) or inhibits others.
     """
 
@@ -44,7 +44,7 @@ class Competitor:
     active: bool = field(default=False, init=False)
 
     def stimulation(self, now: float) -> float:
-        """What is left of the stimulation; `active` is brought up to date."""
+        """The remaining stimulation; updates `active`."""
         age = now - self.since
         if self.rest > 0 and age >= self.fade and self.stimulus >= THRESHOLD:
             self.stimulus = -self.stimulus
@@ -59,7 +59,7 @@ class Competitor:
         return left
 
     def stimulate(self, now: float) -> None:
-        """A message has come."""
+        """A message has arrived."""
         left = self.stimulation(now)
         if self._refractory(left):
             return
@@ -69,20 +69,20 @@ class Competitor:
             self.active = True
 
     def _refractory(self, stimulus: float) -> bool:
-        """Whether messages do not stimulate it: a neuron that fires, or recovers from firing."""
+        """Whether messages cannot stimulate it: a neuron that is firing, or recovering from it."""
         return self.rest > 0 and not 0 <= stimulus < THRESHOLD
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Which one may speak (None: none may), and the outputs of the active ones by source."""
+    """Which one may deliver (None: none), and the outputs of the active ones by source."""
 
     winner: Competitor | None
     outputs: dict[str, float]
 
 
 def _share(age: float, length: float) -> float:
-    """The share left after `age` of something that lasts `length`: 1 at first, 0 after the end."""
+    """The fraction left after `age` of something that lasts `length`: from 1 down to 0."""
     if age > length:
         return 0.0
     if length <= 0:
@@ -101,11 +101,11 @@ class Contest:
         self._outcomes: dict[int, Outcome] = {}
 
     def changed(self) -> None:
-        """Forget all outcomes: they are computed anew."""
+        """Forget all outcomes; they are computed again."""
         self._outcomes.clear()
 
     def decide(self, arrived: Competitor, now: float) -> bool:
-        """Whether the message that `arrived` brings at `now` may pass. Raises Inconsistent."""
+        """Whether a message that `arrived` delivers at `now` may pass. Raises Inconsistent."""
         arrived.stimulate(now)
         return self.outcome(now).winner is arrived
 
@@ -141,7 +141,7 @@ def _outcome(active: Sequence[Competitor]) -> Outcome:
 
 
 def _solve(active: Sequence[Competitor]) -> list[float]:
-    """The fixed point y = W y + b of the active ones; the others neither act nor are acted on.
+    """The fixed point y = W y + b of the active ones; the others have no effect and feel none.
 
     W[k][j] is the weight of j's link to k.
     """

@@ -1,25 +1,24 @@
-"""The contract of monitors: one rides on a connection, or a port, and sees every message.
+"""The contract of monitors: attached to a connection or a port, one sees every message.
 
 A monitor is any object with some of these methods; those it lacks cost nothing:
 
     accept(message) -> bool            False: the message is dropped, and counted
-    update(message) -> object          what goes on instead: a value, a Message, or DROP;
+    update(message) -> object          what replaces it: a value, a Message, or DROP;
                                        None: the message unchanged
     update_reply(message) -> object    the same for the reply to a call, at the caller's side
     trigger()                          another monitor at the same port has let a message pass
     configure(parameters)              new parameters (a Property) while the connection runs
     parameters() -> dict               their values now
-    state() -> dict                    how it is doing, for people: numbers and words
+    state() -> dict                    its status, for people: numbers and words
     close()                            the connection ends
 
 The class, or any function that returns such an object, is called with its `Place` and is found by
-name (entry point group `yarpy.monitors`). It raises an error of yarpy's tree if its parameters are
-wrong: the connection is then refused with that text.
+name (entry point group `yarpy.monitors`). If its parameters are wrong it raises one of yarpy's
+errors, and the connection is refused with that text.
 
-Rules: at the sender's end the messages of several writers come one after the other, at the
-receiver's end those of one connection. `trigger`, `configure`, `parameters` and `state` come from
-any thread at any time. A method that raises costs the message, which is counted as dropped, and a
-log line.
+Rules: messages come one at a time, at the sender's end those of all writers, at the receiver's end
+those of one connection. `trigger`, `configure`, `parameters` and `state` are called from any thread
+at any time. If a method raises, the message is dropped and counted, and the error logged.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ from yarpy.wire.stream import DEFAULT_LIMIT
 
 
 class _Drop:
-    """The one object that says: this message goes no further."""
+    """The type of DROP: this message goes no further."""
 
     def __repr__(self) -> str:
         return "DROP"
@@ -45,15 +44,14 @@ class _Drop:
 DROP: Final = _Drop()
 
 FAILURES: Final = (Exception, SystemExit)
-"""What a monitor may raise without ending the program, or a thread of ours: it alone fails."""
+"""What a monitor may raise without ending the program or one of our threads."""
 
 
 class Group:
     """The monitors at the receiving ends of one port's connections, which decide together.
 
-    `members` is replaced, never changed. `shared` holds what those of one kind have in common,
-    under their class, and `lock` guards it; hold it briefly, and never while a monitor's `trigger`
-    runs.
+    `members` is replaced, never changed in place. `shared` holds common state by monitor class, and
+    `lock` guards it; hold it briefly, and never while a monitor's `trigger` runs.
     """
 
     def __init__(self) -> None:
@@ -89,15 +87,15 @@ def _here(name: str, contexts: Sequence[str]) -> Iterable[Path]:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a monitor sits: on messages from `source` to `target`, at one end of the connection.
+    """Where a monitor is attached: to messages from `source` to `target`, at one end of the
+    connection.
 
-    `carrier` is the whole carrier string. A monitor of a port rather than of a connection
-    has an empty name where there is no peer, and no carrier. `tokens` are the monitor's own
-    parameters, `shared` all of the connection's. `limit` is the largest message in bytes that the
-    port takes: nothing may grow beyond it here either. `names` finds other ports: it is the port's
-    name client. `look` returns where a file may be, by its name and the contexts of robot and
-    program. `foreign`: the monitor was requested over the network, not by the program that has the
-    port.
+    `carrier` is the whole carrier string. For a port's own monitor, the peer's name and the carrier
+    are empty. `tokens` are the monitor's own parameters, `shared` all of the connection's. `limit`
+    is the port's largest message in bytes, which also holds for a monitor's results. `names` is the
+    port's name client, to find other ports. `look` returns where a file may be, by its name and the
+    contexts of robot and program. `foreign`: the monitor was requested over the network, not by the
+    program that owns the port.
     """
 
     source: str
@@ -120,8 +118,8 @@ class Place:
     def find(self, key: str) -> str | Bottle | None:
         """The parameter `key`: text, a Bottle for `+(key ...)`, "" for a bare word, or None.
 
-        The monitor's own parameters come before the connection's others, as C++ mixes them; of
-        several with one name the last counts.
+        The monitor's own parameters come before the connection's others, mixed as in C++; of equal
+        names the last counts.
         """
         for tokens in (self.tokens, self.shared):
             for token in reversed(tokens):
@@ -136,14 +134,14 @@ class Place:
         return default if value is None else value.to_text() if isinstance(value, Bottle) else value
 
     def flag(self, key: str) -> bool:
-        """Whether a word is there and not switched off (`+key`, `+key.1`; not `+key.0`)."""
+        """Whether a word is present and not switched off (`+key`, `+key.1`; not `+key.0`)."""
         value = self.find(key)
         return value is not None and value not in ("0", "off", "false")
 
     def number(
         self, key: str, default: float, least: float = float("-inf"), most: float = float("inf")
     ) -> float:
-        """A parameter as a number. Raises LocalProtocolError when it is none, or out of range."""
+        """A parameter as a number. LocalProtocolError if it is not one, or out of range."""
         value = self.find(key)
         if value is None:
             return default

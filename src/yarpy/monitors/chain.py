@@ -1,8 +1,8 @@
 """Chain: the monitors at one end of a connection, one after the other.
 
-Rules: a chain is made before the connection is, so that a wrong name or parameter refuses it. Only
-the methods that its monitors have are called. A monitor that fails costs the message and one log
-line; the connection lives.
+Rules: a chain is made before its connection, so that a wrong name or parameter refuses it. Only the
+methods that its monitors have are called. If a monitor fails, the message is dropped and a line
+logged; the connection continues.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from yarpy import registry
 from yarpy.data import codec
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.log import logger
 from yarpy.monitors.base import DROP, FAILURES, Group, Place
@@ -23,7 +23,7 @@ from yarpy.wire.message import Message, Packet
 
 log = logger("yarpy.monitors")
 
-_MOST_TOLD: Final = 16  # different complaints of one chain that are logged
+_MOST_TOLD: Final = 16  # different errors that one chain logs
 _PLAIN: Final = frozenset((list, tuple, dict))  # Python's types for Bottles and Properties
 
 
@@ -43,7 +43,7 @@ def make(name: str, place: Place) -> object:
 def from_carrier(spec: CarrierSpec, place: Place) -> list[object]:
     """The monitors that a carrier asks for at its sender's or receiver's end.
 
-    They sit at `place`, each with its own parameters. Raises as `make`.
+    They are attached at `place`, each with its own parameters. Raises like `make`.
     """
     made: list[object] = []
     try:
@@ -78,9 +78,9 @@ class Chain:
     # -- messages ---------------------------------------------------------------------------------
 
     def take(self, message: Message) -> Message | None:
-        """What becomes of a message that came; None: it is dropped.
+        """The received message after all monitors; None: it is dropped.
 
-        Its reader sees no difference from one that came like this: a list is a Bottle again.
+        Its reader cannot tell that it was changed: a list, for example, is a Bottle again.
         """
         made = self._through(message)
         if made is None or made is message or type(made.payload) not in _PLAIN:
@@ -92,7 +92,7 @@ class Chain:
             return None
 
     def _through(self, message: Message) -> Message | None:
-        """What the monitors make of a message; None: one has dropped it."""
+        """The message after all monitors; None: one has dropped it."""
         group = self._group
         try:
             for peer, accept, update in self._steps:
@@ -112,7 +112,7 @@ class Chain:
         return message
 
     def send(self, packet: Packet) -> Packet | None:
-        """What becomes of a packet; None: it is dropped."""
+        """The packet after all monitors; None: it is dropped."""
         message = Message.of(packet)
         with self._lock:
             made = self._through(message)
@@ -121,7 +121,7 @@ class Chain:
         return packet if made is message else Packet.of(made, packet)
 
     def reply(self, message: Message) -> Message:
-        """What becomes of the reply to a call; a reply is never dropped."""
+        """The reply to a call after all monitors; a reply is never dropped."""
         try:
             for update in self._replies:
                 made = update(message)
@@ -138,7 +138,7 @@ class Chain:
             log.warning("%s: a monitor dropped a message: %s", self._where, text)
 
     def followed_by(self, other: Chain) -> Chain:
-        """A chain of both; closing it is left to the owners of the two."""
+        """A chain of both; their owners close them."""
         both = Chain((*self.monitors, *other.monitors), self._where, self._group)
         both._steps = self._steps + other._steps
         return both
@@ -146,7 +146,7 @@ class Chain:
     # -- parameters -------------------------------------------------------------------------------
 
     def configure(self, parameters: Property) -> bool:
-        """Give new parameters to every monitor that takes some; whether there is one."""
+        """Give new parameters to every monitor that takes any; returns whether one does."""
         able = [one for one in self.monitors if hasattr(one, "configure")]
         for monitor in able:
             monitor.configure(parameters)
@@ -168,7 +168,7 @@ class Chain:
         return found
 
     def close(self) -> None:
-        """The connection, or its port, ends."""
+        """The connection or port ends."""
         for monitor in self.monitors:
             if self._group is not None:
                 self._group.remove(monitor)

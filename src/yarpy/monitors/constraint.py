@@ -1,8 +1,8 @@
 """Constraints: `not e_ball and (e_line or e_go)`, true or false depending on events.
 
 Rules: pure. Words are events, except for true, false, and, or, not; `not` binds closest, then
-`and`, then `or`, as in Lua; parentheses group. (C++ YARP reads the same text, but takes parentheses
-for blanks and replaces events inside longer words; write what both read alike.)
+`and`, then `or`, as in Lua; parentheses group. (C++ YARP reads the same text, but treats
+parentheses as blanks and replaces events inside longer words; write what both read alike.)
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Has: TypeAlias = Callable[[str], bool]
 
 
 class Constraint:
-    """A constraint that can be asked again and again. The empty one is always true.
+    """A parsed constraint. The empty one is always true.
 
     Raises LocalProtocolError for a text that is not a constraint.
     """
@@ -36,10 +36,10 @@ class Constraint:
             raise LocalProtocolError(f"a constraint has at most {_LONGEST} characters")
         self._holds = self._either(0) if self._tokens else _always
         if self._next < len(self._tokens):
-            raise self._wrong(f'"{self._tokens[self._next]}" is one too many')
+            raise self._wrong(f'"{self._tokens[self._next]}" is superfluous')
 
     def holds(self, has: Has) -> bool:
-        """Whether it is true. `has` tells whether there is an event of that name."""
+        """Whether it is true. `has` says whether an event of that name is set."""
         return self._holds(has)
 
     def _wrong(self, what: str) -> LocalProtocolError:

@@ -1,9 +1,9 @@
-"""Events: names that monitors set, for a while or for good, and that constraints ask for.
+"""Events: names that monitors set, for a while or for good, and that constraints test.
 
-Rules: one container for the whole process, as in C++, so monitors at different ports know of each
-other's. An event belongs to the monitor that set it: only its owner takes it away, and it goes with
-its owner. Set by several, it stays until the last has gone. (In C++ a forgotten event outlives its
-monitor, and one that has expired hides that of another.)
+Rules: one container for the whole process, as in C++, so monitors at different ports see each
+other's events. An event belongs to the monitor that set it: only its owner can unset it, and it
+ends with its owner. Set by several, it lasts until the last one is gone. (In C++ a forgotten event
+outlives its monitor, and an expired one hides another monitor's.)
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ MOST: Final = 1000  # events of one owner
 
 
 class Events:
-    """The events of all owners, and until when each lasts."""
+    """The events of all owners, and when each expires."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self._lock = threading.Lock()  # monitors of all connections come here
+        self._lock = threading.Lock()  # monitors of all connections share this
         self._ends: dict[str, dict[object, float]] = {}
         self._names: dict[object, set[str]] = {}
 
     def set(self, owner: object, name: str, lifetime: float | None = None) -> None:
-        """Set or renew an event for `lifetime` seconds; None or below 0: until it is taken away.
+        """Set or renew an event for `lifetime` seconds; None or below 0: until it is unset.
 
-        Raises LocalProtocolError for a name that no constraint could ask for, and beyond MOST.
+        Raises LocalProtocolError for a name that no constraint could test, and beyond MOST.
         """
         if name in RESERVED or not name or any(c.isspace() or c in "()" for c in name):
             words = ", ".join(sorted(RESERVED))
-            raise LocalProtocolError(f'"{name}" cannot name an event: take a word, and not {words}')
+            raise LocalProtocolError(f'"{name}" cannot name an event: use a word, not {words}')
         forever = lifetime is None or lifetime < 0
         with self._lock:
             now = self._clock()
@@ -45,25 +45,25 @@ class Events:
                 for other in [n for n in mine if self._ends[n][owner] <= now]:
                     self._drop(owner, other)
                 if len(mine) >= MOST:
-                    raise LocalProtocolError(f"a monitor can have {MOST} events, and has them all")
+                    raise LocalProtocolError(f"a monitor cannot set more than {MOST} events")
             mine.add(name)
             self._ends.setdefault(name, {})[owner] = inf if forever else now + (lifetime or 0)
 
     def unset(self, owner: object, name: str) -> None:
-        """Take an event away, if `owner` has set it."""
+        """Remove an event, if `owner` has set it."""
         with self._lock:
             if name in self._names.get(owner, ()):
                 self._drop(owner, name)
 
     def clear(self, owner: object) -> None:
-        """Take all events of `owner` away."""
+        """Remove all events of `owner`."""
         with self._lock:
             for name in [*self._names.get(owner, ())]:
                 self._drop(owner, name)
             self._names.pop(owner, None)
 
     def has(self, name: str) -> bool:
-        """Whether there is such an event now."""
+        """Whether the event is set now."""
         with self._lock:
             ends = self._ends.get(name)
             if not ends:

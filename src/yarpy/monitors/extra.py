@@ -1,6 +1,6 @@
 """Libraries that some monitors need and that are not installed with yarpy.
 
-Rules: a monitor asks when it is made, so that a connection that cannot work is refused.
+Rules: a monitor asks when it is created, so that a connection that cannot work is refused.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from yarpy.errors import LocalProtocolError
 
 
 def needed(module: str, extra: str, by: str) -> Any:
-    """The module. LocalProtocolError, which says what to install, if it is not there."""
+    """The module. If it is missing, LocalProtocolError says what to install."""
     try:
         return import_module(module)
     except ImportError as error:

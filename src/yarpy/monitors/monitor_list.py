@@ -1,7 +1,7 @@
-"""Series: several monitors that C++ YARP 4 asks for at once, `file.A+type.dll+file1.B+type1.dll`.
+"""Series: several monitors in one request of C++ YARP 4, `file.A+type.dll+file1.B+type1.dll`.
 
-Rules: they see a message one after the other, each what the one before has made of it. In yarpy's
-own spelling, several `+send.` or `+recv.`, no series is needed.
+Rules: they see a message one after the other, each with the changes of those before it. yarpy's own
+notation, several `+send.` or `+recv.`, needs no series.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import replace
 from itertools import count
 from typing import Any
 
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.monitors.base import DROP, Place
 from yarpy.monitors.chain import Chain
 from yarpy.wire.message import Message
@@ -19,7 +19,7 @@ _NUMBERED = ("type", "file", "context", "constraint")
 
 
 def places(place: Place) -> list[Place]:
-    """The place of each: the first as it is, those with a number as if they had none."""
+    """The place of each: the first as it is, the numbered ones with their numbers removed."""
     found = [place]
     for number in count(1):
         numbered = {f"{key}{number}": key for key in _NUMBERED}
@@ -32,7 +32,7 @@ def places(place: Place) -> list[Place]:
 
 
 def _renamed(tokens: tuple[str, ...], numbered: dict[str, str]) -> list[str]:
-    """The parameters of one: its own by their usual names, and those without a number."""
+    """The parameters of one: its own with numbers removed, and those without a number."""
     found = []
     for token in tokens:
         name, dot, value = token.partition(".")

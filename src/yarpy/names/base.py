@@ -37,7 +37,7 @@ class NameClient(Protocol):
     ) -> Contact:
         """Register `name` and return its complete contact; the service fills in what is None.
 
-        name: `...` asks for a temporary name. Whoever had the name before loses it.
+        name: `...` asks for a temporary name. A port that had the name before loses it.
         Raises AddressError when the service refuses, NoNameServer when nobody answers.
         """
         ...

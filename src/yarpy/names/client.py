@@ -22,7 +22,9 @@ from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.errors import (
+    AccessRefused,
     AddressError,
+    DecodeError,
     LinkClosed,
     NoNameServer,
     RemoteProtocolError,
@@ -30,7 +32,9 @@ from yarpy.errors import (
 )
 from yarpy.names.base import Contacts, Strings
 from yarpy.names.registration_line import END, PREFIX, parse_registration
+from yarpy.transports.peer_timeout import notice_death
 from yarpy.transports.tls_setting import required
+from yarpy.wire.framing import refused
 
 IDLE = 10.0  # seconds after which an unused connection is not trusted any more
 SPARE = 2  # connections kept for the next command
@@ -141,13 +145,16 @@ class YarpNameClient:
             words.append(port or -1)  # what C++ sends for "any"
             if port_type:
                 words.append(port_type)
-        lines = self.command(*words)
+        try:
+            lines = self.command(*words)
+        except AccessRefused as error:
+            raise AddressError(f'"{name}" is not registered: {error}') from error
         contact = parse_registration(lines[0]) if lines else None
         if contact is None:
             if not lines:  # a name server gives at least a reason
                 raise self._ordinary()
             reason = lines[0].removeprefix("error ")
-            raise AddressError(f'the name server at {self._where} refused "{name}": {reason}')
+            raise AddressError(f'the name server at {self.address} refused "{name}": {reason}')
         return contact
 
     def unregister(self, name: str) -> None:
@@ -182,6 +189,10 @@ class YarpNameClient:
         for line in idle:
             line.close()
 
+    def __del__(self) -> None:
+        for line in self._idle:  # kept for speed; nobody has to think of closing them
+            line.close()
+
     def __enter__(self) -> YarpNameClient:
         return self
 
@@ -194,13 +205,15 @@ class YarpNameClient:
         """The lines of an old style reply, without the end line; none for `announce`.
 
         Raises AddressError for a command whose reply is a Bottle (use `request`): its end line
-        would never come.
+        would never come; AccessRefused.
         """
         verb = str(words[0]) if words else ""
         if not words or verb == "bot" or (verb in _BOTTLE_VERBS and verb != "announce"):
             raise AddressError(f'"{verb or "nothing"}" is answered with a Bottle: use request()')
         text = Bottle(words).to_text()
-        return self._ask("lines", lambda line: _old_style(line, text))
+        lines = self._ask("lines", lambda line: _old_style(line, text))
+        self._admitted(lines[0].removeprefix("error ") if lines else "")
+        return lines
 
     def request(self, command: Sequence[Any]) -> Bottle:
         """Ask anything and get one Bottle: `bot ...`, `subscribe`, `topic`, `type` ...
@@ -208,7 +221,10 @@ class YarpNameClient:
         An old style reply comes as a Bottle of its lines, without the end line.
         """
         text = Bottle(command).to_text()
-        return self._ask("acked", lambda line: _acknowledged(line, text))
+        reply = self._ask("acked", lambda line: _acknowledged(line, text))
+        if len(reply) == 2 and reply[0] == "fail":
+            self._admitted(plain_text(reply[1]))
+        return reply
 
     def connect(self) -> socket.socket:
         """A bare connection to the server: it ends when the server does.
@@ -239,8 +255,14 @@ class YarpNameClient:
 
     # --- inside
 
+    def _admitted(self, said: str) -> None:
+        """Raise AccessRefused if that is what the server said."""
+        if (error := refused(said.encode())) is not None:
+            raise AccessRefused(f"the name server at {self.address} says: {error}")
+
     @property
-    def _where(self) -> str:
+    def address(self) -> str:
+        """Host and number of the server, as they are written."""
         return Contact(host=self.host, port=self.port).address
 
     def _ask(self, kind: Literal["lines", "acked"], talk: Callable[[_Line], _T]) -> _T:
@@ -276,6 +298,7 @@ class YarpNameClient:
         try:
             with contextlib.suppress(OSError):
                 connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            notice_death(connection)
             if required():
                 line.connection = connection = _in_tls(connection, self.host)
             if self._prepare is not None:
@@ -333,13 +356,13 @@ class YarpNameClient:
 
     def _ordinary(self, name: str = "") -> NoNameServer:
         return NoNameServer(
-            f"what listens at {self._where} is an ordinary port{name and ', ' + name}, not a name "
+            f"what listens at {self.address} is an ordinary port{name and ', ' + name}, not a name "
             "server; correct YARPY_SERVER, or the file of `yarpy conf`"
         )
 
     def _nobody(self, reason: str) -> NoNameServer:
         return NoNameServer(
-            f"no name server answers at {self._where} ({reason}): start one with `yarpy server`, "
+            f"no name server answers at {self.address} ({reason}): start one with `yarpy server`, "
             "or say where it is with YARPY_SERVER=HOST:PORT or `yarpy conf HOST PORT`, "
             "or look for one with `yarpy detect --write`"
         )
@@ -351,7 +374,10 @@ def _old_style(line: _Line, command: str) -> list[str]:
     size = 0
     while (text := line.line()) != END:
         if text.startswith("[") and not lines:
-            return []  # [ok] to an announce
+            try:  # [ok] to an announce, or [fail] and why
+                return list(map(plain_text, Bottle.from_text(text)[1:2]))
+            except DecodeError:
+                return []
         size += len(text) + 2
         if size > LARGEST:
             raise RemoteProtocolError(f"a name server's reply of more than {LARGEST} bytes")

@@ -43,7 +43,7 @@ class DefaultNames:
             self._stack = [item for item in self._stack if item is not client]
 
     def start_over(self) -> None:
-        """A new lock for a forked process: whoever held the old one may not exist there."""
+        """A new lock for a forked process: the thread that held the old one may not exist there."""
         self._lock = threading.Lock()
 
     def current(self) -> NameClient:
@@ -52,7 +52,7 @@ class DefaultNames:
             if self._stack:
                 return self._stack[-1]
             found = configuration(os.environ)
-            servers = tuple(server for server in found.servers if server.mode == "yarp")
+            servers = tuple(server for server in found.servers if server.mode != "local")
             if not servers:
                 raise NoNameServer(
                     f"no name server is configured for {found.namespace}: start one with "
@@ -61,10 +61,20 @@ class DefaultNames:
                     "inside one program"
                 )
             if servers != self._servers or self._configured is None:
-                clients = [client_of(server) for server in servers]
+                clients = [_client(server) for server in servers]
                 self._configured = clients[0] if len(clients) == 1 else SeveralNames(clients)
                 self._servers = servers
             return self._configured
+
+
+def _client(server: Server) -> NameClient:
+    """A client for a configured server, or ROS master."""
+    if server.mode == "ros":
+        from yarpy.names.ros import RosNames
+        from yarpy.names.ros_master import RosMaster, uri_of
+
+        return RosNames(RosMaster(uri_of(server.host, server.port)))
+    return client_of(server)
 
 
 def client_of(server: Server) -> YarpNameClient:

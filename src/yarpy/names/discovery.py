@@ -66,7 +66,7 @@ def search(
     tries: int = 3,
     group: str = GROUP,
 ) -> Contact | None:
-    """Ask the group who serves `namespace`; None when nobody answers.
+    """Ask the group which server has `namespace`; None when none answers.
 
     port: `YARP_PORT_RANGE` or 10000, whatever port the server itself listens on.
     timeout: seconds to wait after each of `tries` questions.

@@ -3,7 +3,8 @@
 Rules: a name goes only if its address actively refuses connections, seen `STRIKES` times in a row;
 a silent host may come back, and what never was a YARP port (no `process` property: a camera, a
 robot of another make) is not ours to judge. Ports of this host are left alone while their process
-lives; others are probed a few at a time.
+lives; others are probed a few at a time. A number that we handed out and that nobody listens on
+comes back after `LEASE`, unless somebody ever did.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable
+from math import inf
 from typing import Final
 
 from yarpy.contact import Contact
@@ -24,6 +26,7 @@ INTERVAL: Final = 2.0  # seconds between rounds
 STRIKES: Final = 2
 PER_SECOND: Final = 25  # connections tried to ports elsewhere
 TIMEOUT: Final = 0.5  # seconds for one try
+LEASE: Final = 300.0  # seconds in which a port has to listen on the number that it asked for
 
 
 class Collector:
@@ -35,11 +38,14 @@ class Collector:
         unregister: Callable[[Bottle], None],
         own_name: str,
         interval: float = INTERVAL,
+        lease: float = LEASE,
     ) -> None:
         self._service = service
         self._unregister = unregister
         self._own_name = own_name
         self._interval = interval
+        self._lease = lease
+        self._lent: dict[Contact, float] = {}  # when it is due; inf: it was taken up
         self._strikes: dict[str, int] = {}
         self._suspects: set[str] = set()  # reported as unreachable
         self._wake = threading.Event()
@@ -79,6 +85,33 @@ class Collector:
                 if not local:
                     time.sleep(1 / PER_SECOND)
             self._judge(contact)
+        self._end_leases()
+
+    def _end_leases(self) -> None:
+        """Take back numbers that nobody listens on. Of a host that is silent one is tried."""
+        now, silent = time.monotonic(), set[str]()
+        self._lent = {one: self._lent.get(one, now + self._lease) for one in self._borrowers()}
+        for contact, due in self._lent.items():
+            if due > now:
+                continue
+            if self._closed:
+                return
+            if contact.host not in silent and _listens(contact, silent):
+                self._lent[contact] = inf
+            else:
+                self._remove(contact)
+
+    def _borrowers(self) -> list[Contact]:
+        """Ports that have a number of ours, and did not say any more."""
+        store = self._service.store
+        with self._service.lock:
+            return [
+                contact
+                for contact in store.contacts()
+                if contact.carrier == "tcp"
+                and store.numbers.lent(contact.name)
+                and not store.values(contact.name, "process")
+            ]
 
     def _ports(self) -> list[tuple[Contact, int]]:
         """Registered YARP ports with their process ids."""
@@ -102,6 +135,9 @@ class Collector:
             self._suspects.add(contact.name)
             return
         del self._strikes[contact.name]
+        self._remove(contact)
+
+    def _remove(self, contact: Contact) -> None:
         with self._service.lock:
             if self._service.store.query(contact.name) != contact:
                 return  # registered anew meanwhile
@@ -116,6 +152,18 @@ def _lives(process: int) -> bool:
         return False
     except OSError:
         return True  # somebody else's
+    return True
+
+
+def _listens(contact: Contact, silent: set[str]) -> bool:
+    """Whether somebody listens there; hosts that do not even refuse go into `silent`."""
+    try:
+        socket.create_connection((contact.host, contact.port), TIMEOUT).close()
+    except ConnectionRefusedError:
+        return False
+    except (OSError, UnicodeError):
+        silent.add(contact.host)
+        return False
     return True
 
 

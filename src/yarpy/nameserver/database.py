@@ -47,7 +47,7 @@ class Database:
         self._service: NameService | None = None
         # kind -> keys in the order of their changes; guarded by the service's lock
         self._pending: dict[str, dict[str, None]] = {}
-        self._writing = threading.Lock()  # one transaction at a time, whoever asks for it
+        self._writing = threading.Lock()  # one transaction at a time, from whichever thread
         self._something = threading.Event()
         self._closing = threading.Event()
         self._thread: threading.Thread | None = None
@@ -123,7 +123,7 @@ class Database:
             if tables is not None:
                 tables.connection.close()
         self._ports = self._rules = None
-        # After SQLite: who closes a file gives up all locks that its process has there.
+        # After SQLite: closing a file gives up all locks that the process has on it.
         while self._held:
             os.close(self._held.pop())
 

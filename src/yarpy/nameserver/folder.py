@@ -2,20 +2,22 @@
 
 Rules: only ordinary files that are really inside the directory are shown, wherever symbolic links
 point; no name that begins with a dot. What is not there is 404. Files are read anew for each
-request.
+request, large ones while they are sent.
 """
 
 from __future__ import annotations
 
 import stat
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Final
 
 import yarpy
+from yarpy.carriers.http.page import Pieces
 
 PREFIX: Final = "/web"
-MAX_FILE: Final = 1 << 26  # bytes
+PIECE: Final = 1 << 16  # bytes of a file that are in memory at a time
 
 _TEXTS: Final = ("text/", "application/json", "application/javascript", "image/svg")
 
@@ -43,12 +45,12 @@ class Folder:
             return _moved(path.rpartition("/")[2])
         try:
             with found.open("rb") as file:
-                body = file.read(MAX_FILE + 1)
+                body = file.read(PIECE)
+                size = found.stat().st_size
         except OSError:
             return _missing("this page cannot be read\n")
-        if len(body) > MAX_FILE:
-            return _missing(f"a page has at most {MAX_FILE} bytes\n")
-        return yarpy.Page(body, _kind(found))
+        whole = len(body) == size
+        return yarpy.Page(body if whole else Pieces(size, partial(_read, found)), _kind(found))
 
     def _find(self, parts: list[str]) -> Path | None:
         """The file at that place; a directory where its name came without the last slash."""
@@ -64,6 +66,12 @@ class Folder:
         if stat.S_ISDIR(mode):
             return found if (found / "index.html").is_file() else None
         return found if stat.S_ISREG(mode) else None
+
+
+def _read(path: Path) -> Iterator[bytes]:
+    with path.open("rb") as file:
+        while piece := file.read(PIECE):
+            yield piece
 
 
 def _kind(path: Path) -> str:

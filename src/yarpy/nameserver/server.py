@@ -19,7 +19,7 @@ from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import Timeout, YarpError
+from yarpy.errors import DecodeError, Timeout, YarpError
 from yarpy.link.inbound import Inbound
 from yarpy.log import logger
 from yarpy.names.address import is_loopback, local_addresses
@@ -28,7 +28,8 @@ from yarpy.nameserver.collector import Collector
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.folder import Folder
 from yarpy.nameserver.page import NamePage
-from yarpy.nameserver.reply import Reply
+from yarpy.nameserver.reply import Reply, old
+from yarpy.nameserver.right import is_old_style, needed
 from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.topology import Action, Topology
 from yarpy.port import identity, probe
@@ -38,7 +39,7 @@ from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
 from yarpy.transports.bind import listening_host
 from yarpy.transports.tcp import is_taken
-from yarpy.wire.message import JSON, Lines, Message, Packet
+from yarpy.wire.message import JSON, Lines, Message, Packet, Refused
 
 if TYPE_CHECKING:
     from yarpy.names.discovery import Responder
@@ -50,6 +51,8 @@ WORKERS: Final = 4
 BUSY: Final = 1.0  # seconds for a port that lives to say its name
 GROUP: Final = "224.2.1.1"
 MAX_EVENTS: Final = 10_000
+MAX_COMMAND: Final = 1 << 20  # bytes of one command
+MAX_UNFINISHED: Final = 1 << 24  # bytes of all that have begun to come
 
 
 class _Desk(Mailbox):
@@ -101,7 +104,17 @@ class NameServer:
     ) -> None:
         folder = Folder(web) if web is not None else None
         desk = _Desk()
-        self._hub = open_hub(name, desk, None, tcp_port=port, host=host, register=False)
+        self._hub = open_hub(
+            name,
+            desk,
+            None,
+            tcp_port=port,
+            host=host,
+            limit=MAX_COMMAND,
+            input_limit=MAX_UNFINISHED,
+            register=False,
+            directory=True,
+        )
         self.host = host
         self.port = self._hub.port
         self.client = client_of(Server(host, self.port))
@@ -176,6 +189,9 @@ class NameServer:
         if is_loopback(peer):
             peer = self.host  # a program of this host: others reach it as they reach us
         structured = message.text == JSON
+        if why := self._refusal(link, message):
+            self._refuse(message, why)
+            return
         if structured:  # as C++ says it behind a command that came by HTTP
             reply = self.service.answer([*message.as_(Bottle), Bottle(["format", "json"])], peer)
         elif message.spelling == "text":
@@ -194,6 +210,23 @@ class NameServer:
         words = message.as_(Bottle)
         if len(words) > 2 and words[0] == "announce" and not words[2] and self._collector:
             self._collector.suspect(plain_text(words[1]))
+
+    def _refusal(self, link: Inbound, message: Message) -> str:
+        """Why the peer may not give such a command; "" if it may."""
+        admission = link.driver.admission
+        if admission.open:
+            return ""
+        try:
+            wanted = needed(message.as_(Bottle))
+        except DecodeError:
+            return ""  # it is no command
+        return next(filter(None, (admission.refusal(*one) for one in wanted)), "")
+
+    def _refuse(self, message: Message, why: str) -> None:
+        if message.answer is None:
+            return
+        old_style = message.text != JSON and is_old_style(message.as_(Bottle))
+        message.reply(Lines(old([f"error {why}"]).lines) if old_style else Refused(why))
 
     def _contacts(self) -> list[Contact]:
         """Every registration."""

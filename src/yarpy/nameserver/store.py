@@ -33,6 +33,7 @@ class Limits:
     text_per_name: int = 65_536  # characters of keys and values
     total_text: int = 256 << 20
     subscriptions: int = 100_000
+    numbers_per_peer: int = 4000  # of the 10 000 port numbers that all share
 
 
 class Registration:
@@ -131,6 +132,8 @@ class NameStore:
         # How many registrations claim (host, number): numbers given by clients are not lent by us,
         # but lending the same number again for the same host would make somebody's listen fail.
         self._addresses: Counter[tuple[str, int]] = Counter()
+        self._borrowers: dict[str, str] = {}  # name -> the address for which its number went out
+        self._borrowed: Counter[str] = Counter()  # how many numbers each address has
         self._on_change: Callable[[str, str], None] | None = None
 
     @property
@@ -213,7 +216,7 @@ class NameStore:
         type_: str = "",
         peer: str = "",
     ) -> Contact:
-        """Put a port in; whoever had the name is unregistered first (the newest wins).
+        """Put a port in; a port that had the name is unregistered first (the newest wins).
 
         name: `...` asks for /tmp/port/N, `=suffix` for /tmp/port/N=suffix. carrier, host: "" or
         `...` mean tcp and `peer`, the address the request came from. port: 0 or less asks for a
@@ -316,11 +319,25 @@ class NameStore:
                 if carrier == "topic" and port == 0:
                     port = self.port
                 else:
-                    port = int(self.numbers.take(name, lambda n: self._is_used(host, int(n))))
+                    port = self._lend(name, host, peer)
         except AddressError:
             self._give_back(Contact(carrier, name, host, 0))
             raise
         return Contact(carrier, name, host, port)
+
+    def _lend(self, name: str, host: str, peer: str) -> int:
+        """A port number for `name` that goes out to `peer`."""
+        most = self.limits.numbers_per_peer
+        if peer and self._borrowed[peer] >= most:
+            raise AddressError(
+                f"{peer} has {most} port numbers, as many as one computer gets; unregister what is "
+                "dead, for example with `yarpy clean`"
+            )
+        number = self.numbers.take(name, lambda n: self._is_used(host, int(n)))
+        if peer:
+            self._borrowers[name] = peer
+            self._borrowed[peer] += 1
+        return int(number)
 
     def _is_used(self, host: str, number: int) -> bool:
         return self._addresses[host, number] > 0 or self._is_taken(host, number)
@@ -328,6 +345,11 @@ class NameStore:
     def _give_back(self, contact: Contact) -> None:
         # What was lent comes back, whatever `set NAME socket N` made of the address since. The
         # address itself counts only where a database did not say who has what.
+        peer = self._borrowers.pop(contact.name, None)
+        if peer is not None:
+            self._borrowed[peer] -= 1
+            if not self._borrowed[peer]:
+                del self._borrowed[peer]
         numbers, groups = self.numbers, self.groups
         numbers.release(numbers.lent(contact.name) or str(contact.port), contact.name)
         groups.release(groups.lent(contact.name) or contact.host, contact.name)

@@ -14,8 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Final
 
 from yarpy.contact import Contact
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.errors import Timeout, YarpError
 from yarpy.network.traffic import ends
@@ -83,7 +82,7 @@ class Survey:
         except Timeout:
             return {**told, "alive": None, "silent": "does not answer: stopped, or very busy"}
         except (YarpError, OSError) as error:
-            if isinstance(error.__cause__, ConnectionRefusedError):
+            if probe.is_refused(error):
                 return {**told, "alive": False}
             return {**told, "alive": None, "silent": str(error)[:200]}
         process = _pairs(about, "process")

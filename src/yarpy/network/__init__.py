@@ -1,4 +1,4 @@
-"""The network as a whole: connections of any two ports, their priorities, what goes over them."""
+"""The network as a whole: connections between any two ports, their priorities, their traffic."""
 
 from yarpy.network.connection import (
     Pairing,

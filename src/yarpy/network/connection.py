@@ -1,8 +1,7 @@
-"""The network as a whole: connect and disconnect any two ports, ask whether they exist, wait for
-them.
+"""The network as a whole: connect and disconnect any two ports, check for them, wait for them.
 
-Rules: everything is asked of the ports themselves, by the same messages that C++ tools send (core-3
-section 6); nothing here needs a port of its own. `names` None is the default name service.
+Rules: all requests go to the ports themselves, in the messages that C++ tools send (core-3 section
+6); nothing here needs a port of its own. `names` None is the default name service.
 """
 
 from __future__ import annotations
@@ -55,15 +54,27 @@ def find(name: str, names: NameClient | None = None) -> Contact:
     return contact
 
 
+def confirmed(
+    name: str, names: NameClient | None = None, *, carrier: str = "tcp", timeout: float = 10.0
+) -> Contact:
+    """As `find`, once the listener there has been asked whether it is the port of that name, over
+    `carrier`: what is sent next may move something. Raises also WrongPort, LinkClosed, Timeout.
+    """
+    contact = find(name, names)
+    known = identity.properties_of(names or DEFAULT.current()) if contact.name else None
+    identity.confirm(contact, known, secret(), timeout, parse_carrier(carrier).in_tls)
+    return contact
+
+
 def admin(
     name: str, *words: object, names: NameClient | None = None, timeout: float = 3.0
 ) -> Bottle:
     """The answer of the port `name` to an administrative message, e.g. `admin("/p", "ver")`.
 
-    Words that are commands may be strings. Raises UnknownName, LinkClosed, Timeout.
+    Words that are commands may be strings. Raises UnknownName, WrongPort, LinkClosed, Timeout.
     """
-    contact = find(name, names)
     try:
+        contact = confirmed(name, names, timeout=timeout)
         return probe.ask(contact, list(words), timeout=timeout)
     except LinkClosed as error:
         raise LinkClosed(
@@ -73,8 +84,8 @@ def admin(
 
 
 class Pairing:
-    """Two ports whose connection is made, looked for or ended from outside: over which carrier, and
-    which of them is asked, in which words (core-3 section 6.2)."""
+    """Two ports whose connection is made, checked or ended from outside: over which carrier, which
+    of them is asked, and in which words (core-3 section 6.2)."""
 
     def __init__(
         self, source: str, target: str, carrier: str | None, names: NameClient | None
@@ -110,13 +121,27 @@ class Pairing:
             )
         if self.spec.base == "http" and not probe.is_ours(asked):
             raise NotAllowed(refusal.NO_HTTP.format(asked.name or asked.address))
+        if self.spec.base == "local":
+            self._check_one_program(names or DEFAULT.current())
         self.asked = asked
         self.peer = (from_ if self.pull else to).label
         # Perhaps a camera, which does not understand us: ask its receiver first.
         self.plain = from_.reachable and not from_.name and not self.pull
 
+    def _check_one_program(self, names: NameClient) -> None:
+        """Refuse what crashes a receiver of C++ YARP in a program of its own."""
+        here, there = (
+            (end.host, *names.get(end.name, "process")) if end.name else ()
+            for end in (self.here, self.there)
+        )
+        if len(here) > 1 and len(there) > 1 and here != there:
+            raise NotAllowed(
+                f'"{self.source_text}" and "{self.target_text}" belong to two programs, and local '
+                "passes objects within one: use tcp, or unix_stream on one computer"
+            )
+
     def admin(self, *words: object) -> Bottle:
-        """Ask the port in charge. Raises LinkClosed when it does not answer."""
+        """Ask the port in charge. Raises LinkClosed if it does not answer."""
         try:
             return probe.ask(self.asked, list(words), timeout=10.0)
         except (LinkClosed, Timeout, RemoteProtocolError) as error:
@@ -127,10 +152,13 @@ class Pairing:
         """Make sure that the ports of these names listen where they are registered, before one of
         them sends to the other. Raises WrongPort if another port does."""
         for contact in (self.here, self.there):
-            try:
-                identity.confirm(contact, names.get, secret(), _CONFIRMING)
-            except (LinkClosed, Timeout):
-                pass  # perhaps it can be reached from the other one, if not from here
+            self._confirm(contact, names)
+
+    def _confirm(self, contact: Contact, names: NameClient) -> None:
+        try:
+            identity.confirm(contact, names.get, secret(), _CONFIRMING)
+        except (LinkClosed, Timeout):
+            pass  # perhaps it can be reached from the other one, if not from here
 
     def existing(self) -> str:
         """The carrier of the connection that exists now, "" if there is none."""
@@ -142,8 +170,9 @@ class Pairing:
                 listed = self.admin(*words) if self.plain else Bottle()
         return plain_text(listed.find("carrier", "")) if listed else ""
 
-    def delete(self) -> bool:
-        """End the connection; False if neither end knows of it."""
+    def delete(self, names: NameClient) -> bool:
+        """End the connection; False if neither end has it. Raises WrongPort."""
+        self._confirm(self.asked, names)
         if self.plain and _done(self.ask_back(Vocab("del"))):
             return True
         if _done(self.admin(Vocab("del"), self.peer)):
@@ -151,8 +180,8 @@ class Pairing:
         return not self.plain and _done(self.ask_back(Vocab("del")))
 
     def ask_back(self, *words: object) -> Bottle:
-        """Ask the destination about a connection that it may have dialled itself, as it does with
-        pull carriers. An empty answer if it is the one in charge anyway, or cannot be asked."""
+        """Ask the destination about a connection that it may have dialled itself, as with pull
+        carriers. An empty answer if it is the port in charge anyway, or cannot be asked."""
         if self.pull or not _competent(self.there):
             return Bottle()
         try:
@@ -187,20 +216,20 @@ def _written(text: str) -> str:
 
 
 def _competent(contact: Contact) -> bool:
-    """Whether a port takes YARP commands; a camera's web server, registered by name, does not."""
+    """Whether a port accepts YARP commands; a camera's web server, registered by name, does not."""
     return parse_carrier(contact.carrier).base not in _FOREIGN
 
 
 def _pulls(base: str) -> bool:
-    """Whether the receiver is the one that dials. A carrier that is installed only at the ends is
-    known here by its name alone."""
+    """Whether the receiver is the one that dials. For a carrier that is installed only at the ends,
+    the name is all that is known here."""
     try:
         return not find_carrier(base).push
     except UnknownPlugin:
         return base in _PULLED
 
 
-_PULLED = frozenset({"h264", "tcpros"})
+_PULLED = frozenset({"h264"})
 _FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http"})
 
 
@@ -213,7 +242,7 @@ def join(
     timeout: float | None = None,
 ) -> tuple[str, str]:
     """Connect two ports; returns the carrier and the answer of the port that was asked. Raises
-    as `remote.connect`.
+    like `remote.connect`.
     """
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
@@ -255,12 +284,12 @@ def _decorated(text: str, carrier: str) -> str:
 
 
 def disconnect(source: str, target: str, *, names: NameClient | None = None) -> bool:
-    """End the connection of two ports; False if there was none. Raises as `join`."""
+    """End the connection of two ports; False if there was none. Raises like `join`."""
     pairing = Pairing(source, target, None, names)
     if pairing.topical:
         ask_server(names, ["unsubscribe", source, target])
         return True
-    return pairing.delete()
+    return pairing.delete(names or DEFAULT.current())
 
 
 def is_connected(
@@ -275,16 +304,17 @@ def is_connected(
 
 
 def exists(name: str, target: str | None = None, *, names: NameClient | None = None) -> bool:
-    """Whether the port `name` is known and answers; with `target`, whether the two are
-    connected."""
+    """Whether the port `name` is known and answers; with `target`, whether they are connected."""
     if target is not None:
         return is_connected(name, target, names=names)
-    contact = query(name, names)
-    return contact is not None and probe.answers(contact)
+    try:
+        return probe.answers(confirmed(name, names, timeout=probe.TIMEOUT))
+    except (UnknownName, LinkClosed, Timeout):  # perhaps another port listens there
+        return False
 
 
 def ping(name: str, *, names: NameClient | None = None) -> list[str]:
-    """What the port says of itself and its connections. Raises UnknownName, LinkClosed."""
+    """What the port says about itself and its connections. Raises UnknownName, LinkClosed."""
     return probe.describe(find(name, names))
 
 
@@ -309,9 +339,9 @@ def wait_for(
 
 
 def ask_server(names: NameClient | None, command: Sequence[Any]) -> Bottle:
-    """Ask the name server something that only a server knows (topics, subscriptions).
+    """Ask the name server for something that only a server knows (topics, subscriptions).
 
-    Raises LocalProtocolError where the names in use have no server, or it refuses.
+    Raises LocalProtocolError if there is no server, or it refuses.
     """
     client = names or DEFAULT.current()
     client = getattr(client, "clients", [client])[0]

@@ -1,7 +1,7 @@
-"""The priority of any connection of the network, read from and set at the ports at its two ends.
+"""The priority of any connection in the network, read from and set at the ports at its two ends.
 
 Rules: the messages are those of C++ tools (core-3 section 8.3), so ports of any YARP answer; each
-end has its own settings. Settings that a side is not to change are left out.
+end has its own settings. Settings that a side should keep are left out.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from yarpy.qos import Qos, Sched, policy_of
 
 
 def granted(source: str, target: str, names: NameClient | None = None) -> tuple[Qos, Qos]:
-    """What the sender's and the receiver's system do for the connection `source` -> `target`.
+    """What the sender's and the receiver's system grant the connection `source` -> `target`.
 
     Raises UnknownName when there is no such port or connection, LinkClosed, Timeout.
     """

@@ -1,7 +1,7 @@
-"""RemoteConnection: a connection of any two ports, asked about and changed over the network.
+"""RemoteConnection: a connection of any two ports, inspected and changed over the network.
 
-Rules: only the two names are kept; every question goes to the two ports. C++ ports answer all of
-them except those for counters, which they do not have.
+Rules: only the two names are kept; every request goes to the two ports. C++ ports answer all except
+those for counters, which they do not have.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ class RemoteConnection(Connection):
     """A connection of two ports, here or elsewhere. `reply`: the answer of the port that was asked
     to make it.
 
-    Its properties raise UnknownName when there is no such connection any more (or none that the
-    ports know of, as with a topic), LinkClosed and Timeout when a port does not answer.
+    Its properties raise UnknownName if the connection no longer exists (or the ports do not know
+    it, as with a topic), LinkClosed and Timeout if a port does not answer.
     """
 
     def __init__(
@@ -36,16 +36,16 @@ class RemoteConnection(Connection):
 
     @property
     def stats(self) -> dict[str, Any]:
-        """Counters of the sender, or of the receiver if that alone counts: `messages`, `bytes`,
+        """Counters of the sender, or of the receiver if only that one counts: `messages`, `bytes`,
         `rate` (1/s), `jitter`, `latency` (s); `drops` of both. None: not counted."""
         found = flow(self.source, self.target, self._names)
         return {**{key: found.measured(key) for key in COUNTED}, "drops": found.drops}
 
     @property
     def qos(self) -> Qos:
-        """What the sender's system does for this connection. Assign a Qos to ask for something.
+        """What the sender's system grants this connection. Assign a Qos to change it.
 
-        Raises LocalProtocolError when the port or its system refuses.
+        Raises LocalProtocolError if the port or its system refuses.
         """
         return remote_qos.granted(self.source, self.target, self._names)[0]
 
@@ -55,13 +55,13 @@ class RemoteConnection(Connection):
 
     @property
     def monitors(self) -> list[str]:
-        """The names of the monitors that ride on it, the sender's first."""
+        """The names of the monitors attached to it, the sender's first."""
         found = flow(self.source, self.target, self._names)
         return [name for end in (found.sender, found.receiver) if end for name in end.monitors]
 
     def close(self) -> None:
-        """End this connection; nothing happens if it has ended. With a topic the subscription ends:
-        no further ports are connected."""
+        """End this connection, if it still exists. With a topic the subscription ends: no further
+        ports are connected."""
         disconnect(self.source, self.target, names=self._names)
 
 
@@ -75,14 +75,14 @@ def connect(
 ) -> RemoteConnection:
     """Connect two ports. An existing connection is remade.
 
-    `source` or `target` may be `topic://name`. With `timeout`, wait for ports that are not there
-    yet. Raises UnknownName, UnknownPlugin, LinkClosed, LoginRefused, LocalProtocolError (refused).
+    `source` or `target` may be `topic://name`. With `timeout`, wait for ports that do not exist
+    yet. Raises UnknownName, UnknownPlugin, LinkClosed, AccessRefused, LocalProtocolError (refused).
     """
     used, reply = join(source, target, carrier, names=names, timeout=timeout)
     return RemoteConnection(_name(source), _name(target), used, reply, names)
 
 
 def _name(text: str) -> str:
-    """How ports call this end; a topic is written as it was."""
+    """The name of this end as ports use it; a topic is left as written."""
     contact = parse_contact(text)
     return text if contact.carrier == "topic" else contact.label

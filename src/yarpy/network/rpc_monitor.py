@@ -1,14 +1,14 @@
-"""rpc_monitor: copies of what an RPC client asks, and of the answers, for an observing port.
+"""rpc_monitor: send copies of an RPC client's requests and replies to an observing port.
 
-Rides at the caller's end (`tcp+send.rpc_monitor`); parameter `monitor`, the port to write to
-(`/monitor` without). It gets Bottles as from C++ YARP, over a connection from `CLIENT/monitor`:
+Attach it at the caller's end (`tcp+send.rpc_monitor`); parameter `monitor`: the port to write to
+(default `/monitor`). It gets Bottles as from C++ YARP, over a connection from `CLIENT/monitor`:
 
     time CLIENT SERVER command client       RpcMonitor (word) (whole question) ()
     time CLIENT SERVER reply   "rpc client" RpcMonitor ()     ()               (reply)
 
-Rules: a monitor, but one with a port, hence it lives up here. The copies leave from a thread of
-their own; when the observer is 1000 behind, further ones are dropped and counted, and the
-client never waits. `get` says how many.
+Rules: a monitor that owns a port, so it lives in this layer. A separate thread sends the copies;
+when the observer is 1000 behind, further ones are dropped and counted, and the client never waits.
+`get` says how many.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ _BEHIND = 1000  # copies
 
 
 class RpcMonitor:
-    """Copies questions and answers to the observer."""
+    """Copies requests and replies to the observer."""
 
     def __init__(self, place: Place) -> None:
         if not place.sending:
-            raise LocalProtocolError('"rpc_monitor" rides at the caller\'s end: +send.rpc_monitor')
+            raise LocalProtocolError('"rpc_monitor" works at the caller\'s end: +send.rpc_monitor')
         self._place = place
         self._sent = self._drops = 0
         self._copies: queue.Queue[Bottle | None] = queue.Queue(_BEHIND)
@@ -79,7 +79,7 @@ class RpcMonitor:
 
     def close(self) -> None:
         try:
-            self._copies.put_nowait(None)  # after what was said
+            self._copies.put_nowait(None)  # after all copies
         except queue.Full:
             pass
         self._thread.join(1.0)
@@ -87,7 +87,7 @@ class RpcMonitor:
 
 
 def _bottle(message: Message) -> Bottle:
-    """What was said; anything but a Bottle passes without a copy."""
+    """The content of a message; only Bottles are copied."""
     try:
         return message.as_(Bottle)
     except DecodeError:

@@ -1,12 +1,12 @@
-"""stats_monitor: how much goes over a connection, published once a second on two ports.
+"""stats_monitor: the traffic of a connection, published once a second on two ports.
 
-Rides at the sender's end, as in C++ YARP 4: `/stats_monitor/from/to/stats:o` tells about messages
-from `/from` to `/to`, `/stats_monitor/to/from/stats:o` about the replies. Each second brings
+Attach it at the sender's end, as in C++ YARP 4: `/stats_monitor/from/to/stats:o` is about messages
+from `/from` to `/to`, `/stats_monitor/to/from/stats:o` about the replies. Each second they write
 
     time from to carrier [ok] bytes_per_second messages_per_second     ([fail] for replies)
 
-Rules: a monitor, but one with ports, hence it lives up here. C++ clients ask every connection for
-it where YARP_CONNECTIONS_STATS_ENABLE is set. Without C++, `yarpy stats` shows the same and more.
+Rules: a monitor that owns ports, so it lives in this layer. C++ clients request it for every
+connection if YARP_CONNECTIONS_STATS_ENABLE is set. Without C++, `yarpy stats` shows this and more.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class StatsMonitor:
     def __init__(self, place: Place) -> None:
         if not place.sending:
             raise LocalProtocolError(
-                '"stats_monitor" rides at the sender\'s end: connect with +send.stats_monitor'
+                '"stats_monitor" works at the sender\'s end: connect with +send.stats_monitor'
             )
         self._forward = _Way(place, place.source, place.target, Vocab("ok"))
         try:

@@ -1,8 +1,8 @@
-"""Traffic: every connection of the network and how it is doing, asked of all registered ports.
+"""Traffic: every connection in the network and its counters, asked of all registered ports.
 
-Rules: ports are asked side by side, each once, with a time limit; one that does not answer has no
-connections. C++ ports tell who they send to, over what, and with which priority; what they do not
-count is None.
+Rules: ports are asked in parallel, each once, with a time limit; one that does not answer has no
+connections. C++ ports report to whom they send, over what, and with which priority; what they do
+not count is None.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from yarpy.contact import Contact
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import UnknownName, YarpError
@@ -25,7 +24,7 @@ from yarpy.network.connection import query
 from yarpy.port import probe
 from yarpy.qos import Qos
 
-AT_ONCE: Final = 16  # ports that are asked at one time
+AT_ONCE: Final = 16  # ports asked at the same time
 PATIENCE: Final = 1.0  # seconds for an answer
 
 
@@ -40,6 +39,8 @@ class End:
     messages: int | None = None
     bytes: int | None = None
     drops: int | None = None
+    unconfirmed: int | None = None
+    unconnected: int | None = None
     rate: float | None = None
     jitter: float | None = None
     latency: float | None = None
@@ -51,7 +52,11 @@ class End:
 
 @dataclass(slots=True)
 class Flow:
-    """A connection of two ports, as the sender and the receiver see it."""
+    """A connection of two ports, as the sender and the receiver see it.
+
+    Without a target: what the sender dropped on connections that have ended, and what it wrote
+    while it had none (`unconnected`).
+    """
 
     source: str
     target: str
@@ -71,7 +76,7 @@ class Flow:
         return sum(counted) if counted else None
 
     def measured(self, key: str) -> Any:
-        """`messages`, `bytes`, `rate`, `jitter` or `latency`, from whichever side knows it."""
+        """`messages`, `bytes`, `rate`, `jitter` or `latency`, from the side that knows it."""
         for end in (self.sender, self.receiver):
             value = getattr(end, key, None)
             if value:
@@ -87,7 +92,7 @@ def flows(names: NameClient | None = None) -> list[Flow]:
     known = [one for one in (names or DEFAULT.current()).list() if _answers(one)]
     found: dict[tuple[str, str], Flow] = {}
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        for port, told in zip(known, pool.map(ends, known), strict=True):
+        for port, told in zip(known, pool.map(_ask, known), strict=True):
             for source, target, end in told:
                 flow = found.setdefault((source, target), Flow(source, target))
                 if source == port.name:
@@ -116,7 +121,7 @@ def flow(source: str, target: str, names: NameClient | None = None) -> Flow:
                 found.receiver = end
     if found.sender is None and found.receiver is None:
         raise UnknownName(
-            f'neither "{source}" nor "{target}" knows of a connection from the one to the other; '
+            f'neither "{source}" nor "{target}" has a connection from the first to the second; '
             f"`yarpy ping {source}` lists those it has"
         )
     return found
@@ -128,26 +133,31 @@ def _answers(contact: Contact) -> bool:
 
 def ends(contact: Contact) -> list[tuple[str, str, End]]:
     """The connections of one port, source and target first; none if it does not answer."""
+    return [one for one in _ask(contact) if one[1]]
+
+
+def _ask(contact: Contact) -> list[tuple[str, str, End]]:
     try:
         reply = probe.ask(contact, ["stat"], timeout=PATIENCE)
         if reply and reply[0] == Vocab("fail"):
-            return list(_ask_cpp(contact))
+            return list(_ask_each(contact))
         return [read(Property.from_bottle(_pairs(item))) for item in reply]
     except (YarpError, OSError):
         return []
 
 
 def _pairs(item: Any) -> Bottle:
-    """The `(key value)` lists of a connection; a dict by now, or still a list."""
+    """The `(key value)` lists of a connection, which may already be a dict."""
     return Bottle([key, value] for key, value in item.items()) if isinstance(item, dict) else item
 
 
 def read(told: Property) -> tuple[str, str, End]:
-    """One connection in the answer to [stat]: source, target, and how it is doing."""
+    """One connection in the answer to [stat]: source, target and counters."""
     monitors = told.get("monitors")
     end = End(
         plain_text(told.get("carrier", "")),
         **{key: told.get(key) for key in ("messages", "bytes", "drops")},
+        **{key: told.get(key) for key in ("unconfirmed", "unconnected")},
         **{key: told.get(key) for key in ("rate", "jitter", "latency")},
         qos=Qos(told.get("policy"), told.get("priority"), _packets(told.get("packets"))),
         monitors=[plain_text(one) for one in monitors] if isinstance(monitors, list) else [],
@@ -166,8 +176,8 @@ def _packets(value: Any) -> str | int | None:
     return None if text == "None" else int(text) if text.isdigit() else text
 
 
-def _ask_cpp(contact: Contact) -> Iterable[tuple[str, str, End]]:
-    """What ports without counters can say."""
+def _ask_each(contact: Contact) -> Iterable[tuple[str, str, End]]:
+    """The connections of a port that has no counters."""
     for side in ("out", "in"):
         for name in map(plain_text, probe.ask(contact, ["list", side], timeout=PATIENCE)):
             if not name.startswith("/"):

@@ -12,8 +12,7 @@ import random
 from collections.abc import Sequence
 from typing import Any, Literal
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import YarpError
@@ -21,7 +20,7 @@ from yarpy.log import logger
 from yarpy.port import command, disconnecting
 from yarpy.port.hub import Hub
 from yarpy.port.prop import get_peer, get_self, set_peer, set_self
-from yarpy.port.report import report
+from yarpy.port.report import report, report_one
 from yarpy.wire.message import Message
 
 log = logger("yarpy.port")
@@ -86,6 +85,10 @@ def answer(hub: Hub, message: Message) -> Bottle:
 def _answer(hub: Hub, message: Message) -> Bottle:
     request = message.as_(Bottle)
     name = plain_text(request[0]) if request and isinstance(request[0], str) else ""
+    if hub.callbacks.slave is not None:
+        answered = hub.callbacks.slave(request)
+        if answered is not None:
+            return answered
     if name in _ROS or word(name) in _ROS_SHORT:
         return _ROS[_ROS_SHORT.get(word(name), name)](hub)
     handler = _HANDLERS.get(word(request[0])) if request else None
@@ -249,6 +252,14 @@ def _detach(hub: Hub, request: Bottle) -> Bottle:
     return Bottle([_OK])
 
 
+def _statistics(hub: Hub, request: Bottle) -> Bottle:
+    """[stat], or [stat] [in] $portname: ours; not in the help, which is that of C++."""
+    side = _side(request)
+    if side is None or len(request) < 3:
+        return report(hub)
+    return report_one(hub, side, _text(request, 2))
+
+
 def _pray(hub: Hub, request: Bottle) -> Bottle:
     name = os.environ.get("YARP_ROBOT_NAME") or hub.name.split("/")[1 if "/" in hub.name else 0]
     return Bottle(
@@ -273,20 +284,27 @@ _HANDLERS = {
     "set": _configure,
     "get": _inquire,
     "prop": _prop,
-    "stat": lambda hub, request: report(hub),  # ours; not in the help, which is that of C++
+    "stat": _statistics,
     "atch": _attach,
     "dtch": _detach,
     "pray": _pray,
 }
 
-# What a ROS node asks of another; the connection is closed by who asked.
+
+class _Last(Bottle):
+    """An answer behind which the connection ends."""
+
+    is_last = True
+
+
+# What a ROS node asks of another; the connection ends behind the answer.
 _ROS = {
-    "publisherUpdate": lambda hub: Bottle([1, "ok"]),
-    "requestTopic": lambda hub: Bottle(
+    "publisherUpdate": lambda hub: _Last([1, "ok"]),
+    "requestTopic": lambda hub: _Last(
         [1, _node_name(hub), Bottle(["TCPROS", hub.contact.host, hub.port])]
     ),
-    "getPid": lambda hub: Bottle([1, "", os.getpid()]),
-    "getBusInfo": lambda hub: Bottle([1, "", Bottle([Bottle()])]),
+    "getPid": lambda hub: _Last([1, "", os.getpid()]),
+    "getBusInfo": lambda hub: _Last([1, "", Bottle([Bottle()])]),
 }
 _ROS_SHORT = {
     "rpup": "publisherUpdate",

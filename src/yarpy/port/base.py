@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+import threading
 import time
+import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
 from types import TracebackType
@@ -10,7 +13,7 @@ from typing import Any, Self
 
 from yarpy.carriers.http.page import Pages
 from yarpy.contact import Contact, parse_contact
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.errors import LinkClosed, PortClosed
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
@@ -73,7 +76,7 @@ class BasePort:
         carrier by which the reader dials, such as mjpeg, read from it. Returns the connection.
 
         With `timeout`, wait that many seconds for a port that is not there yet. Raises UnknownName,
-        UnknownPlugin (a wrong carrier), LinkClosed (nobody is there), LoginRefused, NotAllowed
+        UnknownPlugin (a wrong carrier), LinkClosed (nobody is there), AccessRefused, NotAllowed
         (this port takes no outputs), LocalProtocolError, RemoteProtocolError.
         """
         hub = self._hub
@@ -135,7 +138,7 @@ class BasePort:
         self._hub.monitoring.detach(side)
 
     def interrupt(self) -> None:
-        """Stop reading and writing: who waits in `read` gets PortClosed; connections stay."""
+        """Stop reading and writing: a waiting `read` raises PortClosed; connections stay."""
         self._hub.interrupt()
 
     def resume(self) -> None:
@@ -161,6 +164,21 @@ class BasePort:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+    def __del__(self) -> None:
+        """Nobody can close it any more. Closing waits for threads, perhaps for the one in which
+        objects are being collected, so a thread of its own does it."""
+        hub = getattr(self, "_hub", None)
+        if hub is None or hub.closing or sys.is_finalizing():
+            return
+        warnings.warn(
+            f'port "{hub.name}" was dropped without being closed: call close(), or use it in a '
+            "`with` statement",
+            ResourceWarning,
+            stacklevel=2,
+            source=self,
+        )
+        threading.Thread(target=hub.close, name=f"yarpy close {hub.name}", daemon=True).start()
 
     def __repr__(self) -> str:
         state = "closed" if self.closed else self.address

@@ -6,9 +6,13 @@ costs one connection at most.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping
 
 from yarpy.carriers.http.page import Page, Pages
+from yarpy.data.bottle import Bottle
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
 from yarpy.log import logger
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.registration import Registration
@@ -24,11 +28,24 @@ class Callbacks:
         self._registration = registration
         self.on_connection: Callable[[ConnectionEvent], None] | None = None
         self.on_admin: Callable[[Message], object] | None = None
+        self.slave: Callable[[Bottle], Bottle | None] | None = None  # answers as a node of ROS
         self.on_page: Pages | None = None  # what the program shows to browsers
         self.lines_for_people: Callable[[], list[str]] = list  # more of them on the port's page
 
+    def report(self, link: Inbound | Outbound, created: bool, reason: str = "") -> None:
+        """Log that a connection came or went, and tell the program."""
+        route = link.route
+        incoming = isinstance(link, Inbound)
+        event = ConnectionEvent(
+            incoming, created, route.source, route.target, route.carrier, reason
+        )
+        named = (route.source if incoming else route.target).startswith("/")
+        log.log(logging.INFO if named else logging.DEBUG, "%s", event)
+        if named:
+            self.connection(event)
+
     def connection(self, event: ConnectionEvent) -> None:
-        """A connection came or went."""
+        """Tell the program that a connection came or went."""
         if self.on_connection is None:
             return
         try:

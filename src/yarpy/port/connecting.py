@@ -1,8 +1,8 @@
-"""Connecting: makes the connections of a port of ours, whoever wants them - its program, a message
-from outside, or a repair.
+"""Connecting: makes the connections of a port of ours: for its program, for a message from outside,
+or for `reconnect`.
 
-Rules: what cannot be is an error of yarpy.errors, and its text says why; the line that C++ has for
-it is found in `refusal`. Of one port's attempts to reach one target a single one goes on at a time.
+Rules: a connection that cannot be made is an error of yarpy.errors, whose text says why; `refusal`
+finds the line that C++ has for it. A port makes one attempt at a time to reach a target.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from yarpy.contact import Contact, parse_contact
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import (
+    AccessRefused,
     LinkClosed,
     LocalProtocolError,
     LoginRefused,
@@ -60,7 +61,7 @@ def connect(
             return
         except YarpError as error:
             # A camera locks those out who try a wrong password again and again.
-            final = isinstance(error, LoginRefused)
+            final = isinstance(error, AccessRefused)
             if final or deadline is None or time.monotonic() >= deadline:
                 raise _told(hub, wanted, masked(target), error) from error
         time.sleep(_POLL)
@@ -145,6 +146,8 @@ def dial(hub: Hub, wanted: Contact, lost: Route | None = None, own: bool = False
             f'"{hub.name}" cannot be connected to itself: a write waits until it is read, and both '
             "would be done here; a BufferedPort() or a callback reads meanwhile"
         )
+    if contact.carrier.startswith(probe.SERVICE) and spec.base == "tcp":
+        spec = replace(parse_carrier(contact.carrier), own=own)  # it speaks nothing else
     kind = find_carrier(spec.base)
     if kind.name == "http" and contact.name and not probe.is_ours(contact, secret_=hub.key):
         raise NotAllowed(refusal.NO_HTTP.format(contact.name))
@@ -161,7 +164,7 @@ def dial(hub: Hub, wanted: Contact, lost: Route | None = None, own: bool = False
                     close_output(hub, old)
         _check(hub, kind, spec)
         open_output(hub, contact, target, spec, lost)
-        hub.crew.repair.give_up(hub, target)  # one that broke before is replaced
+        hub.crew.reconnect.give_up(hub, target)  # one that broke before is replaced
     return spec
 
 
@@ -193,7 +196,7 @@ def open_output(
 ) -> None:
     """Dial `contact` and take the connection in; `lost` is the one that it takes the place of.
     Raises as `dial`."""
-    route = Route(hub.name, target, spec, contact.port)
+    route = Route(hub.name, target, spec, contact.port, declared=hub.registration.declared)
     try:
         chain = hub.monitoring.outgoing(route)
     except UnknownPlugin:
@@ -212,7 +215,7 @@ def open_output(
         if not route.peer and not identity.is_camera(route):
             identity.learn(contact, route, hub.key)
         if not speaker.push:
-            # Who dials a pull carrier is the one that receives.
+            # With a pull carrier the side that dials receives.
             route.source, route.target = target, hub.name
             source = Inbound(hub, driver, speaker)
             hub.take_input(source)
@@ -239,7 +242,7 @@ def open_output(
 
 
 def _greet(hub: Hub, contact: Contact, route: Route, lost: Route | None) -> tuple[Driver, Carrier]:
-    """Open the connection, once who listens is known to be who is meant."""
+    """Open the connection, once the listener is known to be the port that is meant."""
     if lost is not None and lost.peer:
         identity.confirm_again(contact, lost, hub.key)
         route.peer = lost.peer
@@ -252,8 +255,8 @@ def _greet(hub: Hub, contact: Contact, route: Route, lost: Route | None) -> tupl
 def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:
     """Wait until the receiver says that it has our connection.
 
-    It does not say so by itself: a multicast greeting has no answer, and the first messages would
-    miss it; and what rides on its end is looked at after the greeting was answered.
+    It does not say so by itself: a multicast greeting has no answer, so the first messages would
+    be lost; and the monitors at its end are set up only after the greeting was answered.
     """
     deadline = time.monotonic() + JOINING
     question = [Vocab("list"), Vocab("in"), hub.name]
@@ -270,7 +273,7 @@ def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:
 def _other_address(hub: Hub, contact: Contact) -> Contact | None:
     """Where else a port on a host with several networks can be reached from here, if anywhere.
 
-    It told the name server all its addresses; whoever answers there has to have the right name.
+    It told the name server all its addresses; a port that answers there must have the right name.
     """
     names = hub.service()
     if names is None or not contact.name:

@@ -78,7 +78,8 @@ class PortConnection(Connection):
     def stats(self) -> dict[str, Any]:
         """Counters: messages, bytes, drops, rate (1/s), period, jitter, latency (s), since.
 
-        For every mode: messages sent = messages delivered + drops, counted where they happen.
+        For every mode: messages sent = messages delivered + drops, counted where they happen. Once
+        a connection has broken, some of those `unconfirmed` may have been delivered as well.
         """
         return self._link.snapshot()
 

@@ -1,15 +1,23 @@
-"""Dialling: of one port's attempts to connect to one target, a single one at a time.
+"""Dialling: of the attempts to reach one target, a single one at a time.
 
-Rules: a receiver takes a second connection from the same port for the successor of the first and
-closes that. So a repair that dials while a program connects by itself would break what the program
-has just got.
+Rules: a receiver lets a second connection from the same port replace the first. So a reconnection
+at the same time as a program's own `connect` would break the connection that the program has just
+got. A watcher of many targets waits for none of them: each attempt has a thread, since a target may
+hang.
 """
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Final
+
+from yarpy.log import logger
+
+log = logger("yarpy.port")
+
+ATTEMPTS: Final = 32  # that one watcher has under way at the same time
 
 
 class Dialling:
@@ -38,3 +46,38 @@ class Dialling:
                 with self._changed:
                     self._targets.discard(target)
                     self._changed.notify_all()
+
+
+class Attempts:
+    """Short-lived threads for what may hang: one for each target, `ATTEMPTS` in all. `task` is
+    what they do, for the names of the threads."""
+
+    def __init__(self, task: str) -> None:
+        self._task = task
+        self._targets: set[str] = set()
+        self._lock = threading.Lock()
+
+    def begin(self, target: str, attempt: Callable[[], object]) -> bool:
+        """Call `attempt` in a thread of its own; False if that has to wait: one at the same target
+        is under way, or too many at others."""
+        with self._lock:
+            if target in self._targets or len(self._targets) >= ATTEMPTS:
+                return False
+            self._targets.add(target)
+        name = f"yarpy {self._task} {target}"
+        threading.Thread(target=self._run, args=(target, attempt), name=name, daemon=True).start()
+        return True
+
+    @property
+    def under_way(self) -> int:
+        """How many have not ended yet."""
+        return len(self._targets)
+
+    def _run(self, target: str, attempt: Callable[[], object]) -> None:
+        try:
+            attempt()
+        except Exception:
+            log.exception("to %s %s failed", self._task, target)
+        finally:
+            with self._lock:
+                self._targets.discard(target)

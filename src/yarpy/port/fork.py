@@ -12,11 +12,12 @@ from __future__ import annotations
 import os
 from functools import cache
 
+from yarpy.link import budget
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.names.default import DEFAULT
 from yarpy.port.hub import Hub
-from yarpy.port.reconnect import REPAIR
+from yarpy.port.reconnect import RECONNECTOR
 
 
 @cache
@@ -28,7 +29,8 @@ def prepare() -> None:
 
 def _leave_behind() -> None:
     DEFAULT.start_over()
-    for hub in REPAIR.start_over():
+    budget.start_over()
+    for hub in RECONNECTOR.start_over():
         _abandon(hub)
 
 

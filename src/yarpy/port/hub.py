@@ -1,15 +1,15 @@
 """Hub: a port without its reader - a name, a listening socket, and the links in and out.
 
-Rules: the tuples of links are replaced under `lock`, never changed, so who walks them needs no
+Rules: the tuples of links are replaced under `lock`, never changed, so walking them needs no
 lock; no lock is held while user code runs or bytes move. Every end of a connection comes through
-`closed` or `drop_output`, once. What acts on hubs (commands, administration, repair) imports this
-file and is handed in, as `Crew`: a hub knows none of them. `assembly` puts them together.
+`input_ended` or `drop_output`, once. What acts on hubs (commands, administration, reconnecting)
+imports this file and is handed in, as `Crew`: a hub knows none of them. `assembly` puts them
+together.
 """
 
 from __future__ import annotations
 
 import contextlib
-import logging
 import threading
 import time
 from collections.abc import Callable
@@ -18,22 +18,25 @@ from typing import Any, Final, Protocol
 
 from yarpy.carriers.base import PAGE, Carrier
 from yarpy.contact import Contact
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
-from yarpy.errors import NoNameServer, PortClosed, RemoteProtocolError, YarpError
+from yarpy.data.bottle import Bottle, Property
+from yarpy.errors import AccessRefused, NoNameServer, PortClosed, RemoteProtocolError, YarpError
+from yarpy.link.budget import port_budget
 from yarpy.link.counter import Past
 from yarpy.link.driver import Driver
+from yarpy.link.episode import Episode
 from yarpy.link.inbound import Inbound
+from yarpy.link.occupancy import SETTING as CONNECTIONS
+from yarpy.link.occupancy import connections
 from yarpy.link.outbound import Outbound
 from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
-from yarpy.port import probe
+from yarpy.port import farewell, guard
 from yarpy.port.callbacks import Callbacks
-from yarpy.port.connection import ConnectionEvent
 from yarpy.port.dialling import Dialling
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.monitoring import Monitoring
+from yarpy.port.part import Seat
 from yarpy.port.reception import Reception
 from yarpy.port.registration import Registration
 from yarpy.route import Route
@@ -43,12 +46,12 @@ from yarpy.wire.stream import DEFAULT_LIMIT
 
 log = logger("yarpy.port")
 
-# Inputs over datagrams that a port has at most: each costs a thread and a socket here, and whoever
-# asked for it nothing, since no connection is left that would end with its program.
+# Most inputs over datagrams of a port: each costs us a thread and a socket, but costs its sender
+# nothing, since no connection is left that would end with the sender's program.
 MAX_DATAGRAM_INPUTS: Final = 256
 
 
-class Repair(Protocol):
+class Reconnect(Protocol):
     """Who brings back the connections that broke."""
 
     def watch(self, hub: Hub, /) -> None:
@@ -63,6 +66,9 @@ class Repair(Protocol):
     def input_lost(self, hub: Hub, route: Route, /) -> None:
         """An input ended without a goodbye."""
 
+    def wake(self) -> None:
+        """There is a connection that gives no sign of its end."""
+
     def give_up(self, hub: Hub, name: str, incoming: bool | None = None) -> bool:
         """Somebody takes the connection to or from `name` in hand; whether it was tried again."""
 
@@ -74,14 +80,15 @@ class Crew:
     administer: Callable[[Hub, Message], Bottle]  # answers an administrative message
     obey: Callable[[Hub, Inbound, Message], list[str]]  # carries out a port command
     close_output: Callable[[Hub, Outbound], None]
-    repair: Repair
+    reconnect: Reconnect
 
 
 class Hub:
     """A port's connections.
 
     `admits_outputs` and `rpc` are what requests for outputs are checked against. `limit` is the
-    largest message in bytes.
+    largest message in bytes, `input_limit` what unfinished ones may hold together (None: as the
+    environment says). `directory`: it is a name server's.
     """
 
     def __init__(
@@ -93,6 +100,8 @@ class Hub:
         admits_outputs: bool = True,
         rpc: bool = False,
         limit: int = DEFAULT_LIMIT,
+        input_limit: int | None = None,
+        directory: bool = False,
     ) -> None:
         self.registration = registration
         self.mailbox = mailbox
@@ -101,20 +110,24 @@ class Hub:
         self.admits_outputs = admits_outputs
         self.rpc = rpc
         self.limit = limit
+        self.budget = port_budget(input_limit)
         self.callbacks = Callbacks(registration)
         self.properties = Property()
         self.inputs: tuple[Inbound, ...] = ()  # one at most from each rooted name
         self.leaving: tuple[Inbound, ...] = ()  # were inputs; their threads have not ended yet
         self.outputs: tuple[Outbound, ...] = ()
         self.past = {"inputs": Past(), "outputs": Past()}
+        self.unconnected = 0  # messages that were written while nobody was connected
         self.closing = False
         self.inherited = False  # from the process that this one was forked from
         self.interrupted = False
         self.on_inputs: Callable[[], None] = lambda: None  # the reader looks at them again
         self.lock = threading.Lock()  # replaces the tuples of links
+        self._crowded = Episode(self.name, "others may read from here again")
         self.dialling = Dialling()
+        self.seat: Seat | None = None  # in the graph of a node
         self.monitoring = Monitoring(self)
-        self.reception = Reception(registration, limit, self.run_input)
+        self.reception = Reception(registration, limit, self.run_input, directory)
 
     # -- what it is -------------------------------------------------------------------------------
 
@@ -160,7 +173,7 @@ class Hub:
             self.reception.close()
             self.registration.forget()
             raise
-        self.crew.repair.watch(self)
+        self.crew.reconnect.watch(self)
         where = f"tcp://{self.contact.address}/"
         log.info("Port %s active at %s, open to %s", self.name, where, reach())
 
@@ -169,29 +182,31 @@ class Hub:
     def run_input(self, driver: Driver, carrier: Carrier) -> None:
         """Serve a connection that we accepted as an input, in this thread, until it ends.
 
-        With a pull carrier it is an output instead: who dialled receives.
+        With a pull carrier it is an output instead: the side that dialled receives.
         """
         if not carrier.push:
             self._serve_reader(driver, carrier)
             return
-        link = Inbound(self, driver, carrier)
-        link.thread = threading.current_thread()
         try:
+            link = guard.inbound(self, driver, carrier)
+            link.thread = threading.current_thread()
             self.take_input(link)
-        except PortClosed:
+        except (PortClosed, AccessRefused):
             return
         except YarpError as error:
-            log.warning("%s: connection %s refused: %s", self.name, link.route, error)
+            log.warning("%s: connection %s refused: %s", self.name, carrier.route, error)
             return
         self.serve_input(link)
 
     def take_input(self, link: Inbound) -> None:
         """Make an open connection one of our inputs, to be served next.
 
-        It replaces the one that its sender had, and waits for the end of that, up to 2 s. Raises
-        PortClosed, and as monitors do that cannot start; the connection is closed then.
+        It replaces an earlier one of the same sender, and waits up to 2 s until that has ended.
+        Raises PortClosed, or what a monitor raises that cannot start; the connection is then
+        closed.
         """
         link.receiver.page = self.callbacks.page
+        link.receiver.intake.budget = self.budget
         try:
             self.monitoring.incoming(link)
         except YarpError:
@@ -217,7 +232,7 @@ class Hub:
             )
         if late:
             with contextlib.suppress(NoNameServer):
-                self.ask_to_leave(link.route.source)
+                farewell.ask_to_leave(self.registration, link.route.source)
             self._turn_away(link)
             raise PortClosed(f'"{self.name}" is closed')
         for old in older:
@@ -235,7 +250,9 @@ class Hub:
         link.thread = threading.current_thread()
         link.thread.name = f"yarpy {link.route}"
         self.on_inputs()
-        self.report(link, created=True)
+        self.callbacks.report(link, created=True)
+        if link.carrier.connectionless:
+            self.crew.reconnect.wake()
         link.serve()
         if link.own_chain is not None:
             link.own_chain.close()
@@ -266,6 +283,9 @@ class Hub:
         """Make a connection that somebody else opened an output of ours."""
         route = carrier.route
         route.source, route.target = self.name, route.source
+        if any(map(driver.admission.refusal, guard.to_read(route.spec))):
+            driver.transport.close()
+            return
         output = Outbound(driver, carrier, dialled=False)
         try:
             output.chain = self.monitoring.outgoing(route)
@@ -274,18 +294,29 @@ class Hub:
             driver.transport.close()
             return
         with self.lock:
-            if self.closing:
+            readers = sum(not link.dialled for link in self.outputs)
+            most = connections()
+            if self.closing or readers >= most:
                 driver.transport.close()
-                return
-            self.outputs = (*self.outputs, output)
-        self.report(output, created=True)
+            else:
+                self.outputs = (*self.outputs, output)
+        if output not in self.outputs:
+            if not self.closing:
+                text = "%d others read from here, and more are refused (%s sets how many)"
+                self._crowded.happened(text, readers, CONNECTIONS)
+            return
+        if 4 * readers < 3 * most:
+            self._crowded.over()
+        self.callbacks.report(output, created=True)
+        if self.seat is not None:
+            self.seat.welcome(output)
 
-    def closed(self, link: Inbound, reason: str, quit_: bool) -> None:
+    def input_ended(self, link: Inbound, reason: str, quit_: bool) -> None:
         if not self._forget_input(link):
             return
-        self.report(link, created=False, reason=reason)
+        self.callbacks.report(link, created=False, reason=reason)
         if not (quit_ or link.closing or self.closing):
-            self.crew.repair.input_lost(self, link.route)
+            self.crew.reconnect.input_lost(self, link.route)
 
     def _forget_input(self, link: Inbound) -> bool:
         with self.lock:
@@ -305,9 +336,12 @@ class Hub:
             if self.closing:
                 link.driver.transport.close()
                 raise PortClosed(f'"{self.name}" was closed meanwhile')
+            link.intake.budget = self.budget
             self.outputs = (*self.outputs, link)
             self._elect()
-        self.report(link, created=True)
+        self.callbacks.report(link, created=True)
+        if link.carrier.connectionless:
+            self.crew.reconnect.wake()
 
     def drop_output(self, link: Outbound, reason: str = "", lost: bool = False) -> bool:
         """Forget an output. With `lost`, keep trying to connect it again."""
@@ -317,12 +351,18 @@ class Hub:
             self._elect()
         if known:
             self.past["outputs"].add(link.counter)
+            link.intake.leave()
             if link.chain is not None:
                 link.chain.close()
-            self.report(link, created=False, reason=reason)
+            self.callbacks.report(link, created=False, reason=reason)
             if lost and link.dialled and not self.closing:
-                self.crew.repair.output_lost(self, link.route)
+                self.crew.reconnect.output_lost(self, link.route)
         return known
+
+    def count_unconnected(self) -> None:
+        """A message was written, and nobody is connected."""
+        with self.lock:
+            self.unconnected += 1
 
     def _elect(self) -> None:
         """Of the connections into one multicast group a single one sends."""
@@ -331,20 +371,6 @@ class Hub:
             if link.carrier.broadcast:
                 link.active = not elected
                 elected = True
-
-    # -- reports ----------------------------------------------------------------------------------
-
-    def report(self, link: Inbound | Outbound, created: bool, reason: str = "") -> None:
-        """Log a connection's coming or going and tell whoever wants to know."""
-        route = link.route
-        incoming = isinstance(link, Inbound)
-        peer = route.source if incoming else route.target
-        event = ConnectionEvent(
-            incoming, created, route.source, route.target, route.carrier, reason
-        )
-        log.log(logging.INFO if peer.startswith("/") else logging.DEBUG, "%s", event)
-        if peer.startswith("/"):
-            self.callbacks.connection(event)
 
     # -- ending -----------------------------------------------------------------------------------
 
@@ -367,12 +393,16 @@ class Hub:
             if self.closing:
                 return
             self.closing = True
-        self.crew.repair.forget(self)
+        self.crew.reconnect.forget(self)
+        if self.seat is not None:
+            self.seat.leave()
         self.mailbox.interrupt()
-        self.reception.finish(0.3)  # who is just arriving is told to leave as well
-        answers = self._ask_senders_to_leave()
+        self.reception.finish(0.3)  # connections just arriving are told to leave as well
+        senders = [link.route.source for link in self.inputs if link.carrier.push]
+        answers = farewell.ask_all_to_leave(self.registration, senders)
         for output in self.outputs:
             self.crew.close_output(self, output)
+        farewell.let_answers_leave(self.inputs, 0.3)
         for link in self.inputs:
             link.close()
         deadline = time.monotonic() + 3.0
@@ -385,37 +415,8 @@ class Hub:
             if not answers:
                 raise NoNameServer("it did not answer just now")
             self.registration.give_back()
-        except NoNameServer as error:
+        except (NoNameServer, AccessRefused) as error:
             log.info("%s: the name stays registered: %s", self.name, error)
-
-    def _ask_senders_to_leave(self) -> bool:
-        """Ports that send to us hear it from us, so that they do not take it for a failure.
-
-        False if nobody tells where they are: a name service that does not answer is not waited for
-        again and again.
-        """
-        for link in self.inputs:
-            try:
-                self.ask_to_leave(link.route.source)
-            except NoNameServer:
-                return False
-        return True
-
-    def ask_to_leave(self, source: str) -> None:
-        """Ask the port `source` to drop its connection to us: it would take the end for a failure.
-
-        Raises NoNameServer if nobody tells where that port is.
-        """
-        if not source.startswith("/") or source == self.name or self.names is None:
-            return
-        try:
-            contact: Contact | None = self.names.query(source)
-            if contact is not None and contact.carrier == "tcp":
-                probe.drop_output(contact, self.name, timeout=1.0, secret_=self.key)
-        except NoNameServer:
-            raise
-        except (YarpError, OSError):
-            pass  # it will notice by itself
 
     def snapshot(self) -> dict[str, Any]:
         """Counters of every connection, and of the mailbox."""
@@ -423,6 +424,7 @@ class Hub:
             "name": self.name,
             "inputs": [{**_route(link), **link.snapshot()} for link in self.inputs],
             "outputs": [{**_route(link), **link.snapshot()} for link in self.outputs],
+            "unconnected": self.unconnected,
             "past": {side: past.as_dict() for side, past in self.past.items()},
             "waiting": self.mailbox.waiting,
         }

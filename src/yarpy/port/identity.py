@@ -1,10 +1,10 @@
 """Identity: is the port that listens at an address the one whose name led there?
 
 Rules: a name service may remember a number that belongs to another port by now, and a robot's arm
-must not get what was meant for its camera. So who listens is asked for its name before a
-connection to a name is made, and again before a broken one is dialled again. A name that somebody
-entered by hand is an alias or no YARP port at all: it may lead anywhere the first time. An address
-was chosen by whoever wrote it; who listens there is asked afterwards, for the next time.
+must not get what was meant for its camera. So the listener is asked for its name before a
+connection to a name is made, and before a broken one is dialled again. A name that somebody entered
+by hand is an alias or no YARP port at all: the first time it may lead anywhere. An address was
+chosen on purpose; its listener is asked afterwards, to be recognised the next time.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def is_camera(route: Route) -> bool:
 
 
 def learn(contact: Contact, route: Route, key: bytes) -> None:
-    """Ask, in a thread of its own, whom a new connection has reached."""
+    """Ask, in a thread of its own, which port a new connection has reached."""
 
     def ask() -> None:
         try:

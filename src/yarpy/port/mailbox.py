@@ -7,6 +7,7 @@ that comes is dropped, and readers get PortClosed, until `resume`.
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable
 from queue import Empty, SimpleQueue
@@ -20,6 +21,8 @@ from yarpy.wire.message import Message
 log = logger("yarpy.port")
 
 FIFO_BYTES: Final = 1 << 28  # what a strict reader may be behind before its senders have to wait
+OVERHEAD: Final = 256  # bytes that a message takes besides its payload, as measured, rounded up
+SAMPLE: Final = 32  # elements of a list by which its size is judged
 
 _STOP: Final = object()
 
@@ -154,7 +157,8 @@ class Fifo(Mailbox):
         self._room = threading.Condition()  # guards the byte count, and lets senders wait
 
     def put(self, link: Inbound, message: Message) -> None:
-        size = len(message.payload) + 64 if message.spelling != "object" else 64
+        payload = message.payload
+        size = OVERHEAD + (len(payload) if message.spelling != "object" else memory(payload))
         with self._room:
             if self._bytes > self._limit:
                 self._room.wait_for(lambda: self._bytes <= self._limit or self.stopped)
@@ -188,6 +192,18 @@ class Fifo(Mailbox):
         super().interrupt()
         with self._room:
             self._room.notify_all()
+
+
+def memory(value: object, depth: int = 3) -> int:
+    """About how many bytes an object takes that came as it is, over the carrier local."""
+    size = max(sys.getsizeof(value, 0), int(getattr(value, "nbytes", 0)))
+    if isinstance(value, list | tuple):
+        some = value[:SAMPLE] if depth else ()
+        if some:
+            size += sum(memory(one, depth - 1) for one in some) * len(value) // len(some)
+    elif hasattr(value, "to_wire"):
+        size += sum(memoryview(block).nbytes for block in value.to_wire())
+    return size
 
 
 class Offer:
@@ -228,8 +244,8 @@ class Rendezvous(Mailbox):
     """A plain port: each connection waits until its message was taken, and answered if it asks.
 
     Several threads may read, and answer side by side: each is done with its own messages only.
-    `held` is changed by single dictionary operations only, by the thread itself and by who finds
-    it gone.
+    `held` is changed by single dictionary operations only: by the thread itself, and by whichever
+    thread finds it gone.
     """
 
     blocks = True

@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import Literal, Protocol, TypeAlias
 
 from yarpy.config.resource import Search
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound

@@ -7,11 +7,13 @@ reading policy; what is written goes straight to the links.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
+from typing import Final, TypeVarTuple
 
 from yarpy.data.stamp import Stamp
-from yarpy.errors import LinkClosed, PortClosed, YarpError
-from yarpy.link.outbound import Outbound
+from yarpy.errors import LinkClosed, PortClosed, Timeout, YarpError
+from yarpy.link.outbound import Outbound, Rest
 from yarpy.names.base import NameClient
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
@@ -21,6 +23,12 @@ from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox, Rendezvous
 from yarpy.port.reader import Reader
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
+
+Args = TypeVarTuple("Args")
+
+# Seconds between two looks whether one of several slow readers takes something.
+_SHORTEST: Final = 0.0002
+_LONGEST: Final = 0.02
 
 
 class MessagePort(BasePort):
@@ -55,14 +63,26 @@ class MessagePort(BasePort):
         except PortClosed:
             return
 
-    def write(self, value: object, stamp: Stamp | str | None = None, *, wait: bool = False) -> int:
+    def write(
+        self,
+        value: object,
+        stamp: Stamp | str | None = None,
+        *,
+        wait: bool = False,
+        timeout: float | None = None,
+    ) -> int:
         """Send `value` to every connected port; returns how many connections took it.
 
         When it returns, the message is in the system's hands (in a burst: about to be, at the
-        latest 0.2 ms later) and `value` may be changed. Up to 256 messages per connection may be
-        on their way unacknowledged; beyond that a writer waits for its slowest reader. With `wait`
-        it returns when every reader that acknowledges has taken this message. `stamp` travels as
-        the envelope. A connection that breaks is dropped, counted, and mended in the background.
+        latest 0.2 ms later) and `value` may be changed, unless a connection is `local`: there the
+        reader gets `value` itself. Up to 256 messages per connection may be on their way
+        unacknowledged; beyond that a writer waits for its slowest reader, after the others have got
+        the message. With `timeout` it waits that many seconds at most: for a connection over which
+        the message has not begun to leave by then it is a drop. With `wait` it returns when every
+        reader that acknowledges has taken this message, and counts those. Readers that dialled this
+        port are waited for 10 s, then disconnected. `stamp` travels as the envelope. A connection
+        that breaks is dropped, counted, and made again in the background.
+
         Raises PortClosed; TypeError, ValueError or OverflowError for what cannot be sent.
         """
         hub = self._hub
@@ -71,6 +91,7 @@ class MessagePort(BasePort):
         envelope = envelope_of(stamp) if stamp is not None else b""
         outputs = hub.outputs
         if not outputs:
+            hub.count_unconnected()
             return 0
         packet = Packet(value, envelope)
         if hub.monitoring.output is not None:
@@ -80,29 +101,76 @@ class MessagePort(BasePort):
                     link.counter.drops += 1
                 return 0
             packet = passed
-        return self._send_all(packet, outputs, wait)
+        return self._send_all(packet, outputs, wait, timeout)
 
-    def _send_all(self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool) -> int:
-        sent = 0
-        for link in outputs:
-            if not link.active or link.log:
-                continue
-            try:
-                sent += link.send(packet)
-                if wait:
-                    link.wait_acknowledged()
-            except LinkClosed as error:
-                self._hub.drop_output(link, str(error), lost=True)
-            except YarpError as error:
-                self._hub.drop_output(link, str(error))
-        return sent
+    def _send_all(
+        self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool, timeout: float | None
+    ) -> int:
+        deadline = None if timeout is None else time.monotonic() + timeout
+        if len(outputs) == 1:
+            link = outputs[0]
+            took = [link] if self._attempt(link, Outbound.send, packet, deadline) else []
+        else:
+            took = self._send_to_several(packet, outputs, deadline)
+        if wait:
+            took = [link for link in took if self._attempt(link, _is_taken, deadline)]
+        return len(took)
+
+    def _send_to_several(
+        self, packet: Packet, outputs: tuple[Outbound, ...], deadline: float | None
+    ) -> list[Outbound]:
+        """The connections that took it. Who is slow is waited for when the others have it."""
+        copies = deadline is not None
+        took: list[Outbound] = []
+        whole = Rest(packet)
+        todo = [(link, whole) for link in outputs]
+        pause = _SHORTEST
+        try:
+            while todo:
+                slow: list[tuple[Outbound, Rest]] = []
+                for link, rest in todo:
+                    begun = self._attempt(link, Outbound.begin, rest, copies)
+                    if isinstance(begun, Rest):
+                        slow.append((link, begun))
+                    elif begun:
+                        took.append(link)
+                if len(slow) == len(todo):
+                    time.sleep(pause)
+                    pause = min(2 * pause, _LONGEST)
+                todo = slow
+                if len(todo) == 1 or (deadline is not None and time.monotonic() >= deadline):
+                    break
+            while todo:
+                link, rest = todo.pop(0)
+                if self._attempt(link, Outbound.finish, rest, deadline):
+                    took.append(link)
+        finally:
+            for link, _ in todo:  # this writer was interrupted
+                link.sender.leave()
+        return took
+
+    def _attempt(
+        self, link: Outbound, act: Callable[[Outbound, *Args], bool | Rest], *arguments: *Args
+    ) -> bool | Rest:
+        """What `act` gives; False where the connection takes no messages, or no more."""
+        if not link.active or link.log:
+            return False
+        try:
+            return act(link, *arguments)
+        except LinkClosed as error:
+            self._hub.drop_output(link, str(error), lost=True)
+        except YarpError as error:
+            self._hub.drop_output(link, str(error))
+        return False
 
     def flush(self, timeout: float | None = None) -> bool:
-        """Wait until every message was sent and, where readers acknowledge, taken."""
+        """Wait until every message was sent and, where readers acknowledge, taken; False if that
+        takes more than `timeout` seconds, or a connection breaks."""
         done = True
+        deadline = None if timeout is None else time.monotonic() + timeout
         for link in self._hub.outputs:
             try:
-                link.wait_acknowledged(timeout)
+                link.wait_acknowledged(_left(deadline))
             except YarpError:
                 done = False
         return done
@@ -154,10 +222,9 @@ class BufferedPort(MessagePort):
     """A port between loops that run at their own pace.
 
     Reading gives the newest message, older ones are dropped and counted; with `strict` every
-    message comes, in order. Writing hands each connection its message and returns; a connection
-    that still sends the one before drops this one, and counts it; with `strict` the writer waits
-    instead. A list may be changed after `write`, but a large array (from 4096 bytes) is sent from
-    its own memory, later: write a new one each time, or `flush` before you change it. `callback`
+    message comes, in order. Writing hands each connection its message and returns, and what was
+    written may be changed; a connection that still sends the one before drops this one, which costs
+    nothing then, and counts it; with `strict` the writer waits instead. `callback`
     gets every message in its connection's thread. Other parameters as `Port`.
     """
 
@@ -188,23 +255,35 @@ class BufferedPort(MessagePort):
         )
         super().__init__(hub, spin)
 
-    def _send_all(self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool) -> int:
+    def _send_all(
+        self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool, timeout: float | None
+    ) -> int:
         if self.strict or wait:
-            return super()._send_all(packet, outputs, wait)
+            return super()._send_all(packet, outputs, wait, timeout)
         sent = 0
         for link in outputs:
-            if not link.active or link.log:
-                continue
             if link.broken:
-                self._hub.drop_output(link, "the connection broke", lost=True)
-                continue
-            try:
-                sent += link.try_send(packet)
-            except LinkClosed as error:
-                self._hub.drop_output(link, str(error), lost=True)
-            except YarpError as error:
-                self._hub.drop_output(link, str(error))
+                link.counter.drops += 1
+                self._hub.drop_output(link, link.reason, lost=True)
+            elif self._attempt(link, Outbound.try_send, packet):
+                sent += 1
         return sent
+
+
+def _is_taken(link: Outbound, deadline: float | None) -> bool:
+    """Wait until everything was acknowledged; False if `deadline` comes first."""
+    try:
+        link.wait_acknowledged(_left(deadline))
+    except Timeout:
+        if deadline is None:
+            raise
+        return False
+    return True
+
+
+def _left(deadline: float | None) -> float | None:
+    """Seconds until `deadline`."""
+    return None if deadline is None else max(0.0, deadline - time.monotonic())
 
 
 def envelope_of(stamp: Stamp | str | bytes) -> bytes:

@@ -1,10 +1,10 @@
 """Questions to a port from outside, as every YARP tool asks them: one by one over short text
 connections, or by a Caller, again and again over one.
 
-Rules: whoever asks has no port of its own; un-rooted sender names, so that nobody is displaced; a
-time limit always. Whoever is told to end a connection is asked for its name first, over the same
-line: a number that a name service remembers may be another port's by now. Source: core-3 sections
-5.1, 6.3, 6.4.
+Rules: the asking side has no port of its own; its name has no slash in front, so that it displaces
+no connection; there is always a time limit. Before a port is told to end a connection it is asked
+for its name, over the same connection: a number that a name service remembers may belong to another
+port by now. Source: core-3 sections 5.1, 6.3, 6.4.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Final, Self
 
 from yarpy.carriers.auth import prove_initiator
 from yarpy.contact import Contact
-from yarpy.data.bottle import Bottle
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, Timeout, WrongPort, YarpError
@@ -58,6 +58,30 @@ def ask(
         return Bottle() if reply is None else reply.as_(Bottle)
     finally:
         driver.transport.close()
+
+
+def is_refused(error: BaseException) -> bool:
+    """Whether the host says that nobody listens there: the only proof that a port is gone. A host
+    that cannot be reached may come back."""
+    return isinstance(error.__cause__, ConnectionRefusedError)
+
+
+def connection(
+    contact: Contact, side: str, peer: str, secret_: bytes | None = None
+) -> Property | None:
+    """How the connection with `peer` on that side ("in" or "out") of the port at `contact` is
+    doing; None if there is none. Raises LookupError if it is no port of yarpy, and as `ask`."""
+    reply = ask(contact, [Vocab("stat"), Vocab(side), peer], secret_=secret_)
+    if reply and reply[0] == Vocab("fail"):
+        raise LookupError(f"{contact} does not count")
+    return Property.from_bottle(_pairs(reply[0])) if reply else None
+
+
+def _pairs(item: object) -> Bottle:
+    """The `(key value)` lists of a connection; a dict by now, or still a list."""
+    if isinstance(item, dict):
+        return Bottle([key, value] for key, value in item.items())
+    return item if isinstance(item, Bottle) else Bottle(item if isinstance(item, list) else [])
 
 
 def describe(
@@ -167,9 +191,9 @@ def _told(contact: Contact, command: str, timeout: float, secret_: bytes | None)
 
 def another_port(contact: Contact, wanted: str, found: str) -> WrongPort:
     """The error for a number that belongs to another port than the one called `wanted`."""
-    found = f'the port "{found}"' if found else "something that does not say its name"
+    who = f'"{found}"' if found else "something that does not say its name"
     hint = f": start the program of {wanted} again" if wanted != f"/{contact.address}" else ""
-    return WrongPort(f'not "{wanted}" listens at {contact.address}, but {found}{hint}')
+    return WrongPort(f'{who} listens at {contact.address}, not "{wanted}"{hint}')
 
 
 def _lines(
@@ -208,6 +232,10 @@ def _deadline(timeout: float) -> float:
     return time.monotonic() + timeout
 
 
+#: how a service of ROS is found by name
+SERVICE: Final = "rossrv+"
+
+
 class Caller:
     """One connection to the port at `contact` for questions and answers, dialled when made.
 
@@ -225,6 +253,8 @@ class Caller:
         admin: bool = False,
         timeout: float = 10.0,
     ) -> None:
+        if contact.carrier.startswith(SERVICE):
+            carrier = contact.carrier  # a service of ROS speaks nothing else
         if not find_carrier(parse_carrier(carrier).base).replies:
             raise LocalProtocolError(f'"{carrier}" carries no replies; call over tcp')
         route = Route(name, contact.name or f"/{contact.address}", carrier, contact.port)

@@ -12,8 +12,7 @@ import sys
 import threading
 from typing import Any
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.link.qos import grant_sched, grant_tos, thread_of

@@ -84,9 +84,9 @@ class Reader:
         waiting.
 
         Not before it has looked itself once more: the newest is there, while the link's thread
-        would begin with the oldest. Who wants every message keeps the lease: a busy writer in the
-        same process makes every turn of its reader late, and handing each message over by another
-        thread would make it later still.
+        would begin with the oldest. A reader that wants every message keeps the lease: a busy
+        writer in the same process makes every turn of its reader late, and handing each message
+        over from another thread would make it later still.
         """
         link = self._sole
         if link is None or not link.turn.leased or self._spin:

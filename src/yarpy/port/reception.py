@@ -1,7 +1,7 @@
-"""Reception: the listening socket of a port, and who is just arriving there.
+"""Reception: the listening socket of a port, and the connections that are just arriving there.
 
-Rules: what a connection speaks is found out in a thread of its own, after its first bytes. Who
-comes before the port knows its own name waits for that.
+Rules: what a connection speaks is found out in a thread of its own, after its first bytes. A
+connection that comes before the port knows its own name waits until it does.
 """
 
 from __future__ import annotations
@@ -12,8 +12,10 @@ import time
 from collections.abc import Callable
 
 from yarpy.carriers.base import Carrier
-from yarpy.errors import YarpError
+from yarpy.config import access_file
+from yarpy.errors import AccessRefused, YarpError
 from yarpy.link.acceptor import Acceptor
+from yarpy.link.admission import Gate
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import welcome
 from yarpy.log import logger
@@ -24,13 +26,17 @@ log = logger("yarpy.port")
 
 
 class Reception:
-    """Welcomes connections and hands each to `serve`, which runs in its thread until it ends."""
+    """Welcomes connections and hands each to `serve`, which runs in its thread until it ends.
+
+    directory: it is a name server's port.
+    """
 
     def __init__(
         self,
         registration: Registration,
         limit: int,
         serve: Callable[[Driver, Carrier], None],
+        directory: bool = False,
     ) -> None:
         self._registration = registration
         self._limit = limit
@@ -38,6 +44,8 @@ class Reception:
         self._acceptor: Acceptor | None = None
         self._arriving: set[threading.Thread] = set()  # connections that are being welcomed
         self._open = threading.Event()
+        self._directory = directory
+        self._gate: Gate | None = None  # of the name that the port has in the end
         self._closing = False
 
     def listen(self, port: int) -> int:
@@ -48,7 +56,9 @@ class Reception:
         return self._acceptor.port
 
     def open(self) -> None:
-        """The port knows its name: let them in."""
+        """The port knows its name: let them in. Raises AddressError for rules that nobody can
+        read."""
+        self._gate = access_file.gate(self._registration.name, self._directory)
         self._open.set()
 
     @property
@@ -62,9 +72,24 @@ class Reception:
         own = self._registration
         transport = TcpTransport(sock)
         peer = _peer(transport)
+        gate = self._gate
+        if gate is None:  # the port was never open
+            transport.close()
+            return
         self._arriving.add(threading.current_thread())
         try:
-            found = welcome(transport, own.name, own.port, key=own.key, limit=self._limit)
+            found = welcome(
+                transport,
+                own.name,
+                own.port,
+                key=own.key,
+                limit=self._limit,
+                gate=gate,
+                declared=own.declared,
+            )
+        except AccessRefused:
+            transport.close()  # logged where it was refused
+            return
         except (YarpError, OSError) as error:
             transport.close()
             if not self._closing:
@@ -78,8 +103,8 @@ class Reception:
         self._serve(*found)
 
     def finish(self, seconds: float) -> None:
-        """The port closes: give who is just arriving so long to become one of its connections,
-        which are told to leave."""
+        """The port closes: give connections that are just arriving so many seconds to be complete,
+        since only complete ones can be told to leave."""
         self._closing = True
         soon = time.monotonic() + seconds
         for thread in tuple(self._arriving):

@@ -1,34 +1,34 @@
-"""Repair: connections that failed come back, names that a restarted server forgot are told again.
+"""Reconnecting: connections that failed come back.
 
 Rules: one daemon thread for the process, started with the first registered port, asleep most of the
-time; it watches, and what it finds broken is dialled in short-lived threads, one for each target,
-ever more rarely. What somebody disconnected on purpose stays disconnected; what broke is tried
-again until it works or is given up. A lost output is dialled again by us, and so is a camera; any
-other lost input is asked for again from its sender, once that is back. A name server is watched
-through a connection of its own.
+time. It only watches and decides: whatever may hang (dialling a lost connection, a question whether
+the other end of a datagram connection still lives, a name server) is done in short-lived threads,
+one for each target and a limited number of them. What somebody disconnected on purpose stays
+disconnected; what broke is tried again, ever more rarely, until it works or is given up. A lost
+output is dialled again by us, and so is a camera; any other lost input is asked for again from its
+sender, once that is back.
 """
 
 from __future__ import annotations
 
 import random
-import socket
 import threading
 import time
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Final
 
 from yarpy.contact import parse_contact
 from yarpy.data.value import Vocab
-from yarpy.errors import LoginRefused, WrongPort, YarpError
+from yarpy.errors import AccessRefused, WrongPort, YarpError
 from yarpy.link.handshake import find_carrier
 from yarpy.link.outbound import Outbound
 from yarpy.log import logger
-from yarpy.names.base import NameClient
-from yarpy.names.client import YarpNameClient
-from yarpy.names.fallback_client import SeveralNames
 from yarpy.port import connecting, disconnecting, identity, probe
+from yarpy.port.dialling import Attempts
 from yarpy.port.hub import Hub
-from yarpy.port.keepalive import Link, Pulse
+from yarpy.port.keepalive import Keepalive, Link
+from yarpy.port.server_watch import ServerWatch
 from yarpy.route import Route
 
 log = logger("yarpy.port")
@@ -38,7 +38,6 @@ CALM: Final = 0.5  # seconds between looks when nothing is
 LOCKED: Final = 60.0  # seconds between two logins: cameras lock those out who try too often
 LONGEST: Final = 30.0  # seconds between attempts at something that stays away
 SLOWER: Final = 1.3  # so much longer is each pause than the one before, and up to so much by chance
-ATTEMPTS: Final = 32  # connections that are dialled at the same time
 INPUT_PATIENCE: Final = 60.0  # seconds for a sender that vanished to come back
 
 
@@ -52,7 +51,6 @@ class _Lost:
     since: float = field(default_factory=time.monotonic)
     pause: float = TICK
     due: float = 0.0
-    under_way: bool = False
     seen_gone: bool = False
     told: str = ""  # what was logged last: each reason is told once, not at every attempt
 
@@ -71,18 +69,19 @@ class _Lost:
             )
 
 
-class Repairer:
+class Reconnector:
     """The thread and its lists."""
 
     def __init__(self) -> None:
-        self._lines: dict[int, tuple[YarpNameClient, object]] = {}
         self._begin()
 
     def _begin(self) -> None:
         self._hubs: list[Hub] = []
         self._lost: list[_Lost] = []
-        self._dead_servers: set[int] = set()
-        self._pulse = Pulse(self._lose)
+        self._attempts = Attempts("dial")
+        self._reports = Attempts("end outputs of")
+        self._keepalive = Keepalive(self._died)
+        self._servers = ServerWatch()
         self._thread: threading.Thread | None = None
         self._wake = threading.Event()
         self._lock = threading.Lock()  # ports come and go from any thread
@@ -90,18 +89,25 @@ class Repairer:
     def start_over(self) -> list[Hub]:
         """Begin anew in a forked process, which has no thread of ours; the ports of before."""
         left = self._hubs
-        self._drop_lines()
+        self._servers.forget()
+        self._keepalive.forget()
         self._begin()
         return left
 
     # -- what ports say ---------------------------------------------------------------------------
+
+    def wake(self) -> None:
+        """There is a connection that gives no sign of its end: look at it soon."""
+        self._wake.set()
 
     def watch(self, hub: Hub) -> None:
         """Look after a registered port."""
         with self._lock:
             self._hubs.append(hub)
             if self._thread is None or not self._thread.is_alive():
-                self._thread = threading.Thread(target=self._run, name="yarpy repair", daemon=True)
+                self._thread = threading.Thread(
+                    target=self._run, name="yarpy reconnect", daemon=True
+                )
                 self._thread.start()
         self._wake.set()
 
@@ -112,12 +118,12 @@ class Repairer:
             self._lost = [item for item in self._lost if item.hub is not hub]
         self._wake.set()
 
-    def add(self, hub: Hub, route: Route, incoming: bool) -> None:
-        """A connection failed."""
+    def add(self, hub: Hub, route: Route, incoming: bool, gone: bool = False) -> None:
+        """A connection failed; `gone`: the other end's program has ended, or lost it."""
         with self._lock:
             if hub.closing:
                 return  # `forget` may have been here already
-            self._lost.append(_Lost(hub, route, incoming))
+            self._lost.append(_Lost(hub, route, incoming, seen_gone=gone))
         self._wake.set()
 
     def give_up(self, hub: Hub, name: str, incoming: bool | None = None) -> bool:
@@ -140,31 +146,37 @@ class Repairer:
     # -- the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
+        server_away = False
         while True:
-            busy = bool(self._lost or self._dead_servers)
+            busy = self._lost or server_away or self._keepalive.watching
             self._wake.wait(TICK if busy else CALM)
             self._wake.clear()
             with self._lock:
                 hubs, lost = list(self._hubs), list(self._lost)
                 if not hubs:
-                    self._drop_lines()
+                    self._servers.forget()
+                    self._keepalive.forget()
                     self._thread = None
                     return
             try:
                 self._look_at_outputs(hubs)
-                self._pulse.look(hubs)
-                self._look_at_servers(hubs)
-                self._attempt(lost)
+                self._keepalive.look(hubs)
+                server_away = self._servers.look(hubs)
+                self._dial(lost)
             except Exception:
-                log.exception("the repair of connections failed; it goes on")
+                log.exception("the watch over connections failed; it goes on")
 
     def _look_at_outputs(self, hubs: list[Hub]) -> None:
         for hub in hubs:
-            for link in hub.outputs:
-                if link.ended():
-                    hub.drop_output(link, "the peer hung up", lost=True)
+            ended = [link for link in hub.outputs if link.watch()]
+            if ended:  # a callback of the program hears of it, and may take its time
+                self._reports.begin(hub.name, partial(self._drop, hub, ended))
 
-    def _lose(self, hub: Hub, link: Link) -> None:
+    def _drop(self, hub: Hub, ended: list[Outbound]) -> None:
+        for link in ended:
+            hub.drop_output(link, link.reason, lost=True)
+
+    def _died(self, hub: Hub, link: Link) -> None:
         """A datagram connection has died without a sign."""
         if isinstance(link, Outbound):
             hub.drop_output(link, "the receiver is gone", lost=True)
@@ -173,104 +185,42 @@ class Repairer:
         link.close()
         if link.thread is not None:
             link.thread.join(2.0)
-        input_lost(hub, link.route)
-
-    def _look_at_servers(self, hubs: list[Hub]) -> None:
-        servers = {id(client): client for hub in hubs for client in _servers(hub.names)}
-        for number in [number for number in self._lines if number not in servers]:
-            _close(self._lines.pop(number)[1])
-        for number, client in servers.items():
-            line = self._lines.get(number)
-            if line is not None and _holds(line[1]):
-                continue
-            if line is not None:
-                del self._lines[number]
-                _close(line[1])
-                self._dead_servers.add(number)
-                log.warning("the name server at %s:%d went away", client.host, client.port)
-            try:
-                fresh = client.connect()
-            except YarpError:
-                continue
-            self._lines[number] = (client, fresh)
-            if number in self._dead_servers:
-                self._dead_servers.discard(number)
-                self._register_again(client, hubs)
-
-    def _register_again(self, client: YarpNameClient, hubs: list[Hub]) -> None:
-        log.warning("the name server at %s:%d is back", client.host, client.port)
-        for hub in hubs:
-            if hub.closing or client not in _servers(hub.names):
-                continue
-            try:
-                known = client.query(hub.name)
-                contact = hub.contact
-                if known is None or (known.host, known.port) != (contact.host, hub.port):
-                    client.register(
-                        hub.name, "tcp", contact.host, hub.port, hub.registration.type or None
-                    )
-                hub.registration.describe(client)
-            except YarpError as error:
-                log.warning("%s could not be registered again: %s", hub.name, error)
-
-    def _drop_lines(self) -> None:
-        for _, line in self._lines.values():
-            _close(line)
-        self._lines.clear()
-        self._dead_servers.clear()
+        input_lost(hub, link.route, gone=True)
 
     # -- one connection ---------------------------------------------------------------------------
 
-    def _attempt(self, lost: list[_Lost]) -> None:
-        """Begin what is due, each in a thread of its own: one that hangs delays no other.
-
-        Of those that want the same port, one at a time.
-        """
+    def _dial(self, lost: list[_Lost]) -> None:
+        """Begin what is due; of those that want the same port, one at a time."""
         now = time.monotonic()
-        busy = {_peer(item) for item in lost if item.under_way}
         for item in lost:
-            if len(busy) >= ATTEMPTS:
-                return
-            if now < item.due or item.hub.closing or _peer(item) in busy:
-                continue
-            busy.add(_peer(item))
-            item.under_way = True
-            threading.Thread(
-                target=self._mend, args=(item,), name=f"yarpy dial {_peer(item)}", daemon=True
-            ).start()
+            if item.due <= now and not item.hub.closing:
+                self._attempts.begin(_peer(item), partial(self._attempt, item))
 
-    def _mend(self, item: _Lost) -> None:
-        try:
-            self._try_to_mend(item)
-        except Exception:
-            log.exception("%s: reconnecting %s failed", item.hub.name, item.route)
-        finally:
-            item.under_way = False
-
-    def _try_to_mend(self, item: _Lost) -> None:
+    def _attempt(self, item: _Lost) -> None:
+        """Try once to have it back."""
         done = False
         try:
             if item.incoming:
-                done = self._mend_input(item)
+                done = self._ask_sender(item)
             else:
                 done = self._dial_again(item, item.route.target)
-        except LoginRefused as error:
+        except AccessRefused as error:
             item.pause = LOCKED
             item.tell(error, f"it is asked again every {LOCKED:g} s")
         except WrongPort as error:
             item.tell(error, "it is dialled again now and then, until the right one answers")
         except (YarpError, OSError):
             pass  # not yet
-        now = time.monotonic()
-        if item.incoming and not _is_pulled(item.route) and now - item.since > INPUT_PATIENCE:
-            done = True
-        if done:
-            with self._lock:
-                self._lost = [other for other in self._lost if other is not item]
-        else:
-            item.put_off(now)
+        finally:
+            now = time.monotonic()
+            waited = now - item.since > INPUT_PATIENCE
+            if done or (waited and item.incoming and not _is_pulled(item.route)):
+                with self._lock:
+                    self._lost = [other for other in self._lost if other is not item]
+            else:
+                item.put_off(now)
 
-    def _mend_input(self, item: _Lost) -> bool:
+    def _ask_sender(self, item: _Lost) -> bool:
         """Ask the sender, once it lives again, to send to us as before."""
         hub, route = item.hub, item.route
         if _is_there(item):
@@ -330,34 +280,12 @@ def _is_pulled(route: Route) -> bool:
     return not find_carrier(route.spec.base).push
 
 
-def _servers(names: NameClient | None) -> list[YarpNameClient]:
-    if isinstance(names, SeveralNames):
-        return [client for each in names.clients for client in _servers(each)]
-    return [names] if isinstance(names, YarpNameClient) else []
-
-
-def _holds(line: object) -> bool:
-    """Whether an idle connection is still open."""
-    assert isinstance(line, socket.socket)
-    try:
-        line.setblocking(False)
-        return bool(line.recv(1, socket.MSG_PEEK))
-    except BlockingIOError:
-        return True
-    except OSError:
-        return False
-
-
-def _close(line: object) -> None:
-    assert isinstance(line, socket.socket)
-    line.close()
-
-
-REPAIR: Final = Repairer()
-watch = REPAIR.watch
-forget = REPAIR.forget
-give_up = REPAIR.give_up
-pending = REPAIR.pending
+RECONNECTOR: Final = Reconnector()
+watch = RECONNECTOR.watch
+wake = RECONNECTOR.wake
+forget = RECONNECTOR.forget
+give_up = RECONNECTOR.give_up
+pending = RECONNECTOR.pending
 
 
 def output_lost(hub: Hub, route: Route) -> None:
@@ -367,15 +295,17 @@ def output_lost(hub: Hub, route: Route) -> None:
     if not identity.has_proof(route):
         _leave(hub, "to", route.target)
         return
-    REPAIR.add(hub, route, incoming=False)
+    RECONNECTOR.add(hub, route, incoming=False)
 
 
-def input_lost(hub: Hub, route: Route) -> None:
-    """An input ended without a goodbye."""
+def input_lost(hub: Hub, route: Route, gone: bool = False) -> None:
+    """An input ended without a goodbye; `gone`: its sender knows nothing of it any more."""
+    if _is_pulled(route) and route.declared.topic:
+        return  # its node dials publishers again
     if _is_pulled(route) and not identity.has_proof(route):
         _leave(hub, "from", route.source)
     elif _is_pulled(route) or (route.source.startswith("/") and not _is_address(route.source)):
-        REPAIR.add(hub, route, incoming=True)
+        RECONNECTOR.add(hub, route, incoming=True, gone=gone)
 
 
 def _leave(hub: Hub, way: str, peer: str) -> None:

@@ -15,6 +15,7 @@ from __future__ import annotations
 from typing import Final
 
 from yarpy.errors import (
+    AccessRefused,
     AddressError,
     LinkClosed,
     LoginRefused,
@@ -23,6 +24,7 @@ from yarpy.errors import (
     WrongPort,
     YarpError,
 )
+from yarpy.wire.framing import REFUSED
 
 # From outside one cannot tell whose fault it is that a port cannot connect: its peer may not be
 # there yet, a camera that still starts, a program that died.
@@ -32,6 +34,7 @@ _TABLE: Final[tuple[tuple[type[YarpError], str, type[YarpError]], ...]] = (
     (UnknownName, "Do not know how to connect to {to}", UnknownName),
     (AddressError, "Do not know how to connect to {to}", UnknownName),
     (LoginRefused, "Not admitted to {to}: {why}", LoginRefused),
+    (AccessRefused, "No access to {to}: {why}", AccessRefused),
     (NotAllowed, "{why}", NotAllowed),
     (YarpError, "Cannot connect to {to}: {why}", LinkClosed),
 )
@@ -52,7 +55,7 @@ def line(error: YarpError, to: str) -> str:
 def error(line: str, what: str) -> YarpError:
     """What the answer `line` of a port to the request `what` means. What is like no other row is
     a reason of that port's own."""
-    kind: type[YarpError] = NotAllowed
+    kind: type[YarpError] = AccessRefused if line.startswith(REFUSED) else NotAllowed
     for _, form, meant in _TABLE:
         start = form.partition("{")[0]
         if start and line.startswith(start):

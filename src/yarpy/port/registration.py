@@ -11,6 +11,7 @@ import os
 from collections.abc import Callable
 from typing import Final
 
+from yarpy.config import access_file
 from yarpy.config.configuration import port_name
 from yarpy.contact import Contact, check_name
 from yarpy.errors import AddressError, LinkClosed, NoNameServer, Timeout, YarpError
@@ -21,6 +22,7 @@ from yarpy.names.default import DEFAULT, secret
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.port.probe import who
 from yarpy.registry import carriers
+from yarpy.route import Declared
 from yarpy.transports.bind import SETTING, listening_host
 
 log = logger("yarpy.port")
@@ -30,20 +32,30 @@ BUSY: Final = 3.0  # seconds for a port that lives to say so
 
 class Registration:
     """What of a port is known to others. `names` None: the default service; `register` False: no
-    name service. `port` is the number of the listening socket, `contact` where that is found.
+    name service; `renamed`: the environment was asked for another name already. `port` is the
+    number of the listening socket, `contact` where that is found.
 
     Raises AddressError (name unusable), NoNameServer.
     """
 
-    def __init__(self, name: str, names: NameClient | None, port_type: str, register: bool) -> None:
+    def __init__(
+        self,
+        name: str,
+        names: NameClient | None,
+        port_type: str,
+        register: bool,
+        renamed: bool = False,
+    ) -> None:
         self.type = port_type
+        self.declared = Declared(type=port_type)
         self.port = 0
         self.contact: Contact
         self.group_name = ""  # the temporary name of our multicast group
         self.key = secret()
+        access_file.current()  # a broken file is told before anybody hears of the port
         self.registered = register and bool(name)
         if name and not name.startswith(("...", "=")):
-            name = check_name(port_name(name, os.environ))
+            name = check_name(name if renamed else port_name(name, os.environ))
         self.name = name
         self._has_name = False  # in the name service
         self.names = names

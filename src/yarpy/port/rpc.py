@@ -12,11 +12,13 @@ from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, YarpError
 from yarpy.link.outbound import Outbound
 from yarpy.log import logger
 from yarpy.names.base import NameClient
+from yarpy.names.node_name import CLIENT, SERVER
 from yarpy.port import connecting
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
 from yarpy.port.connection import ConnectionEvent, PortConnection
 from yarpy.port.mailbox import Callback, Mailbox
+from yarpy.port.part import Part
 from yarpy.route import Route
 from yarpy.wire.message import CALL, UNSENDABLE, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
@@ -31,8 +33,8 @@ class RpcServer(BasePort):
 
     The handler runs in the connection's thread, so calls of different clients run side by side;
     with `lock` one at a time. What it raises is answered as `[fail] "reason"` and logged. It may
-    also call `message.reply(...)` itself. Without `register` no name service hears of it. Other
-    parameters as `Port`.
+    also call `message.reply(...)` itself. Without `register` no name service hears of it; `part` is
+    what it does in the graph of another system. Other parameters as `Port`.
     """
 
     def __init__(
@@ -47,6 +49,7 @@ class RpcServer(BasePort):
         limit: int = DEFAULT_LIMIT,
         on_connection: Callable[[ConnectionEvent], None] | None = None,
         register: bool = True,
+        part: Part | None = None,
     ) -> None:
         self._handler = handler
         self._opened = threading.Event()  # a client may be there before this constructor is done
@@ -62,6 +65,8 @@ class RpcServer(BasePort):
                     limit=limit,
                     on_connection=on_connection,
                     register=register,
+                    category=SERVER,
+                    part=part,
                 )
             )
         finally:
@@ -135,6 +140,7 @@ class RpcClient(BasePort):
                 names,
                 tcp_port=tcp_port,
                 rpc=True,
+                category=CLIENT,
                 limit=limit,
                 on_connection=on_connection,
             )

@@ -1,4 +1,4 @@
-"""Axis: what is known of a joint before it moves - its name, its range, its top speed.
+"""Axis: the fixed properties of a joint - its name, its range, its top speed.
 
 Angles in degrees, positions of a sliding axis in millimetres.
 """
@@ -11,12 +11,12 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One joint. `top_speed` and `top_acceleration` are what its motor can do at most."""
+    """One joint. `top_speed` and `top_acceleration` are the limits of its motor."""
 
     name: str
     lowest: float
     highest: float
-    speed: float = 100.0  # of a trajectory, unless another is set
+    speed: float = 100.0  # default for trajectories
     acceleration: float = 1000.0
     top_speed: float = 300.0
     top_acceleration: float = 20_000.0

@@ -32,7 +32,7 @@ class Board(Generic[J]):
             return [joint.position for joint in joints]
 
     def timestamps(self) -> list[float]:
-        """When the encoders were read last."""
+        """When the encoders were last read."""
         return [self._time] * len(self.axis_names)
 
     def encoder_speeds(self) -> list[float]:
@@ -42,7 +42,7 @@ class Board(Generic[J]):
         return self._each(lambda joint: joint.acceleration)
 
     def motor_encoders(self) -> list[float]:
-        return self._each(lambda joint: joint.position)  # each joint has a motor of its own
+        return self._each(lambda joint: joint.position)  # each joint has its own motor
 
     def motor_speeds(self) -> list[float]:
         return self.encoder_speeds()
@@ -94,7 +94,7 @@ class Board(Generic[J]):
         self._command(joints, known, Reference.switch)
 
     def home(self, joints: Sequence[int]) -> None:
-        """Move to zero, or as near to it as the limits are."""
+        """Move to zero, or as close as the limits allow."""
 
         def go(reference: Reference, _: int) -> None:
             reference.switch(ControlMode.POSITION)

@@ -1,11 +1,10 @@
-"""Body: joints and the time that passes for them.
+"""Body: joints, and their simulated time.
 
     with body.present() as joints:      # the joints as they are now; nothing moves in here
         print(joints[0].position)
 
 Rules: a body has no thread. Time passes on demand: `present` first lets the joints catch up with
-the clock. The clock is an argument, so a test decides what time it is. Any thread may call, one at
-a time.
+the clock. The clock is an argument, so tests can set the time. Any thread may call, one at a time.
 """
 
 from __future__ import annotations
@@ -20,8 +19,8 @@ from yarpy.sim.joint import Joint
 
 J = TypeVar("J", bound=Joint)
 
-STEP: Final = 0.005  # seconds of one step, at most
-MEMORY: Final = 5.0  # seconds to catch up with, at most
+STEP: Final = 0.005  # longest step, seconds
+MEMORY: Final = 5.0  # most seconds to catch up with
 
 Clock = Callable[[], float]
 
@@ -32,8 +31,8 @@ class Body(Generic[J]):
     def __init__(self, joints: Sequence[J], clock: Clock = time.time) -> None:
         self.joints = tuple(joints)
         self._clock = clock
-        self.time = clock()  # that the joints have reached
-        self._lock = threading.RLock()  # board, cameras and sensors look from threads of their own
+        self.time = clock()  # the time that the joints have reached
+        self._lock = threading.RLock()  # board, cameras and sensors have their own threads
 
     @contextmanager
     def present(self) -> Iterator[tuple[J, ...]]:

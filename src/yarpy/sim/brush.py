@@ -1,10 +1,9 @@
-"""Brush: puts the textures of flat surfaces into a frame, the fast way for numpy.
+"""Brush: paints the textures of flat surfaces into a frame, in the way that is fast with numpy.
 
-Rules: what to paint is given as rows from `left` to `right` for each surface (`lens.Spans`) and as
-matrices from pixels to texels. Large surfaces are painted one by one, all arithmetic for a
-rectangle of pixels at once; small ones all together, as one list of pixels, because their cost is
-the number of calls. Work arrays are made once: allocating them for each picture would cost more
-than the arithmetic.
+Rules: each surface is given as rows from `left` to `right` (`lens.Spans`) and a matrix from pixels
+to texels. Large surfaces are painted one by one, a whole rectangle of pixels per operation; small
+ones all together, as one list of pixels, because the number of calls dominates their cost. Work
+arrays are allocated once: allocating them for each picture would cost more than the arithmetic.
 """
 
 from __future__ import annotations
@@ -50,7 +49,7 @@ class Brush:
 
         high, wide = box.bottom - box.top, box.right - box.left
         out = self._places[: 3 * high * wide].reshape(3, high, wide)
-        # A sum over rows and columns, as a product of matrices: that is the fastest way.
+        # A sum over rows and columns as a matrix product, which is the fastest way.
         columns = self._columns[:, :, :wide]
         columns[:, 0] = matrix[:, 1, None]
         np.multiply(matrix[:, 0, None], self._x[box.left : box.right], out=columns[:, 1])
@@ -71,7 +70,7 @@ class Brush:
     ) -> None:
         """Paint surface `number` from `left` to `right` (height,), all of which is in `box`.
 
-        first: the rest of the box will be painted over, so it may get any value.
+        first: the rest of the box will be painted over, so it may contain anything.
         """
         import numpy as np
 
@@ -86,7 +85,7 @@ class Brush:
         texels = self._texels[:size].reshape(high, wide)
         self._flat[number].take(row, out=texels, mode="clip")
         left, right = left[box.top : box.bottom], right[box.top : box.bottom]
-        # A side of a convex surface bends outwards: what holds at both ends holds between them.
+        # The sides of a convex surface bulge outwards: what holds at both ends holds in between.
         full = max(left[0], left[-1]) <= box.left and min(right[0], right[-1]) >= box.right
         if full or first:
             box.of(frame)[...] = texels
@@ -111,7 +110,7 @@ class Brush:
         first = left[which, row].astype(np.intp)
         length = right[which, row] - first
         past = np.cumsum(length)
-        shift = first - past + length  # from the place in the list to x
+        shift = first - past + length  # from the index in the list to x
         # For each row of each surface: u, v, 1/z as functions of x; where its texture begins.
         matrix = matrices[which]
         table = np.empty((6, len(which)), "f4")

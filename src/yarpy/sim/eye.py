@@ -1,7 +1,7 @@
 """Eye: a camera of a head, for `yarpy.devices.FrameGrabberServer`.
 
-The eyes of a head share a shutter: pictures that are taken at about the same time show the same
-moment and have the same time stamp, like those of a pair of cameras with one trigger.
+The eyes of a head share a shutter: pictures taken at about the same time show the same moment and
+have the same time stamp, like those of two cameras with a common trigger.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from yarpy.sim.renderer import Renderer
 from yarpy.sim.scene import Scene
 
 LARGEST: Final = 2048  # pixels, either way
-PAIR: Final = 0.015  # seconds between two pictures that are one pair
+PAIR: Final = 0.015  # most seconds between the two pictures of a pair
 
 
 class Shutter:
-    """Lets each eye see a moment once, and the other eye the same moment if it looks soon after."""
+    """Shows each eye a moment once, and the other eye the same moment if it looks soon after."""
 
     def __init__(self, body: Body[Joint]) -> None:
         self._body = body
-        self._lock = threading.Lock()  # each eye looks from a thread of its own
+        self._lock = threading.Lock()  # each eye has its own thread
         self._angles: list[float] = []
         self._seen: set[Side] = set()
         self.time = body.time
@@ -56,7 +56,7 @@ class Eye:
         self._time = shutter.time
 
     def image(self) -> Image:
-        """What the eye sees now, as rgb in memory of its own."""
+        """What the eye sees now, as rgb in its own memory."""
         angles, self._time = self._shutter.open(self._side)
         return Image(self._renderer.render(eye_pose(angles, self._side), self._time))
 
@@ -66,7 +66,7 @@ class Eye:
 
     @property
     def resolution(self) -> tuple[int, int]:
-        """Width and height in pixels; the field of view stays."""
+        """Width and height in pixels; changing them keeps the field of view."""
         lens = self._renderer.lens
         return lens.width, lens.height
 
@@ -74,7 +74,7 @@ class Eye:
     def resolution(self, size: tuple[int, int]) -> None:
         width, height = size
         if not (16 <= width <= LARGEST and 16 <= height <= LARGEST):
-            raise ValueError(f"{width} x {height} pixels: from 16 to {LARGEST}, either way")
+            raise ValueError(f"{width} x {height} pixels: each side must be 16 to {LARGEST}")
         self._renderer = Renderer(self._scene, width, height)
 
     @property
@@ -88,7 +88,7 @@ class Eye:
 
     @property
     def intrinsics(self) -> dict[str, Any]:
-        """Of a pinhole camera, in pixels."""
+        """Those of a pinhole camera, in pixels."""
         lens = self._renderer.lens
         return {
             "physFocalLength": 0.0,

@@ -1,11 +1,11 @@
 """The head of the simulated robot: where its eyes and its inertial unit are, given its joints.
 
 World: x forward, y to the left, z up, metres; the robot stands at the origin. An eye's own frame,
-as for every camera: x right, y down, z where it looks.
+as for every camera: x right, y down, z in viewing direction.
 
 Positive angles: neck_pitch and eyes_tilt look up, neck_roll tilts to the right shoulder, neck_yaw
 and eyes_version look to the left, eyes_vergence turns the eyes towards each other. Sizes are about
-those of an iCub. Source: rigid-body kinematics, nothing else.
+those of an iCub. Source: rigid-body kinematics.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _H = 1e-4  # seconds, for the change of a speed
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where a frame is: `rotation` turns its vectors into those of the world."""
+    """Where a frame is: `rotation` converts its vectors to world vectors."""
 
     rotation: Rotation
     position: Vector
@@ -44,7 +44,7 @@ class Pose:
 
 @dataclass(frozen=True, slots=True)
 class Inertia:
-    """What an inertial unit feels: deg/s and m/s^2 in its own frame; roll, pitch, yaw in degrees
+    """What an inertial unit measures: deg/s and m/s^2 in its own frame; roll, pitch, yaw in degrees
     of its frame in the world."""
 
     gyroscope: Vector
@@ -72,8 +72,8 @@ def imu_pose(angles: Sequence[float]) -> Pose:
 def inertia(
     angles: Sequence[float], speeds: Sequence[float], accelerations: Sequence[float]
 ) -> Inertia:
-    """What the inertial unit feels: the joints of the neck in degrees, deg/s, deg/s^2. Resting it
-    feels gravity."""
+    """What the inertial unit measures, given the neck joints in degrees, deg/s, deg/s^2. At rest it
+    measures gravity."""
     head = _chain(angles)[-1]
     turning, moving = _imu_velocity(angles, speeds)
     later = [q + v * _H for q, v in zip(angles, speeds, strict=True)]
@@ -89,7 +89,7 @@ def inertia(
 
 
 def _chain(angles: Sequence[float]) -> tuple[Pose, Pose, Pose]:
-    """The frames behind neck_pitch, neck_roll and neck_yaw."""
+    """The frames after neck_pitch, neck_roll and neck_yaw."""
     first = Pose(of.about_y(-angles[0]), NECK)
     second = Pose(of.after(first.rotation, of.about_x(angles[1])), _beyond(first, ROLL))
     third = Pose(of.after(second.rotation, of.about_z(angles[2])), _beyond(second, YAW))
@@ -97,7 +97,7 @@ def _chain(angles: Sequence[float]) -> tuple[Pose, Pose, Pose]:
 
 
 def _beyond(frame: Pose, place: Vector) -> Vector:
-    """A place in a frame, in the world."""
+    """A point given in a frame, in the world."""
     return of.plus(frame.position, of.turned(frame.rotation, place))
 
 

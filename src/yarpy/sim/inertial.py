@@ -20,7 +20,7 @@ class Inertial:
     def __init__(self, body: Body[Joint]) -> None:
         self._body = body
         self._felt: Inertia | None = None
-        self._state: tuple[tuple[float, ...], ...] = ()  # of the joints when it was measured
+        self._state: tuple[tuple[float, ...], ...] = ()  # of the joints at the last measurement
         self._time = body.time
 
     def timestamps(self) -> dict[str, float]:

@@ -1,8 +1,8 @@
-"""Joint: a motor that follows its reference, within what it can do.
+"""Joint: a motor that follows its reference, within its limits.
 
-Rules: no clock; `step(dt)` is all the time there is. The joint follows its reference as a
-critically damped system of second order, solved exactly, so that the length of steps changes
-nothing; acceleration, speed and range have hard limits.
+Rules: no clock; only `step(dt)` advances time. The joint follows its reference as a critically
+damped second-order system, solved exactly, so that the result does not depend on the step length;
+acceleration, speed and range have hard limits.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from yarpy.sim.reference import Reference
 STIFFNESS: Final = 50.0  # rad/s, of the closed loop
 FRICTION: Final = 5.0  # 1/s, when nothing drives the joint
 
-_NEAR = 1e-6  # degrees, and degrees per second, that count as having arrived
+_NEAR = 1e-6  # degrees, and degrees per second, within which the joint has arrived
 _SLOW = 1e-3  # degrees per second at which friction holds an idle joint
 
 
@@ -32,7 +32,7 @@ class Joint:
 
     @property
     def done(self) -> bool:
-        """Whether the joint has arrived where a trajectory leads."""
+        """Whether the joint has arrived at the end of a trajectory."""
         reference = self.reference
         return reference.done and abs(self.position - reference.position) < 0.05
 
@@ -51,7 +51,7 @@ class Joint:
             if abs(self.speed) < _SLOW:
                 self.speed = 0.0
             self._advance(position + (speed + self.speed) / 2 * dt)
-            reference.place(self.position)  # whatever mode comes next begins here
+            reference.place(self.position)  # where the next mode begins
         elif self._arrived():
             self.position, self.speed = reference.position, 0.0
         else:
@@ -82,9 +82,9 @@ class Joint:
         self._advance(position)
 
     def _advance(self, position: float) -> None:
-        """Go to a position, but not out of the range."""
+        """Go to a position, but not beyond the range."""
         lowest, highest = self.reference.limits
-        # Limits can be moved so that the joint is outside: then it waits for its reference.
+        # If limits are changed so that the joint is outside, it waits for its reference.
         if lowest <= self.position <= highest and not lowest <= position <= highest:
             position, self.speed = min(max(position, lowest), highest), 0.0
         self.position = position

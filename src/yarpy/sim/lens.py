@@ -1,8 +1,8 @@
-"""Lens: where points and surfaces of the world lie in a picture.
+"""Lens: where points and surfaces of the world appear in a picture.
 
 A flat surface and its picture are related by a 3 x 3 matrix: with K the camera, R and p its pose,
-M = K R' [u v corner-p] takes (a, b, 1), a place on the surface with a and b from 0 to 1, to the
-pixel (x z, y z, z). The inverse of M takes a pixel (x, y, 1) to (a/z, b/z, 1/z): three linear
+M = K R' [u v corner-p] maps (a, b, 1), a point on the surface with a and b from 0 to 1, to the
+pixel (x z, y z, z). The inverse of M maps a pixel (x, y, 1) to (a/z, b/z, 1/z): three linear
 functions of x and y, which is all that painting a surface needs.
 """
 
@@ -27,7 +27,7 @@ _ENDS: Final = ((0.0, 1.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0), (1.0, 1.0, 1.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A part of the picture, in pixels; the ends are not part of it."""
+    """A part of the picture, in pixels; the ends are exclusive."""
 
     left: int
     top: int
@@ -39,7 +39,7 @@ class Box:
         return self.left >= self.right or self.top >= self.bottom
 
     def common(self, other: Box) -> Box:
-        """The part that both have in common; it may be empty."""
+        """The intersection; it may be empty."""
         return Box(
             max(self.left, other.left),
             max(self.top, other.top),
@@ -57,7 +57,7 @@ NOWHERE: Final = Box(0, 0, 0, 0)
 
 
 def around(one: Box, other: Box) -> Box:
-    """The smallest box that holds both."""
+    """The smallest box that contains both."""
     if one.empty or other.empty:
         return one if other.empty else other
     return Box(
@@ -70,10 +70,10 @@ def around(one: Box, other: Box) -> Box:
 
 @dataclass(frozen=True, slots=True)
 class Spans:
-    """Which pixels show each of some surfaces: in a row one span, as surfaces are convex.
+    """Which pixels show each surface: one span per row, as surfaces are convex.
 
-    left, right: the first pixel of it and the one behind it, (n, height) int16. boxes: one for
-    each surface, empty if it is not in the picture.
+    left, right: its first pixel and the one after its last, (n, height) int16. boxes: one for each
+    surface, empty if it is not in the picture.
     """
 
     left: Array
@@ -81,7 +81,7 @@ class Spans:
     boxes: Sequence[Box]
 
     def within(self, box: Box) -> tuple[Array, Array]:
-        """The spans as far as they are in a box."""
+        """The spans clipped to a box."""
         import numpy as np
 
         left, right = np.full_like(self.left, 0), np.full_like(self.right, 0)
@@ -124,7 +124,7 @@ class Lens:
         return found
 
     def spans(self, inverses: Array) -> Spans:
-        """Where surfaces are seen, given the inverses of their matrices (n, 3, 3).
+        """Where surfaces are visible, given the inverses of their matrices (n, 3, 3).
 
         A pixel (x, y) is on a surface if 0 <= a <= 1 and 0 <= b <= 1: four inequalities, linear
         in x.
@@ -135,13 +135,13 @@ class Lens:
         edges[0], edges[1], depth = inverses.transpose(1, 0, 2)
         np.subtract(depth, edges[:2], out=edges[2:])
         slope = edges[:, :, 0]
-        # An edge along the rows: a tiny slope instead of none, so that it ends far outside, on
-        # either side.
+        # An edge parallel to the rows gets a tiny slope instead of none, so that it ends far
+        # outside on either side.
         slope[abs(slope) < 1e-12] = 1e-12
         edges[:, :, 1:] /= -slope[:, :, None]
         of_y, rest = edges[:, :, 1:].astype("f4").transpose(2, 0, 1)
         ends = of_y[:, :, None] * self._rows
-        # Those on the left bound spans from below and those on the right from above.
+        # Rising edges bound spans on the left, the others on the right.
         rising = slope > 0
         left = (ends + np.where(rising, rest, -np.inf)[:, :, None]).max(0)
         right = (ends + np.where(rising, np.inf, rest + 1)[:, :, None]).min(0)
@@ -163,7 +163,7 @@ class Lens:
         return [Box(*each) if each[0] < each[2] else NOWHERE for each in found]
 
     def bounds(self, matrix: Array) -> Box:
-        """A box around one surface, given its matrix; empty if a part of it is behind us."""
+        """A box around one surface, given its matrix; empty if part of it is behind the camera."""
         x, y, z = (matrix @ _ENDS).tolist()
         if min(z) < NEAR:
             return NOWHERE
@@ -171,7 +171,7 @@ class Lens:
         return self.box(min(x), min(y), max(x), max(y))
 
     def box(self, left: float, top: float, right: float, bottom: float) -> Box:
-        """The pixels between these places, as far as they are in the picture."""
+        """The pixels between these positions, clipped to the picture."""
         width, height = self.width, self.height
         return Box(
             int(min(max(left, 0), width)),
@@ -181,7 +181,7 @@ class Lens:
         )
 
     def point(self, pose: Pose, place: Vector) -> Vector:
-        """Pixel x, y and the depth in metres of a place in the world."""
+        """Pixel x, y and the depth in metres of a point in the world."""
         p, q, r = pose.position
         x, y, depth = seen_from(pose.rotation, (place[0] - p, place[1] - q, place[2] - r))
         scale = self.focal / max(depth, 1e-9)

@@ -1,8 +1,8 @@
 """Cameras of a MuJoCo model, for `yarpy.devices.FrameGrabberServer`.
 
-Rules: an OpenGL context belongs to one thread, so all cameras of a model share a painter with a
-thread of its own. Shadows are drawn coarser than MuJoCo would draw them: without a graphics card
-they take nine tenths of the time.
+Rules: an OpenGL context belongs to one thread, so all cameras of a model share a painter with its
+own thread. Shadows are coarser than MuJoCo's default: without a graphics card they would take nine
+tenths of the time.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from yarpy.data.image import Image
 from yarpy.errors import UnknownPlugin
 from yarpy.sim.mujoco_model import Model, mujoco
 
-SHADOWS: Final = 1024  # pixels of a map of shadows
-SAMPLES: Final = 2  # samples of a pixel, against jagged edges
+SHADOWS: Final = 1024  # pixels of a shadow map
+SAMPLES: Final = 2  # samples per pixel, against jagged edges
 FREE: Final = -1  # the view that MuJoCo offers for every model
 PATIENCE: Final = 30.0  # seconds for a picture; a driver may hang
 
 _ADVICE: Final = (
-    "pictures of a MuJoCo model take OpenGL: on Debian apt-get install libegl1 libgl1-mesa-dri, "
+    "pictures of a MuJoCo model need OpenGL: on Debian apt-get install libegl1 libgl1-mesa-dri, "
     "or with MUJOCO_GL=osmesa libosmesa6"
 )
 
@@ -53,7 +53,7 @@ class Painter:
                 raise RuntimeError(Painter._spoiled)
             self._renderer: Any = self._do(self._open)
         except Exception as error:
-            # Once MuJoCo has failed, another try would hang for ever, and Python with it.
+            # Once MuJoCo has failed, another attempt would hang forever, and Python with it.
             Painter._spoiled = Painter._spoiled or str(error) or type(error).__name__
             self._work.put(None)
             how = os.environ.get("MUJOCO_GL", "")
@@ -90,7 +90,7 @@ class Painter:
         renderer = mujoco().Renderer(self._model.model, height, width)
         with self._model.present():
             renderer.update_scene(self._model.data)
-        renderer.render()  # errors show now
+        renderer.render()  # so that errors appear now
         return renderer
 
     def _paint(self, camera: int) -> tuple[Image, float]:

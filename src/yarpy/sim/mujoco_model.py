@@ -1,11 +1,10 @@
 """A MuJoCo model as a robot: joints with actuators, in the time of `Body`.
 
-Whatever kind of actuator drives a joint, the joint follows its reference: actuators for positions
-and speeds get the setpoint, motors get the torque that a critically damped controller with
-knowledge of the model asks for. Angles are degrees outside and radians in MuJoCo, lengths
-millimetres outside and metres there.
+A joint follows its reference whatever kind of actuator drives it: position and velocity actuators
+get the setpoint, motors the torque computed by a critically damped, model-based controller. Angles
+are degrees outside and radians in MuJoCo, lengths millimetres outside and metres there.
 
-Rules: nothing of MuJoCo is imported before a model is asked for; only `load` does.
+Rules: only `load` imports MuJoCo.
 """
 
 from __future__ import annotations
@@ -20,9 +19,9 @@ from yarpy.sim.axis import Axis
 from yarpy.sim.body import Body, Clock
 from yarpy.sim.joint import Joint
 
-MISSING: Final = "this takes MuJoCo: pip install 'yarpy[sim]' (or pip install mujoco)"
+MISSING: Final = "this needs MuJoCo: pip install 'yarpy[sim]' (or pip install mujoco)"
 STIFFNESS: Final = 20.0  # rad/s, of the controllers for motors and speeds
-LONGEST: Final = 0.1  # simulated seconds of one catch-up; beyond that the model falls behind
+LONGEST: Final = 0.1  # most simulated seconds per catch-up; beyond that the model falls behind
 ENDLESS: Final = 1e6  # the range of a joint without limits
 
 Drive = Literal["position", "velocity", "motor"]
@@ -37,7 +36,7 @@ def mujoco() -> Any:
     if sys.platform == "linux":
         from ctypes.util import find_library
 
-        # Decided when the module is imported. EGL draws without a display, and in any thread.
+        # MuJoCo reads this when it is imported. EGL draws without a display, in any thread.
         if find_library("EGL"):
             os.environ.setdefault("MUJOCO_GL", "egl")
         elif not os.environ.get("DISPLAY"):
@@ -46,7 +45,7 @@ def mujoco() -> Any:
         return importlib.import_module("mujoco")
     except ImportError as error:
         raise UnknownPlugin(MISSING) from error
-    except Exception as error:  # of the libraries for pictures that MUJOCO_GL chose
+    except Exception as error:  # from the graphics libraries that MUJOCO_GL chose
         raise UnknownPlugin(
             f"MuJoCo cannot be imported with MUJOCO_GL={os.environ.get('MUJOCO_GL')}: {error}"
         ) from error
@@ -68,11 +67,11 @@ class ModelJoint(Joint):
 
     @property
     def done(self) -> bool:
-        """Whether a trajectory is over and the joint rests; weak actuators do not quite arrive."""
+        """Whether a trajectory is over and the joint rests; weak actuators may not quite arrive."""
         return self.reference.done and abs(self.speed) < 1.0
 
     def read(self, data: Any) -> None:
-        """Take the joint's state over from the model."""
+        """Take the joint's state from the model."""
         self.position = float(data.qpos[self._place]) * self._unit
         self.speed = float(data.qvel[self._freedom]) * self._unit
         self.acceleration = float(data.qacc[self._freedom]) * self._unit
@@ -102,7 +101,7 @@ class ModelJoint(Joint):
 
 
 class Model(Body[ModelJoint]):
-    """A model in motion; `joints` are those that an actuator drives."""
+    """A running model; `joints` are those driven by an actuator."""
 
     def __init__(self, model: Any, name: str, clock: Clock = time.time) -> None:
         self._engine = mujoco()
@@ -129,7 +128,7 @@ class Model(Body[ModelJoint]):
             joint.read(self.data)
 
     def name_of(self, kind: str, number: int) -> str:
-        """The name of an object, or one that says which it is."""
+        """The name of an object, or a generated one."""
         which = getattr(self._engine.mjtObj, f"mjOBJ_{kind.upper()}")
         return self._engine.mj_id2name(self.model, which, number) or f"{kind}{number}"
 
@@ -176,9 +175,9 @@ class Model(Body[ModelJoint]):
 
 def load(path: str | Path, clock: Clock = time.time) -> Model:
     """The model in an XML (MJCF, URDF) or MJB file. Raises UnknownPlugin (no MuJoCo), ValueError
-    (it is no model), OSError."""
+    (not a model), OSError."""
     engine, path = mujoco(), Path(path)
-    path.open("rb").close()  # a better error than MuJoCo's
+    path.open("rb").close()  # gives a better error than MuJoCo's
     binary = path.suffix.lower() == ".mjb"
     read = engine.MjModel.from_binary_path if binary else engine.MjModel.from_xml_path
     model = read(str(path))

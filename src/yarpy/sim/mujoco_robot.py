@@ -1,4 +1,4 @@
-"""The parts of a robot out of a MuJoCo model, named as those of the simulated head.
+"""The parts of a robot from a MuJoCo model, named like those of the simulated head.
 
 joints            hinges and slides with actuators: a control board
 cam/NAME          its cameras; `cam/free` if it has none
@@ -29,9 +29,8 @@ def mujoco_robot(
 ) -> tuple[str, Parts]:
     """A name for the robot and its parts.
 
-    size: width and height of pictures. warn: called if there are none, because nothing can draw
-    them. Raises UnknownPlugin (no MuJoCo), ValueError (no model, or nothing to serve in it),
-    OSError.
+    size: width and height of pictures. warn: called if pictures cannot be drawn. Raises
+    UnknownPlugin (no MuJoCo), ValueError (not a model, or nothing to serve in it), OSError.
     """
     model = load(path, clock)
     board, sensors, cameras = Board(model), Sensors(model), {}
@@ -53,5 +52,5 @@ def mujoco_robot(
 
 
 def _plain(name: str) -> str:
-    """A name in the form of port names."""
+    """A name made suitable for port names."""
     return re.sub(r"[^A-Za-z0-9_.\-/]+", "_", name).strip("/") or "_"

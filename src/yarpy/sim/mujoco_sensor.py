@@ -9,7 +9,7 @@ from typing import Any, Final
 from yarpy.sim.mujoco_model import Model, mujoco
 from yarpy.sim.rotation import Rotation, Vector, roll_pitch_yaw
 
-#: Kinds of sensors of MuJoCo -> the method of a device that gives them.
+#: MuJoCo's kind of sensor -> the method of a device that returns it.
 KINDS: Final = {
     "gyro": "gyroscopes",
     "accelerometer": "accelerometers",

@@ -1,11 +1,11 @@
-"""Picture: an image that a program paints once, to be the skin of a surface.
+"""Picture: an image that a program paints once, used as the texture of a surface.
 
     wall = Picture(2.0, 1.0, (0.8, 0.8, 0.7))        # 2 m wide, 1 m high, a colour
     wall.rectangle(0.5, 0.2, 1.0, 0.8, (0.2, 0.3, 0.6))
     texels = wall.texels()                           # (64, 128) uint32
 
-Colours are red, green, blue from 0 to 1; places are metres from the corner where the surface
-begins. Slow to make, fast to use: `texels` has one integer for each texel, bytes r, g, b, 0.
+Colours are red, green, blue from 0 to 1; positions are metres from the surface's corner. Slow to
+make, fast to use: `texels` has one integer for each texel, bytes r, g, b, 0.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Colour: TypeAlias = tuple[float, float, float]
 
-DENSITY: Final = 64  # texels for a metre
+DENSITY: Final = 64  # texels per metre
 
 
 class Picture:
@@ -37,7 +37,7 @@ class Picture:
         self.array[self._between(low, high), self._between(left, right)] = colour
 
     def checker(self, size: float, colour: Colour) -> None:
-        """Paint every other square of a chess board."""
+        """Paint every other square of a chessboard."""
         row, column = self._grid()
         self.array[((row // size) + (column // size)) % 2 == 1] = colour
 
@@ -50,7 +50,7 @@ class Picture:
             part[:] = colour
 
     def window(self, left: float, low: float, right: float, high: float) -> None:
-        """Paint a window with a white frame; outside there are hills below a sky."""
+        """Paint a window with a white frame, with hills and sky outside."""
         import numpy as np
 
         self.rectangle(left - 0.06, low - 0.06, right + 0.06, high + 0.06, (0.95, 0.95, 0.94))
@@ -66,7 +66,7 @@ class Picture:
         self.rectangle(middle - 0.02, low, middle + 0.02, high, (0.95, 0.95, 0.94))
 
     def gradient(self, low: float, high: float) -> None:
-        """Let the brightness go from `low` at the first row to `high` at the last."""
+        """Change the brightness from `low` at the first row to `high` at the last."""
         import numpy as np
 
         self.array *= np.linspace(low, high, len(self.array))[:, None, None]
@@ -84,7 +84,7 @@ class Picture:
         self.array *= (1 - depth * near**2 * (3 - 2 * near))[..., None]
 
     def grain(self, amount: float, stretch: int = 1, seed: int = 1) -> None:
-        """Roughen it, as wood or plaster; `stretch` is how long the grains are, in texels."""
+        """Roughen it like wood or plaster; `stretch` is the length of the grains in texels."""
         import numpy as np
 
         rows, columns = self.array.shape[:2]
@@ -93,7 +93,7 @@ class Picture:
         self.array *= 1 + amount * smooth[..., None]
 
     def texels(self) -> NDArray[np.uint32]:
-        """The picture as integers, the same way up."""
+        """The picture as integers, in the same orientation."""
         import numpy as np
 
         bytes_ = (np.clip(self.array, 0, 1) * 255).round().astype("<u4")
@@ -104,7 +104,7 @@ class Picture:
         return slice(max(0, round(start * self.density)), max(0, round(stop * self.density)))
 
     def _grid(self) -> tuple[Any, Any]:
-        """Where the texels' centres are, in metres: rows, columns."""
+        """The centres of the texels in metres: rows, columns."""
         import numpy as np
 
         rows, columns = self.array.shape[:2]

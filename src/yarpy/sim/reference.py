@@ -1,13 +1,13 @@
-"""Reference: where a joint should be at this moment, given what it was told to do.
+"""Reference: where a joint should be at this moment, given its commands.
 
     pos     minimum-jerk trajectory from here to a target
     vel     a speed, reached with the reference acceleration
-    posd    a position now; a distant one is reached as fast as the motor can
+    posd    a position now; a distant one is reached as fast as the motor allows
     mix     trajectories and speeds, whichever was commanded last
     idl     idle: no reference is followed
 
-Rules: no clock; `step(dt)` is all the time there is. The reference never leaves the limits and is
-continuous in position and speed, also when a command comes in the middle of another one.
+Rules: no clock; only `step(dt)` advances time. The reference never leaves the limits and is
+continuous in position and speed, even when one command interrupts another.
 """
 
 from __future__ import annotations
@@ -75,10 +75,10 @@ class Reference:
         self.speed = 0.0
         self.acceleration = 0.0
         self.target = self.position  # of the last trajectory
-        self.wanted_speed = 0.0  # as it was last commanded
+        self.wanted_speed = 0.0  # as last commanded
         self.direct_target = self.position
         self._doing: Literal["coast", "move", "direct"] = "coast"
-        self._coast = 0.0  # the speed that `coast` is to reach
+        self._coast = 0.0  # the target speed of `coast`
         self._move: Move | None = None
 
     # -- commands -----------------------------------------------------------------------------
@@ -93,7 +93,7 @@ class Reference:
             self.stop()
 
     def move_to(self, target: float) -> None:
-        """Begin a trajectory; its end is within the limits, whatever was asked for."""
+        """Begin a trajectory; its end is clipped to the limits."""
         self._check("pos", "mix")
         lowest, highest = self.limits
         self.target = min(max(target, lowest), highest)
@@ -110,14 +110,14 @@ class Reference:
         self._doing = "move"
 
     def move_at(self, speed: float) -> None:
-        """Turn at this speed until told otherwise, or until the limit."""
+        """Turn at this speed until the next command or the limit."""
         self._check("vel", "mix")
         top = self.axis.top_speed
         self.wanted_speed = self._coast = min(max(speed, -top), top)
         self._doing = "coast"
 
     def go_to(self, position: float) -> None:
-        """Be there now."""
+        """Go there directly."""
         self._check("posd")
         lowest, highest = self.limits
         self.direct_target = min(max(position, lowest), highest)
@@ -145,12 +145,12 @@ class Reference:
 
     @property
     def done(self) -> bool:
-        """Whether no trajectory is on its way."""
+        """Whether no trajectory is running."""
         return self._doing != "move"
 
     @property
     def still(self) -> bool:
-        """Whether time changes nothing any more."""
+        """Whether the passing of time changes nothing."""
         if self._doing == "direct":
             return self.speed == 0 and self.position == self.direct_target
         return self._doing == "coast" and self.speed == 0 == self._coast

@@ -1,10 +1,10 @@
-"""Renderer: what a camera sees of a scene, as pixels, with numpy and nothing else.
+"""Renderer: what a camera sees of a scene, as pixels, with numpy alone.
 
     renderer = Renderer(room(), 320, 240)
     pixels = renderer.render(pose, time)             # (240, 320, 3) uint8
 
 Rules: surfaces are painted from back to front, without a depth buffer: the background is behind
-everything, solids do not touch each other. Still surfaces are painted again only if the camera has
+everything, solids do not touch each other. Static surfaces are repainted only if the camera has
 moved. One thread at a time.
 """
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     Array: TypeAlias = NDArray[Any]
 
-SHADES: Final = 64  # of a colour of a ball
+SHADES: Final = 64  # shades of each colour of a ball
 LIGHT: Final = (-0.45, 0.35, 0.82)  # where it comes from, in the world
 
 _QUARTER: Final = 0x3F3F3F  # what is left of r, g, b after a shift by two
@@ -35,7 +35,7 @@ _QUARTER: Final = 0x3F3F3F  # what is left of r, g, b after a shift by two
 class Renderer:
     """Pictures of `scene`, `width` times `height` pixels.
 
-    focal: the focal length in pixels; without it, the view of an iCub's eye, 64 degrees wide.
+    focal: the focal length in pixels; default: the view of an iCub's eye, 64 degrees wide.
     """
 
     def __init__(
@@ -61,16 +61,16 @@ class Renderer:
         self._y = np.arange(height, dtype="f4")[:, None]
         self._still, self._frame = np.zeros((2, height, width), "u4")
         self._background = np.zeros((height, width, 3), "u1")  # `_still` as bytes
-        self._seen: Pose | None = None  # for which it was painted
-        self._changed: list[Box] = []  # where `_frame` is not `_still`
-        # The faces of solids that are seen from there, the farthest first, and how far they are.
+        self._seen: Pose | None = None  # the pose for which it was painted
+        self._changed: list[Box] = []  # where `_frame` differs from `_still`
+        # The faces of solids visible from there, the farthest first, and their distances.
         self._faces: tuple[Array, Array, Spans, Array] | None = None
 
     def render(self, pose: Pose, time: float) -> NDArray[Any]:
         """What a camera at `pose` sees at `time` (seconds): (height, width, 3), a new array."""
         import numpy as np
 
-        with np.errstate(all="ignore"):  # of pixels that look along a surface
+        with np.errstate(all="ignore"):  # for pixels whose ray runs along a surface
             if pose != self._seen:
                 self._paint_still(pose)
                 self._frame[...] = self._still
@@ -151,14 +151,14 @@ class Renderer:
         return painted
 
     def _paint_shadow(self, pose: Pose, ball: Ball, place: Vector) -> Box:
-        """Darken what is below a ball; the higher it is, the larger is its shadow."""
+        """Darken the ground below a ball; the higher the ball, the larger its shadow."""
         import numpy as np
 
         x, y, z = place
         radius = ball.radius + 0.15 * (z - ball.radius - ball.ground)
         away = np.array([(x - radius, y - radius, ball.ground)]) - pose.position
         if away[0, 2] > -1e-3:
-            return NOWHERE  # the ground is not seen from below
+            return NOWHERE  # the ground is not visible from below
         u, v = np.array([[(2 * radius, 0, 0)], [(0, 2 * radius, 0)]])
         matrix = self.lens.matrices(pose, u, v, away)[0]
         box = self.lens.bounds(matrix)

@@ -3,8 +3,8 @@
     with Robot("/icubSim", icub_head()):             # /icubSim/head/rpc:i, /icubSim/cam/left ...
         ...
 
-Rules: a robot is the sum of its devices: control boards, cameras, sensors. How their ports speak to
-browsers, C++ programs or people is left to the ports.
+Rules: a robot is just its devices: control boards, cameras, sensors. How their ports talk to
+browsers, C++ programs or people is up to the ports.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Parts:
 def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
     """A head like an iCub's in a room: six joints, two eyes, an inertial unit.
 
-    size: width and height of the pictures. clock: what time it is, in seconds.
+    size: width and height of the pictures. clock: returns the time in seconds.
     """
     from yarpy.sim.eye import Eye, Shutter
     from yarpy.sim.inertial import Inertial

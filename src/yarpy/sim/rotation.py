@@ -1,6 +1,6 @@
 """Rotations and vectors of three numbers, as tuples: for so few numbers numpy is slower.
 
-A rotation is three rows; it turns vectors of a frame into those of the frame around it.
+A rotation is three rows; it converts vectors of a frame to those of the frame around it.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ def after(one: Rotation, other: Rotation) -> Rotation:
 
 
 def turned(rotation: Rotation, vector: Vector) -> Vector:
-    """A vector of the frame, seen from the frame around it."""
+    """A vector of the frame, in the frame around it."""
     (a, b, c), (d, e, f), (g, h, i) = rotation
     x, y, z = vector
     return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
 
 
 def seen_from(rotation: Rotation, vector: Vector) -> Vector:
-    """A vector of the frame around it, seen from the frame: the reverse of `turned`."""
+    """A vector of the frame around it, in the frame: the inverse of `turned`."""
     (a, b, c), (d, e, f), (g, h, i) = rotation
     x, y, z = vector
     return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
@@ -61,7 +61,7 @@ def plus(one: Vector, other: Vector) -> Vector:
 
 
 def times(vector: Vector, factor: float) -> Vector:
-    """Longer by a factor."""
+    """The product with a factor."""
     return (vector[0] * factor, vector[1] * factor, vector[2] * factor)
 
 

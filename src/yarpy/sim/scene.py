@@ -1,4 +1,4 @@
-"""Scene: the room in which the simulated robot stands, and what moves in it.
+"""Scene: the room around the simulated robot, and what moves in it.
 
 World: x forward, y to the left, z up, metres; the neck of the robot is above the origin.
 """
@@ -28,7 +28,7 @@ _CREAM: Final = (0.97, 0.92, 0.80)
 class Surface:
     """A rectangle in space: from `corner` along `u` (columns of texels) and `v` (rows).
 
-    It is seen from the side to which u x v points.
+    It is visible from the side to which u x v points.
     """
 
     corner: Vector
@@ -39,7 +39,7 @@ class Surface:
 
 @dataclass(frozen=True, slots=True)
 class Ball:
-    """A ball that bounces along a circle; in two colours, so that one sees it turn."""
+    """A ball that bounces along a circle, in two colours so that its rotation is visible."""
 
     radius: float = 0.055
     colours: tuple[Colour, Colour] = (_RED, _CREAM)
@@ -65,10 +65,10 @@ class Ball:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What there is to see.
+    """Everything visible.
 
-    background: closed around the camera, each in front of those before it. solids: the faces of
-    convex things that stand in front of it and do not touch each other.
+    background: surfaces all around the camera, each in front of those before it. solids: the faces
+    of convex bodies that stand in front of it and do not touch each other.
     """
 
     background: Sequence[Surface]
@@ -92,7 +92,7 @@ def room() -> Scene:
 def block(
     low: Vector, high: Vector, colour: Colour, top: NDArray[Any] | None = None
 ) -> list[Surface]:
-    """A box with its sides along the axes: all faces but the lowest, as lit from above."""
+    """An axis-aligned box, lit from above: all faces except the bottom."""
     (x, y, z), (a, b, c) = low, high
     wide, deep, tall = a - x, b - y, c - z
 
@@ -154,7 +154,7 @@ def _walls() -> list[Surface]:
 
 
 def _wall(width: float, colour: Colour) -> Picture:
-    """Plaster, darker in the corners, with a skirting board; rows go upwards."""
+    """Plaster, darker in the corners, with a skirting board; rows run upwards."""
     wall = Picture(width, _HIGH, colour)
     wall.grain(0.008)
     wall.shade(0, 0, 0, _HIGH, 0.28, 0.5)
@@ -220,7 +220,7 @@ def _right() -> NDArray[Any]:
 
 
 def _back() -> NDArray[Any]:
-    """A board with a chess pattern, as for the calibration of cameras."""
+    """A chessboard pattern, as used to calibrate cameras."""
     wall = _wall(_LEFT - _RIGHT, (0.85, 0.78, 0.78))
     wall.rectangle(1.5, 0.9, 2.9, 1.9, (0.98, 0.98, 0.98))
     for row in range(8):

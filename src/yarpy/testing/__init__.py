@@ -1,11 +1,11 @@
-"""For authors of plug-ins: drive a carrier with bytes, test it whole, names for one test alone.
+"""For authors of plug-ins: drive a carrier with bytes, test it as a whole, isolate names per test.
 
     from yarpy.testing import CarrierConformance
 
     class TestMine(CarrierConformance):
         carrier = MyCarrier
 
-Rules: works without pytest; the fixtures, which need it, are in `yarpy.testing.fixture`.
+Rules: works without pytest, except for the fixtures in `yarpy.testing.fixture`.
 """
 
 from yarpy.testing.conformance import CarrierConformance

@@ -3,9 +3,9 @@
     class TestMine(CarrierConformance):
         carrier = MyCarrier
 
-Rules: methods called `test_*` with plain asserts, as pytest runs them, but without need of it.
+Rules: methods called `test_*` with plain asserts, as pytest runs them, but without needing it.
 First without a transport (`conformance_dialogue`), then between two real ports
-(`conformance_live`). What a carrier's facts (`replies`, `acks`, `spelling`) rule out is not tested.
+(`conformance_live`). Tests that a carrier's facts (`replies`, `acks`, `spelling`) rule out skip.
 """
 
 from __future__ import annotations

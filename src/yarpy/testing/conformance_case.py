@@ -1,7 +1,7 @@
-"""What the conformance suite is about: a carrier, the messages it is tried with, what must arrive.
+"""The settings of the conformance suite: a carrier, the messages to try, and what must arrive.
 
-Rules: no tests here, only the settings that are not among a carrier's facts; the tests
-are in `conformance_dialogue` and `conformance_live`.
+Rules: no tests here, only settings that are not among a carrier's facts; the tests are in
+`conformance_dialogue` and `conformance_live`.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ SIZES = (0, 1, 100, 4095, 4096, 4097, 16384, 65535, 65536, 65537, 300_000)
 
 
 class ConformanceCase:
-    """A carrier on trial; each attribute and method may be overridden.
+    """A carrier under test; each attribute and method may be overridden.
 
-    modifiers: what follows the carrier's name in connections, such as `+ack`.
+    modifiers: appended to the carrier's name in connections, such as `+ack`.
     names_sender: the acceptor learns who dialled. carries_envelopes: envelopes arrive.
-    values: messages to send; put in what your spelling can carry if it is not everything.
+    values: messages to send; replace them if your carrier cannot carry all of these.
     patience: seconds that a live connection may take.
     """
 

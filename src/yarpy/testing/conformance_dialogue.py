@@ -1,7 +1,7 @@
 """What a carrier must do without a transport: recognition, greeting, messages, bad peers.
 
-Rules: two sides drive each other by hand (`yarpy.testing.drive`), whole and byte by byte, so that
-what fails is the protocol and nothing else.
+Rules: two sides are driven by hand (`yarpy.testing.drive`), with whole messages and byte by byte,
+so that any failure is in the protocol.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ class DialogueConformance(ConformanceCase):
         carrier = self.carrier
         assert issubclass(carrier, Carrier), f"{carrier.__name__} is not a Carrier"
         assert carrier.name, f"{carrier.__name__} has no name"
-        assert "+" not in carrier.name, "`+` begins a modifier"
-        assert ":" not in carrier.name, "`:` ends a carrier"
+        assert "+" not in carrier.name, "the name contains `+`, which begins a modifier"
+        assert ":" not in carrier.name, "the name contains `:`, which ends a carrier"
         assert len(carrier.magic) <= MAGIC_SIZE, f"the magic has more than {MAGIC_SIZE} bytes"
         assert carrier.spelling in ("binary", "text", "object"), carrier.spelling
         assert isinstance(carrier.delivery, Delivery), f"delivery is {carrier.delivery!r}"
@@ -50,20 +50,20 @@ class DialogueConformance(ConformanceCase):
         assert chosen is self.carrier, f"{chosen.__name__} was chosen"
 
     def test_others_are_left_alone(self) -> None:
-        """The shipped carriers, and bytes that nobody knows, are not taken for this one."""
+        """The shipped carriers, and unknown bytes, are not mistaken for this one."""
         for name in registry.SHIPPED["carriers"]:
             other = registry.carriers.load(name)
             if other is self.carrier:
                 continue
             first = _opening(other)
             if not other.recognises(first):
-                continue  # it begins as another one, such as tls as tcp
+                continue  # it begins like another one, as tls does like tcp
             own = self.carrier.recognises(first)
             assert own < other.recognises(first), (
-                f"a connection of {name} would be taken for {self.carrier.name}"
+                f"a connection of {name} would be mistaken for {self.carrier.name}"
             )
         for first in (b"GARBAGE!", bytes(8), b"\r\n" * 4, b"connect ", b"\xff" * 8):
-            assert not self.carrier.recognises(first), f"{first!r} is taken for a greeting"
+            assert not self.carrier.recognises(first), f"{first!r} is mistaken for a greeting"
 
     # -- greeting ---------------------------------------------------------------------------------
 
@@ -107,7 +107,7 @@ class DialogueConformance(ConformanceCase):
                         self._acknowledge(talk)
 
     def test_messages_of_all_sizes_arrive(self) -> None:
-        """Around the sizes where buffers change."""
+        """Sizes around those at which buffering changes."""
         talk = self._greeted()
         for size in self.sizes:
             value = self.of_size(size)
@@ -150,11 +150,11 @@ class DialogueConformance(ConformanceCase):
             for value in self.values:
                 self._check(talk.send(value, key=CALL), value)
                 reply = talk.reply(value)
-                assert reply is not None, "the reply was taken for none"
+                assert reply is not None, "the reply was not recognised"
                 self._check(reply, value)
 
     def test_acknowledgements_are_seen(self) -> None:
-        """One for each message; it also ends a call that is left unanswered."""
+        """One for each message; it also ends a call without a reply."""
         talk = self._greeted()
         talk.send(self.values[0])
         _, carrier = talk.receiver
@@ -170,14 +170,14 @@ class DialogueConformance(ConformanceCase):
             assert talk.acknowledge(replied=True) is None, "the acknowledgement is read as a reply"
 
     def test_acknowledgements_in_bulk_are_single_ones(self) -> None:
-        """Several at once, written or read, are the same bytes as one by one."""
+        """Several together, written or read, are the same bytes as one by one."""
         talk = self._greeted()
         message = talk.send(self.values[0])
         receiver, writing = talk.receiver
         sender, reading = talk.sender
         assert writing is not None
         if not writing.acks or message.key != DATA:
-            raise SkipTest(f"{self.carrier.name} acknowledges nothing, or calls one by one")
+            raise SkipTest(f"{self.carrier.name} has no acknowledgements, or only one at a time")
         talk.acknowledge()
         for count in (1, 2, 5):
             for _ in range(count):
@@ -185,15 +185,15 @@ class DialogueConformance(ConformanceCase):
             writing.encode_ack(receiver.stream, count)
             talk.pump()
             taken = reading.parse_acks(sender.stream, count - 1)
-            assert 0 <= taken < count, f"{taken} acknowledgements were taken at once"
+            assert 0 <= taken < count, f"parse_acks took {taken} of at most {count - 1}"
             for _ in range(count - taken):
                 sender.begin(reading.expect_ack(sender.stream))
-                assert sender.done, f"{count} were written, {taken} taken at once, then one missing"
+                assert sender.done, f"{count} were written, {taken} taken in bulk, then one missing"
             left = sender.stream.waiting
             assert not left, f"{left} bytes are left of {count} acknowledgements"
 
     def test_quit_ends_in_good_order(self) -> None:
-        """A carrier with a goodbye is understood; one without writes nothing."""
+        """A goodbye is understood; a carrier without one writes nothing."""
         for piece in PIECES:
             talk = self._greeted(piece)
             talk.send(self.values[0])
@@ -205,7 +205,7 @@ class DialogueConformance(ConformanceCase):
     # -- bad peers --------------------------------------------------------------------------------
 
     def test_end_at_any_byte_is_noticed(self) -> None:
-        """A peer that hangs up, wherever in the dialogue, causes one of our errors and no hang."""
+        """A peer that hangs up anywhere in the dialogue causes one of our errors and no hang."""
         wire = self._recorded()
         for size in range(len(wire) + 1):
             end, found = self._reader()
@@ -239,7 +239,7 @@ class DialogueConformance(ConformanceCase):
                     _ = message.value
 
     def test_lengths_are_not_believed(self) -> None:
-        """No four bytes of a message make its reader allocate a gigabyte before it has come."""
+        """No four bytes of a message make its reader allocate a gigabyte before it arrives."""
         wire = self._recorded()
         huge = struct.pack("<i", (1 << 30) - 200)
         for at in range(len(wire) - 3):
@@ -256,7 +256,7 @@ class DialogueConformance(ConformanceCase):
     # -- inside -----------------------------------------------------------------------------------
 
     def _recorded(self) -> bytes:
-        """What a sender says after the greeting: one message."""
+        """The bytes of one message, as sent after the greeting."""
         talk = self._greeted()
         if isinstance(talk.acceptor.stream, ObjectStream):
             raise SkipTest(f"{self.carrier.name} carries objects, not bytes")
@@ -267,7 +267,7 @@ class DialogueConformance(ConformanceCase):
         return end.take()
 
     def _reader(self) -> tuple[End, list[Message]]:
-        """A receiver after its first message that reads on, and what it reads."""
+        """A receiver that goes on reading after its first message, and what it reads."""
         talk = self._greeted()
         talk.send(self.values[0])
         self._acknowledge(talk)
@@ -279,8 +279,8 @@ class DialogueConformance(ConformanceCase):
 
 
 def _opening(carrier: type[Carrier]) -> bytes:
-    """The first eight bytes of a connection over `carrier`; its magic if it never dials, or what
-    it says first depends on a message that it does not carry."""
+    """The first eight bytes of a connection over `carrier`; its magic if it never dials, or if its
+    first bytes depend on a message that it does not carry."""
     talk = Dialogue(carrier)
     try:
         talk.greet()
@@ -292,7 +292,7 @@ def _opening(carrier: type[Carrier]) -> bytes:
 
 
 def _first(talk: Dialogue) -> bytes:
-    """The first eight bytes that the initiator said."""
+    """The first eight bytes that the initiator sent."""
     spoken = (item for who, item in talk.traffic if who == "initiator")
     return b"".join(bytes(item) for item in spoken if not isinstance(item, Message))[:MAGIC_SIZE]
 
@@ -302,7 +302,7 @@ def _encode(carrier: Carrier, stream: ByteStream, value: Any, envelope: str = ""
 
 
 def _several(carrier: Carrier, end: End, count: int, found: list[Message]) -> Any:
-    """Steps that read `count` messages, as a link does it."""
+    """Steps that read `count` messages, as a link does."""
     while len(found) < count:
         message = carrier.parse(end.stream) if end.stream.waiting else None
         found.append((yield from carrier.decode(end.stream)) if message is None else message)

@@ -1,7 +1,7 @@
 """What a carrier must do between two real ports of this process: messages, calls, goodbyes.
 
 Rules: the ports find each other by `LocalNames`, without a server; a carrier that is not installed
-is found by its name for as long as a test takes.
+is registered for the duration of a test.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from yarpy.wire.message import Message
 
 
 class LiveConformance(ConformanceCase):
-    """The carrier on connections that a user would make."""
+    """The carrier on connections as a user makes them."""
 
     def test_live_messages(self) -> None:
-        """Real ports, connected by the carrier's name; every message is counted on both sides."""
+        """Real ports connected by the carrier's name; both sides count every message."""
         with self._offered(), _ports() as (names, sender, receiver):
             self._connect(names, sender, receiver)
             for number, value in enumerate(self.values):
@@ -38,7 +38,7 @@ class LiveConformance(ConformanceCase):
                 _await(
                     lambda end=end: end.stats["messages"] == len(self.values),  # type: ignore[misc]
                     self.patience,
-                    f"of {len(self.values)} messages another number was counted",
+                    f"the count differs from the {len(self.values)} messages sent",
                 )
             assert sender.outputs[0].stats["drops"] == receiver.inputs[0].stats["drops"] == 0
 
@@ -78,7 +78,7 @@ class LiveConformance(ConformanceCase):
                 assert network.disconnect("/sender", "/receiver", names=names)
                 if self.carrier.push:
                     assert not sender.outputs, "the sender keeps its output"
-                else:  # the dialled side notices
+                else:  # the dialled side must notice
                     _await(lambda: not sender.outputs, self.patience, "the sender keeps its output")
                 _await(lambda: not receiver.inputs, self.patience, "the receiver keeps its input")
 
@@ -118,7 +118,7 @@ class LiveConformance(ConformanceCase):
 
     def _read(self, receiver: Port) -> Message:
         message = receiver.read(timeout=self.patience)
-        if message.wants_reply:  # where every message is a call, its connection waits for this
+        if message.wants_reply:  # if every message is a call, the connection waits for this
             message.reply([])
         return message
 

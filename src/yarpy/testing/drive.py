@@ -1,4 +1,4 @@
-"""Carriers without a transport: one side driven by hand, or two against each other.
+"""Drive carriers without a transport: one side by hand, or two against each other.
 
     talk = Dialogue(MyCarrier, piece=1)          # every byte arrives alone
     talk.greet()
@@ -6,7 +6,7 @@
     assert talk.traffic == [("initiator", b"..."), ("acceptor", b"...")]
 
 Rules: pure - no sockets, threads or clock. What a carrier asks of its driver (`Open`, `Switch`,
-`Group`) is granted with made-up places. Two sides that both wait are an error, Stalled.
+`Group`) is granted with simulated places. If both sides wait, that is an error, Stalled.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from yarpy import registry
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
 from yarpy.link.handshake import recognise
 from yarpy.route import Route
-from yarpy.wire.effects import Group, Open, Show, Switch, Within
+from yarpy.wire.effects import Claim, Flush, Group, May, Open, Show, Switch, Within
 from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.steps import Effect, Steps
 from yarpy.wire.stream import DEFAULT_LIMIT, Buffer, ByteStream, DatagramStream, ObjectStream
 
-TCP_PORT = 21602  # what the accepting side of every connection says its number is
+TCP_PORT = 21602  # the port number that the accepting side always gives
 UDP_PORT = 48669
 GROUP = ("224.1.1.3", 21604)
 
 
 class Stalled(AssertionError):
-    """Both sides wait for bytes, or one waits for what the other never says."""
+    """Both sides wait for bytes, or one waits for something the other never sends."""
 
 
 class Handle:
-    """A place that was opened for a carrier: only its number is real."""
+    """A simulated place opened for a carrier: it has only a number."""
 
     def __init__(self, effect: Open) -> None:
         self.effect = effect
@@ -41,10 +41,10 @@ class Handle:
 
 
 class End:
-    """One side of a connection: a stream, and the steps that are running on it.
+    """One side of a connection: a stream, and the steps running on it.
 
-    `outbox` holds what it wrote and was not taken yet; `opened` the places it asked for. With
-    `piece` bytes arrive in portions of that size, and the steps run after each.
+    `outbox` holds output that was not taken yet; `opened` the places it asked for. With `piece`,
+    bytes arrive in portions of that size, and the steps run after each.
     """
 
     def __init__(self, piece: int = 0, limit: int = DEFAULT_LIMIT) -> None:
@@ -57,12 +57,12 @@ class End:
         self._steps: Steps[Any] | None = None
 
     def begin(self, steps: Steps[Any]) -> None:
-        """Run `steps` as far as the bytes that are here take them."""
+        """Run `steps` as far as the available bytes allow."""
         self._steps, self.done, self.result = steps, False, None
         self._advance()
 
     def feed(self, item: Any) -> None:
-        """Bytes from the peer; on a datagram stream one datagram, on an object stream an object."""
+        """Bytes from the peer; one datagram on a datagram stream, an object on an object stream."""
         stream = self.stream
         if isinstance(stream, ObjectStream):
             stream.feed_object(item)
@@ -91,11 +91,11 @@ class End:
         self._advance()
 
     def collect(self) -> None:
-        """Move what was written into the outbox."""
+        """Move output into the outbox."""
         self.outbox += self.stream.take_output()
 
     def take(self) -> bytes:
-        """Everything that was written since the last look, as one."""
+        """Everything written since the last call, joined."""
         self.collect()
         items, self.outbox = self.outbox, []
         return b"".join(bytes(item) for item in items)
@@ -124,8 +124,8 @@ class End:
         if isinstance(effect, Open):
             self.opened.append(effect)
             return Handle(effect)
-        if isinstance(effect, Show | Within):
-            return None  # no pages, and all the time in the world
+        if isinstance(effect, Show | Within | May | Claim | Flush):
+            return None  # no pages, all the time in the world, and no rules
         assert isinstance(effect, Switch)
         self.stream = effect.stream
         return None
@@ -134,9 +134,9 @@ class End:
 class Dialogue:
     """A connection between two carriers of one kind, from the greeting to the goodbye.
 
-    modifiers: what follows the carrier's name (`+ack`). piece: bytes that arrive at once, 0: all.
-    The acceptor is chosen by its first bytes among all installed carriers and `carrier`, as a port
-    does it. `traffic` is what each side said, in order.
+    modifiers: appended to the carrier's name (`+ack`). piece: bytes that arrive together, 0: all.
+    The acceptor is chosen by the first bytes among all installed carriers and `carrier`, as in a
+    port. `traffic` is what each side sent, in order.
     """
 
     def __init__(
@@ -161,7 +161,7 @@ class Dialogue:
     @property
     def sender(self) -> tuple[End, Carrier]:
         """The side that sends data, and its carrier: the one that dialled, unless the carrier
-        pulls."""
+        is a pull carrier."""
         if self.kind.push:
             return self.initiator, self.initiating
         return self.acceptor, self._accepted()
@@ -174,8 +174,7 @@ class Dialogue:
         return self.initiator, self.initiating
 
     def greet(self) -> None:
-        """The greeting, both ways. Where the initiator has nothing to say it ends with the first
-        message."""
+        """The greeting, both ways. If the initiator sends none it ends with the first message."""
         self._welcome = self._choose()
         self.acceptor.begin(self._welcome)
         self.initiator.begin(self.initiating.greet(self.initiator.stream))
@@ -184,20 +183,20 @@ class Dialogue:
             raise Stalled("the greeting is not answered")
 
     def send(self, value: object, envelope: str = "", key: str = DATA) -> Message:
-        """Encode `value` on one side; the message that the other side decodes."""
+        """Encode `value` on one side; returns the message that the other side decodes."""
         end, carrier = self.sender
         carrier.encode(end.stream, Packet(value, envelope.encode(), key))
         return self._received()
 
     def quit(self) -> Message | None:
-        """Say goodbye in the carrier's way; None if it has none."""
+        """Say goodbye as the carrier does; None if it has no goodbye."""
         end, carrier = self.sender
         carrier.encode_quit(end.stream)
         end.collect()
         return self._received() if end.outbox else None
 
     def reply(self, value: object) -> Message | None:
-        """Answer the last message, and acknowledge it if the carrier does so; what the asker
+        """Answer the last message, and acknowledge it if the carrier does; returns what the asker
         reads."""
         end, carrier = self._answering()
         carrier.encode_reply(end.stream, value)
@@ -206,7 +205,7 @@ class Dialogue:
         return self._answered()
 
     def acknowledge(self, replied: bool = False) -> Message | None:
-        """Acknowledge the last message. `replied`: its sender waits for a reply, in vain."""
+        """Acknowledge the last message. `replied`: its sender waits for a reply in vain."""
         end, carrier = self._answering()
         carrier.encode_ack(end.stream, 1)
         if replied:
@@ -219,7 +218,7 @@ class Dialogue:
         return None
 
     def pump(self) -> None:
-        """Carry bytes both ways until none are left to carry."""
+        """Carry bytes both ways until none are left."""
         drive(self.initiator, self.acceptor, self.traffic)
 
     def _choose(self) -> Steps[None]:
@@ -243,12 +242,12 @@ class Dialogue:
 
     def _received(self) -> Message:
         end, _ = self.receiver
-        # A greeting without words goes on until the first message.
+        # A greeting without bytes continues until the first message.
         rest = None if end.done or not self.kind.push else self._welcome
         end.begin(self._read(rest))
         self.pump()
         if not end.done:
-            raise Stalled("the message has no end that the receiver can see")
+            raise Stalled("the receiver cannot find the end of the message")
         message: Message = end.result
         return message
 
@@ -271,7 +270,7 @@ class Dialogue:
         end.begin(_reply_and_ack(carrier, end.stream))
         self.pump()
         if not end.done:
-            raise Stalled("the reply has no end that the asker can see")
+            raise Stalled("the asker cannot find the end of the reply")
         message: Message | None = end.result
         return message
 
@@ -288,7 +287,7 @@ def _reply_and_ack(carrier: Carrier, stream: ByteStream) -> Steps[Message | None
 
 
 def drive(initiator: End, acceptor: End, traffic: list[tuple[str, Any]] | None = None) -> None:
-    """Carry what each side wrote to the other, until nothing is left to carry."""
+    """Carry each side's output to the other, until nothing is left."""
     moved = True
     while moved:
         moved = False
@@ -306,5 +305,5 @@ def drive(initiator: End, acceptor: End, traffic: list[tuple[str, Any]] | None =
 
 
 def said(traffic: Iterable[tuple[str, Buffer]], name: str) -> bytes:
-    """Everything that the `initiator` or the `acceptor` wrote, as one."""
+    """Everything that the `initiator` or the `acceptor` wrote, joined."""
     return b"".join(bytes(item) for who, item in traffic if who == name)

@@ -1,4 +1,4 @@
-"""The same as pytest fixtures: import them into a `conftest.py`.
+"""`yarpy.testing.names` as pytest fixtures: import them into a `conftest.py`.
 
 from yarpy.testing.fixture import name_server, names
 """
@@ -16,13 +16,13 @@ from yarpy.testing.names import private_names, private_server
 
 @pytest.fixture
 def names() -> Iterator[LocalNames]:
-    """Names of this test alone; ports that it opens use them without being told."""
+    """Names private to this test; ports that it opens use them by default."""
     with private_names() as found:
         yield found
 
 
 @pytest.fixture
 def name_server() -> Iterator[NameServer]:
-    """A name server of this test alone, the default while the test runs."""
+    """A name server private to this test, the default while the test runs."""
     with private_server() as server:
         yield server

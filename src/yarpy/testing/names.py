@@ -1,7 +1,7 @@
-"""Names for tests: a world of its own, or a name server that nobody else uses.
+"""Names for tests: private to this process, or on a name server that nobody else uses.
 
-Rules: inside the `with` they are this process's default, so ports need not be told; several can be
-open at once, the innermost counts.
+Rules: inside the `with` they are this process's default, so ports use them without arguments; they
+can be nested, and the innermost counts.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def private_names() -> Iterator[LocalNames]:
 
 @contextmanager
 def private_server() -> Iterator[NameServer]:
-    """A name server on a free number of the loopback, gone at the end.
+    """A name server on a free port number of the loopback, closed at the end.
 
     Its `environment` makes child processes use it: `{**os.environ, **server.environment}`.
     """

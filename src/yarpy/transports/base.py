@@ -1,7 +1,7 @@
 """What a transport is: it moves bytes and knows no protocol.
 
 Rules: blocking calls, no Python-level timeouts (a kernel receive timeout costs nothing per call);
-`interrupt` wakes whoever is inside from another thread; `close` is idempotent. Errors are OSError,
+`interrupt` wakes the threads inside; `close` is idempotent. Errors are OSError,
 mapped to ours by the driver alone.
 """
 
@@ -49,8 +49,15 @@ class Transport(Protocol):
     def send(self, buffers: Sequence[Buffer]) -> None:
         """Send everything."""
 
-    def limit_waiting(self, seconds: float | None) -> None:
-        """Limit the wait of each receive or send; None: for ever."""
+    def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
+        """Send what leaves without waiting; what is left. An empty buffer in that stands for bytes
+        that the transport holds back itself."""
+
+    def wait_writable(self, seconds: float) -> bool:
+        """Wait until something can be sent, or an error is to be had; False if time is over."""
+
+    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
+        """Limit the wait of each receive, and of each send if `sends`; None: for ever."""
 
     def set_dscp(self, tos: int) -> None:
         """Set the IP type-of-service byte (DSCP << 2) of outgoing packets."""
@@ -60,6 +67,11 @@ class Transport(Protocol):
 
     def ended(self) -> bool:
         """Whether the peer has closed its side, without reading anything."""
+
+    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
+        """How many bytes the peer's system has confirmed, and whether it is certain that its
+        program has read them; None: nobody can say. `sent`, `received`: so many went and came
+        here."""
 
     def interrupt(self) -> None:
         """Wake the threads that wait inside; nothing more will be sent or received."""
@@ -110,11 +122,42 @@ class SocketTransport:
         elif buffers:
             send_all(self.sock, buffers)
 
-    def limit_waiting(self, seconds: float | None) -> None:
+    def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
+        rest: list[Buffer] = []
+        try:
+            if len(buffers) == 1 and MSG_DONTWAIT:  # as nearly always
+                sent = self.sock.send(buffers[0], MSG_DONTWAIT)
+                if sent == len(buffers[0]):
+                    return rest
+                return [memoryview(buffers[0])[sent:]]
+            rest = [buffer for buffer in buffers if buffer]
+            if not MSG_DONTWAIT:  # there a send waits until the whole buffer has gone
+                if not (rest and self.wait_writable(0.0)):
+                    return rest
+                self.send(rest)
+                return []
+            while rest:
+                _drop_sent(rest, self.sock.sendmsg(rest[:_IOV_MAX], (), MSG_DONTWAIT))
+        except BlockingIOError:
+            return rest or list(buffers)
+        return rest
+
+    def wait_writable(self, seconds: float) -> bool:
+        number = self.sock.fileno()
+        if number < 0:
+            return True  # closed, as sending tells
+        if not hasattr(select, "poll"):  # Windows
+            return bool(select.select([], [number], [], seconds)[1])
+        poll = select.poll()
+        poll.register(number, select.POLLOUT)
+        return bool(poll.poll(max(0.0, seconds) * 1000))
+
+    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         value = timeval(seconds)
         try:
             self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, value)
-            self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, value)
+            if sends:
+                self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, value)
         except OSError:
             pass  # closed by another thread meanwhile: readers and writers get the error
 
@@ -148,6 +191,9 @@ class SocketTransport:
         except OSError:
             return True
 
+    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
+        return None
+
     def interrupt(self) -> None:
         try:
             self.sock.shutdown(socket.SHUT_RDWR)
@@ -173,11 +219,15 @@ def send_all(sock: socket.socket, buffers: Sequence[Buffer]) -> None:
         return
     rest: list[Buffer] = list(buffers)
     while rest:
-        sent = sock.sendmsg(rest[:_IOV_MAX])
-        while rest and sent >= len(rest[0]):
-            sent -= len(rest.pop(0))
-        if sent:
-            rest[0] = memoryview(rest[0])[sent:]
+        _drop_sent(rest, sock.sendmsg(rest[:_IOV_MAX]))
+
+
+def _drop_sent(rest: list[Buffer], sent: int) -> None:
+    """Take `sent` bytes off the beginning."""
+    while rest and sent >= len(rest[0]):
+        sent -= len(rest.pop(0))
+    if sent:
+        rest[0] = memoryview(rest[0])[sent:]
 
 
 def timeval(seconds: float | None) -> bytes:

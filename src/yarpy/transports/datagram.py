@@ -94,6 +94,11 @@ class DatagramTransport(SocketTransport):
             else:
                 self.sock.sendto(datagram, self._target)
 
+    def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
+        """Datagrams wait for no reader."""
+        self.send(buffers)
+        return []
+
     def connect(self) -> None:
         """Let sending raise an error when the target's port is not open."""
         if self._target is not None:
@@ -170,7 +175,7 @@ class McastReceiver(DatagramTransport):
         self._group = group
         super().limit_waiting(0.25)  # a datagram to wake us would go to the whole group
 
-    def limit_waiting(self, seconds: float | None) -> None:
+    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         """Keeps its own short limit."""
 
     def recv_into(self, view: memoryview) -> int:

@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from queue import Empty, SimpleQueue
+from typing import Any
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.transports.base import Address
@@ -98,7 +99,14 @@ class InprocTransport:
         for item in buffers:
             peer._inbox.put(item)
 
-    def limit_waiting(self, seconds: float | None) -> None:
+    def try_send(self, buffers: Sequence[Any]) -> list[Any]:
+        self.send(buffers)
+        return []
+
+    def wait_writable(self, seconds: float) -> bool:
+        return True
+
+    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         self._timeout = seconds
 
     def set_dscp(self, tos: int) -> None:
@@ -109,6 +117,9 @@ class InprocTransport:
 
     def ended(self) -> bool:
         return self._peer is not None and self._peer._ended
+
+    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
+        return None
 
     def interrupt(self) -> None:
         self._inbox.put(_END)

@@ -1,25 +1,22 @@
 """TCP: where every connection begins.
 
-Rules: TCP_NODELAY always (messages are sent whole); keepalive notices within half a minute a peer
-that vanishes silently, by a cut cable or a power failure; the listening socket takes every local
-address, or the one that `bind` says.
+Rules: TCP_NODELAY always (messages are sent whole); a peer whose host vanishes silently, by a cut
+cable or a power failure, is noticed within half a minute by both sides (`peer_timeout.py`); the
+listening socket takes every local address, or the one that `bind` says.
 """
 
 from __future__ import annotations
 
-import select
 import socket
 import sys
-from typing import Final
 
 from yarpy.errors import AddressError
 from yarpy.transports.base import Address, SocketTransport
 from yarpy.transports.bind import listening_host
+from yarpy.transports.peer_timeout import Vigil, notice_death
+from yarpy.transports.tcp_info import tcp_info
 
 CONNECT_TIMEOUT = 10.0  # seconds, as C++ YARP
-
-# After 10 s of silence the kernel sends keepalive probes, three of them.
-_KEEP_ALIVE: Final = {"TCP_KEEPIDLE": 10, "TCP_KEEPINTVL": 5, "TCP_KEEPCNT": 3}
 
 
 class TcpTransport(SocketTransport):
@@ -27,17 +24,38 @@ class TcpTransport(SocketTransport):
 
     def __init__(self, sock: socket.socket) -> None:
         super().__init__(sock)
+        # Bytes that the peer's system has confirmed already: the dialling side's SYN counts.
+        info = tcp_info(sock)
+        self._origin = info.confirmed if info else 0
         if sock.family != getattr(socket, "AF_UNIX", None):
             sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-            for name, value in _KEEP_ALIVE.items():
-                if hasattr(socket, name):  # not everywhere
-                    sock.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
+            notice_death(sock)
+        self._vigil = Vigil()
 
     def peek(self) -> int:
         """The first byte that comes, left unread; -1 for the end."""
         first = self.sock.recv(1, socket.MSG_PEEK)
         return first[0] if first else -1
+
+    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
+        """How many bytes the peer's system has confirmed, and whether it is certain that its
+        program has read them; None: nobody can say. `sent`, `received`: so many went and came
+        here.
+
+        A system that closes a connection says goodbye (FIN) if the program had read all that came,
+        otherwise it resets it. The goodbye counts as a byte; and what we send after it is not
+        confirmed any more.
+        """
+        info = tcp_info(self.sock)
+        if info is None:
+            return None
+        return info.confirmed - self._origin, info.came == received + 1 and self.ended()
+
+    def spare_slow_reader(self) -> None:
+        """Called now and then while we send: a reader that takes nothing, but whose host answers,
+        may do so for ever."""
+        if self.sock.family != getattr(socket, "AF_UNIX", None) and self._vigil.gives_up(self.sock):
+            self.interrupt()
 
     def limit_unsent(self, size: int) -> None:
         """Limit the unsent bytes in the kernel to `size`, on systems that can."""
@@ -73,7 +91,7 @@ def is_taken(port: int) -> bool:
 class TcpListener:
     """A listening socket on all IPv4 addresses, or the one of YARPY_BIND; `port` 0 for any number.
 
-    `wait` watches it together with connections that have not sent anything yet.
+    `close` also wakes a thread that watches `sock` for something to read.
     """
 
     def __init__(self, port: int = 0) -> None:
@@ -95,19 +113,6 @@ class TcpListener:
         """The next connection, without waiting. Raises BlockingIOError if there is none."""
         sock, raw = self.sock.accept()
         return sock, (str(raw[0]), int(raw[1]))
-
-    def wait(self, silent: dict[int, socket.socket], timeout: float | None) -> list[int]:
-        """File numbers among `silent` and our own that have something to read."""
-        own = self.sock.fileno()
-        if own < 0:
-            return []
-        if not hasattr(select, "poll"):  # Windows
-            ready, _, _ = select.select([own, *silent], [], [], timeout)
-            return list(ready)
-        poll = select.poll()
-        for number in (own, *silent):
-            poll.register(number, select.POLLIN)
-        return [number for number, _ in poll.poll(None if timeout is None else timeout * 1000)]
 
     @property
     def closed(self) -> bool:

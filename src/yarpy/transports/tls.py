@@ -23,7 +23,7 @@ from yarpy.transports.tls_setting import folder, mutual
 from yarpy.wire.stream import Buffer
 
 _RAW: Final = 1 << 17  # bytes that are taken from the socket at once
-_PIECE: Final = 1 << 18  # bytes that are encrypted at once
+_PIECE: Final = 1 << 15  # bytes that are encrypted at once, while the peer decrypts the last ones
 
 
 class NoCertificate(OSError):
@@ -33,14 +33,15 @@ class NoCertificate(OSError):
 class TlsTransport(TcpTransport):
     """A connected TCP socket with TLS on it, after `shake_hands`.
 
-    `host`: the name or address that we dialled; empty: we were dialled.
+    `host`: the name or address that we dialled; empty: we were dialled. `asks_names`: a peer that
+    dialled us is asked for a certificate, and may go without.
     """
 
-    def __init__(self, sock: socket.socket, host: str = "") -> None:
+    def __init__(self, sock: socket.socket, host: str = "", asks_names: bool = False) -> None:
         super().__init__(sock)
         self.host = host
         self._incoming, self._outgoing = ssl.MemoryBIO(), ssl.MemoryBIO()
-        context = client_context() if host else server_context()
+        context = client_context() if host else server_context(asks_names)
         self._tls = context.wrap_bio(
             self._incoming, self._outgoing, server_side=not host, server_hostname=host or None
         )
@@ -48,7 +49,10 @@ class TlsTransport(TcpTransport):
         self._sending = threading.Lock()
         self._reading = threading.Lock()
         self._raw = memoryview(bytearray(_RAW))
+        self._over = False  # the peer has said goodbye
+        self._unsent: list[Buffer] = []  # records for which there was no room
         self._ahead = memoryview(b"")  # read ahead to see whether the peer has gone
+        self._patience: float | None = None  # seconds for a record, as for each wait
 
     def shake_hands(self, deadline: float) -> None:
         """The TLS handshake. Raises ssl.SSLError, and BlockingIOError when it takes too long."""
@@ -69,13 +73,37 @@ class TlsTransport(TcpTransport):
             self._leave()  # also the alert, which tells the peer what is wrong
             self.limit_waiting(None)
 
+    @property
+    def peer_names(self) -> tuple[str, ...]:
+        """The names in the peer's certificate, of its subject and the alternative ones; none if it
+        showed none that our authority has signed."""
+        found: Any = self._tls.getpeercert() or {}
+        subject = [
+            value
+            for part in found.get("subject", ())
+            for kind, value in part
+            if kind == "commonName"
+        ]
+        others = [value for _, value in found.get("subjectAltName", ()) if isinstance(value, str)]
+        return tuple(dict.fromkeys([*subject, *others]))
+
     # -- bytes ------------------------------------------------------------------------------------
+
+    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
+        self._patience = seconds
+        super().limit_waiting(seconds, sends)
 
     def recv_into(self, view: memoryview) -> int:
         with self._reading:
+            due = 0.0
             while (count := self._decrypted(view)) < 0:
                 if not self._take(super().recv_into(self._raw)):
                     return 0
+                if self._patience is not None:  # a record may come byte by byte
+                    now = time.monotonic()
+                    due = due or now + self._patience
+                    if now > due:
+                        raise BlockingIOError("the peer is slow")
             return count
 
     def try_recv_into(self, view: memoryview) -> int:
@@ -90,11 +118,24 @@ class TlsTransport(TcpTransport):
 
     def send(self, buffers: Sequence[Buffer]) -> None:
         with self._sending:
+            if self._unsent:
+                super().send(self._unsent)
+                self._unsent = []
             for piece in _pieces(buffers):
-                with self._lock:
-                    self._tls.write(piece)
-                    records = self._outgoing.read()
-                super().send([records])
+                super().send([self._encrypted(piece)])
+
+    def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
+        with self._sending:
+            self._unsent = super().try_send(self._unsent)
+            pieces = _pieces(buffers)
+            while not self._unsent and (piece := next(pieces, None)) is not None:
+                self._unsent = super().try_send([self._encrypted(piece)])
+            return [b"", *pieces] if self._unsent else []
+
+    def _encrypted(self, piece: Buffer) -> bytes:
+        with self._lock:
+            self._tls.write(piece)
+            return self._outgoing.read()
 
     def ended(self) -> bool:
         if not self._reading.acquire(blocking=False):
@@ -116,6 +157,10 @@ class TlsTransport(TcpTransport):
             return not count
         finally:
             self._reading.release()
+
+    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
+        """Nobody can say: the system counts records, not what is in them."""
+        return None
 
     def close(self) -> None:
         """Say goodbye, if that takes no waiting, and hang up."""
@@ -156,17 +201,17 @@ class TlsTransport(TcpTransport):
             return count
         total = 0
         with self._lock:
-            while total < len(view):
+            # Looking is cheaper than the exception of a read that finds nothing.
+            while total < len(view) and (self._incoming.pending or self._tls.pending()):
                 try:
                     got: Any = self._tls.read(len(view) - total, view[total:])
                 except ssl.SSLWantReadError:
-                    return total or -1
+                    break
                 except ssl.SSLZeroReturnError:
-                    return total
-                if not got:
-                    return total
+                    self._over = True
+                    break
                 total += got
-        return total
+            return total or self._over - 1
 
 
 def _pieces(buffers: Sequence[Buffer]) -> Iterator[Buffer]:
@@ -188,11 +233,13 @@ def dial_tls(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TlsTrans
     return secured(dial(host, port, timeout), host, deadline)
 
 
-def secured(transport: TcpTransport, host: str, deadline: float) -> TlsTransport:
+def secured(
+    transport: TcpTransport, host: str, deadline: float, asks_names: bool = False
+) -> TlsTransport:
     """TLS on an existing connection. `host` empty: we were dialled. Raises as `dial_tls`; the
     connection is closed then."""
     try:
-        made = TlsTransport(transport.sock, host)
+        made = TlsTransport(transport.sock, host, asks_names)
         made.shake_hands(deadline)
     except BaseException:
         transport.close()
@@ -215,10 +262,16 @@ def explained(error: OSError) -> str:
 # -- certificates ---------------------------------------------------------------------------------
 
 
-def server_context() -> ssl.SSLContext:
-    """The context for connections that we accept. Raises NoCertificate."""
+def server_context(asks_names: bool = False) -> ssl.SSLContext:
+    """The context for connections that we accept. Raises NoCertificate.
+
+    `asks_names`: a peer with a certificate is known by it; without an authority to check it against
+    there is nothing to ask.
+    """
     where = folder()
-    return _server(where, mutual(), _age(where))
+    age = _age(where)
+    wish = ssl.CERT_OPTIONAL if asks_names and age[2] else ssl.CERT_NONE
+    return _server(where, ssl.CERT_REQUIRED if mutual() else wish, age)
 
 
 def client_context() -> ssl.SSLContext:
@@ -235,7 +288,7 @@ def _age(where: Path) -> tuple[float, ...]:
 
 
 @lru_cache(maxsize=8)
-def _server(where: Path, both: bool, age: tuple[float, ...]) -> ssl.SSLContext:
+def _server(where: Path, wish: ssl.VerifyMode, age: tuple[float, ...]) -> ssl.SSLContext:
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.minimum_version = ssl.TLSVersion.TLSv1_3
     context.num_tickets = 0  # connections last long; no session is resumed
@@ -243,11 +296,11 @@ def _server(where: Path, both: bool, age: tuple[float, ...]) -> ssl.SSLContext:
         raise NoCertificate(
             f"there is no cert.pem with key.pem in {where}: `yarpy cert` makes both"
         )
-    if both:
+    if wish != ssl.CERT_NONE:
         if not age[2]:
             raise NoCertificate(f"there is no ca.pem in {where} to check others against")
         context.load_verify_locations(where / "ca.pem")
-        context.verify_mode = ssl.CERT_REQUIRED
+        context.verify_mode = wish
     return context
 
 

@@ -93,6 +93,15 @@ class UnixTransport(TcpTransport):
     def set_dscp(self, tos: int) -> None:
         raise LocalProtocolError("a Unix socket has no packet priority; use tcp for that")
 
+    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
+        """What the peer has not read takes room in our send buffer; more than fits there, it has
+        read."""
+        try:
+            room = self.sock.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF)
+        except OSError:
+            return None
+        return sent - room, False
+
     def close(self) -> None:
         super().close()
         if self._listen:

@@ -1,8 +1,8 @@
 """Files of web pages that come with the package: `asset("view.html")` is a Page.
 
-Rules: a page is files beside this module, its scripts and styles are files too, also those at `/*/`
-that every port has, and nothing is loaded from elsewhere. Names, numbers and complaints reach a
-page as JSON and are put into it as text, so that nothing needs to be escaped.
+Rules: a page, its scripts and its styles are files next to this module, or those at `/*/` that
+every port has; nothing is loaded from elsewhere. Names, numbers and errors reach a page as JSON and
+are put into it as text, so that nothing needs to be escaped.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def page_of(program: str, path: str) -> yarpy.Page | None:
 
 
 def jsonpage(value: Any) -> yarpy.Page:
-    """A value for a script. What JSON has no number for is null."""
+    """A value for a script. Numbers that JSON cannot express are null."""
     try:
         text = json.dumps(value, allow_nan=False)
     except ValueError:

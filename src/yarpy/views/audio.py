@@ -1,7 +1,7 @@
 """The loudspeaker and the microphone of this machine, by the library sounddevice (PortAudio).
 
-Rules: they are opened when the first sound is to be heard. What is missing is an OSError that says
-what to install, or what to do without.
+Rules: they are opened for the first sound. If something is missing, an OSError says what to
+install, or what to do instead.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from yarpy.views.wav import deinterleaved, interleaved
 
 
 class Speaker:
-    """Plays sounds one after the other. `instead` is told to who has no audio."""
+    """Plays sounds in order. `instead` says what to do where there is no audio."""
 
     def __init__(self, instead: str = "") -> None:
         self._library = _library(instead)
@@ -23,7 +23,7 @@ class Speaker:
         self._form = 0, 0
 
     def play(self, sound: yarpy.Sound) -> None:
-        """Play a sound; returns when the device has taken it, so that it goes on without a gap."""
+        """Play a sound; returns once the device has accepted it, so that there are no gaps."""
         form = sound.frequency, sound.channels
         if self._stream is None or form != self._form:
             self.close()
@@ -32,7 +32,7 @@ class Speaker:
         self._stream.write(interleaved(sound))
 
     def close(self) -> None:
-        """Let what was taken sound to its end."""
+        """Play accepted sounds to their end."""
         if self._stream is not None:
             self._stream.stop()
             self._stream.close()
@@ -42,7 +42,7 @@ class Speaker:
 def record(
     frequency: int, channels: int, seconds: float = 0.1, instead: str = ""
 ) -> Iterator[yarpy.Sound]:
-    """What the microphone hears, without end, in pieces of so many seconds."""
+    """Sound from the microphone, endlessly, in pieces of `seconds`."""
     stream = _open(_library(instead).RawInputStream, frequency, channels, instead)
     try:
         while True:

@@ -1,10 +1,10 @@
-"""Labels: what the numbers of a device's port are, as the device itself says, and their units.
+"""Labels: the names and units of the numbers on a device's port, as the device gives them.
 
     /robot/part/state:o, stateExt:o    the joints that /robot/part/rpc:i names
     /robot/imu/measures:o              the sensors that /robot/imu/rpc:o names
 
-Rules: a device is asked over a connection that needs no port, for `PATIENCE` seconds at most. Of
-what does not answer, or sends something else than it names, nothing is said.
+Rules: a device is asked over a connection that needs no port, for at most `PATIENCE` seconds. There
+are no labels for a device that does not answer, or sends something other than it announces.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from yarpy.devices.multi_sensor.interface import KINDS
 from yarpy.names.base import NameClient
 from yarpy.port.probe import Caller
 
-PATIENCE: Final = 4.0  # seconds for all that a device is asked
-JOINTS: Final = 256  # that are asked for their names
+PATIENCE: Final = 4.0  # seconds for all questions to a device
+JOINTS: Final = 256  # most joints asked for their names
 
 #: The name and the unit of an element of a message, "" for those that have none.
 Label: TypeAlias = tuple[str, str]
-#: The labels of all elements of a message and of the lists in it; of some other message, none.
+#: The labels of all elements of a message and its lists; none for a different kind of message.
 Describe: TypeAlias = Callable[[Any], list[Label]]
 
 _NONE: Final[Label] = ("", "")
-# What is at the end of a port's name, and of that of the port to ask.
+# The end of a port's name -> the end of the name of the port to ask.
 _RPC: Final = {"/state:o": "/rpc:i", "/stateExt:o": "/rpc:i", "/measures:o": "/rpc:o"}
-# The lists of stateExt:o, in order, with the unit for a joint that turns; of one that slides it is
-# the robot's own.
+# The lists of stateExt:o, in order, with the unit for a revolute joint; a prismatic one has the
+# robot's own unit.
 _STATE: Final = (
     ("position", "°"),
     ("speed", "°/s"),
@@ -69,7 +69,7 @@ _SENSORS: Final[dict[str, tuple[str, Sequence[str], Sequence[str]]]] = {
 
 
 def rpc_of(name: str) -> str:
-    """The port to ask what the port `name` sends; "" if there is none by convention."""
+    """The port to ask about what `name` sends; "" if by convention there is none."""
     for end, rpc in _RPC.items():
         if name.endswith(end):
             return name.removesuffix(end) + rpc
@@ -77,7 +77,7 @@ def rpc_of(name: str) -> str:
 
 
 def learn(name: str, names: NameClient | None = None) -> Describe | None:
-    """Ask what the port `name` sends; None if nobody says. Waits `PATIENCE` seconds at most."""
+    """Ask what the port `name` sends; None if unknown. Waits at most `PATIENCE` seconds."""
     deadline = time.monotonic() + PATIENCE
     try:
         contact = yarpy.query(rpc_of(name), names)
@@ -102,7 +102,7 @@ def learn(name: str, names: NameClient | None = None) -> Describe | None:
 
 
 def _joint(ask: Callable[[str], Any], number: int) -> tuple[str, bool]:
-    """The name of a joint, and whether it slides; boards that do not know turn."""
+    """The name of a joint, and whether it is prismatic; if unknown, it is revolute."""
     name = str(ask(f"get name {number}")[2])
     kind = ask(f"get type {number}")
     return name, len(kind) > 2 and JOINT_TYPE.parse([kind[2]]) == "prismatic"

@@ -1,8 +1,9 @@
-"""Panel: a page that shows a robot and moves it, whatever the robot is made of.
+"""Panel: a page that shows and moves any robot.
 
 GET /         the page
-GET /robot    which ports of control boards, cameras and sensors there are, as JSON
-POST /form    {"admin": 1, "req": ["ask", HOST, PORT, TEXT]}: a question to one of those ports
+GET /robot    the ports of control boards, cameras and sensors, as JSON
+GET /get      ?host=HOST&port=PORT&question=get+encs: a question to one of those ports, as JSON
+POST /form    {"admin": 1, "req": ["ask", HOST, PORT, TEXT]}: a command to one of those ports
 
 Rules: the page reads the ports of the robot itself, as any page may: events from `state:o` and
 `measures:o`, MJPEG from cameras. Questions and commands to `rpc:i` go through here, because ports
@@ -17,8 +18,11 @@ from typing import TYPE_CHECKING, Any
 
 import yarpy
 from yarpy.contact import Contact
+from yarpy.data.json import to_json
 from yarpy.names.address import is_loopback
 from yarpy.names.client import YarpNameClient
+from yarpy.names.default import secret
+from yarpy.port import identity
 from yarpy.port.probe import Caller
 from yarpy.views.asset import asset, jsonpage
 
@@ -26,7 +30,7 @@ if TYPE_CHECKING:
     from yarpy.names.base import NameClient
     from yarpy.port.base import BasePort
 
-PATIENCE = 4.0  # seconds for an answer, a bit less than the page has
+PATIENCE = 4.0  # seconds to wait for an answer, a bit less than the page does
 
 _FILES = (
     *("panel.css", "panel.js", "panel_camera.js", "panel_curve.js", "panel_joint.js"),
@@ -55,26 +59,42 @@ class Panel:
                 return jsonpage({**self.robot(), "missing": self.missing()})
             except yarpy.NoNameServer as error:
                 return yarpy.Page(str(error), "text/plain; charset=utf-8", 503)
+        if path == "/get":
+            return self._got(fields)
         name = path.removeprefix("/")
         return asset(name) if name in _FILES else None
 
     def _asked(self, message: yarpy.Message) -> object:
-        """A question of the page to a port of the robot, and its answer."""
+        """Pass a command from the page to a port of the robot; returns its answer."""
         match message.value:
             case ["ask", str(host), int(port), str(text)]:
-                contact = self._known.get((host, port))
-                if contact is None:
-                    return [yarpy.Vocab("fail"), f"no port of {self._robot} is there"]
-                try:
-                    with Caller(contact, timeout=PATIENCE) as caller:
-                        answer = caller.ask(yarpy.Bottle.from_text(text), PATIENCE)
-                        return [] if answer is None else answer.value
-                except yarpy.YarpError as error:
-                    return [yarpy.Vocab("fail"), str(error)]
+                return self._told(host, port, text)
         return None
 
+    def _got(self, fields: Mapping[str, str]) -> yarpy.Page:
+        """The answer to a question that changes nothing."""
+        host, port, text = (fields.get(key, "") for key in ("host", "port", "question"))
+        if not text.startswith("get ") or not (port.isascii() and port.isdigit()):
+            return yarpy.Page("/get?host=HOST&port=PORT&question=get+...\n", "text/plain", 400)
+        return yarpy.Page(to_json(self._told(host, int(port), text)), "application/json")
+
+    def _told(self, host: str, port: int, text: str) -> object:
+        """The answer of a port of the robot."""
+        try:
+            if (host, port) not in self._known:
+                self.robot()  # started since it was last looked for
+            contact = self._known.get((host, port))
+            if contact is None:
+                return [yarpy.Vocab("fail"), f"no port of {self._robot} is there"]
+            identity.confirm(contact, self._names.get, secret(), PATIENCE)
+            with Caller(contact, timeout=PATIENCE) as caller:
+                answer = caller.ask(yarpy.Bottle.from_text(text), PATIENCE)
+                return [] if answer is None else answer.value
+        except yarpy.YarpError as error:
+            return [yarpy.Vocab("fail"), str(error)]
+
     def robot(self) -> dict[str, Any]:
-        """The ports of the robot by what they are for. Raises NoNameServer.
+        """The ports of the robot by purpose. Raises NoNameServer.
 
         An address is a host and a number; a host of "" is the one that the page came from.
         """
@@ -108,14 +128,14 @@ class Panel:
         }
 
     def others(self) -> list[str]:
-        """The robots that there are: whose control boards are registered. Raises NoNameServer."""
+        """All robots whose control boards are registered. Raises NoNameServer."""
         names = {contact.name for contact in self._names.list()}
         boards = {name.removesuffix("/rpc:i") for name in names if name.endswith("/rpc:i")}
         found = {board for board in boards if f"{board}/state:o" in names}
         return sorted({f"/{board.split('/')[1]}" for board in found if board.count("/") > 1})
 
     def missing(self) -> str:
-        """What is awaited, what there is instead and what to do; "" if the robot is there."""
+        """What is missing, what exists instead and what to do; "" if the robot is there."""
         try:
             told = self.robot()
             if told["boards"] or told["cameras"]:

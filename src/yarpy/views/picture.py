@@ -1,8 +1,8 @@
-"""Picture: a port that takes images, and shows the newest one to whoever watches.
+"""Picture: a port that receives images, and shows the latest one to browsers.
 
-Rules: what comes in goes out again, for browsers as MJPEG, each as fast as it can take it. What
-has more than 256 greys or measures something is stretched to the range that can be seen. Messages
-that are no pictures are counted and described, the port lives on.
+Rules: images are sent on to browsers as MJPEG, as fast as each can take them. Images with more than
+256 greys, or of measurements, are stretched to the visible range. Messages that are not pictures
+are counted and described, and do no harm.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import yarpy
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-LOOK: Final = 0.25  # seconds between looks at who came to watch
+LOOK: Final = 0.25  # seconds between looks for new watchers
 MEMORY: Final = 3.0  # seconds that the frame rate looks back
 _SEEN: Final = ("mono", "rgb", "rgba", "bgr", "bgra")
 _STRETCHED: Final = ("mo16", "int", "dec")
@@ -39,7 +39,7 @@ class Picture:
         threading.Thread(target=self._run, name=f"yarpy view {port.name}", daemon=True).start()
 
     def wait_for(self, line: str) -> None:
-        """Tell people what the picture waits for; "": for nothing."""
+        """Show what the picture is waiting for; "": nothing."""
         self._waiting = line
 
     def status(self) -> dict[str, Any]:
@@ -91,7 +91,7 @@ class Picture:
         self._write()
 
     def _show_newcomers(self) -> None:
-        """Who began to watch after the last picture came has not seen anything yet."""
+        """Show the last picture to watchers that joined after it arrived."""
         self._drops.count(self.port)
         new = any(not link.stats["messages"] for link in self.port.outputs)
         if self._newest is not None and new:
@@ -106,7 +106,7 @@ class Picture:
 
 
 class Drops:
-    """Messages that inputs of a port dropped, those of inputs that have gone included."""
+    """Messages dropped by the inputs of a port, including inputs that are gone."""
 
     def __init__(self) -> None:
         self._past = 0
@@ -114,7 +114,7 @@ class Drops:
         self._lock = threading.Lock()  # pages and the reader count
 
     def count(self, port: yarpy.BufferedPort) -> int:
-        """All that were dropped up to now."""
+        """The total so far."""
         with self._lock:
             found = {}
             for link in port.inputs:
@@ -126,8 +126,8 @@ class Drops:
 
 
 def visible(image: yarpy.Image) -> tuple[yarpy.Image, tuple[float, float] | None]:
-    """The image in colours or 256 greys, and the values that are black and white if that took a
-    stretch. ValueError for what cannot be shown."""
+    """The image in colours or 256 greys, and the values shown as black and white if it was
+    stretched. ValueError if it cannot be shown."""
     if not (image.width and image.height):
         raise ValueError("a picture without pixels")
     if str(image.code) not in (*_SEEN, *_STRETCHED):
@@ -163,5 +163,5 @@ def _described(message: yarpy.Message, error: ValueError) -> str:
     try:
         text = message.as_(yarpy.Bottle).to_text()
     except yarpy.DecodeError:
-        return f"{len(message.payload)} bytes that are no picture"
+        return f"{len(message.payload)} bytes that are not a picture"
     return f"{text[:80]}{'...' if len(text) > 80 else ''}"

@@ -1,10 +1,10 @@
 """Scope: the numbers of ports as curves, in a page that a port serves itself.
 
     GET /                       the page
-    GET /data?after=120,40      what came after message 120 of the first source and 40 of the second
+    GET /data?after=120,40      messages after number 120 of the first source and 40 of the second
 
-Rules: a page asks for what is new to it as often as it likes, so that a slow browser or none costs
-nothing. A device is asked once what it sends, while its curves are drawn already.
+Rules: a page polls for new data as often as it likes, so that a slow browser costs nothing. A
+device is asked once what it sends, while its curves are already being drawn.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from yarpy.views.asset import jsonpage, page_of
 from yarpy.views.label import learn, rpc_of
 from yarpy.views.trace import Trace
 
-SOURCES: Final = 16  # that are drawn
+SOURCES: Final = 16  # most sources that are drawn
 
 
 class Scope:
@@ -53,7 +53,7 @@ class Scope:
         self._lock = threading.Lock()  # messages come in threads of their connections
 
     def serve(self, port: yarpy.Port, names: NameClient | None = None) -> None:
-        """Show the page on `port`, and tell who sends to it; `names` knows their other ports."""
+        """Show the page on `port`, and say which ports send there; `names` knows the others."""
         self._port = port
         self._names = names
         port.on_page(self._page)
@@ -74,7 +74,7 @@ class Scope:
             trace.take(message, now)
 
     def _ask(self, trace: Trace) -> None:
-        """Learn in the background what the device behind a port calls its numbers."""
+        """Ask the device behind a port, in the background, for the names of its numbers."""
 
         def learn_it() -> None:
             found = learn(trace.name, self._names)
@@ -87,7 +87,7 @@ class Scope:
             threading.Thread(target=learn_it, name=name, daemon=True).start()
 
     def wait_for(self, name: str, line: str) -> None:
-        """Tell people why the source `name` is not there; "": it is."""
+        """Show why the source `name` is missing; "": it is not."""
         self._waiting[name] = line
 
     def status(self, after: Sequence[int] = ()) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 """Trace: the numbers that one port sends, with the times that they belong to.
 
-Rules: nested lists are flattened, and every element counts, so that the index of a number is its
-place in the message whatever stands around it. What is no number is skipped, and told. The last
-`HISTORY` messages are kept; whoever draws asks for what is new to it.
+Rules: nested lists are flattened, and every element counts, so that the index of a number depends
+only on its position in the message. Other elements are skipped and listed. The last `HISTORY`
+messages are kept; a page asks for those that it lacks.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ import yarpy
 from yarpy.views.label import Describe, Label
 
 HISTORY: Final = 20_000  # messages
-CURVES: Final = 12  # numbers of a message, where nobody chose
-LEAVES: Final = 4096  # elements of a message that are looked at
-OTHERS: Final = 8  # elements that are told to be no numbers
+CURVES: Final = 12  # numbers of a message drawn by default
+LEAVES: Final = 4096  # elements of a message that are examined
+OTHERS: Final = 8  # elements listed as not being numbers
 AT_ONCE: Final = 2000  # messages in an answer
-MEMORY: Final = 3.0  # seconds that the rate looks back
-TRUST: Final = 0.5  # seconds that a sender's clock may be away from where it was
+MEMORY: Final = 3.0  # seconds over which the rate is measured
+TRUST: Final = 0.5  # seconds that a sender's clock may drift
 
 
 class Trace:
@@ -127,10 +127,10 @@ class Trace:
 
 
 class Clock:
-    """A sender's stamps on our axis of time.
+    """A sender's stamps on our time axis.
 
-    The first stamp is where its message arrived, and the others keep their distance to it, however
-    unevenly messages come. A clock that jumps, or runs at another speed, is set anew.
+    The first stamp is placed where its message arrived, and the others keep their distance from it,
+    however unevenly messages arrive. After a clock jumps or drifts, it is aligned again.
     """
 
     def __init__(self) -> None:
@@ -177,7 +177,7 @@ def number_of(value: Any) -> float | None:
 
 
 def parse_indices(text: str) -> list[int]:
-    """The indices that somebody typed: `0,2,5`, `0-3`, or as for yarpscope `(0 1 2)`.
+    """Indices as typed by a user: `0,2,5`, `0-3`, or as for yarpscope `(0 1 2)`.
 
     Raises ValueError.
 

@@ -1,7 +1,7 @@
 """Viewer: pictures side by side in a page that their ports serve themselves.
 
 GET /         the page
-GET /status   what there is to tell of each picture, as JSON
+GET /status   the state of each picture, as JSON
 POST /form    {"admin": 1, "req": ["click", 0, x, y]}: somebody clicked on the first picture
 """
 
@@ -16,7 +16,7 @@ from yarpy.views.picture import Picture
 
 
 class Sink(Protocol):
-    """Who hears of clicks: a port."""
+    """A port that receives clicks."""
 
     def write(self, value: object) -> object:
         """Take `[x, y]`, or `[x0, y0, x1, y1]` for a drag; pixels from the top left."""
@@ -25,8 +25,8 @@ class Sink(Protocol):
 class Viewer:
     """The page of several pictures; each of their ports serves it.
 
-    quality: of the JPEG files, 1 to 100. rate: pictures per second that a browser gets at most.
-    clicks: for each picture in turn, who hears of clicks on it.
+    quality: of the JPEG files, 1 to 100. rate: most pictures per second for a browser.
+    clicks: for each picture, the port that receives clicks on it.
     """
 
     def __init__(

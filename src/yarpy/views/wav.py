@@ -1,8 +1,8 @@
-"""WAV files of sound: written while it comes, read in pieces.
+"""WAV files: written as sound arrives, read in pieces.
 
-Rules: a file has 16 bits for a sample. Reading, other widths become that; compressed and floating
-point files are refused, with the command that converts them. What was written is in the file at
-once, also if the program dies.
+Rules: a file has 16 bits per sample. When reading, other widths are converted; compressed and
+floating point files are refused, with the command that converts them. Written sound is in the file
+immediately, even if the program dies.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class WavWriter:
 
 
 def read_wav(path: str | Path, seconds: float = 0.1) -> Iterator[yarpy.Sound]:
-    """The sound of a file in pieces of so many seconds. Raises OSError, ValueError."""
+    """The sound of a file in pieces of `seconds`. Raises OSError, ValueError."""
     with open(path, "rb") as raw:
         try:
             file = wave.Wave_read(raw)
@@ -90,7 +90,7 @@ def interleaved(sound: yarpy.Sound) -> bytes:
 
 
 def deinterleaved(data: bytes, channels: int, frequency: int) -> yarpy.Sound:
-    """A sound out of 16-bit samples as devices give them."""
+    """A sound from 16-bit samples as devices deliver them."""
     return _sound(data, channels, 2, frequency)
 
 

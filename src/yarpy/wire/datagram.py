@@ -46,6 +46,11 @@ class Assembler:
         self._expected = 0
         self._late = 0  # the missing piece that made us give a message up; 0: none
 
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is held of an unfinished message."""
+        return self._data is None
+
     def add(self, datagram: bytes) -> bytes | bytearray | None:
         """Take one datagram; returns the message's bytes when it is whole."""
         if len(datagram) < _HEAD.size:

@@ -55,8 +55,35 @@ class Within(Effect):
 
 
 @dataclass(frozen=True, slots=True)
+class Flush(Effect):
+    """Send what was written so far, and wait until it is in the system's hands: the rest of a long
+    answer is made after that."""
+
+
+@dataclass(frozen=True, slots=True)
 class Show(Effect):
     """Ask the port's program for its page at `path`; the driver sends back a Page, or None."""
 
     path: str
     fields: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class May(Effect):
+    """Ask whether the peer may do that here; the driver sends back why not, or "".
+
+    `link/admission.py` lists the rights. `asking`: the peer did not try to, so nothing is logged.
+    """
+
+    right: str
+    asking: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Claim(Effect):
+    """The peer shows a web token, "" for none: `May` is answered for whom it belongs to.
+
+    The driver sends back whether it is known; None: there are no tokens here.
+    """
+
+    token: str

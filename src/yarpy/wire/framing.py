@@ -12,13 +12,15 @@ from typing import Final
 
 from yarpy.data.codec import decode_leading
 from yarpy.data.walker import Walker
-from yarpy.errors import LinkClosed, RemoteProtocolError
+from yarpy.errors import AccessRefused, LinkClosed, RemoteProtocolError
+from yarpy.log import readable
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import CUT_OFF, LARGE, Buffer, ByteStream
 
 BASE: Final = 7777  # added to a carrier's code in its first eight bytes
 MAX_NAME: Final = 1000
+REFUSED: Final = "Access refused"  # what every refusal of access begins with
 MAX_COMMAND: Final = 1 << 15  # half the buffer of a stream
 
 _NUMBER: Final = struct.Struct("<2si2s")
@@ -118,6 +120,7 @@ def read_message(stream: ByteStream) -> Steps[Message]:
             yield from stream.more(8)
             if not stream.buffer.startswith(INDEX, stream.head):
                 stream.head += 8
+                stream.pause()
                 continue
             yield from stream.more(_HEAD_SIZE)
         if stream.buffer.startswith(_PLAIN, stream.head):
@@ -133,6 +136,7 @@ def read_message(stream: ByteStream) -> Steps[Message]:
             raise LinkClosed(CUT_OFF) from None
         if found is not None:
             return found
+        stream.pause()
 
 
 def parse_plain(stream: ByteStream) -> Message | None:
@@ -296,3 +300,27 @@ def encode_name(name: str) -> bytes:
     """The sender's specifier as `read_name` reads it."""
     text = name.encode("utf-8", "replace") + b"\0"
     return _INT.pack(len(text)) + text
+
+
+# -- refusals -------------------------------------------------------------------------------------
+
+
+def encode_refusal(why: str) -> bytes:
+    """The line that answers a greeting where its sender may not do what it came for."""
+    return f"* {why}".encode("utf-8", "replace")[:MAX_NAME] + b"\r\n"
+
+
+def refused(line: bytes) -> AccessRefused | None:
+    """The error that such a line means; None for any other."""
+    text = line.decode("utf-8", "replace").removeprefix("* ")
+    return AccessRefused(readable(text)) if text.startswith(REFUSED) else None
+
+
+def read_answer(stream: ByteStream) -> Steps[bytes]:
+    """The eight bytes that answer a greeting. Raises AccessRefused if they begin such a line."""
+    answer = bytes((yield from stream.read_exact(8)))
+    if answer == b"* Access":
+        error = refused(answer + bytes((yield from stream.read_line(MAX_NAME + 8))))
+        if error is not None:
+            raise error
+    return answer

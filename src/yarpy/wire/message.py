@@ -10,6 +10,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, TypeVar, overload
 
 from yarpy.data import codec
+from yarpy.data.bottle import Bottle
+from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LocalProtocolError
 
 if TYPE_CHECKING:
@@ -19,7 +21,8 @@ if TYPE_CHECKING:
     from yarpy.wire.stream import Buffer
 
 T = TypeVar("T")
-Spelling: TypeAlias = Literal["binary", "text", "object"]
+#: `foreign`: bytes of another system, which its own class of Message can read
+Spelling: TypeAlias = Literal["binary", "text", "object", "foreign"]
 
 DATA: Final = "D"  # data, no reply wanted
 CALL: Final = "d"  # data, the sender reads a reply
@@ -53,6 +56,14 @@ class Lines(tuple[str, ...]):
         """The lines with their ends."""
         text = "".join(f"{line}\r\n" for line in self)
         return text.encode("utf-8", "surrogateescape")
+
+
+class Refused(Bottle):
+    """The answer to a peer that may not do what it asks for: `[fail]` and why."""
+
+    def __init__(self, why: str) -> None:
+        super().__init__([Vocab("fail"), why])
+        self.why = why
 
 
 class Encoded:
@@ -103,11 +114,11 @@ class Packet:
 
     def snapshot(self, spelling: Spelling) -> None:
         """Encode now, into memory of our own: the message leaves later, and its writer goes on
-        meanwhile.
+        meanwhile. The text of arrays, which takes long, is made from that when it leaves.
         """
-        if spelling == "text":
+        if spelling == "text" and codec.has_own_text(self.value):
             _ = self.line
-        elif spelling == "binary":
+        elif spelling != "object":
             blocks = self.blocks
             if any(type(block) is not bytes for block in blocks):
                 self._blocks = tuple(map(bytes, blocks))
@@ -133,12 +144,15 @@ class Packet:
     def line(self) -> bytes:
         """The text spelling, without a line end."""
         if self._line is None:
-            self._line = codec.encode_text(self.value)
+            if codec.has_own_text(self.value):
+                self._line = codec.encode_text(self.value)
+            else:
+                self._line = codec.encode_as_text(b"".join(self.blocks))
         return self._line
 
 
 class Answer:
-    """The way back of one question: whoever has the message may answer, once, from any thread.
+    """The way back of one question: a holder of the message may answer, once, from any thread.
 
     `send` puts it on the wire. `then` is called once that is done, or has failed for good; it is
     set by the thread that waits for the end of the question.

@@ -4,7 +4,8 @@ Rules: the driver side is `get_buffer / buffer_updated / feed_eof / take_output`
 `read_* / write`; the read methods are generators that yield None when they need more bytes. Small
 reads are copied out of one fixed buffer; a large read lands in a buffer of its own, which the
 message then keeps, so an image is received without a copy. That buffer grows with what arrives, not
-with what was announced, and is reused once nothing holds it.
+with what was announced (unless the peer has sent as much in one message before), and is reused once
+nothing holds it.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ T = TypeVar("T")
 
 BUFFER_SIZE: Final = 1 << 16
 LARGE: Final = 1 << 14  # reads from here on get a buffer of their own
-FIRST_GRANT: Final = 1 << 24  # memory taken on the peer's word alone; for more, it must send first
+FIRST_GRANT: Final = 1 << 16  # memory taken on a new peer's word; for more, it must send first
+KEPT: Final = 1 << 21  # bytes of a longer buffer that may stay behind a message
 DEFAULT_LIMIT: Final = 1 << 30  # bytes per message, whatever the peer announces
 CUT_OFF: Final = "the peer closed the connection in the middle of a message"
 
@@ -67,11 +69,13 @@ class ByteStream:
         "_big_filled",
         "_eof",
         "_output",
+        "_proven",
         "_spare",
         "_view",
         "buffer",
         "head",
         "limit",
+        "paused",
         "tail",
     )
 
@@ -81,11 +85,13 @@ class ByteStream:
         self.head = 0
         self.tail = 0
         self.limit = limit
+        self.paused = False
         self._eof = False
         self._output: list[Buffer] = []
         self._big: memoryview | None = None  # where a large read lands
         self._big_filled = 0
         self._spare: list[bytearray] = []
+        self._proven = 0  # bytes that the peer has sent in one message
 
     # -- the driver's side ------------------------------------------------------------------------
 
@@ -127,10 +133,29 @@ class ByteStream:
         output, self._output = self._output, []
         return output
 
+    def forget(self) -> None:
+        """Give back the memory that is kept for the next large message. Any thread may call."""
+        self._spare = []
+        self._proven = 0
+
+    def put_back(self, rest: Iterable[Buffer]) -> None:
+        """What was taken and could not be sent is to be taken first."""
+        self._output[:0] = rest
+
+    def snapshot_output(self) -> None:
+        """Copy what waits to be taken, so that its writer may change it."""
+        self._output = [piece if type(piece) is bytes else bytes(piece) for piece in self._output]
+
     @property
     def pending(self) -> bool:
         """Whether there is output to take."""
         return bool(self._output)
+
+    def written(self, start: int = 0) -> tuple[int, int]:
+        """The bytes of what waits to be taken from the piece number `start` on, and the number of
+        the next piece."""
+        output = self._output
+        return sum(map(len, output[start:])), len(output)
 
     @property
     def waiting(self) -> int:
@@ -202,6 +227,8 @@ class ByteStream:
             if not isinstance(result, int):
                 value, used = result
                 self.head += used
+                if len(self.buffer) > KEPT:
+                    self._shrink()
                 return value
             if result > self.limit:
                 raise RemoteProtocolError(
@@ -210,6 +237,11 @@ class ByteStream:
             if self.tail - self.head == len(self.buffer):
                 self._enlarge(result)
             yield from self.more(min(result, len(self.buffer)))
+
+    def pause(self) -> None:
+        """What was read up to here is done with, though no message came of it; the next has not
+        begun."""
+        self.paused = True
 
     def skip(self, count: int) -> Steps[None]:
         """Read and forget `count` bytes, holding none of them."""
@@ -243,6 +275,15 @@ class ByteStream:
         self.buffer, self._view = fresh, memoryview(fresh)
         self.head, self.tail = 0, count
 
+    def _shrink(self) -> None:
+        """A very large message is over: go on with a buffer of the usual size, if the rest fits."""
+        count = self.tail - self.head
+        if count < BUFFER_SIZE:
+            fresh = bytearray(BUFFER_SIZE)
+            fresh[:count] = self._view[self.head : self.tail]
+            self.buffer, self._view = fresh, memoryview(fresh)
+            self.head, self.tail = 0, count
+
     def _read_large(self, count: int) -> Steps[memoryview]:
         if count > self.limit:
             raise RemoteProtocolError(
@@ -265,6 +306,7 @@ class ByteStream:
             yield None
             filled = self._big_filled
         self._big = None
+        self._proven = max(self._proven, count)
         return view
 
     def _spare_buffer(self, size: int) -> bytearray:
@@ -272,7 +314,7 @@ class ByteStream:
         for buffer in self._spare:
             if len(buffer) == size and _is_free(buffer):
                 return buffer
-        fresh = bytearray(min(size, FIRST_GRANT))
+        fresh = bytearray(min(size, max(FIRST_GRANT, self._proven, self.tail - self.head)))
         if _REUSES:
             self._spare = [*self._spare[-2:], fresh]
         return fresh

@@ -33,7 +33,7 @@ from yarpy.link.handshake import recognise
 from yarpy.link.inbound import Inbound
 from yarpy.route import Route
 from yarpy.testing import CarrierConformance
-from yarpy.wire.effects import Show, Within
+from yarpy.wire.effects import Claim, May, Show, Within
 from yarpy.wire.message import QUIT, Lines, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream, run
@@ -75,7 +75,7 @@ class Owner:
     def reverse(self, link: Inbound) -> None:
         self.reversed.append(link)
 
-    def closed(self, link: Inbound, reason: str, quit_: bool) -> None:
+    def input_ended(self, link: Inbound, reason: str, quit_: bool) -> None:
         self.ended.append((reason, quit_))
 
 
@@ -434,7 +434,10 @@ def test_request_has_limited_time_from_its_first_byte_to_its_last() -> None:
     stream.feed(wire)
     steps = carrier.decode(stream)
     asked = list(iter(lambda: next(steps), None))
-    assert asked == [Within(TIME), Within(None), Show("/favicon.ico", {})]
+    assert asked == [
+        *(Within(TIME), Within(None), Claim("")),
+        *(May("read", asking=True), Show("/favicon.ico", {})),
+    ]
     assert stream.pending  # answered without the port; waits for another
     stream.feed(b"G")
     assert next(steps) == Within(TIME)
@@ -605,7 +608,7 @@ def test_how_often_a_reader_wants_messages() -> None:
     for rate in ("0", "-1", "x", "1e9"):
         _, said = serve(f"GET /r?sse&rate={rate} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
         [(status, _, body)] = responses(said, "GET")
-        assert (status, body.startswith(b"rate is a number from")) == (400, True)
+        assert (status, body.startswith(b"rate must be a number from")) == (400, True)
 
 
 def test_lines_of_json() -> None:
@@ -616,8 +619,8 @@ def test_lines_of_json() -> None:
 
 def test_pictures_are_told_of_and_sent_whole_to_who_asks() -> None:
     picture = yarpy.Image(np.zeros((48, 64, 3), "u1"))
-    for wishes, longest in (("sse", 200), ("format=json", 200), ("sse&pixels", 20_000)):
-        carrier, _ = reader(f"GET /r?{wishes} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
+    for options, longest in (("sse", 200), ("format=json", 200), ("sse&pixels", 20_000)):
+        carrier, _ = reader(f"GET /r?{options} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
         said = streamed(carrier, picture)
         assert b'"type": "image", "width": 64, "height": 48, "pixel": "rgb"' in said
         assert len(said) < longest

@@ -89,7 +89,7 @@ def test_envelope_that_would_be_another_header_stays_at_home() -> None:
 
 def test_path_with_blanks_is_refused() -> None:
     client = HttpClient(Route("/a", "/b", "http+path.a b", 80, "h"))
-    with pytest.raises(LocalProtocolError, match="without blanks"):
+    with pytest.raises(LocalProtocolError, match="contains blanks"):
         client.post(ByteStream(), Packet([1]))
 
 

@@ -8,9 +8,9 @@ from yarpy.carriers.http.page import HTML, Page
 
 
 def test_what_travels() -> None:
-    assert Page("<p>\u00e9").to_bytes() == b"<p>\xc3\xa9"
-    assert Page(b"\x00\xff", "image/png").to_bytes() == b"\x00\xff"
-    assert Page("caf\udce9").to_bytes() == b"caf?"
+    assert Page("<p>\u00e9").encoded() == b"<p>\xc3\xa9"
+    assert Page(b"\x00\xff", "image/png").encoded() == b"\x00\xff"
+    assert Page("caf\udce9").encoded() == b"caf?"
     assert (Page("x").kind, Page("x").status) == (HTML, 200)
     with pytest.raises(AttributeError):
         Page("x").body = "y"  # type: ignore[misc]

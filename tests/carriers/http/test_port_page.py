@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 from hypothesis import given
 from hypothesis import strategies as st
 
-from yarpy.carriers.http.port_page import page, reader
+from yarpy.carriers.http.port_page import Browsed, page, reader
 
 
 class Seen(HTMLParser):
@@ -40,7 +40,7 @@ EVIL = '<script>alert("1")</script>&amp;\'"'
 
 
 def test_everything_is_escaped() -> None:
-    seen = Seen(page(f"/{EVIL}", [EVIL, f"+ {EVIL} ${EVIL}"], EVIL, EVIL))
+    seen = Seen(page(f"/{EVIL}", [EVIL, f"+ {EVIL} ${EVIL}"], EVIL, Browsed(EVIL)))
     assert [one["src"] for one in seen.all("script")] == ["/*/port.js"]
     assert not seen.open
     assert seen.text.count("<script>") == 5  # title, heading, line, command and its argument
@@ -72,7 +72,7 @@ def test_registrations_are_links() -> None:
         'registration name /evil ip x"onclick=1 port 10004 type tcp',
         "*** end of message",
     ]
-    seen = Seen(page("/root", lines, host="robot"))
+    seen = Seen(page("/root", lines, browsed=Browsed("robot")))
     links = [item["href"] for item in seen.all("a")][4:]
     assert links == ["http://10.0.0.1:10002/", "http://robot:10003/"]
     assert len(seen.all("li")) == 4
@@ -82,10 +82,29 @@ def test_registrations_are_links() -> None:
 def test_name_server_is_a_link() -> None:
     seen = Seen(page("/x", ["Name server at http://10.0.0.1:10000/"]))
     assert seen.all("a")[-1]["href"] == "http://10.0.0.1:10000/"
-    seen = Seen(page("/x", ["Name server at http://127.0.0.1:10000/"], host="10.1.1.1"))
+    seen = Seen(page("/x", ["Name server at http://127.0.0.1:10000/"], browsed=Browsed("10.1.1.1")))
     assert seen.all("a")[-1]["href"] == "http://10.1.1.1:10000/"
-    seen = Seen(page("/x", ["Name server at http://localhost:10000/"], host='x" y="'))
+    seen = Seen(page("/x", ["Name server at http://localhost:10000/"], browsed=Browsed('x" y="')))
     assert seen.all("a")[-1]["href"] == "http://localhost:10000/"
+
+
+def test_links_of_a_page_in_tls_are_in_tls() -> None:
+    lines = [
+        "registration name /a ip 10.0.0.1 port 10002 type tcp",
+        "Name server at http://127.0.0.1:10000/",
+    ]
+    seen = Seen(page("/root", lines, browsed=Browsed("robot", secure=True)))
+    links = [item["href"] for item in seen.all("a")][4:]
+    assert links == ["https://10.0.0.1:10002/", "https://robot:10000/"]
+    assert "http://" not in seen.text
+
+
+def test_who_may_only_look_finds_no_forms() -> None:
+    lines = ["+ set $port $key $value", "This is /a"]
+    seen = Seen(page("/root", lines, browsed=Browsed(may_write=False)))
+    assert not seen.all("form")
+    assert not seen.all("input")
+    assert "Read only" in seen.text
 
 
 def test_commands_are_forms() -> None:
@@ -106,7 +125,7 @@ ANY = st.text(st.characters(codec=None), max_size=20)
 @given(ANY, st.lists(ANY, max_size=4), ANY, ANY)
 def test_any_text_leaves_the_page_whole(name: str, lines: list[str], shown: str, host: str) -> None:
     plain = Seen(page("/x", [""]))
-    seen = Seen(page(name, lines, shown, host))
+    seen = Seen(page(name, lines, shown, Browsed(host)))
     assert not seen.open
     assert {tag for tag, _ in seen.tags} <= {tag for tag, _ in plain.tags} | {
         "p",

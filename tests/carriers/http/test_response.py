@@ -145,12 +145,12 @@ def test_preflight() -> None:
 def test_heads() -> None:
     common = (
         b"Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
-        b"Access-Control-Allow-Origin: *\r\n"
+        b"Access-Control-Allow-Origin: *\r\nReferrer-Policy: same-origin\r\n"
     )
     assert Response(204).head() == b"HTTP/1.1 204 No Content\r\n" + common + b"\r\n"
     assert LATE.head(("Connection", "close")) == (
         b"HTTP/1.1 408 Request Timeout\r\n" + common + b"Content-Type: text/plain; charset=utf-8"
-        b"\r\nContent-Length: 35\r\nConnection: close\r\n\r\n"
+        b"\r\nContent-Length: 37\r\nConnection: close\r\n\r\n"
     )
     assert bare(intent("json")).head().endswith(b"Content-Type: application/json\r\n\r\n")
 

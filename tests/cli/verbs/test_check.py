@@ -30,3 +30,40 @@ def test_broken(here, monkeypatch):
     said = here("check")
     assert said.code == 1
     assert said.out.endswith("*** no network today\n*** YARP seems broken.\n")
+
+
+RULES = '[[allow]]\nwho = "loopback"\nmay = "all"\n[[allow]]\nwho = "10.0.0.0/8"\nmay = "read"\n'
+
+
+def test_access(here, monkeypatch, tmp_path):
+    file = tmp_path / "rules.toml"
+    file.write_text(RULES)
+    monkeypatch.setenv("YARPY_ACCESS", str(file))
+    said = here("check", "--access")
+    assert said.code == 0
+    assert said.out.startswith(f"The rules of {file}:\n\n1. loopback\n   may everything\n")
+    assert "note:" not in said.out
+    said = here("check", "--access", "10.1.1.1", "read", "/arm")
+    assert (said.code, said.out) == (0, "yes: rule 2 (line 4): 10.0.0.0/8 may read: all ports\n")
+    said = here("check", "--access", "10.1.1.1", "write", "/arm")
+    assert said.code == 1
+    assert said.out.startswith("no: no rule lets 10.1.1.1 write /arm\n")
+
+
+def test_access_without_rules(here, monkeypatch, tmp_path):
+    monkeypatch.delenv("YARPY_ACCESS", raising=False)
+    monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path / "none"))
+    said = here("check", "--access")
+    assert said.code == 0
+    assert said.out.startswith("There is no access.toml; it would be ")
+
+
+def test_access_with_a_mistake(here, monkeypatch, tmp_path):
+    file = tmp_path / "broken.toml"
+    file.write_text('[[allow]]\nwho = "loopback"\nmay = "raed"\n')
+    monkeypatch.setenv("YARPY_ACCESS", str(file))
+    said = here("check", "--access")
+    assert said.code == 1
+    assert 'line 3: may: "raed" is no right; did you mean "read"?' in said.err
+    for words in (("--access", "loopback"), ("loopback", "read", "/arm")):
+        assert here("check", *words).code != 0

@@ -50,8 +50,20 @@ def test_who_listens_and_does_not_answer_is_not_dead(carrier):
 
 
 @pytest.mark.parametrize("host", ["no.such.host.invalid", "x" * 70])
-def test_no_such_host(host):
-    assert reason_of_death(yarpy.Contact("tcp", "/x", host, 10000), 0.3) == "No response"
+def test_host_whose_name_is_not_found_proves_nothing(host):
+    """The service that finds it may be away."""
+    assert reason_of_death(yarpy.Contact("tcp", "/x", host, 10000), 0.3) == ""
+
+
+@pytest.mark.parametrize("error", [TimeoutError, OSError(113, "No route to host")])
+def test_a_host_that_cannot_be_reached_proves_nothing(error, monkeypatch):
+    """A cable may be out: its ports keep their names."""
+
+    def connect(*arguments):
+        raise error
+
+    monkeypatch.setattr(socket, "create_connection", connect)
+    assert reason_of_death(yarpy.Contact("tcp", "/far", "192.0.2.1", 10002), 1.0) == ""
 
 
 def test_a_port_may_have_any_name_in_front(names):

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from support.port import free_port
+from support.ros_graph import ros_graph
 
 from yarpy.names.discovery import Responder
 
@@ -60,3 +61,37 @@ def test_no_multicast(here, monkeypatch):
     said = here("detect")
     assert said.code == 1 and "== PROBLEM\n" in said.out
     assert said.err == "error: this computer has no multicast: No such device\n"
+
+
+def test_a_ros_master_is_stored_for_the_namespace(here, tmp_path, monkeypatch):
+    for name in ("YARPY_SERVER", "YARP_NAMESPACE"):
+        monkeypatch.delenv(name, raising=False)
+    with ros_graph(tmp_path) as graph:
+        monkeypatch.setenv("ROS_MASTER_URI", graph.uri)
+        here("namespace", "/ros")
+        said = here("detect", "--ros", "--write")
+        assert said.code == 0
+        assert f"Trying ROS_MASTER_URI={graph.uri}\nReachable.  Writing.\n" in said.out
+        assert f"ROS Name server /ros is available at ip 127.0.0.1 port {graph.port}" in said.out
+        assert here("where").code == 0
+        listed = here("name", "list")
+        assert listed.code == 0
+        graph.master.call("registerPublisher", "/n", "/t", "a/B", "http://127.0.0.1:1/")
+        graph.master.call(
+            "registerService", "/n", "/s", "rosrpc://127.0.0.1:2", "http://127.0.0.1:1/"
+        )
+        listed = here("name", "list")
+        for line in ('node "/n"', 'topic "/t"', 'service "/s"'):
+            assert line in listed.out
+        assert '"carrier": "rossrv"' in here("name", "list", "--json").out
+        assert "port 2 type rossrv+service./s" in here("name", "query", "/s").out
+        assert "knows no" in here("name", "query", "/nobody").err
+    assert here("where").code == 1
+
+
+def test_no_ros_master(here, tmp_path, monkeypatch):
+    monkeypatch.setenv("ROS_MASTER_URI", f"http://127.0.0.1:{free_port()}/")
+    said = here("detect", "--ros")
+    assert said.code == 1
+    assert "Could not reach server." in said.out
+    assert "roscore" in said.err

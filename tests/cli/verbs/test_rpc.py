@@ -156,3 +156,16 @@ def test_many(reply, items):
 def test_empty_reply(capsys):
     print_reply(yarpy.Bottle())
     assert capsys.readouterr().out == "Response: \n"
+
+
+def test_nothing_is_asked_of_another_port(cli, names, server_port):
+    """One that has the number by now which the name server remembers of a port that is gone."""
+    names.register("/rpc/gone", "tcp", "127.0.0.1", server_port.contact.port)
+    assert cli.run("rpc", "/rpc/gone", input="an alias, made by hand").returncode == 0
+    names.set("/rpc/gone", "process", 1)  # as ports say of themselves
+    asked = len(server_port.sources)
+    for words in (["rpc"], ["admin", "rpc"]):
+        said = cli.run(*words, "/rpc/gone", input="[ver]\n")
+        assert (said.returncode, said.stdout) == (1, "")
+        assert '"/rpc/server" listens' in said.stderr and 'not "/rpc/gone"' in said.stderr
+    assert len(server_port.sources) == asked

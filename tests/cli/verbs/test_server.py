@@ -1,6 +1,7 @@
 """`yarpy server`."""
 
 import re
+import resource
 import signal
 import socket
 import threading
@@ -11,10 +12,12 @@ from pathlib import Path
 import pytest
 from support.command_line import CommandLine
 from support.port import free_port
+from support.wait import wait_until
 
 import yarpy
 from yarpy.cli.verbs.server import BACKLOG, LONGEST, QUESTIONS, SILENT, Scribe, decide
 from yarpy.config.configuration import Configuration, Server
+from yarpy.names.default import client_of
 
 
 @pytest.fixture
@@ -144,6 +147,30 @@ def test_databases_survive_it(lone, port, tmp_path):
         process.wait_line("Ready", stream="out")
         assert lone.run("name", "query", "/cam").stdout == cam
         assert lone.run("topic", "--list").stdout == 'Topics: "/t"\n'
+
+
+@pytest.mark.skipif(not hasattr(resource, "prlimit"), reason="files are limited on Linux alone")
+def test_an_end_on_a_full_disk_keeps_the_last_good_file(lone, port, tmp_path):
+    """The disk is a file that may not grow any more."""
+    database = tmp_path / "ports.db"
+    words = ("server", "--ip", "127.0.0.1", "--socket", str(port), "--portdb", str(database))
+    names = client_of(Server("127.0.0.1", port))
+    with lone.start(*words) as process:
+        process.wait_line("Ready", stream="out")
+        names.register("/cam", "tcp", "127.0.0.1", 9)
+        wait_until(lambda: b"/cam" in database.read_bytes())
+        full = database.stat().st_size
+        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (full, full))
+        for number in range(300):
+            names.register(f"/later/{number}", "tcp", "127.0.0.1", 1000 + number)
+        process.wait_line("database cannot be written")
+        assert names.query("/later/299").port == 1299
+        process.signal(signal.SIGTERM)
+        assert process.wait() == 1
+    assert process.stderr.splitlines()[-1].startswith("error: the name server's database")
+    with lone.start(*words) as process:
+        process.wait_line("Ready", stream="out")
+        assert names.query("/cam").port == 9
 
 
 def test_what_is_no_database(lone, port, tmp_path):

@@ -26,3 +26,14 @@ def test_who_cannot_be_asked(here, names):
         assert '"/terminate/port" has no port "/terminate/port/quit"' in said.err
     said = here("terminate", "/nobody")
     assert said.code == 1 and 'no port "/nobody" is registered' in said.err
+
+
+def test_no_other_program_is_asked_to_end(here, names):
+    """One that has the number by now which the name server remembers of a port that is gone."""
+    asked = []
+    with yarpy.RpcServer("/terminate/other", asked.append, names=names) as other:
+        names.register("/terminate/gone/quit", "tcp", "127.0.0.1", other.contact.port)
+        names.set("/terminate/gone/quit", "process", 1)  # as ports say of themselves
+        said = here("terminate", "/terminate/gone")
+        assert said.code == 1 and '"/terminate/other" listens' in said.err
+    assert not asked

@@ -245,7 +245,7 @@ def test_bad_arguments_are_not_sent(device, head):
 
 def test_waiting_for_a_motion_that_does_not_end(device, head):
     device.motion_done = lambda: [True, False, True]
-    with pytest.raises(Timeout, match=r"still moves after 0\.05 s: joint1"):
+    with pytest.raises(Timeout, match=r"still moving after 0\.05 s: joint1"):
         head.wait_motion_done(0.05)
 
 

@@ -318,7 +318,7 @@ requests = st.builds(
 )
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 @given(st.one_of(requests, st.lists(elements, max_size=6)))
 def test_whatever_is_asked_there_is_a_reply(request_):
     device = FakeBoard()
@@ -333,7 +333,7 @@ def test_whatever_is_asked_there_is_a_reply(request_):
     )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.data())
 def test_requests_with_one_thing_changed(data):
     """What people and broken programs send: nearly right."""

@@ -168,7 +168,7 @@ elements = st.one_of(
 )  # fmt: skip
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.lists(elements, max_size=6))
 def test_whatever_is_asked_there_is_a_reply(request_):
     reply = responder(FakeCamera(8, 8)).answer(request_)

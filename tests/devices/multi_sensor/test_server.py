@@ -173,7 +173,7 @@ class Nothing:
     [
         (Failing, "cable"),
         (Short, "gyro has 2 values, not 3"),
-        (Listing, "gives a dict"),
+        (Listing, "must return a dict"),
         (Empty, "palm has 0 values"),
         (Nothing, "needs one of gyroscopes"),
         (object, "needs one of gyroscopes"),

@@ -8,13 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
-from yarpy.data.bottle import Bottle
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.image import Image
 from yarpy.data.matrix import Matrix
-from yarpy.data.property import Property
 from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
 from yarpy.data.vector import Vector
 from yarpy.errors import LocalProtocolError
@@ -485,7 +484,7 @@ def test_owner_may_let_scripts_have_all_of_lua(tmp_path: Path) -> None:
         ("PortMonitor = nil", "PortMonitor must stay a table"),
         ("require('nosuchmodule')", "module 'nosuchmodule' not found"),
         ("\x1bLua", "attempt to load a binary chunk"),
-        ("while true do end", "/nowhere/gate.lua:1: it goes on for more than"),
+        ("while true do end", "/nowhere/gate.lua:1: it runs for more than"),
     ],
 )
 def test_file_that_cannot_run_says_why(text: str, expected: str) -> None:
@@ -552,7 +551,7 @@ def test_script_is_stopped_and_goes_on_with_the_next_message(body: str) -> None:
         assert len(str(caught.value)) > len(str(PATH)) + 5
         assert script.accept(message("hi", "ho"))
     if body in ENDLESS:
-        assert "it goes on for more than 2000000 instructions" in str(caught.value)
+        assert "it runs for more than 2000000 instructions" in str(caught.value)
 
 
 def test_other_threads_run_while_a_script_does() -> None:
@@ -617,7 +616,6 @@ end"""
     return load(text).update
 
 
-@settings(deadline=None)
 @given(values=st.lists(VALUES, max_size=6))
 def test_what_lua_reads_and_writes_is_the_same(
     rewrite: Callable[[Message], object], values: list[object]
@@ -635,13 +633,11 @@ def casts() -> LuaScript:
     return load(f"PortMonitor.accept = function(t) {calls} return true end")
 
 
-@settings(deadline=None)
 @given(data=st.binary(max_size=60))
 def test_any_bytes_are_cast_or_are_nil(casts: LuaScript, data: bytes) -> None:
     assert casts.accept(Message(DATA, data))
 
 
-@settings(deadline=None)
 @given(data=st.data())
 def test_changed_messages_are_cast_or_are_nil(casts: LuaScript, data: st.DataObject) -> None:
     matrix = Message(DATA, b"".join(Matrix([[1, 2]]).to_wire()))

@@ -17,8 +17,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy import network, registry
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, UnknownPlugin, YarpError
 from yarpy.monitors.base import DROP, Place
@@ -88,9 +87,9 @@ def test_missing_script_says_where_it_was_looked_for(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("tokens", "kind", "text"),
     [
-        ("type.perl+file.x", LocalProtocolError, 'no type "perl"; there are lua, python, dll'),
+        ("type.perl+file.x", LocalProtocolError, 'no type "perl"; use one of lua, python, dll'),
         ("type.dll+file.nosuch", UnknownPlugin, 'no monitor "nosuch"'),
-        ("type.dll+file.portmonitor", LocalProtocolError, "does not run portmonitors"),
+        ("type.dll+file.portmonitor", LocalProtocolError, "cannot run portmonitor"),
         ("type.dll", UnknownPlugin, 'no monitor "modifier"'),
         ("type.python+file.gate+constraint.not", LocalProtocolError, "constraint"),
     ],
@@ -127,7 +126,7 @@ def test_several_at_once_as_cpp_4_asks_for_them(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "what"),
     [
-        ("def create(options): return False", "create does not return true"),
+        ("def create(options): return False", "create did not return true"),
         ("def create(options):\n    options.nosuch", r"gate\.py:2: AttributeError"),
         ("1 / 0", r"gate\.py:1: ZeroDivisionError"),
     ],
@@ -179,7 +178,7 @@ def test_failing_accept_drops_and_failing_update_passes(
         "messages are dropped",
         "messages pass as they are",
         "replies pass as they are",
-        "the next trigger comes all the same",
+        "the next trigger still comes",
     ]
     assert "/out -> /in: " in caplog.text
     assert "gate.py:2: TypeError" in caplog.text
@@ -268,14 +267,14 @@ def test_changed_script_that_does_not_start_leaves_the_one_before(
     monitor = make("type.python+file.gate")
     for text, what in (
         ("def accept(m: return", "SyntaxError"),
-        ("def create(options): return False", "create does not return true"),
+        ("def create(options): return False", "create did not return true"),
     ):
         caplog.clear()
         renew(path, text)
         assert all(monitor.accept(message()) for _ in range(3))
         assert len(caplog.records) == 1
         assert what in caplog.text
-        assert "the one before goes on" in caplog.text
+        assert "the old script stays in use" in caplog.text
     path.unlink()
     assert monitor.accept(message())
     renew(path, "def accept(m): return False")
@@ -605,7 +604,7 @@ def test_network_names_files_of_contexts_alone(
         given = [*words, ["context", context.format(folder=folder)]] if context else [*words]
         reply = network.admin("/in", "atch", "in", *given, names=names)
         assert reply[0] == Vocab("fail")
-        assert "never by a path" in reply[1]
+        assert "not a path" in reply[1]
     assert not ran.exists()
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.errors import YarpError
 from yarpy.monitors.base import DROP
 from yarpy.monitors.event import Events
@@ -140,7 +139,7 @@ def test_parameters_may_be_filled_in() -> None:
 
 @pytest.mark.parametrize("result", ["5", "'text'", "[1, 2]", "{'a': object()}", "{1: 2}"])
 def test_parameters_that_no_message_can_hold(result: str) -> None:
-    with pytest.raises(ScriptError, match="getparam gives no parameters"):
+    with pytest.raises(ScriptError, match="getparam returns no dict"):
         load(f"def getparam(): return {result}").parameters()
 
 

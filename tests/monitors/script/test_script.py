@@ -62,7 +62,7 @@ def test_unreadable_and_huge_files(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     (tmp_path / "small").write_bytes(b"x" * 10)
     (tmp_path / "large").write_bytes(b"x" * 11)
     assert read_script(tmp_path / "small") == b"x" * 10
-    with pytest.raises(LocalProtocolError, match="more than 10 bytes"):
+    with pytest.raises(LocalProtocolError, match="over 10 bytes"):
         read_script(tmp_path / "large")
 
 

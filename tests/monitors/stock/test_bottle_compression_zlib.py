@@ -86,7 +86,7 @@ def test_sizes_are_told(caplog: pytest.LogCaptureFixture) -> None:
     assert not caplog.text
     monitor = BottleCompressionZlib(place("debug_compression_info.1", sending=True))
     monitor.update(Message.of(Packet(bytes(1000))))
-    assert "1016 bytes travel as" in caplog.text
+    assert "1016 bytes sent as" in caplog.text
     found = monitor.parameters()
     assert found["uncompressed"] == 1016
     assert 0 < found["compressed"] < 100  # type: ignore[operator]

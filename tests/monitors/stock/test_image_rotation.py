@@ -51,5 +51,5 @@ def test_what_cannot_be_turned(value: Any) -> None:
 
 @pytest.mark.parametrize("tokens", ["options_rotate.left", "options_flip.x"])
 def test_wrong_options(tokens: str) -> None:
-    with pytest.raises(LocalProtocolError, match=r"options_\w+\" is one of"):
+    with pytest.raises(LocalProtocolError, match=r"options_\w+\" must be one of"):
         ImageRotation(place(tokens))

@@ -15,8 +15,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy import network
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.monitors.base import Group, Place
 from yarpy.monitors.stock.priority import Priority

@@ -6,7 +6,7 @@ import pytest
 from support.monitor import place
 
 from yarpy import LocalProtocolError
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.monitors.stock import throttle_down
 from yarpy.monitors.stock.throttle_down import ThrottleDown
 from yarpy.wire.message import DATA, Message

@@ -9,10 +9,10 @@ from __future__ import annotations
 from functools import cache
 from typing import Final
 
-PREFIX: Final = "*/"  # behind the first slash of a path
+PREFIX: Final = "*/"  # after the first slash of a path
 KINDS: Final = {
     "main.css": "text/css; charset=utf-8",  # for the pages of C++ ports
-    "style.css": "text/css; charset=utf-8",  # how all pages look
+    "style.css": "text/css; charset=utf-8",  # the look of all pages
     "port.css": "text/css; charset=utf-8",
     "port.js": "text/javascript; charset=utf-8",
     "common.js": "text/javascript; charset=utf-8",  # small texts for people

@@ -3,19 +3,20 @@
     GET /?req=get+encs              a message; its reply as JSON
     POST /form                      the same from a form, as JSON or as text
     GET /                           the page of the port
-    GET /r                          every message that the port writes, as long as one reads
+    GET /r                          every message that the port writes, until the client hangs up
     GET /r  Accept: text/event-stream          the same for JavaScript's EventSource
 
-Rules: what a request means is `http_request`, what is answered `http_response`, who may act is
-`origin`; here is the protocol alone, with a new h11 for each request. Every request gets exactly
-one response, even if the port says nothing (204, or `[]` in JSON) or the request comes too slowly
-(408). Bad requests get their status and end the connection. A slow consumer misses messages.
-Between ports each message is a POST and its response the acknowledgement (`http_client`).
+Rules: `request` reads what a request means, `response` writes the answer, `origin` says who may
+act; here is only the protocol, with a new h11 for each request. Every request gets exactly one
+response, even if the port does not reply (204, or `[]` in JSON) or the request is too slow (408).
+Bad requests get their status and end the connection. A slow consumer misses messages. Between ports
+each message is a POST and its response the acknowledgement (`client`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from yarpy.carriers.base import MAGIC_SIZE, Carrier, Delivery, Limits
@@ -30,6 +31,7 @@ from yarpy.carriers.http.message import (
     two_lengths,
 )
 from yarpy.carriers.http.origin import not_ours, origins_of
+from yarpy.carriers.http.page import Pieces
 from yarpy.carriers.http.response import (
     CUT_OFF,
     LATE,
@@ -41,11 +43,13 @@ from yarpy.carriers.http.response import (
     bare,
     complaint,
     refused,
+    sent_on,
 )
+from yarpy.carriers.http.token import claim, cookie
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.route import Route
-from yarpy.wire.effects import Show, Within
-from yarpy.wire.message import CALL, QUIT, Lines, Message, Packet
+from yarpy.wire.effects import Flush, May, Show, Within
+from yarpy.wire.message import CALL, QUIT, Lines, Message, Packet, Refused
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
@@ -55,8 +59,9 @@ if TYPE_CHECKING:
     from yarpy.carriers.http.request import Form, Intent, Request
 
 DRAIN: Final = 1 << 20  # bytes of a refused body that are read, so that the refusal arrives
-TIME: Final = 60.0  # seconds a connection may be idle, and a request may take to come
+TIME: Final = 60.0  # seconds a connection may be idle, and a request may take to arrive
 
+_RIGHTS: Final = ("read", "write", "administer", "attach", "register")
 _METHODS: Final = (b"GET /", b"POST /", b"HEAD /", b"OPTIONS ", b"PUT /", b"DELETE /", b"PATCH /")
 
 
@@ -75,20 +80,20 @@ class Http(Carrier):
         super().__init__(route)
         self.origins = origins_of()
         self._responder = Responder(route, self.origins)
-        # Of the request that is being read or answered:
+        # The request that is being read or answered:
         self._headers: Mapping[str, str] = {}
         self._head_only = False
         self._modern = False  # HTTP/1.1, which knows chunks
         self._finished = False  # the response is complete
-        self._stays = False  # the connection stays open for another one
+        self._stays = False  # keep the connection open for the next one
         self._intent: Intent | None = None  # what is being answered
-        self._taken = 0  # messages that were handed on, and those that are acknowledged
+        self._taken = 0  # messages handed to the port, and those acknowledged
         self._acked = 0
         self._streaming = False
         self._form: Form = "text"  # of what is streamed
         self._pixels = False
         self._client = HttpClient(route)
-        self._confirmed = False  # the response to our last call was read with its reply
+        self._confirmed = False  # reading the last reply was also the acknowledgement
 
     @classmethod
     def recognises(cls, first: bytes) -> int:
@@ -101,7 +106,7 @@ class Http(Carrier):
     # -- reading requests -------------------------------------------------------------------------
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
-        """Wait for the head of the first request, which a greeting has limited time for."""
+        """Wait for the head of the first request, within the time limit of a greeting."""
         self.route.source = "web"
         stream.unread(len(first))
         try:
@@ -113,10 +118,10 @@ class Http(Carrier):
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         while not self._finished:
-            if self._streaming:  # the reply to the last message has begun something endless
+            if self._streaming:  # the reply to the last message began an endless response
                 return Message("r")
             if self._intent is not None:
-                self._answer_nothing(stream)  # the next request waits already
+                self._answer_nothing(stream)  # the next request is already waiting
                 continue
             request = yield from self._read_request(stream)
             intent = (yield from self._understood(stream, request)) if request is not None else None
@@ -144,7 +149,8 @@ class Http(Carrier):
         yield from stream.more(1)
         yield Within(TIME)
         body = bytearray()
-        refusal = 413, f"a body has at most {MAX_BODY} bytes"
+        most = min(MAX_BODY, stream.limit)
+        refusal = 413, f"a body may have at most {most} bytes"
         try:
             head = yield from next_event(stream, talk)
             if not isinstance(head, h11.Request):
@@ -152,14 +158,14 @@ class Http(Carrier):
             self._take_head(head)
             event = None
             if two_lengths(head):
-                refusal = 400, "a body has a length or comes in chunks, not both"
+                refusal = 400, "a body has either a Content-Length or chunks, not both"
             elif sum(map(len, (head.target, *self._headers, *self._headers.values()))) > MAX_HEAD:
-                refusal = 431, f"the head of a request has at most {MAX_HEAD} bytes"
-            elif int(self._headers.get("content-length", "0")) <= MAX_BODY:
+                refusal = 431, f"the head of a request may have at most {MAX_HEAD} bytes"
+            elif int(self._headers.get("content-length", "0")) <= most:
                 if talk.they_are_waiting_for_100_continue:
                     stream.write(CONTINUE)
                 event = yield from next_event(stream, talk)
-                while isinstance(event, h11.Data) and len(body) <= MAX_BODY:
+                while isinstance(event, h11.Data) and len(body) <= most:
                     body += event.data
                     event = yield from next_event(stream, talk)
         except h11.RemoteProtocolError as error:
@@ -189,7 +195,7 @@ class Http(Carrier):
         self._stays = self._modern and "close" not in self._headers.get("connection", "").lower()
 
     def _refuse(self, stream: ByteStream, status: int, text: str) -> Steps[None]:
-        """Answer a request that cannot be read to its end; the connection is over."""
+        """Answer a request that cannot be read to its end, and end the connection."""
         self._stays = False
         self._respond(stream, complaint(status, text))
         if status in (413, 431):
@@ -205,14 +211,23 @@ class Http(Carrier):
         raise RemoteProtocolError(f"HTTP {status}: {text}")
 
     def _understood(self, stream: ByteStream, request: Request) -> Steps[Intent | Carrier | None]:
-        """What the request wants of the port; None if it is answered without the port, a carrier if
-        that one is to do the rest.
+        """What the request wants from the port; None if it was answered without the port; a carrier
+        if that one takes over.
         """
-        from yarpy.carriers.http.request import Refusal, page_asked, read_intent
+        from yarpy.carriers.http.request import MAY, Refusal, likes, page_asked, read_intent
 
         if self.origins.turns_away(self._headers, self.route.host):
             self._respond(stream, complaint(421, not_ours(self._host)))
             return None
+        shown = yield from claim(request.target, self._headers)
+        if shown.refusal:
+            self._respond(stream, complaint(403, shown.refusal))
+            return None
+        if shown.token and request.method == "GET" and likes(request, "text/html"):
+            secure = "tls" in self.route.spec.tokens
+            self._respond(stream, sent_on(shown.target, cookie(shown.token, secure)))
+            return None
+        request = replace(request, target=shown.target)
         if request.method == "OPTIONS":
             self._respond(stream, self._responder.preflight(self._headers))
             return None
@@ -220,16 +235,31 @@ class Http(Carrier):
             self._respond(stream, NO_SUCH_METHOD)
             return None
         if request.method == "GET" and request.target.startswith("/?action="):
+            if why := (yield May("read")):
+                self._respond(stream, complaint(403, why))
+                return None
             return self._show_pictures(stream, request.target)
+        if request.target == MAY:
+            self._respond(stream, self._responder.rights((yield from _rights())))
+            return None
         asked = page_asked(request)
+        if asked and (yield May("read", asking=True)):
+            asked = None  # pages show what the program knows
         page = (yield Show(*asked)) if asked else None
         if page is not None:
-            self._respond(stream, self._responder.shown(page))
+            response = self._responder.shown(page)
+            self._respond(stream, response)
+            if isinstance(response.body, Pieces) and not self._head_only:
+                yield from _send(stream, response.body)
             return None
         intent = read_intent(request)
         if isinstance(intent, Refusal):
             self._respond(stream, refused(intent))
             return None
+        if why := (yield May(intent.right)):
+            self._respond(stream, complaint(403, why))
+            return None
+        self._responder.may_write = not (yield May("write", asking=True))
         return self._screened(stream, intent)
 
     def _screened(self, stream: ByteStream, intent: Intent) -> Intent | None:
@@ -237,7 +267,7 @@ class Http(Carrier):
         if intent.acts and not self.origins.admits(self._headers, "tls" in self.route.spec.tokens):
             self._respond(stream, MAY_NOT_ACT)
         elif self._head_only and (intent.acts or intent.key == "r"):
-            # HEAD must change nothing, so there is no reply whose length could be told.
+            # HEAD must change nothing, so there is no reply whose length could be given.
             self._respond(stream, bare(intent))
         elif (intent.key, intent.form) == ("r", "page"):
             self._respond(stream, self._responder.reader())
@@ -252,7 +282,10 @@ class Http(Carrier):
         if intent is None:
             return  # nobody is waiting for it any more
         try:
-            response = self._responder.reply(intent, value, self._host)
+            if isinstance(value, Refused):
+                response = complaint(403, value.why)
+            else:
+                response = self._responder.reply(intent, value, self._host)
             if response.endless:
                 self._intent = None
                 self._begin_stream(stream, "reply_page", response)
@@ -299,7 +332,7 @@ class Http(Carrier):
         except LocalProtocolError as error:
             response = complaint(500, str(error))
             head = response.head()
-        if response.body and not self._head_only:
+        if isinstance(response.body, bytes) and response.body and not self._head_only:
             stream.write(head, response.body)
         else:
             stream.write(head)
@@ -321,21 +354,21 @@ class Http(Carrier):
         self.delivery = Delivery(lossy=True, backlog=16, interval=interval, coalesces=False)
         way = ("Transfer-Encoding", "chunked") if self._modern else ("Connection", "close")
         stream.write(response.head(way))
-        if response.body:
+        if isinstance(response.body, bytes) and response.body:
             self._write_part(stream, response.body)
 
     def _show_pictures(self, stream: ByteStream, target: str) -> Carrier | None:
         """A browser asks for MJPEG on a connection that it has used for a page before."""
-        from yarpy.carriers.mjpeg import Mjpeg, read_wishes
+        from yarpy.carriers.mjpeg import Mjpeg, read_stream_options
 
         try:
-            wishes = read_wishes(target)
+            options = read_stream_options(target)
         except ValueError as error:
             self._respond(stream, complaint(400, str(error)))
             return None
         old = self.route
         mjpeg = Mjpeg(Route("", old.target, old.spec.over("mjpeg"), old.port, old.host))
-        mjpeg.begin(stream, wishes, self._headers)
+        mjpeg.begin(stream, options, self._headers)
         return mjpeg
 
     def prepare(self, packet: Packet) -> bool:
@@ -379,7 +412,7 @@ class Http(Carrier):
 
 
 def _complete(stream: ByteStream) -> bool:
-    """Whether the head of a request has come."""
+    """Whether the head of a request has arrived."""
     buffer, head, tail = stream.buffer, stream.head, stream.tail
     return buffer.find(b"\n\r\n", head, tail) >= 0 or buffer.find(b"\n\n", head, tail) >= 0
 
@@ -387,3 +420,25 @@ def _complete(stream: ByteStream) -> bool:
 def _envelope(headers: Mapping[str, str]) -> str:
     text = headers.get(ENVELOPE, "")
     return text if text.isascii() and text.isprintable() else ""
+
+
+def _send(stream: ByteStream, body: Pieces) -> Steps[None]:
+    """Write a body piece by piece, as many bytes as its head has promised."""
+    left = body.size
+    for piece in body.read():
+        stream.write(piece[:left])
+        left -= len(piece[:left])
+        yield Flush()
+        if not left:
+            return
+    if left:  # the client would take what comes next for the rest
+        raise LinkClosed(f"the page is {left} bytes shorter than it was when it was asked for")
+
+
+def _rights() -> Steps[list[str]]:
+    """What the peer may do, for pages that show it."""
+    found = []
+    for right in _RIGHTS:
+        if not (yield May(right, asking=True)):
+            found.append(right)
+    return found

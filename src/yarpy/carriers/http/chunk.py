@@ -1,9 +1,9 @@
-"""Chunks: what is inside an HTTP body of `Transfer-Encoding: chunked` that never ends.
+"""Chunks: read an endless HTTP body of `Transfer-Encoding: chunked`.
 
     5 CR LF hello CR LF 3;name=value CR LF abc CR LF ... 0 CR LF
 
-Rules: the reader of the body sees a ByteStream of its own, and knows nothing of chunks. Line ends
-may be LF alone, extensions are ignored.
+Rules: the body's reader gets a separate ByteStream and knows nothing about chunks. Line ends may be
+LF alone, extensions are ignored.
 """
 
 from __future__ import annotations
@@ -16,35 +16,44 @@ from yarpy.wire.stream import ByteStream
 
 T = TypeVar("T")
 
-MAX_LINE: Final = 1000  # bytes of the line with a size
+MAX_LINE: Final = 1000  # bytes of a chunk's size line
 
 
 class Chunks:
-    """A chunked body; `inner` has the bytes in it. `limit` as that of a ByteStream."""
+    """A chunked body; `inner` has its contents. `limit` as for a ByteStream."""
 
     def __init__(self, limit: int) -> None:
         self.inner = ByteStream(limit)
-        self._left = 0  # bytes of this chunk that have not come yet
-        self._begun = False  # the line end behind a chunk is still to come
+        self._left = 0  # bytes of this chunk that have not arrived yet
+        self._begun = False  # the line end after a chunk has not been read yet
+        self._idle = True  # nothing has arrived of what the reader waits for
 
     def through(self, stream: ByteStream, steps: Steps[T]) -> Steps[T]:
-        """Run `steps`, which read `inner`, with what comes in chunks over `stream`.
+        """Run `steps`, which read `inner`, filling it from the chunks on `stream`.
 
-        Raises LinkClosed where the body ends, RemoteProtocolError for what is no chunk.
+        Raises LinkClosed where the body ends, RemoteProtocolError for a malformed chunk.
         """
+        self._idle = True
         while True:
             try:
                 next(steps)
             except StopIteration as stop:
                 value: T = stop.value
                 return value
+            if self.inner.paused:
+                self.inner.paused = False
+                self._idle = not self.inner.waiting
             yield from self._fetch(stream)
 
     def _fetch(self, stream: ByteStream) -> Steps[None]:
         """Move some bytes from `stream` into `inner`."""
+        if self._idle:
+            stream.pause()
         if not self._left:
             if self._begun and (yield from stream.read_line(MAX_LINE)):
-                raise RemoteProtocolError("a chunk is longer than it said")
+                raise RemoteProtocolError("a chunk is longer than its size line says")
+            if self._idle:
+                stream.pause()
             self._begun = True
             text = (yield from stream.read_line(MAX_LINE)).partition(b";")[0].strip()
             try:
@@ -52,12 +61,13 @@ class Chunks:
             except ValueError:
                 self._left = -1
             if self._left < 0:
-                raise RemoteProtocolError(f"not the size of a chunk: {text[:20]!r}")
+                raise RemoteProtocolError(f"not a chunk size: {text[:20]!r}")
             if not self._left:
                 raise LinkClosed("the peer has ended its answer")
         yield from stream.more(1)
         room = len(self.inner.get_buffer())
         end = stream.head + min(self._left, stream.waiting, room)
+        self._idle = False
         self.inner.feed(memoryview(stream.buffer)[stream.head : end])
         self._left -= end - stream.head
         stream.head = end

@@ -1,7 +1,7 @@
 """Our side of HTTP when we dial: each message is a POST, its response the acknowledgement.
 
-Rules: the carrier string says where to (`http+path.hook`); responses come in the order of the
-requests; one that reports a failure ends the connection, with its text as the reason.
+Rules: the carrier string gives the path (`http+path.hook`); responses come in the order of the
+requests; an error status ends the connection, with the response's text as the reason.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ ENVELOPE: Final = "yarp-envelope"
 
 
 class HttpClient:
-    """The requests that we have sent to one server and that it has not answered."""
+    """The requests sent to one server that it has not answered yet."""
 
     def __init__(self, route: Route) -> None:
         self.route = route

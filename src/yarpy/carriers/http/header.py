@@ -1,8 +1,8 @@
-"""Header lines of HTTP as a tolerant reader sees them: of cameras, ROS programs, web pages.
+"""A tolerant reader of HTTP header lines from cameras, ROS programs and web pages.
 
-Rules: line ends are CR LF or LF, order and spelling do not matter, later lines win, except that
-ways to log in add up; their number and length are limited. (The carrier http, which owes browsers
-every detail, uses h11.)
+Rules: line ends are CR LF or LF, order and case do not matter, later lines win, except that login
+challenges accumulate; number and length of lines are limited. (The carrier http, which must be
+strict for browsers, uses h11.)
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ CHALLENGES: Final = "www-authenticate"  # a line each, or several in one
 
 
 def read_headers(stream: ByteStream) -> Steps[dict[str, str]]:
-    """Lines up to an empty one; names in small letters."""
+    """Lines up to an empty one; names in lower case."""
     found: dict[str, str] = {}
     for _ in range(MAX_LINES):
         line = yield from stream.read_line(MAX_LINE)

@@ -1,14 +1,14 @@
-"""Logging in at a camera that wants a name and a password: HTTP's digest and basic schemes.
+"""Log in to a camera that wants a user name and a password: HTTP's digest and basic schemes.
 
     mjpeg+path.video+user.NAME+password.WORD            %2B for a plus, %25 for %
 
     WWW-Authenticate: Digest realm="cam", nonce="6a9f", qop="auth", algorithm=SHA-256
     Authorization: Digest username="NAME", realm="cam", nonce="6a9f", ... response="..."
 
-Rules: pure; the camera asks first, so no password is sent unasked. Of the digests
-that a camera offers the strongest is taken, among equals the first; the password itself is sent
-only to a camera that offers no digest. What a camera says is limited before it is parsed, and is
-quoted when sent back. Source: RFC 7616, and RFC 2617 for cameras without `qop`.
+Rules: pure; a password is sent only when the camera asks for it. The strongest digest on offer is
+used, the first among equals; the password itself is sent only to a camera that offers no digest.
+What a camera sends is limited in size before it is parsed, and quoted when sent back. Source: RFC
+7616, and RFC 2617 for cameras without `qop`.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ _CONTROL: Final = re.compile(r"[\x00-\x1f\x7f]")
 
 @dataclass(frozen=True, slots=True)
 class Challenge:
-    """One way to log in that a camera offers: the scheme and its parameters, in small letters."""
+    """One login scheme that a camera offers, with its parameters; names in lower case."""
 
     scheme: str
     values: dict[str, str] = field(default_factory=dict)
 
     @property
     def algorithm(self) -> str:
-        """What a digest is made with, as the camera spells it."""
+        """The digest's hash algorithm, as the camera spells it."""
         return self.values.get("algorithm") or "MD5"
 
     @property
@@ -52,16 +52,14 @@ class Challenge:
 
     @property
     def qop(self) -> str:
-        """`auth` if the camera offers it, "" for the older digest without `qop`, else what it
-        wants.
-        """
+        """`auth` if the camera offers it, "" for the older digest without `qop`, else its value."""
         wanted = self.values.get("qop", "").strip()
         return "auth" if "auth" in re.split(r"[\s,]+", wanted.lower()) else wanted
 
 
 @dataclass(frozen=True, slots=True)
 class Login:
-    """Name and password, as bytes of UTF-8."""
+    """Name and password, as UTF-8 bytes."""
 
     user: bytes
     password: bytes = field(repr=False)
@@ -71,8 +69,8 @@ class Login:
     ) -> bytes:
         """The value of `Authorization` for a GET of `target`.
 
-        wanted: all that came as `WWW-Authenticate`. Raises LoginRefused if nothing supported is
-        offered, RemoteProtocolError for a malformed challenge, LocalProtocolError.
+        wanted: all `WWW-Authenticate` values. Raises LoginRefused if nothing supported is offered,
+        RemoteProtocolError for a malformed challenge, LocalProtocolError.
         """
         challenges = parse_challenges(wanted)
         digests = [item for item in challenges if item.scheme == "digest"]
@@ -84,16 +82,16 @@ class Login:
             if best.qop not in ("", "auth"):
                 unknown += f" and {_shown(best.qop)}"
         elif not challenges or any(item.scheme == "basic" for item in challenges):
-            return self.basic()  # a camera that does not say how mostly means this
+            return self.basic()  # what a camera that does not name a scheme usually means
         else:
             unknown = f"{_shown(challenges[0].scheme)} authentication"
         raise LoginRefused(
-            f"the camera wants {unknown}, which yarpy does not speak; let it allow digest "
-            "authentication with SHA-256 or MD5, or watching without a password"
+            f"the camera wants {unknown}, which yarpy does not support; configure the camera for "
+            "digest authentication with SHA-256 or MD5, or for viewing without a password"
         )
 
     def basic(self) -> bytes:
-        """Name and password as they are; base64 hides nothing."""
+        """Name and password in the clear; base64 hides nothing."""
         from base64 import b64encode
 
         return b"Basic " + b64encode(self.user + b":" + self.password)
@@ -105,7 +103,7 @@ class Login:
         values = {key: _returned(challenge.values, key) for key in ("realm", "nonce", "opaque")}
         nonce = values["nonce"]
         if not nonce:
-            raise RemoteProtocolError("the camera wants digest authentication, but gives no nonce")
+            raise RemoteProtocolError("the camera wants digest authentication but sends no nonce")
         algorithm = challenge.algorithm.lower()
         name = algorithm.removesuffix("-sess").replace("-", "")
 
@@ -116,7 +114,7 @@ class Login:
         if algorithm.endswith("-sess"):
             secret = hashed(secret, nonce, cnonce)
         request = hashed(b"GET", target)
-        # The first time that this nonce is used: a nonce serves for one answer.
+        # The nonce count: each nonce is used for a single answer.
         extra = (b"00000001", cnonce, b"auth") if challenge.qop else ()
         parts = [
             b"username=" + _quoted(self.user),
@@ -139,7 +137,7 @@ class Login:
 def take_login(route: Route) -> Login | None:
     """The login in a route's carrier string, if there is one.
 
-    Raises LocalProtocolError for a name that HTTP cannot spell.
+    Raises LocalProtocolError for a name that HTTP cannot express.
     """
     from urllib.parse import unquote_to_bytes
 
@@ -149,20 +147,20 @@ def take_login(route: Route) -> Login | None:
     user, password = (unquote_to_bytes((w or "").encode("utf-8", "surrogateescape")) for w in words)
     if b":" in user or _CONTROL.search((user + password).decode("latin-1")):
         raise LocalProtocolError(
-            "a user's name without a colon, and no control characters in name or password, please"
+            "a user name cannot contain a colon, nor can it or the password have control characters"
         )
     return Login(user, password)
 
 
 def parse_challenges(text: str) -> list[Challenge]:
-    """The ways to log in that one or more `WWW-Authenticate` lines, joined by commas, offer.
+    """The challenges in one or more `WWW-Authenticate` lines, joined by commas.
 
-    text: Latin-1, as headers are read; what goes back is then the same bytes. What
-    cannot be understood is passed over. Raises RemoteProtocolError if there is too much of it.
+    text: Latin-1, as headers are read, so that the same bytes go back. Anything that cannot be
+    understood is skipped. Raises RemoteProtocolError if the text is too long.
     """
     if len(text) > MAX_CHALLENGES:
         raise RemoteProtocolError(
-            f"the camera says in {len(text)} characters how to log in; the limit is "
+            f"the camera's login challenge has {len(text)} characters; the limit is "
             f"{MAX_CHALLENGES}"
         )
     found: list[Challenge] = []
@@ -178,21 +176,21 @@ def parse_challenges(text: str) -> list[Challenge]:
 
 
 def refusal(wanted: str, login: Login | None) -> LoginRefused:
-    """The error text for a user whom a camera does not let in."""
+    """The error for a user whom a camera does not accept."""
     if login is None:
         return LoginRefused(
             "the camera wants a name and a password: mjpeg+path.<path>+user.<name>+password.<word>"
         )
     if any(item.values.get("stale", "").lower() == "true" for item in parse_challenges(wanted)):
-        return LoginRefused("the camera has forgotten at once what it asked; connect once more")
+        return LoginRefused("the camera did not accept its own nonce; connect again")
     return LoginRefused(
         "the camera does not accept this name and password: check both (a plus is %2B, a percent "
-        "sign %25), and whether this user may watch"
+        "sign %25), and whether this user may view the stream"
     )
 
 
 def _returned(values: dict[str, str], key: str) -> bytes:
-    """What a camera said, in the form in which it is sent back."""
+    """A value from the camera, in the form in which it is sent back."""
     value = values.get(key, "")
     if len(value) > MAX_VALUE:
         raise RemoteProtocolError(
@@ -204,7 +202,7 @@ def _returned(values: dict[str, str], key: str) -> bytes:
 
 
 def _shown(text: str) -> str:
-    """A camera's word as an error shows it to people."""
+    """A camera's word as shown in error messages."""
     return "".join(c for c in text[:40] if c.isprintable())
 
 

@@ -1,8 +1,8 @@
-"""One message of HTTP/1.1: read by h11, written here.
+"""One HTTP/1.1 message: read by h11, written here.
 
-Rules: h11 judges what others send, byte by byte. What we send is either a head with the
-length of its body or a head with chunks behind it, so that writing it is joining bytes; header
-values are checked for what would end a line.
+Rules: h11 checks every byte that peers send. We send either a head with the length of its body or a
+head followed by chunks, so that writing is joining bytes; header values are checked for characters
+that would end a line.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ JSON: Final = "application/json"
 _REASONS: Final = {
     200: "OK",
     204: "No Content",
+    303: "See Other",
     400: "Bad Request",
     403: "Forbidden",
     404: "Not Found",
@@ -53,14 +54,14 @@ def response_head(status: int, headers: Headers) -> bytes:
 
 
 def request_head(method: str, target: str, headers: Headers) -> bytes:
-    """The head of a request. LocalProtocolError for what cannot be sent in one."""
+    """The head of a request. LocalProtocolError for a target or header that cannot be sent."""
     if not (target.isascii() and target.isprintable()) or " " in target:
-        raise LocalProtocolError(f"a path without blanks, please, not {target!r}")
+        raise LocalProtocolError(f"the path {target!r} contains blanks: write %20 for each")
     return _head(f"{method} {target} HTTP/1.1", headers)
 
 
 def chunk(data: bytes) -> bytes:
-    """A piece of a body of unknown length; nothing for no data, which would end it."""
+    """A piece of a body of unknown length; empty for no data, since an empty chunk would end it."""
     return b"%x\r\n%b\r\n" % (len(data), data) if data else b""
 
 
@@ -75,15 +76,15 @@ def _head(first: str, headers: Headers) -> bytes:
 
 
 def two_lengths(head: h11.Request) -> bool:
-    """Whether a request gives its length twice, in different ways: a proxy on the way may have read
-    another request than we would (request smuggling). h11 refuses two numbers.
+    """Whether a request gives its length in two ways: a proxy on the way may have understood a
+    different request than we would (request smuggling). h11 refuses two numbers.
     """
     names = {name for name, _ in head.headers}
     return b"transfer-encoding" in names and b"content-length" in names
 
 
 def next_event(stream: ByteStream, talk: h11.Connection) -> Steps[Any]:
-    """What h11 finds next in what the peer says."""
+    """The next event that h11 finds in the peer's bytes."""
     import h11
 
     while (event := talk.next_event()) is h11.NEED_DATA:

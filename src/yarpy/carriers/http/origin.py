@@ -1,15 +1,15 @@
-"""Whose web pages may act on a port, and how it may be called: `YARPY_WEB_ORIGINS`.
+"""Which web pages may act on a port, and by which host names: `YARPY_WEB_ORIGINS`.
 
     (nothing), none                   only the port's own page
     http://dash:8080 https://x.org    pages from there too
-    robot.lab.example                 every page of that computer, which may be ours
+    robot.lab.example                 every page of that computer, which may be this one
     *                                 any page, as in C++ YARP
 
 Rules: a browser names the origin of the page that makes the request; other programs may always act.
-This protects people who browse, it is no password. Reading is open to every page, as in C++ YARP. A
-site may point its own name to this computer, so that its page passes for the port's (DNS
-rebinding): so a name with dots that is not listed is not ours, and a request with it over the
-loopback, where no other computer's name leads, is turned away.
+This protects people who browse; it is not a password. Reading is open to every page, as in C++
+YARP. A site may point its own name to this computer, so that its page passes for the port's (DNS
+rebinding): therefore a name with dots that is not listed is not ours, and a request with it over
+the loopback, which no other computer's name leads to, is refused.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from collections.abc import Mapping
 
 
 class Origins:
-    """Whose pages may act on a port: those of the `listed` origins and `hosts`.
+    """Which pages may act on a port: those of the `listed` origins and `hosts`.
 
     `listed` None: all pages.
     """
@@ -30,9 +30,9 @@ class Origins:
 
     def admits(self, headers: Mapping[str, str], secure: bool = False) -> bool:
         """Whether a request comes from such a page, from the port's own, or from a program that is
-        no browser.
+        not a browser.
 
-        `secure`: it came in TLS.
+        `secure`: it came over TLS.
         """
         if self.listed is None:
             return True
@@ -51,12 +51,12 @@ class Origins:
         site = headers.get("sec-fetch-site")
         if site is not None:
             return site in ("same-origin", "none") and self.knows(headers.get("host", ""))
-        # If a browser names no origin, the page may have made it hide it.
+        # A browser that names no origin may do so because the page made it hide it.
         return "mozilla/" not in headers.get("user-agent", "").lower()
 
     def knows(self, host: str) -> bool:
-        """Whether this is what the computer may be called, by its Host header: an address, a name
-        of this network, or one of `hosts`. Any other may belong to a site that points it to us."""
+        """Whether a Host header may name this computer: an address, a name of this network, or one
+        of `hosts`. Any other may belong to a site that points its name to us."""
         name = hostname(host.lower())
         return (
             self.listed is None
@@ -68,20 +68,20 @@ class Origins:
         )
 
     def turns_away(self, headers: Mapping[str, str], reached: str) -> bool:
-        """Whether a request is for a computer of another name. `reached`: the address that it came
-        to, which is a loopback's if the name led there."""
+        """Whether to refuse a request because its Host names another computer. `reached`: the
+        address at which it arrived, a loopback one if the name led there."""
         if not (reached.startswith("127.") or reached == "::1"):
             return False  # within a network, computers may have any name
         return not self.knows(headers.get("host", ""))
 
     def _is_own(self, origin: str, host: str, secure: bool) -> bool:
-        """Whether a page is of the port itself."""
+        """Whether a page belongs to the port itself."""
         scheme = "https" if secure else "http"
         return origin == f"{scheme}://{host.lower()}" and self.knows(host)
 
     @property
     def framing(self) -> str:
-        """Which origins may frame pages that may act: only those that may act themselves. For the
+        """Which origins may frame pages that may act, namely those that may act themselves. For the
         header Content-Security-Policy; empty if all may.
         """
         if self.listed is None:
@@ -94,7 +94,7 @@ _SCHEMES = ("http", "https")
 
 
 def origins_of(text: str | None = None) -> Origins:
-    """What YARPY_WEB_ORIGINS says, or a text like it: `*`, or origins and hosts between blanks."""
+    """The value of YARPY_WEB_ORIGINS, or of `text`: `*`, or origins and hosts between blanks."""
     if text is None:
         text = os.environ.get("YARPY_WEB_ORIGINS", "")
     words = {word.rstrip("/").lower() for word in text.replace(",", " ").split()} - {"none"}
@@ -105,10 +105,10 @@ def origins_of(text: str | None = None) -> Origins:
 
 
 def not_ours(host: str) -> str:
-    """The text for a request that was turned away."""
+    """The text for a request that was refused."""
     name = "".join(c for c in hostname(host) if c.isalnum() or c in ".-_")[:80]
     return (
-        f"this computer is not known as {name}: call it by its address, or name it in "
+        f"this computer is not known as {name}: use its address, or list the name in "
         "YARPY_WEB_ORIGINS where the port was opened"
     )
 

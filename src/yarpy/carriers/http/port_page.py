@@ -1,14 +1,15 @@
 """The page that a port shows to browsers, as text.
 
-Rules: plain HTML that works without its script too, which adds live data; nothing is loaded from
-elsewhere. Whatever came from a port or a message is escaped here. Lines of a name server become
-links, lines of its help (those that begin with `+`) become forms, as in C++ (core-4 7.4).
+Rules: plain HTML that also works without its script, which adds live data; nothing is loaded from
+elsewhere. Anything from a port or a message is escaped here. Lines of a name server become links,
+lines of its help (those that begin with `+`) become forms, as in C++ (core-4 7.4).
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from html import escape
 from typing import Final
 
@@ -24,13 +25,27 @@ _ARGUMENT = re.compile(r"\[?\$([A-Za-z0-9_]+)\]?")
 _HOST = re.compile(r"[A-Za-z0-9.\-]+|\[[0-9A-Fa-f:.]+\]")
 
 
-def page(name: str, lines: Sequence[str], shown: str = "", host: str = "") -> bytes:
-    """The page of the port `name` with the `lines` that it answered.
+@dataclass(frozen=True, slots=True)
+class Browsed:
+    """How a browser sees the port. host: its name for this computer, which replaces the loopback in
+    links. secure: over https, which links then use too. may_write: it may send messages."""
 
-    shown: what the form's field holds. host: how the browser calls this computer; links to the
-    loopback go there.
+    host: str = ""
+    secure: bool = False
+    may_write: bool = True
+
+    def url(self, host: str, port: str) -> str:
+        """The address of another port."""
+        return f"http{'s' if self.secure else ''}://{_reachable(host, self.host)}:{port}/"
+
+
+def page(name: str, lines: Sequence[str], shown: str = "", browsed: Browsed = Browsed()) -> bytes:
+    """The page of the port `name` with the `lines` of its answer.
+
+    shown: the content of the form's field.
     """
-    parts = [_head(name, "port"), _question(shown), *_body(lines, host), _END]
+    question = _question(shown) if browsed.may_write else READ_ONLY
+    parts = [_head(name, "port"), question, *_body(lines, browsed), _END]
     return _bytes("".join(parts))
 
 
@@ -69,6 +84,12 @@ def _head(name: str, view: str) -> str:
     )
 
 
+READ_ONLY: Final = (
+    '<p id="readonly" class="soft">Read only: whoever has opened this page may look and send '
+    "nothing. The file access.toml where this port runs says who may.</p>\n"
+)
+
+
 def _question(shown: str) -> str:
     return (
         '<form id="ask" method="post" action="/form">'
@@ -78,13 +99,13 @@ def _question(shown: str) -> str:
     )
 
 
-def _body(lines: Sequence[str], host: str) -> Iterator[str]:
+def _body(lines: Sequence[str], browsed: Browsed) -> Iterator[str]:
     """Plain lines in blocks, ports in lists, commands as forms."""
     kind = ""
     for line in lines:
         for part in line.split("\n"):
             part = readable(part.rstrip("\r\0"), keep="\t")
-            now, text = _rendered(part, host)
+            now, text = _rendered(part, browsed)
             if now != kind:
                 yield _ENDS[kind] + _BEGINS[now]
                 kind = now
@@ -96,30 +117,31 @@ _BEGINS: Final = {"": "", "pre": "<pre>", "ul": "<ul>\n", "form": "", "p": ""}
 _ENDS: Final = {"": "", "pre": "</pre>\n", "ul": "</ul>\n", "form": "", "p": ""}
 
 
-def _rendered(line: str, host: str) -> tuple[str, str]:
+def _rendered(line: str, browsed: Browsed) -> tuple[str, str]:
     found = _REGISTRATION.fullmatch(line)
     if found is not None:
-        return "ul", _port(found, host)
+        return "ul", _port(found, browsed)
     found = _NAME_SERVER.fullmatch(line)
     if found is not None:
-        url = escape(f"http://{_reachable(found['host'], host)}:{found['port']}/")
+        url = escape(browsed.url(found["host"], found["port"]))
         return "p", f'<p>{escape(found["says"])}<a href="{url}">{url}</a></p>'
-    if line.startswith("+ "):
+    if line.startswith("+ ") and browsed.may_write:
         return "form", _command(line[2:])
     return "pre", escape(line)
 
 
-def _port(found: re.Match[str], host: str) -> str:
+def _port(found: re.Match[str], browsed: Browsed) -> str:
     name, kind = escape(found["name"]), escape(found["kind"])
     if found["kind"] != "tcp" or not _HOST.fullmatch(found["host"]):
         where = escape(f"{found['host']}:{found['port']}")
         return f"<li><span>{name}</span><small>{kind} {where}</small></li>"
-    place = f"{_reachable(found['host'], host)}:{found['port']}"
-    return f'<li><a href="http://{escape(place)}/">{name}</a><small>{escape(place)}</small></li>'
+    url = browsed.url(found["host"], found["port"])
+    place = url.split("/")[2]
+    return f'<li><a href="{escape(url)}">{name}</a><small>{escape(place)}</small></li>'
 
 
 def _reachable(host: str, browsed: str) -> str:
-    """An address that the browser can go to: the loopback of this computer may not be its own."""
+    """An address that the browser can open: its loopback may not be this computer's."""
     if browsed and _HOST.fullmatch(browsed) and (host.startswith("127.") or host == "localhost"):
         return browsed
     return host

@@ -1,14 +1,14 @@
-"""What a browser wants of a port: an HTTP request read as a message, a port command, or a mistake.
+"""Read an HTTP request to a port: as a message, a port command, or a mistake.
 
     /?req=set+$joint+5&joint=2     a message, answered in JSON
     /?data=help   /data=help       a message, answered with the page
     /set/pos/0                     a message of the words of the path, answered as text
     /  /?  /r  /?cmd=...           the port itself: its connections, its help, reading, any command
-    /*  /*/port.js                 the port's own page in any case, and the files that pages share
+    /*  /*/port.js                 always the port's own page, and the files that pages share
 
 Rules: pure functions of method, target, headers and body. `$name` in `req` and `data` is replaced
-by the argument of that name. Nothing is added to a message that its sender did not say, where C++
-adds all arguments once more. Source: core-4 7.2 and 7.3.
+by the argument of that name. Nothing else is added to a message, where C++ appends all arguments
+again. Source: core-4 7.2 and 7.3.
 """
 
 from __future__ import annotations
@@ -31,13 +31,22 @@ from yarpy.wire.message import ADMIN, CALL, DATA, JSON, Message, Spelling
 Form: TypeAlias = Literal["page", "json", "text", "none", "events", "reply_page"]
 
 MAX_FIELDS: Final = 1000
-MAX_FILLED: Final = 1 << 20  # characters that arguments may put in the place of their names
+MAX_FILLED: Final = 1 << 20  # characters that the arguments may expand to
 FORM: Final = "application/x-www-form-urlencoded"
 READS: Final = ("*", "?", "h", "r")  # port commands that change nothing
+MAY: Final = "/*/may"  # what whoever asks may do, for pages that show it
+# What requests need of who makes them; `administer` for all others. Whether an administrative
+# message asks or changes something, the port judges.
+_RIGHTS: Final = {
+    **dict.fromkeys(("*", "?", "h", ADMIN), "ask"),
+    "r": "read",
+    CALL: "write",
+    DATA: "write",
+}
 
 _VARIABLE = re.compile(r"\$([A-Za-z0-9_]*)")
 _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*+://[^/?#]*+")
-# What browsers and crawlers request automatically: no message to a robot.
+# What browsers and crawlers request automatically; not a message to a robot.
 _HABITS: Final = ("apple-touch-icon", ".well-known/", "robots.txt", "sitemap")
 _SPELLINGS: Final[dict[str, Form]] = {
     "json": "json",
@@ -50,7 +59,7 @@ _SPELLINGS: Final[dict[str, Form]] = {
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """A request with its body; header names in small letters."""
+    """A request with its body; header names in lower case."""
 
     method: str
     target: str
@@ -62,8 +71,8 @@ class Request:
 class Intent:
     """A message or port command (`key`, as in Message), and how to answer it.
 
-    shown: what the page's form shows again. pixels: the reader wants whole pictures. rate: messages
-    a second that it wants at most; 0: all. acts: it may change something.
+    shown: the text to keep in the page's form. pixels: the reader wants whole pictures. rate: the
+    most messages per second that it wants; 0: all. acts: it may change something.
     """
 
     key: str
@@ -80,17 +89,22 @@ class Intent:
     def acts(self) -> bool:
         return self.key not in READS
 
+    @property
+    def right(self) -> str:
+        """What it needs of who asks (`link/admission.py`)."""
+        return _RIGHTS.get(self.key, "administer")
+
     def message(self, envelope: str = "") -> Message:
         """The message for the port."""
         text = self.text
         if self.form == "json" and self.key in (DATA, CALL):
-            text = JSON  # a name service gives its answer as values then
+            text = JSON  # makes a name service answer with values
         return Message(self.key, self.payload, envelope, self.spelling, text)
 
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """An answer that needs no port: `status` below 400 is no mistake."""
+    """An answer that does not involve the port; a `status` below 400 is not an error."""
 
     status: int
     text: str = ""
@@ -98,7 +112,7 @@ class Refusal:
 
 
 def read_intent(request: Request) -> Intent | Refusal:
-    """What a GET, HEAD or POST request is about."""
+    """What a GET, HEAD or POST request means."""
     try:
         return _read(request)
     except DecodeError as error:
@@ -112,18 +126,18 @@ def _read(request: Request) -> Intent | Refusal:
     fields = read_fields(query)
     if request.method == "POST":
         if path not in ("", "form"):
-            return Refusal(404, "post to /form")
+            return Refusal(404, "send POST requests to /form")
         return _posted(request, fields)
     if path.startswith(PREFIX):
         name = path.removeprefix(PREFIX)
         kind = KINDS.get(name)
         return Refusal(200, asset(name), kind) if kind else Refusal(404, "there is no such file")
-    if path == "web/main.css":  # what the pages of C++ ports want of their name server
+    if path == "web/main.css":  # the pages of C++ ports get it from their name server
         return Refusal(200, asset("main.css"), "text/css")
     if path.startswith("favicon"):
         return Refusal(204)
     if path.startswith(_HABITS):
-        return Refusal(404, "a port has no such thing")
+        return Refusal(404, "a port has no such path")
     if path == "r":
         return _reading(request, fields, query)
     if not fields.keys() & {"cmd", "req", "data"}:
@@ -134,13 +148,13 @@ def _read(request: Request) -> Intent | Refusal:
             return Intent("*", _form(request, fields, "page"), text=PAGE) if path == "*" else _one()
         words = _decoded(path).replace("/", " ").strip()
         fields = {**fields, "data": words}
-        default: Form = "page" if _likes(request, "text/html") else "text"
+        default: Form = "page" if likes(request, "text/html") else "text"
         return _asked(request, fields, words, default)
     return _by_fields(request, fields)
 
 
 def page_asked(request: Request) -> tuple[str, dict[str, str]] | None:
-    """The path and the arguments of a request that a program may answer with a page of its own."""
+    """The path and arguments of a request that a program may answer with a page of its own."""
     path, mark, query = _parts(request.target)
     whole = path + mark + query
     if request.method not in ("GET", "HEAD") or whole == "?" or path == "r" or "=" in path:
@@ -169,7 +183,7 @@ def read_fields(query: str) -> dict[str, str]:
 
 
 def substitute(text: str, fields: Mapping[str, str]) -> str:
-    """`text` with each `$name` replaced by the argument of that name; empty if there is none.
+    """`text` with each `$name` replaced by the argument of that name, or by nothing.
 
     DecodeError if that would add more than MAX_FILLED characters."""
     left = MAX_FILLED
@@ -178,8 +192,8 @@ def substitute(text: str, fields: Mapping[str, str]) -> str:
         nonlocal left
         found = fields.get(match[1], "")
         left -= len(found)
-        if left < 0:  # before the text is built: many short names may stand for one long argument
-            raise DecodeError(f"arguments that would make more than {MAX_FILLED} characters")
+        if left < 0:  # before it is built: many short names may repeat a long argument
+            raise DecodeError(f"arguments that expand to more than {MAX_FILLED} characters")
         return found
 
     return _VARIABLE.sub(value, text)
@@ -202,10 +216,10 @@ def _posted(request: Request, fields: dict[str, str]) -> Intent | Refusal:
         fields |= read_fields(body.decode("utf-8", "surrogateescape").strip("\r\n"))
         if fields.keys() & {"cmd", "req", "data"}:
             return _by_fields(request, fields)
-        if body.strip() and b"=" not in body:  # curl says so of whatever it is given
+        if body.strip() and b"=" not in body:  # curl claims this type for any body
             return Refusal(
                 400,
-                f"the body is not a form, as {FORM} says: JSON and text need a Content-Type too",
+                f"the body is not {FORM}: for JSON or text give their Content-Type",
             )
         return Intent("*", _form(request, fields, "page"), text=PAGE)
     if kind == "text/plain":
@@ -263,7 +277,7 @@ def _asked(
     substituting: bool = True,
     honest: bool = False,
 ) -> Intent:
-    """A message that is spelled as text. `honest`: only `format` can change the answer's form."""
+    """A message given as text. `honest`: only `format` can change the answer's form."""
     if substituting:
         text = substitute(text, fields)
     if honest:
@@ -281,14 +295,14 @@ def _asked(
 
 
 def _intent(fields: Mapping[str, str], form: Form, value: Bottle) -> Intent:
-    """A message that is a value; strings stay strings, whatever is in them."""
+    """A message given as a value; strings stay strings, whatever they contain."""
     payload = b"".join(codec.encode(value))
     shown = value.to_text() if form == "page" else ""
     return Intent(_key(fields, form), form, payload, "binary", outer=_outer(fields), shown=shown)
 
 
 def _command(request: Request, fields: Mapping[str, str]) -> Intent | Refusal:
-    """`cmd`: what a person would type on a connection in text mode."""
+    """`cmd`: what a person would type on a text connection."""
     line, _, rest = fields["cmd"].lstrip("\r\n").partition("\n")
     command = framing.parse_command(line.rstrip("\r"))
     form = _form(request, fields, "page")
@@ -304,7 +318,7 @@ def _command(request: Request, fields: Mapping[str, str]) -> Intent | Refusal:
 
 
 def _one() -> Refusal:
-    return Refusal(404, "a message by path has words of more than one letter; try / or /?")
+    return Refusal(404, "a message in the path needs words of more than one letter; try / or /?")
 
 
 def _key(fields: Mapping[str, str], form: Form) -> str:
@@ -319,21 +333,21 @@ def _outer(fields: Mapping[str, str]) -> Outer:
 
 
 def _form(request: Request, fields: Mapping[str, str], default: Form) -> Form:
-    """How to answer: by the form that is named, then by what the client accepts."""
+    """How to answer: as `format` says, else as the client accepts."""
     named = _SPELLINGS.get(fields.get("format", ""))
     if named is not None and named != "events":
         return named
     if fields.get("format") == "html":
         return "page"
-    if default == "page" and _likes(request, "application/json"):
-        return "json" if not _likes(request, "text/html") else default
-    if default == "text" and _likes(request, "application/json"):
+    if default == "page" and likes(request, "application/json"):
+        return "json" if not likes(request, "text/html") else default
+    if default == "text" and likes(request, "application/json"):
         return "json"
     return default
 
 
 def _reading(request: Request, fields: Mapping[str, str], query: str) -> Intent | Refusal:
-    """`/r`: everything that the port writes, or `rate` messages a second at most."""
+    """`/r`: everything that the port writes, or at most `rate` messages per second."""
     asked = query.split("&")
     try:
         rate = number_of("rate", fields, 0.001, 1000)
@@ -353,7 +367,7 @@ def number_of(name: str, fields: Mapping[str, str], least: float, most: float) -
     except ValueError:
         value = 0.0
     if not least <= value <= most:
-        raise ValueError(f"{name} is a number from {least:g} to {most:g}, not {text[:40]!r}")
+        raise ValueError(f"{name} must be a number from {least:g} to {most:g}, not {text[:40]!r}")
     return value
 
 
@@ -365,12 +379,13 @@ def _reading_form(request: Request, fields: Mapping[str, str], asked: list[str])
         return "page"
     if named in ("json", "text"):
         return _SPELLINGS[named]
-    if _likes(request, "text/event-stream"):
+    if likes(request, "text/event-stream"):
         return "events"
-    return "page" if _likes(request, "text/html") else "text"
+    return "page" if likes(request, "text/html") else "text"
 
 
-def _likes(request: Request, kind: str) -> bool:
+def likes(request: Request, kind: str) -> bool:
+    """Whether the client says that it takes answers of that kind."""
     return kind in request.headers.get("accept", "").lower()
 
 

@@ -1,12 +1,12 @@
-"""What a browser gets from a port: replies, lines, pages and refusals as responses of HTTP.
+"""What a browser gets from a port: replies, lines, pages and refusals as HTTP responses.
 
     json     [1, 2] LF            no reply: []
     text     1 2 CR LF            no reply: 204
     none     204
-    page     the port's page with the reply on it (`http_page`)
-    web      a page that a program put into its reply (core-4 7.5), kept apart from the port's own
+    page     the port's page with the reply on it (`port_page`)
+    web      a page that a program put into its reply (core-4 7.5), isolated from the port's own
 
-Rules: a reply goes in, a Response comes out; `http` writes it. Each response forbids caching and
+Rules: a reply goes in, a Response comes out; `carrier` writes it. Each response forbids caching and
 type sniffing, and lets any page read it.
 """
 
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final
 from yarpy.carriers.http.client import ENVELOPE
 from yarpy.carriers.http.message import HTML, JSON, TEXT, Headers, response_head
 from yarpy.carriers.http.origin import Origins, hostname
+from yarpy.carriers.http.token import REFERRER
 from yarpy.carriers.text import reply_text
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
@@ -26,15 +27,16 @@ from yarpy.route import Route
 from yarpy.wire.message import Lines
 
 if TYPE_CHECKING:
-    from yarpy.carriers.http.page import Page
+    from yarpy.carriers.http.page import Page, Pieces
     from yarpy.carriers.http.request import Intent, Refusal
 
-PRELUDE: Final = 2048  # blanks with which an endless page begins, as in C++: browsers buffer
+PRELUDE: Final = 2048  # blanks at the start of an endless page, as in C++, because browsers buffer
 
 _COMMON: Final = [
     ("Cache-Control", "no-store"),
     ("X-Content-Type-Options", "nosniff"),
     ("Access-Control-Allow-Origin", "*"),
+    REFERRER,
 ]
 _TYPES: Final = {"page": HTML, "json": JSON, "text": TEXT, "events": "text/event-stream"}
 _ALLOW: Final = ("Allow", "GET, HEAD, POST, OPTIONS")
@@ -43,7 +45,7 @@ _PAGE_POLICY: Final = (
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
     "img-src 'self' blob:; form-action 'self'; base-uri 'none'"
 )
-# A page that a program made: its scripts run, but not as those of the port's own pages.
+# A page from a reply: its scripts run, but not with the rights of the port's own pages.
 _REPLY_PAGE_POLICY: Final = (
     "Content-Security-Policy",
     "sandbox allow-scripts allow-forms allow-popups",
@@ -52,20 +54,20 @@ _REPLY_PAGE_POLICY: Final = (
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """Status, type and bytes of a body, more headers.
+    """Status, type, body and further headers.
 
-    body None: only the head was asked for, and the rest is unknown. endless: the body is only the
-    beginning, messages follow.
+    body None: only the head was requested, and the rest is unknown. endless: the body is only the
+    beginning, messages follow. Pieces: `sent` writes them after the head.
     """
 
     status: int
     kind: str = TEXT
-    body: bytes | None = b""
+    body: bytes | Pieces | None = b""
     more: Headers = ()
     endless: bool = False
 
     def head(self, *last: tuple[str, str]) -> bytes:
-        """The head, with `last` behind its headers. Raises LocalProtocolError, as
+        """The head, with `last` after its headers. Raises LocalProtocolError, as
         `response_head`."""
         headers = [*_COMMON, *self.more]
         if self.status != 204:
@@ -76,11 +78,11 @@ class Response:
         return response_head(self.status, headers)
 
 
-LATE: Final = Response(408, body=b"the request takes too long to come\n")
-CUT_OFF: Final = Response(400, body=b"the body is shorter than its length\n")
+LATE: Final = Response(408, body=b"the request takes too long to arrive\n")
+CUT_OFF: Final = Response(400, body=b"the body is shorter than its Content-Length\n")
 NO_SUCH_METHOD: Final = Response(
     405,
-    body=b"a port knows GET, HEAD, POST and OPTIONS; messages are posted to /form\n",
+    body=b"a port supports GET, HEAD, POST and OPTIONS; post messages to /form\n",
     more=[_ALLOW],
 )
 MAY_NOT_ACT: Final = Response(
@@ -92,14 +94,21 @@ UNSPEAKABLE: Final = Response(500, body=b"the port's answer cannot be sent\n")
 
 
 def complaint(status: int, text: str) -> Response:
-    """A response of one line that says what is wrong."""
+    """A one-line response that says what is wrong."""
     return Response(status, body=_encoded(text + "\n"))
 
 
 def refused(refusal: Refusal) -> Response:
-    """An answer that needs no port."""
+    """An answer that does not involve the port."""
     text = f"{refusal.text}\n" if refusal.text else ""
     return Response(refusal.status, refusal.kind, _encoded(text))
+
+
+def sent_on(target: str, *more: tuple[str, str]) -> Response:
+    """Another address of the same port, where the browser goes on."""
+    if not target.startswith("/") or target.startswith(("//", "/\\")):
+        target = "/"  # that would be another computer
+    return Response(303, more=[("Location", target), *more])
 
 
 def bare(intent: Intent) -> Response:
@@ -110,22 +119,23 @@ def bare(intent: Intent) -> Response:
 class Responder:
     """The answers of the port at the end of `route`; `origins`: which pages may act.
 
-    host: how the browser calls this computer, its Host header.
+    host: the browser's name for this computer, its Host header.
     """
 
     def __init__(self, route: Route, origins: Origins) -> None:
         self.route = route
         self.origins = origins
+        self.may_write = True  # whoever asks
 
     def reply(self, intent: Intent, value: object, host: str) -> Response:
-        """The port's reply; an endless one if a program's page wants to go on."""
+        """The port's reply; an endless one if a program's page wants to continue."""
         if intent.form == "none":
             return Response(204)
         page = _reply_page(value) if intent.form != "json" else None
         return page or self.said(intent, value, host)
 
     def said(self, intent: Intent, value: object, host: str) -> Response:
-        """A value or lines in the form that was asked for."""
+        """A value or lines in the requested form."""
         if intent.form == "json":
             return Response(200, JSON, _json_body(value, intent))
         if intent.form == "page":
@@ -152,14 +162,20 @@ class Responder:
         return Response(200, HTML, reader(self.route.target), [self._policy()])
 
     def shown(self, page: Page) -> Response:
-        """A page that the port's program shows beside those of the port."""
+        """A page that the port's program serves beside those of the port."""
         framing = self.origins.framing
         policy = [("Content-Security-Policy", framing)] if framing else []
-        return Response(page.status, page.kind, page.to_bytes(), policy)
+        return Response(page.status, page.kind, page.encoded(), policy)
+
+    def rights(self, found: list[str]) -> Response:
+        """What whoever asks may do."""
+        from yarpy.data.json import to_json
+
+        return Response(200, JSON, (to_json(found) + "\n").encode())
 
     def preflight(self, headers: Mapping[str, str]) -> Response:
-        """What a page may do here; its browser asks beforehand (a CORS preflight)."""
-        acting = ", POST" if self.origins.admits(headers, "tls" in self.route.spec.tokens) else ""
+        """What a page may do here, asked by its browser beforehand (a CORS preflight)."""
+        acting = ", POST" if self.origins.admits(headers, self._secure) else ""
         allowed = [
             _ALLOW,
             ("Access-Control-Allow-Methods", f"GET, HEAD{acting}"),
@@ -169,13 +185,19 @@ class Responder:
         return Response(204, more=allowed)
 
     def _page(self, intent: Intent, lines: list[str], host: str) -> Response:
-        from yarpy.carriers.http.port_page import page
+        from yarpy.carriers.http.port_page import Browsed, page
 
-        body = page(self.route.target, lines, intent.shown, hostname(host))
+        browsed = Browsed(hostname(host), self._secure, self.may_write)
+        body = page(self.route.target, lines, intent.shown, browsed)
         return Response(200, HTML, body, [self._policy()])
 
+    @property
+    def _secure(self) -> bool:
+        """Whether the browser uses TLS."""
+        return "tls" in self.route.spec.tokens
+
     def _policy(self) -> tuple[str, str]:
-        """What browsers must refuse to the page; no other site may frame its form."""
+        """What browsers must not let the page do; no other site may frame its form."""
         framing = self.origins.framing
         return "Content-Security-Policy", _PAGE_POLICY + (f"; {framing}" if framing else "")
 
@@ -207,7 +229,7 @@ def _json_body(value: object, intent: Intent) -> bytes:
 
 
 def _lines(value: object) -> list[str]:
-    """What a reply is on a page."""
+    """A reply as lines on a page."""
     if isinstance(value, Lines):
         return list(value)
     return [codec.encode_text(value).decode("utf-8", "surrogateescape")]

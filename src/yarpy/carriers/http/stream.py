@@ -5,8 +5,8 @@
     text          1 2 CR LF
     reply_page    what the program put under `web`      see core-4 7.5
 
-Rules: each form of a message is made once, however many read it. Of a picture only size and kind
-are sent, unless a reader of JSON asks for pixels; to see it, take mjpeg.
+Rules: each form of a message is made once for all its readers. A picture is sent as size and kind
+only, unless a JSON reader asks for pixels; to see it, use mjpeg.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def _made(packet: Packet, form: Form, pixels: bool) -> bytes:
         text = to_json(packet.value, pixels=pixels).encode()
         if form == "json":
             return text + b"\n"
-        # Nothing in it may end the line, and browsers ignore what contains a NUL.
+        # Nothing in it may end the line, and browsers ignore an id with a NUL.
         envelope = packet.envelope.translate(None, b"\r\n\0")
         mark = b"id: " + envelope + b"\n" if envelope else b""
         return mark + b"data: " + text + b"\n\n"

@@ -2,7 +2,7 @@
 
 The same as `yarpy rpc` and `yarpy write`, but what is sent are commands to the port itself
 (`[list] [in]`, `[add] /other` ...), not data for its owner. `write` throws the replies away; PORT
-is who asks, and is not opened.
+is the name of the asking side; no such port is opened.
 """
 
 from __future__ import annotations

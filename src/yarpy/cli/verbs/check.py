@@ -1,9 +1,16 @@
 """`yarpy check`: try whether ports can be opened, found, connected, written and read here.
 
-Without a name server it tries the same within this process. Exit codes: 0 all went well; 1 not.
+    --access                   who may do what with the ports of this computer (access.toml)
+    --access WHO RIGHT PORT    whether somebody may do that, and why
+
+Without a name server it tries the same within this process. Exit codes: 0 all went well, or it is
+allowed; 1 not.
 """
 
 from __future__ import annotations
+
+import os
+import textwrap
 
 import click
 
@@ -16,8 +23,44 @@ NUMBER = 42
 
 
 @click.command()
-def command() -> int:
-    """Try whether ports work here."""
+@click.option("--access", is_flag=True, help="Tell who may do what with the ports here.")
+@click.argument("question", nargs=-1, metavar="[WHO RIGHT PORT]")
+def command(access: bool, question: tuple[str, ...]) -> int:
+    """Try whether ports work here, or tell who may do what with them."""
+    if access:
+        return _tell_access(question)
+    if question:
+        raise click.UsageError("WHO RIGHT PORT belongs to --access")
+    return _check()
+
+
+def _tell_access(question: tuple[str, ...]) -> int:
+    """Explain access.toml. Raises AddressError where there is a mistake in it."""
+    from yarpy.config import access_file, access_report
+    from yarpy.names.default import secret
+    from yarpy.transports.bind import reach
+    from yarpy.transports.tls_setting import folder
+
+    if len(question) not in (0, 3):
+        raise click.UsageError(
+            "ask for WHO RIGHT PORT, for example: --access 192.168.1.9 write /icubSim/head/rpc:i"
+        )
+    access = access_file.current()
+    if question:
+        allowed, lines = access_report.explained(access, *question)
+    elif access is None:
+        allowed, lines = True, access_report.defaults(access_file.path(os.environ), reach())
+    else:
+        allowed, lines = True, access_report.listing(access)
+        authority = folder() / "ca.pem"
+        for note in access_report.notes(access, authority=authority, has_key=bool(secret())):
+            lines += textwrap.wrap(note, 79, initial_indent="note: ", subsequent_indent="      ")
+    for line in lines:
+        print_line(line)
+    return 0 if allowed else 1
+
+
+def _check() -> int:
     from yarpy.cli.service import server
 
     _step("This is `yarpy check`", "It is a very simple sanity check for your installation")

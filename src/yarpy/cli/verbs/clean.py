@@ -1,7 +1,8 @@
 """`yarpy clean [--timeout S]`: take the names of dead ports off the name server.
 
-A name is dead when nobody listens at its address, or when another port does. A port that listens
-and does not answer is stuck, not dead, and keeps its name.
+A name is dead when its host refuses connections there, or when another port has its number. A port
+that listens and does not answer is stuck, not dead, and one whose host cannot be reached may come
+back: they keep their names.
 
 Differs from C++: ports are tried side by side, with a timeout of 3 seconds where none is given;
 numbers that another port has taken over are found. Exit codes: 0 done; 1 no name server.
@@ -76,8 +77,10 @@ def reason_of_death(contact: yarpy.Contact, timeout: float) -> str:
     """Why nobody can reach this port, "" if somebody can or may."""
     try:
         socket.create_connection((contact.host, contact.port), timeout).close()
-    except (OSError, UnicodeError):
+    except ConnectionRefusedError:
         return "No response"
+    except (OSError, UnicodeError):
+        return ""  # a cut cable, a host that is off: nobody knows what runs there
     if contact.carrier != "tcp":
         return ""  # a camera or a ROS node: it listens, and speaks no YARP
     from yarpy.port import probe

@@ -85,7 +85,8 @@ def _wire(path: str) -> int:
 def _existing(source: str, target: str, carrier: str | None) -> str:
     """The carrier of the connection that is there already, "" if none is.
 
-    The new one says who is asked: a camera that takes a single connection is not to waste it on us.
+    Its carrier tells which of the two ends to ask: a camera that takes a single connection must not
+    waste it on us.
     """
     from yarpy.network.connection import Pairing
 

@@ -21,7 +21,7 @@ import click
 
 import yarpy
 from yarpy.cli import log, signals
-from yarpy.cli.browser import open_page
+from yarpy.cli.browser import open_page, url_of
 from yarpy.cli.output import print_line
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def command(seconds: float | None, no_browser: bool, lan: bool) -> int:
             Panel(page, robot.name, server.client)
             print_line(_advice(server, robot, page))
             if not no_browser:
-                open_page(f"http://{page.address}/")
+                open_page(url_of(page.address))
             threading.Event().wait(seconds)
     except signals.Interrupted:
         pass
@@ -122,11 +122,11 @@ def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port) -> str:
     rpc = server.client.query(f"{robot.name}/head/rpc:i")
     assert rpc is not None
     outward = outward_address()
-    phone = f"\n  http://{outward}:{page.contact.port}/    <- from a phone in the same network"
+    phone = f"\n  {url_of(f'{outward}:{page.contact.port}')}    <- from a phone in the same network"
     return TRY.format(
         robot=robot.name,
         bare=robot.name.strip("/"),
-        page=f"http://{page.address}/",
+        page=url_of(page.address),
         phone="" if is_loopback(outward) or listening_host() else phone,
         server=server.address,
         where=server.address.replace(":", " "),

@@ -1,6 +1,9 @@
 """`yarpy detect [--write]`: find a name server, the configured one or any in the network.
 
-Differs from C++: `--ros` belongs to later parts. Exit codes: 0 found; 1 not.
+With `--ros`: see whether the ROS master of ROS_MASTER_URI answers, and store where it is for the
+current namespace. `yarpy namespace /ros` before it stores that in a file of its own.
+
+Exit codes: 0 found; 1 not.
 """
 
 from __future__ import annotations
@@ -18,8 +21,14 @@ TRIES = 3
 
 @click.command()
 @click.option("--write", is_flag=True, help="Store the address that was found.")
-def command(write: bool) -> int:
-    """Find a name server: the configured one, or, by multicast, any that answers."""
+@click.option("--ros", is_flag=True, help="Store where the ROS master is.")
+def command(write: bool, ros: bool) -> int:
+    """Find a name server: the configured one, or, by multicast, any that answers.
+
+    With --ros: the ROS master of ROS_MASTER_URI; where it is, is stored in any case, as in C++.
+    """
+    if ros:
+        return _detect_ros()
     from yarpy.config.configuration import Server, configuration, default_port, write_server
     from yarpy.names.default import client_of
     from yarpy.names.discovery import search
@@ -71,6 +80,30 @@ def command(write: bool) -> int:
                 "  yarpy detect --write",
             )
         )
+    return 0
+
+
+def _detect_ros() -> int:
+    from yarpy.config.configuration import Server, configuration, write_server
+    from yarpy.names.ros_master import DEFAULT_URI, VARIABLE, RosMaster, parse_uri
+
+    uri = os.environ.get(VARIABLE, "")
+    if not uri:
+        uri = DEFAULT_URI
+        complain(f"{VARIABLE} is not set; trying {uri}")
+    print_line(f"Trying {VARIABLE}={uri}")
+    where = parse_uri(uri)
+    if not RosMaster(uri).answers():
+        print_line("Could not reach server.")
+        complain("start it with `roscore`, or correct ROS_MASTER_URI")
+        return 1
+    print_line("Reachable.  Writing.")
+    found = configuration(os.environ)
+    namespace = found.namespace
+    write_server(found.directory, Server(where.host, where.port, "ros", namespace))
+    print_line("Configuration stored.  Testing.")
+    notice = f"ROS Name server {_place(namespace, where.host, where.port)}"
+    print_line(framed(notice))
     return 0
 
 

@@ -52,7 +52,7 @@ def command(
             speaker = Speaker(instead="keep it in a file: --record FILE.wav")
             stack.callback(speaker.close)
             take = speaker.play
-        listener = stack.enter_context(open_port(yarpy.BufferedPort, name, strict=True))
+        listener = stack.enter_context(open_port(yarpy.BufferedPort, name, "-", strict=True))
         if port is not None:
             Source(listener, port, carrier, lambda line: warn(line) if line else None)
         try:

@@ -51,8 +51,8 @@ class Merger:
 @click.command()
 @click.argument("ports", nargs=-1)
 @click.option("--input", "first", metavar="PORT...", help="The ports to read from.")
-@click.option("--output", default=OUTPUT, metavar="PORT", help=f"Where it leaves ({OUTPUT}).")
-@click.option("--worker", default=WORKER, metavar="PREFIX", help=f"Where it arrives ({WORKER}).")
+@click.option("--output", default=OUTPUT, metavar="PORT", help="Where it leaves.")
+@click.option("--worker", default=WORKER, metavar="PREFIX", help="Where it arrives.")
 @click.option("--carrier", default="udp", help="How the ports are connected.")
 def command(
     ports: tuple[str, ...], first: str | None, output: str, worker: str, carrier: str

@@ -4,6 +4,8 @@
     set NAME KEY VALUE...   get NAME KEY   check NAME KEY VALUE   route A B   runners   gc   help
     bot ...   topic ...   subscribe ...   and whatever else a server understands
 
+Where a ROS master is configured, its nodes, topics and services are listed too.
+
 Arguments are values of Bottle text. `register` takes any address, a camera's for example; the word
 `...` leaves a part to the server.
 
@@ -15,15 +17,24 @@ Exit codes: 0 answered; 1 `query` finds nothing, the server knows no such comman
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 import yarpy
 from yarpy.cli.output import print_json, print_line
 from yarpy.cli.stderr import complain
+from yarpy.errors import UnknownName
+
+if TYPE_CHECKING:
+    from yarpy.names.ros import RosNames
 
 END = "*** end of message"
+#: What all servers understand.
+COMMANDS = (
+    *("list", "query", "register", "unregister", "set", "get", "check", "route", "runners", "gc"),
+    *("help", "bot", "topic", "subscribe"),
+)
 #: What is answered with nothing at all, or may be.
 _SILENT = frozenset(
     {"list", "query", "set", "get", "check", "route", "runners", "gc", "unregister"}
@@ -36,12 +47,15 @@ _BOTTLES = frozenset({"bot", "announce", "subscribe", "unsubscribe", "topic", "u
 @click.option("--json", "as_json", is_flag=True, help="Print list, query, get ... as JSON.")
 def command(words: tuple[str, ...], as_json: bool) -> int:
     """Send a command to the name server: `name list`, `name query /port`, `name help` ..."""
-    from yarpy.cli.service import server
+    from yarpy.cli.service import masters, server
     from yarpy.config.command_line import parse_value
     from yarpy.network.connection import find
 
-    client = server()
     verb, arguments = (words[0], words[1:]) if words else ("help", ())
+    graphs = masters() if verb in ("list", "query") else []
+    if graphs and _answer_for_ros(verb, arguments, graphs, as_json):
+        return 0
+    client = server()
     if verb == "query" and len(arguments) == 1:
         _print_contact(client.query(arguments[0]) or find(arguments[0], client), as_json)
     elif verb == "list" and as_json:
@@ -66,9 +80,45 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
         if as_json:
             print_json(lines)
         else:
-            for line in (*lines, END):
+            for line in (*lines, *_lines_of(graphs, arguments), END):
                 print_line(line)
     return 0
+
+
+def _answer_for_ros(
+    verb: str, arguments: tuple[str, ...], graphs: list[RosNames], as_json: bool
+) -> bool:
+    """What ROS masters know, where there is no YARP server to ask, or both are asked for JSON;
+    whether that is all."""
+    from yarpy.names.default import DEFAULT
+
+    names = DEFAULT.current()
+    alone = names in graphs
+    if verb == "query" and len(arguments) == 1 and alone:
+        contact = names.query(arguments[0])
+        if contact is None:
+            raise UnknownName(f'the ROS master knows no "{arguments[0]}"')
+        _print_contact(contact, as_json)
+        return True
+    if verb != "list" or not (alone or as_json):
+        return False
+    if as_json:
+        asked = getattr(names, "clients", [names])
+        print_json([as_dict(item) for client in asked for item in client.list(*arguments[:1])])
+    else:
+        for line in (*_lines_of(graphs, arguments), END):
+            print_line(line)
+    return True
+
+
+def _lines_of(graphs: list[RosNames], arguments: tuple[str, ...]) -> list[str]:
+    """Nodes, topics and services, as C++ lists them."""
+    kinds = {"xmlrpc": "node", "topic": "topic", "rossrv": "service"}
+    return [
+        f'{kinds[item.carrier]} "{item.name}"'
+        for graph in graphs
+        for item in graph.list(*arguments[:1])
+    ]
 
 
 def parse_address(words: tuple[str, ...]) -> list[Any]:

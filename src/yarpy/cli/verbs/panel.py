@@ -22,7 +22,10 @@ from yarpy.cli.stderr import warn
 
 @click.command()
 @click.argument("robot", default="/icubSim")
-@click.option("--name", default=ANY, metavar="PORT", help="The port that serves the page.")
+@click.option(
+    "--name", default=ANY, metavar="PORT", help="The port that serves the page.",
+    show_default="a temporary one",
+)  # fmt: skip
 @click.option("--no-browser", is_flag=True, help="Open no browser.")
 def command(robot: str, name: str, no_browser: bool) -> int:
     """See and move a robot in a browser."""

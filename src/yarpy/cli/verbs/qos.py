@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import click
 
+from yarpy.cli.ends import grant, of_a_connection, show
 from yarpy.cli.output import print_line
-from yarpy.network import qos
 from yarpy.qos import DSCP, LEVELS, Qos, packets_name, tos_of
 
 FORMS = ("tos", "dscp", "level")
@@ -28,25 +28,14 @@ def command() -> None:
 
 
 @command.command()
-@click.argument("source")
-@click.argument("target")
-@click.option("--src", "side", flag_value="src", help="Only the end of SOURCE.")
-@click.option("--des", "side", flag_value="des", help="Only the end of TARGET.")
+@of_a_connection
 @click.option("--tos", "form", flag_value="tos", help="As a TOS byte (what is printed anyway).")
 @click.option("--dscp", "form", flag_value="dscp", help="As a DSCP class.")
 @click.option("--level", "form", flag_value="level", help="As LOW, NORMAL, HIGH or CRITICAL.")
 def get(source: str, target: str, side: str | None, form: str | None) -> int:
     """Print the priority that the system gives the packets of both ends."""
-    print_line(both(source, target, side, lambda qos: f"(qos ({spelled(qos, form or 'tos')}))"))
+    print_line(show(source, target, side, lambda qos: f"(qos ({spelled(qos, form or 'tos')}))"))
     return 0
-
-
-def both(source: str, target: str, side: str | None, spell: object) -> str:
-    """`(src (...)) (des (...))`, or one of them alone."""
-    assert callable(spell)
-    sender, receiver = qos.granted(source, target)
-    parts = {"src": f"(src {spell(sender)})", "des": f"(des {spell(receiver)})"}
-    return parts[side] if side else " ".join(parts.values())
 
 
 def spelled(qos: Qos, form: str) -> str:
@@ -69,10 +58,7 @@ def spelled(qos: Qos, form: str) -> str:
 @click.option("--des", "receiver", metavar="VALUE", help="For what TARGET answers.")
 def set_(source: str, target: str, sender: str | None, receiver: str | None) -> int:
     """Mark the packets of a connection."""
-    if sender is None and receiver is None:
-        raise click.UsageError("say at which end: --src VALUE, --des VALUE, or both")
-    ends = [None if text is None else Qos(packets=parse(text)) for text in (sender, receiver)]
-    qos.grant(source, target, sender=ends[0], receiver=ends[1])
+    grant(source, target, sender, receiver, lambda text: Qos(packets=parse(text)))
     return 0
 
 

@@ -110,7 +110,10 @@ def _summary(message: yarpy.Message) -> str:
 @click.option("--trim", type=int, metavar="N", help="Print only the first N characters.")
 @click.option("--once", is_flag=True, help="End after one message.")
 @click.option("--json", "as_json", is_flag=True, help="Print each message as a JSON object.")
-@click.option("--type", "port_type", default="", help="The type that the port says it takes.")
+@click.option(
+    "--type", "port_type", default="", show_default=False,
+    help="The type that the port says it takes.",
+)  # fmt: skip
 def command(
     port: str,
     words: tuple[str, ...],
@@ -149,7 +152,7 @@ def open_reader(name: str, port_type: str = "") -> yarpy.BufferedPort:
     """A port that keeps every message. Raises AddressError with the hint that C++ gives."""
 
     try:
-        return open_port(yarpy.BufferedPort, name, strict=True, port_type=port_type)
+        return open_port(yarpy.BufferedPort, name, "-", strict=True, port_type=port_type)
     except yarpy.AddressError as error:
         if name == ANY or not name.startswith("/") or not yarpy.exists(name):
             raise

@@ -22,7 +22,7 @@ import yarpy
 from yarpy.cli import prompt
 from yarpy.cli.output import print_line
 from yarpy.cli.stderr import complain
-from yarpy.errors import LinkClosed, UnknownName, YarpError
+from yarpy.errors import LinkClosed, UnknownName, WrongPort, YarpError
 
 if TYPE_CHECKING:
     from yarpy.port.probe import Caller
@@ -39,7 +39,7 @@ class Target:
     """The port that is asked; its connection is made again when it breaks."""
 
     def __init__(self, port: str, name: str = "", admin: bool = False) -> None:
-        """Dial `port`. Raises UnknownName, LinkClosed, NoNameServer."""
+        """Dial `port`. Raises UnknownName, WrongPort, LinkClosed, Timeout, NoNameServer."""
         self._port = port
         self._name = name
         self._admin = admin
@@ -53,6 +53,8 @@ class Target:
                 if self._caller is None:
                     self._caller = self._dial()
                 return _bottle(self._caller.ask(question))
+            except WrongPort:
+                raise
             except (LinkClosed, UnknownName) as error:
                 self._caller = None
                 pause = next(pauses, None)
@@ -67,13 +69,19 @@ class Target:
             self._caller.close()
 
     def _dial(self) -> Caller:
+        from yarpy.cli.service import masters
         from yarpy.contact import parse_contact
-        from yarpy.network.connection import find
-        from yarpy.port.probe import ANONYMOUS, Caller
+        from yarpy.network.connection import confirmed
+        from yarpy.port.probe import ANONYMOUS, SERVICE, Caller
+        from yarpy.ros.type_server import ask_type_server
 
         carrier = parse_contact(self._port).carrier or "tcp"
         name = self._name or ANONYMOUS
-        return Caller(find(self._port), name, carrier=carrier, admin=self._admin)
+        found = confirmed(self._port, carrier=carrier)
+        if found.carrier.startswith(SERVICE):
+            for master in masters():
+                ask_type_server(master.master)
+        return Caller(found, name, carrier=carrier, admin=self._admin)
 
 
 def converse(ask: Ask, history: str, label: str = "Response: ") -> None:

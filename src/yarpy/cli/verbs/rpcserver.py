@@ -24,13 +24,16 @@ from yarpy.cli.stderr import complain
 @click.option("--single", is_flag=True, help="Close each connection after its first reply.")
 @click.option("--stop", is_flag=True, help="End after one message.")
 @click.option("--echo", is_flag=True, help="Reply with the message itself.")
-@click.option("--type", "port_type", default="", help="The type that the port says it takes.")
+@click.option(
+    "--type", "port_type", default="", show_default=False,
+    help="The type that the port says it takes.",
+)  # fmt: skip
 @click.argument("port")
 def command(single: bool, stop: bool, echo: bool, port_type: str, port: str) -> int:
     """Print what PORT is asked, and reply with lines of standard input."""
 
     try:
-        with open_port(yarpy.Port, port, port_type=port_type) as server:
+        with open_port(yarpy.Port, port, "-1", port_type=port_type) as server:
             try:
                 serve(server, single, stop, echo)
             except Interrupted:

@@ -16,9 +16,8 @@ from __future__ import annotations
 
 import click
 
+from yarpy.cli.ends import grant, of_a_connection, show
 from yarpy.cli.output import print_line
-from yarpy.cli.verbs.qos import both
-from yarpy.network import qos
 from yarpy.qos import POLICIES, Qos, policy_name, policy_of
 
 
@@ -28,16 +27,13 @@ def command() -> None:
 
 
 @command.command()
-@click.argument("source")
-@click.argument("target")
-@click.option("--src", "side", flag_value="src", help="Only the end of SOURCE.")
-@click.option("--des", "side", flag_value="des", help="Only the end of TARGET.")
+@of_a_connection
 @click.option("--policy", "form", flag_value="policy", help="Only the number of the policy.")
 @click.option("--policy-label", "form", flag_value="label", help="Only the name of the policy.")
-@click.option("--priority", "form", flag_value="priority", help="Only the qos.")
+@click.option("--priority", "form", flag_value="priority", help="Only the priority.")
 def get(source: str, target: str, side: str | None, form: str | None) -> int:
     """Print how the system schedules the threads of both ends."""
-    print_line(both(source, target, side, lambda qos: f"(sched ({spelled(qos, form)}))"))
+    print_line(show(source, target, side, lambda qos: f"(sched ({spelled(qos, form)}))"))
     return 0
 
 
@@ -57,10 +53,7 @@ def spelled(qos: Qos, form: str | None) -> str:
 @click.option("--des", "receiver", metavar="VALUE", help="For the thread that receives.")
 def set_(source: str, target: str, sender: str | None, receiver: str | None) -> int:
     """Schedule the threads of a connection."""
-    if sender is None and receiver is None:
-        raise click.UsageError("say at which end: --src VALUE, --des VALUE, or both")
-    ends = [None if text is None else parse(text) for text in (sender, receiver)]
-    qos.grant(source, target, sender=ends[0], receiver=ends[1])
+    grant(source, target, sender, receiver, parse)
     return 0
 
 

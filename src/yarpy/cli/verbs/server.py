@@ -30,6 +30,7 @@ import click
 
 import yarpy
 from yarpy.cli import log
+from yarpy.cli.browser import url_of
 from yarpy.cli.output import print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import warn
@@ -108,7 +109,7 @@ def decide(
 class Scribe:
     """Prints a line for each command, in a thread of its own: no client waits for a terminal.
 
-    What is asked about a port that is reported not to answer is printed once: those who were
+    Questions about a port that is reported not to answer are printed once: the ports that were
     connected to it dial it again and again until it is back.
     """
 
@@ -192,10 +193,14 @@ def _parts(text: str) -> tuple[str, str, str]:
 
 
 @click.command()
-@click.option("--ip", default="", metavar="HOST", help="The address to tell others.")
 @click.option(
-    "--socket", type=click.IntRange(0, 65535), default=0, metavar="N", help="The port number."
-)
+    "--ip", default="", metavar="HOST", help="The address to tell others.",
+    show_default="as stored, else one of this computer",
+)  # fmt: skip
+@click.option(
+    "--socket", type=click.IntRange(0, 65535), default=0, metavar="N", help="The port number.",
+    show_default="as stored, else 10000",
+)  # fmt: skip
 @click.option("--portdb", default=MEMORY, metavar="F", help="File that remembers registrations.")
 @click.option("--subdb", default=MEMORY, metavar="F", help="File that remembers connections.")
 @click.option("--cautious", is_flag=True, help="Have every change wait for the disk.")
@@ -291,9 +296,10 @@ def _serve(
         if say is not _nothing:
             scribe = Scribe()
             service.on_command = scribe.command
-        say(f"Name server can be browsed at http://{server.host}:{server.port}/")
+        where = url_of(f"{server.host}:{server.port}")
+        say(f"Name server can be browsed at {where}")
         if web is not None:
-            say(f"Files of {web} are shown at http://{server.host}:{server.port}/web/")
+            say(f"Files of {web} are shown at {where}web/")
         say("Ok. Ready!")
         while not threading.Event().wait(HAPPY):
             say("Name server running happily")
@@ -308,7 +314,7 @@ def _nothing(text: str) -> None:
 
 
 def _explained(server: Server, error: AddressError) -> AddressError:
-    """Who has the port number, if it is a name server."""
+    """The name server that has the port number, if it is one."""
 
     try:
         with yarpy.YarpNameClient("127.0.0.1", server.port, timeout=1.0) as client:

@@ -101,7 +101,7 @@ def command(
 
         return show(watch, as_json, wide)
     kind: Any = yarpy.Port if port_type == "Port" else yarpy.BufferedPort
-    options = {} if port_type == "Port" else {"strict": True}
+    options: dict[str, Any] = {} if port_type == "Port" else {"strict": True}
     with open_port(kind, ANY, **options) as reader:
         try:
             hear_from(reader, port, protocol)

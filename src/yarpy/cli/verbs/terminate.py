@@ -18,7 +18,7 @@ from yarpy.cli.output import print_line
 @click.argument("name")
 def command(name: str) -> int:
     """Ask the program that listens at NAME/quit to end."""
-    from yarpy.network.connection import find
+    from yarpy.network.connection import confirmed, find
     from yarpy.port import probe
 
     wanted = name if "/quit" in name else f"{name.rstrip('/')}/quit"
@@ -27,7 +27,7 @@ def command(name: str) -> int:
         raise yarpy.UnknownName(
             f'"{name}" has no port "{wanted}", so its program cannot be asked to end'
         )
-    contact = find(wanted)
+    contact = confirmed(wanted)
     print_line(f"Asking port {name} to quit gracefully")
     probe.ask(contact, ["quit"], key="d", name="yarpy_terminate")
     return 0

@@ -54,7 +54,7 @@ def command(
         f"size:{size:.3f}(MB), duration:{shown}, bandwidth:{bandwidth:.3f}(Mb/s)"
     )
     payload = "0" * max(1, round(size * 1e6))
-    with open_port(yarpy.Port, port, callback=lambda message: None) as writer:
+    with open_port(yarpy.Port, port, "+", callback=lambda message: None) as writer:
         due = time.monotonic()
         end = None if duration is None else due + duration
         while end is None or due < end:

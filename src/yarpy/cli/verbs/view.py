@@ -59,7 +59,7 @@ def command(
 
     names = names_of(ports, max(len(sources), len(outs)))
     with ExitStack() as stack:
-        opened = [stack.enter_context(open_port(yarpy.BufferedPort, name)) for name in names]
+        opened = [stack.enter_context(open_port(yarpy.BufferedPort, name, "-")) for name in names]
         clicks = [stack.enter_context(open_port(yarpy.BufferedPort, out)) for out in outs]
         pictures = [Picture(port) for port in opened]
         Viewer(pictures, quality, rate, clicks)

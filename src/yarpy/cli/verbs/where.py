@@ -15,6 +15,7 @@ from yarpy.cli.stderr import complain
 from yarpy.errors import NoNameServer
 
 if TYPE_CHECKING:
+    from yarpy.config.configuration import Server
     from yarpy.names.client import YarpNameClient
 
 FRAME = "=" * 57
@@ -53,7 +54,7 @@ def command(as_json: bool) -> int:
         if not as_json:
             print_line(f"Looking for name server on {server.host}, port number {server.port}")
             print_line("If there is a long delay, try:\n  yarpy conf --clean")
-        alive = _serves(client_of(server))
+        alive = _master_answers(server) if server.mode == "ros" else _serves(client_of(server))
         code = 0 if alive else code
         if as_json:
             print_json(
@@ -83,6 +84,12 @@ def command(as_json: bool) -> int:
                 )
             )
     return code
+
+
+def _master_answers(server: Server) -> bool:
+    from yarpy.names.ros_master import RosMaster, uri_of
+
+    return RosMaster(uri_of(server.host, server.port)).answers()
 
 
 def _serves(client: YarpNameClient) -> bool:

@@ -80,7 +80,10 @@ class _Repeater(threading.Thread):
     help="Send the last line again every S seconds.",
 )  # fmt: skip
 @click.option("--wait-connect", is_flag=True, help="Wait for a connection before the first line.")
-@click.option("--type", "port_type", default="", help="The type that the port says it sends.")
+@click.option(
+    "--type", "port_type", default="", show_default=False,
+    help="The type that the port says it sends.",
+)  # fmt: skip
 def command(
     port: str,
     words: tuple[str, ...],
@@ -93,7 +96,7 @@ def command(
 
     verbatim = verbatim or "verbatim" in words
     try:
-        with open_port(yarpy.Port, port, port_type=port_type, callback=_ignore) as writer:
+        with open_port(yarpy.Port, port, "+", port_type=port_type, callback=_ignore) as writer:
             for remote in words:
                 if remote != "verbatim":
                     send_to(writer, remote)

@@ -1,6 +1,6 @@
-"""A user's control board: its joints, the controllers, and what it was told last.
+"""A user's control board: its joints, its controllers and the last commands.
 
-Rules: those of `access`. What a device does not remember itself is remembered here.
+Rules: those of `access`. Targets that a device does not remember itself are remembered here.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from yarpy.devices.access import Access
 from yarpy.devices.kind import FLOAT, JOINT_TYPE, Kind
 from yarpy.devices.refusal import Complaints, Refused
 
-#: What was commanded -> the method that commands it.
+#: Member with the last targets -> the method that sets them.
 TARGETS: Final = {
     "position_targets": "position_move",
     "direct_targets": "position_direct",
@@ -27,7 +27,7 @@ _COMMANDED: Final = {command: targets for targets, command in TARGETS.items()}
 
 
 class Board(Access):
-    """A control board. What it was told last is remembered, for devices that do not."""
+    """A control board. Remembers the last targets for devices that do not."""
 
     def __init__(self, device: object, name: str) -> None:
         super().__init__(device, 0, Complaints(name), threading.Lock())
@@ -93,13 +93,13 @@ class Board(Access):
         if known is not None:
             return [*known]
         if targets in ("position_targets", "direct_targets"):
-            return self.values("encoders")  # nobody moved it yet: it is meant to be where it is
+            return self.values("encoders")  # not moved yet: its target is where it is
         return [0.0] * self.count
 
     def _remember(self, targets: str, joints: Sequence[int], values: Sequence[float]) -> None:
         try:
             known = self._remembered(targets)
-        except Refused:  # it moved all the same
+        except Refused:  # the move itself succeeded
             known = [0.0] * self.count
         for joint, value in zip(joints, values, strict=True):
             known[joint] = value

@@ -1,4 +1,4 @@
-"""ControlBoard: a control board somewhere else, C++ or Python, to be used like one's own.
+"""ControlBoard: a remote control board, C++ or Python, used like a local one.
 
     with ControlBoard("/icub/head") as head:
         head.switch_control_modes(head.axis_names, "pos")
@@ -6,10 +6,10 @@
         head.wait_motion_done(timeout=5.0)
         print(head.encoders())
 
-Rules: it has every member that `yarpy.devices.control_board.interface` names, so it is a device
-itself and can be served again. What the board measures comes from its stateExt:o, what is streamed
-goes to its command:i, everything else is asked. Where methods take joints, an index, a name, or
-several will do; one value counts for all of them.
+Rules: it has every member listed in `yarpy.devices.control_board.interface`, so it is itself a
+device and can be served again. Measurements come from the board's stateExt:o, streamed commands go
+to its command:i, everything else is a request. Joints are given by index or name, one or several; a
+single value applies to all of them.
 
 Source: remote_controlboard of YARP 3.x, protocol 1.9.0.
 """
@@ -45,12 +45,12 @@ _POLL: Final = 0.02
 class ControlBoard(Closeable):
     """The control board whose ports begin with `remote`.
 
-    local: prefix of the own ports; one is made up without it.
-    carrier: for commands and measurements, for example "udp" as C++ does it.
-    timeout: measurements older than this many seconds count as none.
+    local: prefix of the client's own ports; generated if empty.
+    carrier: for commands and measurements, for example "udp", which C++ uses.
+    timeout: measurements older than this many seconds are ignored.
     names: a name client, None for the default.
     Raises UnknownName, LinkClosed; RemoteProtocolError for another version of the protocol. Later,
-    whatever the board refuses is a LocalProtocolError, and Timeout means that it is silent.
+    LocalProtocolError means that the board refuses a request, Timeout that it is silent.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class ControlBoard(Closeable):
             wanted = ".".join(map(str, grammar.VERSION))
             raise RemoteProtocolError(
                 f'"{self.remote}" speaks version {spoken} of the control board protocol, not '
-                f"{wanted}: it takes a YARP from 2.3.70 to 3.12 at the other end"
+                f"{wanted}: the other end must be YARP 2.3.70 to 3.12"
             )
 
     def __repr__(self) -> str:
@@ -158,7 +158,7 @@ class ControlBoard(Closeable):
         return self._ask.read("motor_temperatures")
 
     def amplifier_status(self) -> list[int]:
-        """A number for each amplifier, of the robot's own making."""
+        """A number for each amplifier; its meaning depends on the robot."""
         return self._ask.read("amplifier_status")
 
     def faults(self) -> list[tuple[int, str]]:
@@ -170,14 +170,16 @@ class ControlBoard(Closeable):
         return self._ask.read("motion_done")
 
     def wait_motion_done(self, timeout: float | None = None) -> None:
-        """Wait until all joints have arrived, and `encoders` shows it. Timeout after so many
-        seconds."""
+        """Wait until all joints have arrived and `encoders` shows it. Raises Timeout after
+        `timeout` seconds."""
         deadline = None if timeout is None else time.monotonic() + timeout
         while not self._ask.all_done():
             if deadline is not None and time.monotonic() >= deadline:
                 done = self.motion_done()
                 late = [n for n, there in zip(self.axis_names, done, strict=True) if not there]
-                raise Timeout(f'"{self.remote}" still moves after {timeout} s: {", ".join(late)}')
+                raise Timeout(
+                    f'"{self.remote}" is still moving after {timeout} s: {", ".join(late)}'
+                )
             time.sleep(_POLL)
         self._latest.renew()
 
@@ -192,27 +194,27 @@ class ControlBoard(Closeable):
         self._set("relative_move", joints, distances)
 
     def position_direct(self, joints: Which, positions: Values) -> None:
-        """Go to these positions (degrees) at once. The joints are to be in mode `posd`."""
+        """Go directly to these positions (degrees). The joints must be in mode `posd`."""
         self._stream("position_direct", joints, positions)
 
     def velocity_move(self, joints: Which, speeds: Values) -> None:
-        """Move at these speeds, deg/s. The joints are to be in mode `vel`."""
+        """Move at these speeds, deg/s. The joints must be in mode `vel`."""
         self._stream("velocity_move", joints, speeds)
 
     def apply_torques(self, joints: Which, torques: Values) -> None:
-        """Make the joints exert these torques, Nm. The joints are to be in mode `torq`."""
+        """Make the joints exert these torques, Nm. The joints must be in mode `torq`."""
         self._stream("apply_torques", joints, torques)
 
     def apply_currents(self, joints: Which, currents: Values) -> None:
-        """Drive the motors with these currents, A. The joints are to be in mode `icur`."""
+        """Drive the motors with these currents, A. The joints must be in mode `icur`."""
         self._stream("apply_currents", joints, currents)
 
     def apply_duty_cycles(self, joints: Which, duty_cycles: Values) -> None:
-        """Drive the motors with these duty cycles, percent. They are to be in mode `ipwm`."""
+        """Drive the motors with these duty cycles, percent. The joints must be in mode `ipwm`."""
         self._stream("apply_duty_cycles", joints, duty_cycles)
 
     def stop(self, joints: Which | None = None) -> None:
-        """Stand still: these joints, or all."""
+        """Stop these joints, or all."""
         self._set("stop", joints)
 
     def switch_control_modes(self, joints: Which, modes: Words) -> None:
@@ -224,11 +226,11 @@ class ControlBoard(Closeable):
         self._set("switch_interaction_modes", joints, modes)
 
     def preset_encoders(self, joints: Which, positions: Values) -> None:
-        """Count from here: these are the positions (degrees) of the joints now."""
+        """Reset the encoders: these are the positions (degrees) of the joints now."""
         self._set("preset_encoders", joints, positions)
 
     def preset_motor_encoders(self, joints: Which, positions: Values) -> None:
-        """Count from here: these are the positions (degrees) of the motors now."""
+        """Reset the encoders: these are the positions (degrees) of the motors now."""
         self._set("preset_motor_encoders", joints, positions)
 
     def enable_amplifiers(self, joints: Which | None = None) -> None:
@@ -240,57 +242,57 @@ class ControlBoard(Closeable):
         self._set("disable_amplifiers", joints)
 
     def calibrate_joint(self, joint: int | str, kind: int, parameters: Sequence[float]) -> None:
-        """Start calibrating a joint; `kind` and 3 or 4 parameters are the robot's own."""
+        """Start calibrating a joint; `kind` and 3 or 4 parameters depend on the robot."""
         self._ask.calibrate_joint(self._joint(joint), kind, parameters)
 
     def calibration_done(self, joint: int | str) -> bool:
-        """Whether that is over."""
+        """Whether the calibration is finished."""
         return self._ask.calibration_done(self._joint(joint))
 
     def calibrate(self, joints: Which | None = None) -> None:
-        """Calibrate these joints, or all, as the robot wants it. This may take long."""
+        """Calibrate these joints, or all, in the robot's own way. May take long."""
         self._ask.calibrator("calibrate", self._joints(joints))
 
     def home(self, joints: Which | None = None) -> None:
-        """Move these joints, or all, to the home position. This may take long."""
+        """Move these joints, or all, to the home position. May take long."""
         self._ask.calibrator("home", self._joints(joints))
 
     def park(self, joints: Which | None = None) -> None:
-        """Move these joints, or all, to where they may be switched off. This may take long."""
+        """Move these joints, or all, to where they can be switched off. May take long."""
         self._ask.calibrator("park", self._joints(joints))
 
     def quit_calibration(self) -> None:
-        """Give up calibrating."""
+        """Abort calibrating."""
         self._ask.calibrator("quit_calibration", ())
 
     def quit_parking(self) -> None:
-        """Give up parking."""
+        """Abort parking."""
         self._ask.calibrator("quit_parking", ())
 
     # -- what was commanded last --------------------------------------------------------------
 
     def position_targets(self) -> list[float]:
-        """Where `position_move` goes, degrees."""
+        """Targets of `position_move`, degrees."""
         return self._ask.read("position_targets")
 
     def direct_targets(self) -> list[float]:
-        """What `position_direct` said last, degrees."""
+        """The last `position_direct`, degrees."""
         return self._ask.read("direct_targets")
 
     def velocity_targets(self) -> list[float]:
-        """What `velocity_move` said last, deg/s."""
+        """The last `velocity_move`, deg/s."""
         return self._ask.read("velocity_targets")
 
     def torque_targets(self) -> list[float]:
-        """What `apply_torques` said last, Nm."""
+        """The last `apply_torques`, Nm."""
         return self._ask.read("torque_targets")
 
     def current_targets(self) -> list[float]:
-        """What `apply_currents` said last, A."""
+        """The last `apply_currents`, A."""
         return self._ask.read("current_targets")
 
     def duty_cycle_targets(self) -> list[float]:
-        """What `apply_duty_cycles` said last, percent."""
+        """The last `apply_duty_cycles`, percent."""
         return self._ask.read("duty_cycle_targets")
 
     # -- what is adjusted ---------------------------------------------------------------------
@@ -332,7 +334,7 @@ class ControlBoard(Closeable):
 
     @property
     def variables(self) -> RemoteVariables:
-        """Whatever else the robot shows, by name, as a dict."""
+        """Further variables that the robot offers, by name, as a dict."""
         return RemoteVariables(self._ask)
 
     # -- within -------------------------------------------------------------------------------
@@ -354,7 +356,7 @@ class ControlBoard(Closeable):
             joint = index(which)
             if 0 <= joint < self.axes:
                 return joint
-            raise IndexError(f'"{self.remote}" has joints 0 to {self.axes - 1}, no {joint}')
+            raise IndexError(f'"{self.remote}" has joints 0 to {self.axes - 1}, not {joint}')
         if which in self.axis_names:
             return self.axis_names.index(which)
         known = ", ".join(self.axis_names)
@@ -371,7 +373,7 @@ class ControlBoard(Closeable):
             if not self._command.outputs:
                 self._command.connect(f"{self.remote}/command:i", self._carrier)
             if not self._command.write(message):
-                raise LinkClosed(f'"{self.remote}/command:i" has gone: is the robot running?')
+                raise LinkClosed(f'"{self.remote}/command:i" is gone: is the robot running?')
 
 
 def _spread(values: Any, count: int) -> list[Any]:

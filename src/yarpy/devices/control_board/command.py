@@ -1,13 +1,12 @@
-"""Streamed commands, as they come to and go to a command:i port: a head and a vector.
+"""Streamed commands, as sent to a command:i port: a head and a vector.
 
     ([vmo] 2) (10.5)                velocity_move of joint 2
     ([dpos]) (1.0 2.0 3.0)          position_direct of all joints
     ([dtqg] 2 (0 2)) (0.1 0.2)      apply_torques of some
     ([icur] [ref] 2) (0.5)          interfaces with a word of their own
 
-Rules: the vector holds float64 only, one for each joint that the head names, all finite. Everything
-else is refused as a whole. (C++ reads past the end of vectors that are too short; nobody means
-that.)
+Rules: the vector holds only float64, one for each joint in the head, all finite. Anything else is
+refused as a whole. (C++ reads past the end of vectors that are too short.)
 
 Source: StreamingMessagesParser of controlBoard_nws_yarp, and what remote_controlboard sends.
 """
@@ -47,14 +46,14 @@ _WORDS: Final = {found: words for words, found in HEADS.items()}
 def read(message: object, count: int, exact: bool = True) -> tuple[str, list[int], list[float]]:
     """Method, joints and values of a message for `count` joints. Raises Refused.
 
-    Not `exact`: whole numbers will do, for people who type.
+    Not `exact`: integers are accepted too, for people who type.
     """
     head, body = items(message, 2)
     head, body = items(head), items(body)
     words = tuple(word(element) for element in head[:2])
     found = HEADS.get(words[:1]) or HEADS.get(words)
     if found is None:
-        raise Refused(f"{Bottle(head).to_text()[:80]!r} is no command")
+        raise Refused(f"{Bottle(head).to_text()[:80]!r} is not a command")
     method, form = found
     rest = head[1:] if words[:1] in HEADS else head[2:]
     joints = _joints(form, rest, count)
@@ -66,7 +65,7 @@ def read(message: object, count: int, exact: bool = True) -> tuple[str, list[int
 
 
 def make(method: str, joints: Sequence[int], values: Sequence[float], count: int) -> list[Bottle]:
-    """The messages that command this: one, where the protocol has a word for it."""
+    """The messages for this command: a single one where the protocol has a word for it."""
     if [*joints] == [*range(count)] and count > 1:
         return [_message(method, Form.ALL, (), values)]
     if len(joints) > 1 and (method, Form.SOME) in _WORDS:
@@ -86,7 +85,7 @@ def _joints(form: Form, rest: Sequence[Any], count: int) -> list[int]:
     if form is Form.ALL:
         return [*range(count)]
     if not rest:
-        raise Refused("the head names no joint")
+        raise Refused("the head names no joints")
     if form is Form.ONE:
         return [whole(rest[0])]
     listed = items(rest[1] if len(rest) > 1 else None, whole(rest[0]))

@@ -4,8 +4,8 @@
     [set] [pos] 2 45.0              -> position_move, of joint 2
     [get] [torq] [refg] ...         -> an interface's own word between them
 
-Rules: a table and nothing else; server and client read it, each from its side. A row has up to
-three words: for one joint (`j value`), for all (`(values)`), for some (`count (joints) (values)`).
+Rules: just a table, which server and client read from opposite sides. A row has up to three words:
+for one joint (`j value`), for all (`(values)`), for some (`count (joints) (values)`).
 
 Source: protocol 1.9.0 of YARP 3.x, as controlBoard_nws_yarp and remote_controlboard speak it.
 """
@@ -51,7 +51,7 @@ class Form(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """The words for one member of the interface, and how its values are spelled."""
+    """The words for one member of the interface, and how its values are encoded."""
 
     one: str
     all: str
@@ -66,7 +66,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Interface:
-    """A group of rows behind a word of its own ("" for those that need none)."""
+    """A group of rows introduced by a word of its own ("" for those without)."""
 
     word: str
     get: tuple[Row, ...]
@@ -76,7 +76,7 @@ class Interface:
 
     @property
     def members(self) -> frozenset[str]:
-        """What belongs to it, without what only happens to be commanded by one of its words."""
+        """Its own members, without those of others that one of its words happens to set."""
         rows = (*self.get, *self.set)
         return frozenset(row.member for row in rows if not isinstance(row.kind, Fixed))
 
@@ -198,7 +198,7 @@ PWM: Final = Interface(
     get=(
         Row("ref", "refs", "", "duty_cycle_targets"),
         Row("pwm", "", "", "duty_cycles"),
-        # C++ means the measured ones too, and gives these: so do we.
+        # C++ also means the measured ones but returns these, so we do too.
         Row("", "pwms", "", "duty_cycle_targets"),
     ),
     stamped=False,
@@ -213,7 +213,7 @@ INTERFACES: Final = {
     )
 }
 
-#: Of the controllers of one kind: the word is followed by that kind, then by the joint.
+#: For the controllers of one kind: the word is followed by the kind, then the joint.
 PID: Final = Interface(
     "pid",
     get=(
@@ -236,7 +236,7 @@ PID: Final = Interface(
     stamped=False,
 )
 
-#: [set] [reca] <word>, with a joint where the second value says so.
+#: [set] [reca] <word>, followed by a joint if the second value says so.
 CALIBRATOR: Final = {
     "cal": ("calibrate", Form.ONE),
     "cals": ("calibrate", Form.ALL),
@@ -249,11 +249,11 @@ QUITTING: Final = {"quca": "quit_calibration", "qupa": "quit_parking"}
 
 
 def lookup(rows: tuple[Row, ...]) -> dict[str, tuple[Form, Row]]:
-    """Word -> what it is about."""
+    """Word -> how many joints it is about, and its row."""
     return {word: (form, row) for row in rows for word, form in row.words().items()}
 
 
-#: What stands for the arguments of each form where requests are listed.
+#: How the arguments of each form are shown in the list of requests.
 _ARGUMENTS: Final = {
     ("get", Form.ONE): " joint",
     ("get", Form.ALL): "",
@@ -265,7 +265,7 @@ _ARGUMENTS: Final = {
 
 
 def usage() -> list[tuple[str, str]]:
-    """Every request, and the member of the device that it is about: for `[help]`."""
+    """Every request with the member that it uses, for `[help]`."""
     found = [
         ("[help] [all]", "these lines"),
         ("[help] [more]", "these lines with some comments"),

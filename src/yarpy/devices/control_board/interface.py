@@ -13,20 +13,20 @@
 
     ControlBoardServer("/robot/head", Head())
 
-Rules. Your class inherits nothing; it has what it can do, and whatever else is asked of it answers
-`[fail]`.
+Rules. Your class inherits nothing and defines only what it supports; all other requests are
+answered with `[fail]`.
 
-- What changes by itself is a method without arguments. It gives one value for each joint.
-- What is adjusted is an attribute, a list with one entry for each joint. To change an entry the
-  server assigns a whole new list; make it a property if something has to happen then, one without
-  a setter if it cannot be changed.
-- What acts takes the joints (indices that exist) and as many values (finite floats).
+- A measurement is a method without arguments that returns one value for each joint.
+- A setting is an attribute, a list with one entry for each joint. To change an entry the server
+  assigns a whole new list; make it a property if an action is needed then, without a setter if it
+  cannot be changed.
+- An action takes joints (valid indices) and as many values (finite floats).
 
-Whatever you raise answers `[fail]` and is logged. Your class is used by one thread at a time, with
+Any exception is answered with `[fail]` and logged. Your class is used by one thread at a time, with
 one exception: `calibrate`, `calibrate_joint`, `home`, `park` and their `quit_` may take long and
-are called beside everything else.
+run concurrently with everything else.
 
-Angles are in degrees (joints that are `prismatic`: whatever unit the robot uses, mostly mm), speeds
+Angles are in degrees (`prismatic` joints: whatever unit the robot uses, mostly mm), speeds
 in degrees per second, torques in Nm, currents in A, duty cycles in percent, temperatures in degrees
 Celsius.
 
@@ -51,8 +51,8 @@ class ControlMode(StrEnum):
     PWM = "ipwm"
     CURRENT = "icur"
     IDLE = "idl"
-    FORCE_IDLE = "fidl"  # only commanded: idle, and forget faults
-    FAULT = "hwfa"  # the others are only reported
+    FORCE_IDLE = "fidl"  # can only be set: become idle and clear faults
+    FAULT = "hwfa"  # this and the next ones can only be reported
     CALIBRATING = "cal"
     CALIBRATED = "cald"
     NOT_CONFIGURED = "cfgn"
@@ -84,7 +84,7 @@ class Gains(NamedTuple):
 
 
 class MotorTorqueParameters(NamedTuple):
-    """How torque comes about in a motor, in the order of the protocol."""
+    """How a motor produces torque, in the order of the protocol."""
 
     bemf: float = 0.0
     bemf_scale: float = 0.0
@@ -98,7 +98,7 @@ class MotorTorqueParameters(NamedTuple):
 
 
 class Joints(Protocol):
-    """The least that a control board has; `ControlBoardLike` lists the rest."""
+    """The minimum for a control board; `ControlBoardLike` lists the rest."""
 
     @property
     def axis_names(self) -> Sequence[str]:
@@ -109,7 +109,7 @@ class Joints(Protocol):
 
 
 class PidController(Protocol):
-    """The controllers of one kind, one for each joint. As above: have what you can do."""
+    """The controllers of one kind, one for each joint. As above, define what you support."""
 
     gains: Sequence[Sequence[float]]  # ten each, see `Gains`
     targets: Sequence[float]
@@ -121,10 +121,10 @@ class PidController(Protocol):
         """Target minus measurement."""
 
     def outputs(self) -> Sequence[float]:
-        """What the controllers put out now."""
+        """The present outputs of the controllers."""
 
     def reset(self, joints: Sequence[int]) -> object:
-        """Forget the integral."""
+        """Reset the integral."""
 
 
 class ControlBoardLike(Joints, Protocol):
@@ -136,7 +136,7 @@ class ControlBoardLike(Joints, Protocol):
     # -- what is measured ---------------------------------------------------------------------
 
     def timestamps(self) -> Sequence[float]:
-        """When the encoders were read, in seconds; without it, the time when they are asked."""
+        """When the encoders were read, in seconds; default: the time of the call."""
 
     def encoder_speeds(self) -> Sequence[float]:
         """How fast the joints move."""
@@ -169,10 +169,10 @@ class ControlBoardLike(Joints, Protocol):
         """Temperature of each motor."""
 
     def amplifier_status(self) -> Sequence[int]:
-        """A number for each amplifier; what it means is the robot's business."""
+        """A number for each amplifier; its meaning depends on the robot."""
 
     def faults(self) -> Sequence[tuple[int, str]]:
-        """The last fault of each joint: its code and what it is. `(0, "")` for none."""
+        """The last fault of each joint: its code and its text. `(0, "")` for none."""
 
     def control_modes(self) -> Sequence[str]:
         """The mode of each joint: see `ControlMode`."""
@@ -189,10 +189,10 @@ class ControlBoardLike(Joints, Protocol):
         """Move to these positions along a trajectory."""
 
     def relative_move(self, joints: Sequence[int], distances: Sequence[float]) -> object:
-        """Move by these angles; without it, `position_move` from where the encoders are."""
+        """Move by these angles; default: `position_move` relative to the encoders."""
 
     def position_direct(self, joints: Sequence[int], positions: Sequence[float]) -> object:
-        """Go to these positions at once: the next points of somebody else's trajectory."""
+        """Go directly to these positions, the next points of the caller's trajectory."""
 
     def velocity_move(self, joints: Sequence[int], speeds: Sequence[float]) -> object:
         """Move at these speeds until told otherwise."""
@@ -207,20 +207,20 @@ class ControlBoardLike(Joints, Protocol):
         """Drive the motors with these duty cycles."""
 
     def stop(self, joints: Sequence[int]) -> object:
-        """Stand still."""
+        """Stop moving."""
 
     def switch_control_modes(self, joints: Sequence[int], modes: Sequence[str]) -> object:
-        """Change how joints are controlled. The word is as it was sent: `ControlMode(mode)` raises
-        for one that YARP does not know."""
+        """Change how joints are controlled. The word is unchecked: `ControlMode(mode)` raises for
+        one that YARP does not know."""
 
     def switch_interaction_modes(self, joints: Sequence[int], modes: Sequence[str]) -> object:
         """Make joints stiff or compliant."""
 
     def preset_encoders(self, joints: Sequence[int], positions: Sequence[float]) -> object:
-        """Count from here: these are the positions of the joints now."""
+        """Reset the encoders: these are the positions of the joints now."""
 
     def preset_motor_encoders(self, joints: Sequence[int], positions: Sequence[float]) -> object:
-        """Count from here: these are the positions of the motors now."""
+        """Reset the encoders: these are the positions of the motors now."""
 
     def enable_amplifiers(self, joints: Sequence[int]) -> object:
         """Power on."""
@@ -229,49 +229,49 @@ class ControlBoardLike(Joints, Protocol):
         """Power off."""
 
     def calibrate_joint(self, joint: int, kind: int, parameters: Sequence[float]) -> object:
-        """Start calibrating one joint; `kind` and its 3 or 4 parameters are the robot's own."""
+        """Start calibrating one joint; `kind` and its 3 or 4 parameters depend on the robot."""
 
     def calibration_done(self, joint: int) -> bool:
-        """Whether that is over."""
+        """Whether the calibration is finished."""
 
     def calibrate(self, joints: Sequence[int]) -> object:
-        """Calibrate joints as the robot wants it."""
+        """Calibrate joints in the robot's own way."""
 
     def home(self, joints: Sequence[int]) -> object:
         """Move to the home position."""
 
     def park(self, joints: Sequence[int]) -> object:
-        """Move to where the robot may be switched off."""
+        """Move to where the robot can be switched off."""
 
     def quit_calibration(self) -> object:
-        """Give up calibrating."""
+        """Abort calibrating."""
 
     def quit_parking(self) -> object:
-        """Give up parking."""
+        """Abort parking."""
 
-    # -- what was commanded last; without these the server remembers what it passed on --------
+    # -- last commands; without these the server remembers what it passed on ------------------
 
     def position_targets(self) -> Sequence[float]:
-        """Where `position_move` goes."""
+        """Targets of `position_move`."""
 
     def direct_targets(self) -> Sequence[float]:
-        """What `position_direct` said."""
+        """The last `position_direct`."""
 
     def velocity_targets(self) -> Sequence[float]:
-        """What `velocity_move` said."""
+        """The last `velocity_move`."""
 
     def torque_targets(self) -> Sequence[float]:
-        """What `apply_torques` said."""
+        """The last `apply_torques`."""
 
     def current_targets(self) -> Sequence[float]:
-        """What `apply_currents` said."""
+        """The last `apply_currents`."""
 
     def duty_cycle_targets(self) -> Sequence[float]:
-        """What `apply_duty_cycles` said."""
+        """The last `apply_duty_cycles`."""
 
     # -- what is adjusted ---------------------------------------------------------------------
 
-    axis_types: Sequence[str]  # "revolute" (so without it), "prismatic" or "unknown"
+    axis_types: Sequence[str]  # "revolute" (the default), "prismatic" or "unknown"
     reference_speeds: Sequence[float]  # of position moves
     reference_accelerations: Sequence[float]  # deg/s^2
     position_limits: Sequence[tuple[float, float]]  # (lowest, highest)
@@ -294,5 +294,5 @@ class ControlBoardLike(Joints, Protocol):
     """Controllers by kind: `pos`, `vel`, `trq`, `cur`."""
 
     variables: MutableMapping[str, Any]
-    """Whatever else the robot wants to show and have changed, by name; a dict does. Clients change
-    what is there and add nothing. What they set is a list of what they sent."""
+    """Further variables of the robot, by name; a dict will do. Clients can change existing ones but
+    not add any. What they set is the list of values that they sent."""

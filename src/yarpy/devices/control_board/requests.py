@@ -1,8 +1,8 @@
-"""The RPC port of a control board, from the side that asks: `grammar` read the other way round.
+"""The client side of a control board's RPC port: `grammar` used to write requests.
 
-Rules: a member of the interface becomes the shortest request there is: all joints at once where a
-word for that exists, else several, else one after the other. `[fail]` is a LocalProtocolError that
-shows what was asked.
+Rules: a member of the interface becomes the shortest possible request: for all joints where a word
+for that exists, else for several, else one joint at a time. `[fail]` is a LocalProtocolError that
+shows the request.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.names.base import NameClient
 from yarpy.port.rpc import RpcClient
 
-#: Seconds that an answer may take.
+#: Seconds to wait for an answer.
 PATIENCE: Final = 10.0
 
 
@@ -45,7 +45,7 @@ _PID_WRITE: Final = _by_member([PID], lambda interface: interface.set)
 
 
 class Requests(Closeable):
-    """Asks the board at `remote`."""
+    """Sends requests to the board at `remote`."""
 
     def __init__(self, remote: str, local: str, names: NameClient | None) -> None:
         self.remote = remote
@@ -63,7 +63,7 @@ class Requests(Closeable):
         return self._read(interface, row, ())
 
     def write(self, member: str, joints: Sequence[int], values: Sequence[Any] | None) -> None:
-        """Do something with these joints, or change it."""
+        """Act on these joints, or change a setting of theirs."""
         if member not in _WRITE:
             raise AttributeError(f"{member} can only be read")
         interface, row = _WRITE[member]
@@ -102,7 +102,7 @@ class Requests(Closeable):
             ]
         except (TypeError, ValueError, LookupError) as error:
             raise RemoteProtocolError(
-                f'"{self.remote}" gives no {row.member.replace("_", " ")}: {error}'
+                f'"{self.remote}" returns no {row.member.replace("_", " ")}: {error}'
             ) from error
 
     def _checked(self, values: list[Any]) -> list[Any]:
@@ -133,17 +133,17 @@ class Requests(Closeable):
                 self.send([*words, Vocab(row.one), *middle, joint, *own])
 
     def _payload(self, interface: Interface, request: list[Any]) -> list[Any]:
-        """What a reply says, without what surrounds it."""
+        """The content of a reply, without its framing."""
         reply = self.send(request)[:-1]
         ends = [at for at, element in enumerate(reply) if isinstance(element, Vocab)]
         end = next((at for at in ends if reply[at] == "tsta"), len(reply))
         start = 0 if not interface.echo else 1 if interface is grammar.FAULTS else 2
         return reply[start:end]
 
-    # -- requests with manners of their own ---------------------------------------------------
+    # -- requests with their own form ---------------------------------------------------------
 
     def version(self) -> tuple[int, ...]:
-        """The version of the protocol; () if there is no telling."""
+        """The version of the protocol; () if unknown."""
         reply = self._client.call(Bottle([Vocab("get"), Vocab("prot")]), timeout=PATIENCE)
         if isinstance(reply, list) and len(reply) == 5 and reply[0] == "prot":
             return tuple(item for item in reply[1:4] if type(item) is int)
@@ -177,7 +177,7 @@ class Requests(Closeable):
         return True
 
     def calibrator(self, member: str, joints: Sequence[int]) -> None:
-        """Calibrate, home, park, or give up doing so."""
+        """Calibrate, home, park, or abort doing so."""
         if not joints:
             word = next(word for word, name in grammar.QUITTING.items() if name == member)
             self.tell("set", "reca", word)
@@ -188,11 +188,11 @@ class Requests(Closeable):
             self.send([Vocab("set"), Vocab("reca"), Vocab(word), *arguments], None)
 
     def tell(self, *words: Any) -> list[Any]:
-        """Send words (as vocabs) and numbers; the reply."""
+        """Send words (as vocabs) and numbers; returns the reply."""
         return self.send([Vocab(word) if type(word) is str else word for word in words])
 
     def send(self, request: list[Any], patience: float | None = PATIENCE) -> list[Any]:
-        """Send a request as it is; the reply."""
+        """Send a request as it is; returns the reply."""
         reply = self._client.call(Bottle(request), timeout=patience)
         found = reply if isinstance(reply, list) else [reply]
         if found and found[0] == "fail":
@@ -211,7 +211,7 @@ def _prefix(interface: Interface) -> list[Vocab]:
 
 
 class _PidRequests:
-    """`Requests` about one kind of controllers."""
+    """`Requests` for one kind of controllers."""
 
     def __init__(self, requests: Requests, kind: str) -> None:
         self.axes = requests.axes
@@ -229,9 +229,9 @@ class RemotePids:
     """The controllers of one kind at a remote board, see `control_board.PidController`."""
 
     gains = Adjustable[Gains]("`Gains`", Gains._make)
-    targets = Adjustable[float]("What the controllers are to reach.")
-    error_limits = Adjustable[float]("Beyond these errors they give up.")
-    enabled = Adjustable[bool]("Whether they are at work.")
+    targets = Adjustable[float]("The targets of the controllers.")
+    error_limits = Adjustable[float]("Beyond these errors the controllers stop.")
+    enabled = Adjustable[bool]("Whether the controllers are active.")
 
     def __init__(self, requests: Requests, kind: str) -> None:
         self._ask = _PidRequests(requests, kind)
@@ -241,16 +241,16 @@ class RemotePids:
         return self._ask.read("errors")
 
     def outputs(self) -> list[float]:
-        """What the controllers put out now."""
+        """The present outputs of the controllers."""
         return self._ask.read("outputs")
 
     def reset(self, joints: Sequence[int]) -> None:
-        """Forget the integral."""
+        """Reset the integral."""
         self._ask.write("reset", joints, None)
 
     @property
     def offsets(self) -> tuple[float, ...]:
-        """Added to the outputs. The protocol sets them apart, and shows them among the gains."""
+        """Added to the outputs. The protocol sets them separately but reads them with the gains."""
         return tuple(gains.offset for gains in self.gains)
 
     @offsets.setter
@@ -259,7 +259,7 @@ class RemotePids:
 
 
 class RemoteVariables(MutableMapping[str, Any]):
-    """Variables of a remote board. A value is the list of what stands behind the name."""
+    """Variables of a remote board. A value is the list of the elements after the name."""
 
     def __init__(self, requests: Requests) -> None:
         self._ask = requests
@@ -275,7 +275,7 @@ class RemoteVariables(MutableMapping[str, Any]):
         self._ask.send([Vocab("set"), Vocab("ivar"), Vocab("mvar"), key, *values])
 
     def __delitem__(self, key: str) -> None:
-        raise TypeError("variables of a robot stay")
+        raise TypeError("variables of a robot cannot be deleted")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names())

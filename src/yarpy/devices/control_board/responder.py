@@ -1,13 +1,13 @@
-"""What a control board answers on its RPC port: requests of `grammar` carried out on a device.
+"""The server side of a control board's RPC port: carries out requests of `grammar` on a device.
 
     get encs          [is] encs (0.0 3.5) [tsta] 5 1795217570.38 [ok]
     set pos 1 45      [ok]
     get bogus         [fail]
     help              [nak]         (everything has at least two words)
 
-Rules: one reply for every request, also for nonsense, and then the device was not touched. Element
-1 decides first, which is why `[set] [icmd] ...` and `[set] [vel] ...` never meet. Numbers of [tsta]
-count the questions, also those that failed. Extra elements are passed over, as in C++.
+Rules: one reply for every request, even a nonsensical one, which never touches the device. Element
+1 decides first, so `[set] [icmd] ...` and `[set] [vel] ...` never collide. The count in [tsta]
+includes failed requests. Extra elements are ignored, as in C++.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ Request = Sequence[Any]
 
 
 class Responder:
-    """Answers requests for one board. Any thread may call `answer`."""
+    """Answers requests to one board. Any thread may call `answer`."""
 
     def __init__(self, board: Board) -> None:
         self._board = board
         self._count = count()
-        # Element 1 -> who answers; what is not listed is an item without an interface.
+        # Element 1 -> handler; anything not listed is an item without an interface.
         self._special: dict[str, Callable[[str, Request], list[Any]]] = {
             "prot": self._version,
             "icmd": self._control_mode,
@@ -112,19 +112,19 @@ class Responder:
         return [*lead, *self._values(self._board, form, row, request[2:])]
 
     def _motors(self, what: str) -> int:
-        """How many motors there are: one for each joint, if the device knows of motors at all."""
+        """The number of motors: one for each joint, if the device has motors at all."""
         members = {
             "mnum": ("motor_encoders", "motor_speeds", "counts_per_revolution"),
             "mtnm": ("motor_temperatures", "temperature_limits", "gearbox_ratios"),
         }
         if not self._board.offers(members[what]):
-            raise Refused("the device says nothing of its motors")
+            raise Refused("the device has no data about its motors")
         return self._board.count
 
     def _interface(self, interface: Interface, verb: str, request: Request) -> list[Any]:
         board, name = self._board, interface.word
         if not board.offers(_members(interface)):
-            raise Refused(f"the device has nothing of {name}")
+            raise Refused(f"the device has no members of {name}")
         what, rest = _word_at(request, 2), request[3:]
         if verb == "set":
             self._change(board, _SET[name], what, rest)
@@ -159,7 +159,7 @@ class Responder:
         if form is Form.ONE:
             joints = [_joint(rest, part.count)]
             if len(rest) < 1 + kind.count:
-                raise Refused(f"{kind.count} values are needed")
+                raise Refused(f"expected {kind.count} values")
             values = [kind.read(rest[1 : 1 + kind.count])]
         elif form is Form.ALL:
             if kind.count == 0:
@@ -177,19 +177,19 @@ class Responder:
         return [*range(self._board.count)]
 
     def _stamped(self, reply: Callable[[], list[Any]]) -> list[Any]:
-        number = next(self._count) & 0x7FFFFFFF  # counted also if there is no answer
+        number = next(self._count) & 0x7FFFFFFF  # counted even if the request fails
         return [*reply(), Vocab("tsta"), number, time.time()]
 
-    # -- interfaces with manners of their own -------------------------------------------------
+    # -- interfaces with their own form -------------------------------------------------------
 
     def _version(self, verb: str, request: Request) -> list[Any]:
         if verb != "get":
-            raise Refused("the version can only be asked for")
+            raise Refused("the version can only be read")
         return [Vocab("prot"), *grammar.VERSION]
 
     def _control_mode(self, verb: str, request: Request) -> list[Any]:
-        """As other interfaces, but that replies say the joint, or the item, where others repeat
-        the request."""
+        """Like other interfaces, except that replies contain the joint or the item where others
+        repeat the request."""
         board, interface = self._board, grammar.CONTROL_MODE
         if not board.offers(interface.members):
             raise Refused("the device has no control modes")
@@ -197,7 +197,7 @@ class Responder:
         if verb == "set" and what not in _SET["icmd"]:
             mode = _word_at(rest, 1)
             if mode not in _LEGACY_MODES:
-                raise Refused(f"{mode!r} is no control mode")
+                raise Refused(f"{mode!r} is not a control mode")
             board.apply("switch_control_modes", [_joint(rest, board.count)], [mode])
             return []
         if verb == "set":
@@ -208,7 +208,7 @@ class Responder:
 
         def reply() -> list[Any]:
             if what not in _GET["icmd"]:
-                return []  # C++ finds this fine
+                return []  # C++ accepts this
             form, row = _GET["icmd"][what]
             values = self._values(board, form, row, rest)
             return [IS, _joint(rest, board.count) if form is Form.ONE else Vocab(what), *values]
@@ -262,7 +262,7 @@ class Responder:
             board.ask(grammar.QUITTING[what])
             return []
         if verb != "set" or what not in grammar.CALIBRATOR:
-            raise Refused(f"{what!r} is nothing that a calibrator does")
+            raise Refused(f"{what!r} is not a calibrator command")
         member, form = grammar.CALIBRATOR[what]
         joints = self._all if form is Form.ALL else [_joint(request[3:], board.count)]
         board.apply(member, joints, None)
@@ -286,11 +286,11 @@ class Responder:
         try:
             self._board.apply("park", self._all, None)
         except Refused:
-            pass  # C++ clients wait for this for ever, so the answer is always [ok]
+            pass  # C++ clients wait forever for [ok], so that is always the answer
 
 
 def _members(interface: Interface) -> set[str]:
-    """What makes a device have an interface: any of its members, or the command behind a target."""
+    """A device has an interface if it has any of these: its members, or commands that set them."""
     return {*interface.members, *(TARGETS[name] for name in interface.members if name in TARGETS)}
 
 
@@ -307,13 +307,13 @@ def _usage(details: bool) -> list[Any]:
 def _row(rows: dict[str, tuple[Form, Row]], what: str) -> tuple[Form, Row]:
     found = rows.get(what)
     if found is None:
-        raise Refused(f"{what!r} is no item")
+        raise Refused(f"{what!r} is not an item")
     return found
 
 
 def _at(elements: Request, index: int) -> Any:
     if index >= len(elements):
-        raise Refused("the request ends too early")
+        raise Refused("the request is incomplete")
     return elements[index]
 
 

@@ -1,11 +1,11 @@
-"""ControlBoardServer: a device of yours on the ports of a YARP control board.
+"""ControlBoardServer: serve your device on the ports of a YARP control board.
 
     <name>/rpc:i        requests and replies (`responder`); people may type them
     <name>/command:i    streamed commands (`command`), which are never answered
-    <name>/stateExt:o   everything that is measured (`state`), every period
+    <name>/stateExt:o   all measurements (`state`), every period
     <name>/state:o      positions only, for tools and older clients
 
-Both outputs carry count and time of the encoders, and nothing is read while nobody listens.
+Both outputs are stamped with count and time of the encoders; nothing is read while nobody listens.
 
 Source: controlBoard_nws_yarp of YARP 3.x, protocol 1.9.0.
 """
@@ -42,7 +42,7 @@ class ControlBoardServer(Closeable):
     """Serves `device` (see `yarpy.devices.control_board.interface`) to C++ and Python clients.
 
     name: prefix of the ports, for example `/icub/head`.
-    period: seconds between two states.
+    period: seconds between states.
     names: a name client, None for the default.
     Raises AddressError (a name is in use), NoNameServer; ValueError if the device has no joints.
     """
@@ -91,7 +91,7 @@ class ControlBoardServer(Closeable):
             return Bottle([FAIL])
         browsing = message.source == "web"
         if len(request) == 1 and browsing:
-            request.append("")  # people in a browser get the help they ask for
+            request.append("")  # so that people in a browser get the help they ask for
         reply = self._responder.answer(request)
         if reply[0] == "many" and message.spelling == "text":
             return Lines(_line(element, plain=browsing) for element in reply[1:])
@@ -123,7 +123,7 @@ class ControlBoardServer(Closeable):
 
 
 def _line(element: Any, plain: bool) -> str:
-    """An element as a line of its own; `plain`: without the quotes that YARP puts around text."""
+    """An element as a separate line; `plain`: without the quotes that YARP puts around text."""
     if plain and type(element) is str:
         return element
     return Bottle(element if isinstance(element, list) else [element]).to_text()

@@ -3,8 +3,8 @@
     (positions) [ok] (speeds) [ok] ... (control modes) [ok] (interaction modes) [fail]
 
 Rules: always 22 elements and always as many values as joints: C++ clients copy them blindly, and
-drop a message with an empty list in it. What is not measured is zeros and `[fail]`. Numbers are
-float64, modes int32 (the number of the word).
+drop a message that contains an empty list. Missing measurements are zeros and `[fail]`. Numbers are
+float64, modes int32 (the vocab code of the word).
 
 Source: the struct that controlBoard_nws_yarp sends, YARP 2.3.70 to 3.12.
 """
@@ -38,20 +38,20 @@ FIELDS: Final[tuple[tuple[str, Kind], ...]] = (
 
 _VALID: Final = Vocab("ok")
 _INVALID: Final = Vocab("fail")
-# What stands in for a mode that is not known, so that the list has its length.
+# Stands in for an unknown mode, to keep the length of the list.
 _BLANK_MODE: Final = Vocab("unkw").code
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """Measurements by name; what is not there was not valid."""
+    """Measurements by name; those missing were not valid."""
 
     count: int
     values: dict[str, list[Any]]
 
     @classmethod
     def of(cls, count: int, ask: Callable[[str, Kind], list[Any]]) -> State:
-        """Ask for each field; what is refused is missing."""
+        """Ask for each field; refused ones are missing."""
         values: dict[str, list[Any]] = {}
         for name, kind in FIELDS:
             try:
@@ -77,7 +77,7 @@ class State:
 
     @classmethod
     def from_bottle(cls, message: Sequence[Any]) -> State:
-        """Read the 22 elements; DecodeError if they are something else."""
+        """Read the 22 elements; DecodeError if they are not a state."""
         if len(message) != 2 * len(FIELDS):
             raise DecodeError(f"a state has {2 * len(FIELDS)} elements, this one {len(message)}")
         values: dict[str, list[Any]] = {}
@@ -85,7 +85,7 @@ class State:
         for index, (name, kind) in enumerate(FIELDS):
             found, flag = message[2 * index], message[2 * index + 1]
             if not isinstance(found, (list, tuple)) or len(found) != count or not count:
-                raise DecodeError(f"a state of {count} joints has as many {name}")
+                raise DecodeError(f"a state of {count} joints needs as many {name}")
             if flag in (0, "fail", False):
                 continue
             read = _mode if kind is WORD else _number
@@ -100,7 +100,7 @@ def _number(element: object) -> float:
 
 
 def _mode(element: object) -> str:
-    """A mode: the number of its word, or the word itself, as senders of plain Bottles may write."""
+    """A mode: the code of its word, or the word itself, which senders of plain Bottles may use."""
     if isinstance(element, Vocab):
         return str.__str__(element)
     if type(element) is int and -0x80000000 <= element <= 0x7FFFFFFF:

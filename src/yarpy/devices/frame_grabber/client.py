@@ -1,11 +1,11 @@
-"""FrameGrabber: a camera somewhere else, C++ or Python, to be used like one's own.
+"""FrameGrabber: a remote camera, C++ or Python, used like a local one.
 
     with FrameGrabber("/icub/cam/left") as eye:
         pixels = eye.image().array            # the next picture
         eye.features["brightness"] = 0.5
 
-Rules: it has every member that `yarpy.devices.frame_grabber.interface` names, so it is a camera
-itself. The camera begins to send when the first image is asked for. Old images are dropped.
+Rules: it has every member listed in `yarpy.devices.frame_grabber.interface`, so it is itself a
+camera. The camera starts sending when the first image is requested. Old images are dropped.
 
 Source: frameGrabber_nwc_yarp of YARP 3.x.
 """
@@ -17,9 +17,8 @@ from collections.abc import Iterator, MutableMapping, Sequence
 from contextlib import ExitStack
 from typing import Any, Final
 
-from yarpy.data.bottle import Bottle
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.image import Image
-from yarpy.data.property import Property
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.devices.closeable import Closeable, local_prefix, prefix
@@ -30,17 +29,17 @@ from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcClient
 
-#: Seconds that an answer or an image may take.
+#: Seconds to wait for an answer or an image.
 PATIENCE: Final = 10.0
 
 
 class FrameGrabber(Closeable):
     """The camera whose images come from the port `remote`.
 
-    local: name of the own port; one is made up without it.
+    local: name of the client's own port; generated if empty.
     carrier: for the images, for example "mjpeg" where the network is slow.
     names: a name client, None for the default.
-    Raises UnknownName, LinkClosed. Later, whatever the camera refuses is a LocalProtocolError.
+    Raises UnknownName, LinkClosed. Later, LocalProtocolError means that the camera refuses.
     """
 
     def __init__(
@@ -79,7 +78,7 @@ class FrameGrabber(Closeable):
         return message.as_(Image)
 
     def __iter__(self) -> Iterator[Image]:
-        """Pictures, as they come."""
+        """Pictures as they arrive."""
         while True:
             yield self.image()
 
@@ -88,7 +87,7 @@ class FrameGrabber(Closeable):
         return self.stamp.time
 
     def crop(self, left: int, top: int, right: int, bottom: int) -> Image:
-        """A rectangle of the next picture, the corners included."""
+        """A rectangle of the next picture, corners included."""
         corners = Bottle([left, top, right, bottom])
         return self._picture(self._send("fgi", "get", "crop", 0, corners))
 
@@ -114,7 +113,7 @@ class FrameGrabber(Closeable):
 
     @property
     def resolutions(self) -> list[tuple[int, int, float, str]]:
-        """What the camera can do: width, height, pictures per second, pixel code."""
+        """Supported modes: width, height, pictures per second, pixel code."""
         listed = self._get("conf", 1)[1:]
         rows = zip(*(listed[start::4] for start in range(4)), strict=False)
         return [(int(w), int(h), float(rate), str.__str__(code)) for w, h, rate, code in rows]
@@ -126,7 +125,7 @@ class FrameGrabber(Closeable):
 
     @property
     def mirror(self) -> bool:
-        """Whether left and right are exchanged."""
+        """Whether left and right are swapped."""
         return bool(self._get("mirr", 1)[0])
 
     @mirror.setter
@@ -135,7 +134,7 @@ class FrameGrabber(Closeable):
 
     @property
     def description(self) -> tuple[str, str]:
-        """How the camera is connected, and which it is."""
+        """How the camera is connected, and which one it is."""
         bus, text = self._payload(self._send("fgc", "get", "camd"), 2)[:2]
         return BUSES[bus] if bus in range(len(BUSES)) else "unknown", str(text)
 
@@ -155,7 +154,7 @@ class FrameGrabber(Closeable):
         return Features(self, "actv", "onof")
 
     def one_push(self, feature: str) -> None:
-        """Have the camera adjust a feature by itself, once."""
+        """Let the camera adjust a feature automatically, once."""
         self._send("fgc", "set", "onep", _index(feature))
 
     # -- within -------------------------------------------------------------------------------
@@ -181,12 +180,12 @@ class FrameGrabber(Closeable):
         reply = self._send("visr", "set", item, *values)
         if reply[2:] != [1]:
             given = " ".join(map(str, values))
-            raise LocalProtocolError(f'"{self.remote}" does not take {item} {given}')
+            raise LocalProtocolError(f'"{self.remote}" does not accept {item} {given}')
 
     def _picture(self, reply: list[Any]) -> Image:
         payload = self._payload(reply, 1)[0]
         if not isinstance(payload, list):
-            raise RemoteProtocolError(f'"{self.remote}" gives no image')
+            raise RemoteProtocolError(f'"{self.remote}" returns no image')
         return Image.from_wire(Bottle(payload).to_bytes())
 
 
@@ -225,7 +224,7 @@ class Features(MutableMapping[str, Any]):
             self._camera._send("fgc", "set", "feat", index, float(value))
 
     def __delitem__(self, feature: str) -> None:
-        raise TypeError("features of a camera stay")
+        raise TypeError("features of a camera cannot be deleted")
 
     def __contains__(self, feature: object) -> bool:
         if feature not in FEATURES:
@@ -245,5 +244,5 @@ class Features(MutableMapping[str, Any]):
 
 def _index(feature: str) -> int:
     if feature not in FEATURES:
-        raise KeyError(f"{feature!r} is none of {', '.join(FEATURES)}")
+        raise KeyError(f"{feature!r} is not one of {', '.join(FEATURES)}")
     return FEATURES.index(feature)

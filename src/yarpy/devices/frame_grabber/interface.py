@@ -7,9 +7,9 @@
     FrameGrabberServer("/robot/eye", Eye())
 
 Rules: as for control boards (`yarpy.devices.control_board.interface`): your class inherits nothing
-and has what it can do. `image` is only called while somebody looks; it may wait for the camera, and
-may give the same array again and again. What is adjusted is an attribute, to which the server
-assigns. Whatever you raise is logged, and the next image is tried.
+and defines only what it supports. `image` is called only while somebody is watching; it may wait
+for the camera, and may return the same array every time. Settings are attributes, to which the
+server assigns. Any exception is logged, and the next image is tried.
 
 Source: interfaces of YARP 3.x behind frameGrabber_nws_yarp.
 """
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from yarpy.data.image import Image
 
-#: What a camera can adjust; its place here is its number in the protocol.
+#: What a camera can adjust; the index here is the number in the protocol.
 FEATURES = (
     *("brightness", "exposure", "sharpness", "white_balance", "hue", "saturation", "gamma"),
     *("shutter", "gain", "iris", "focus", "temperature", "trigger", "trigger_delay"),
@@ -34,20 +34,20 @@ FEATURES = (
 
 
 class Camera(Protocol):
-    """The least that a frame grabber has; `FrameGrabberLike` lists the rest."""
+    """The minimum for a frame grabber; `FrameGrabberLike` lists the rest."""
 
     def image(self) -> Image | NDArray[Any] | None:
-        """The next picture: an array that `yarpy.Image` takes, or an Image. None: not now."""
+        """The next picture: an array that `yarpy.Image` takes, or an Image. None: none now."""
 
 
 class FrameGrabberLike(Camera, Protocol):
     """Everything a frame grabber can have. For reading; classes need not inherit it."""
 
     def timestamp(self) -> float:
-        """When the last image was taken, in seconds; without it, when it was got."""
+        """When the last image was taken, in seconds; default: when `image` returned."""
 
-    resolution: tuple[int, int]  # width and height in pixels; without it, those of the image
-    resolutions: Sequence[tuple[int, int, float, str]]  # possible: width, height, Hz, pixel code
+    resolution: tuple[int, int]  # width and height in pixels; default: the image's
+    resolutions: Sequence[tuple[int, int, float, str]]  # supported: width, height, Hz, pixel code
     field_of_view: tuple[float, float]  # horizontal and vertical, degrees
     intrinsics: Mapping[str, Any]  # focalLengthX, principalPointX, distortionModel ...
     mirror: bool
@@ -60,6 +60,6 @@ class FrameGrabberLike(Camera, Protocol):
     """On or off, for the features that can be either."""
 
     def one_push(self, feature: str) -> object:
-        """Adjust a feature by itself, once."""
+        """Adjust a feature automatically, once."""
 
-    description: tuple[str, str]  # "usb", "firewire" or "unknown", and which camera it is
+    description: tuple[str, str]  # "usb", "firewire" or "unknown"; which camera it is

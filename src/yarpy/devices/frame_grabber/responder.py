@@ -1,11 +1,11 @@
-"""What a camera answers on its ports.
+"""The answers of a camera on its ports.
 
     [fgi] [get] [imgr]              [fgi] [imgr] [is] (an image as a list)
     [visr] [get] [res]              [visr] [res] [is] 320 240
     [fgc] [set] [feat] 0 0.5        [nak]       (it was done: C++ says nothing then)
 
-Rules: the first word is the group, the second what to do. One reply for every request; `[nak]` for
-groups that are none, `[fail]` for what cannot be done, mostly with the reason behind it.
+Rules: the first word is the group, the second the action. One reply for every request; `[nak]` for
+an unknown group, `[fail]` for a request that fails, mostly followed by the reason.
 
 Source: FrameGrabberOf_Responder, RgbVisualParams_Responder and FrameGrabberControls_Responder of
 YARP 3.x.
@@ -17,10 +17,10 @@ from collections.abc import Callable, Mapping, Sequence
 from reprlib import repr as shown
 from typing import Any, Final
 
-from yarpy.data.bottle import Bottle
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.image import Image
-from yarpy.data.property import Property, bottle_of
 from yarpy.data.value import Vocab
+from yarpy.data.writer import dict_elements
 from yarpy.devices.access import Access
 from yarpy.devices.frame_grabber.interface import FEATURES
 from yarpy.devices.kind import items, number, whole, word
@@ -29,7 +29,7 @@ from yarpy.log import logger
 
 log = logger("yarpy.devices")
 
-BUSES: Final = ("unknown", "firewire", "usb")  # the place is the number
+BUSES: Final = ("unknown", "firewire", "usb")  # the index is the number
 MODES: Final = ("manual", "auto", "unknown")
 
 _IS: Final = Vocab("is")
@@ -40,13 +40,13 @@ Request = Sequence[Any]
 
 
 class FrameGrabberResponder:
-    """Answers requests for one camera; `grab` gives its next image, or raises Refused."""
+    """Answers requests to one camera; `grab` returns its next image, or raises Refused."""
 
     def __init__(self, camera: Access, grab: Callable[[], Image], name: str) -> None:
         self._camera = camera
         self._grab = grab
         self._name = name
-        self.size: tuple[int, int] | None = None  # of the last image, if somebody knows it
+        self.size: tuple[int, int] | None = None  # of the last image, if known
 
     def answer(self, request: Request) -> Bottle:
         """The reply to a request."""
@@ -69,7 +69,7 @@ class FrameGrabberResponder:
 
     def _images(self, group: str, verb: str, item: str, rest: Request) -> list[Any]:
         if verb != "get":
-            raise Refused("images can only be asked for")
+            raise Refused("images can only be read")
         if item in ("w", "h"):
             return [Vocab(group), Vocab(item), _IS, self._size()[item == "h"]]
         if item == "imgr":
@@ -77,7 +77,7 @@ class FrameGrabberResponder:
         elif item == "crop":
             image = self._cropped(group, rest)
         else:
-            raise Refused(f"{item!r} is nothing of an image")
+            raise Refused(f"{item!r} is not a property of an image")
         return [Vocab(group), Vocab(item), _IS, Bottle.from_bytes(b"".join(image.to_wire()))]
 
     def _image(self, group: str) -> Image:
@@ -85,7 +85,7 @@ class FrameGrabberResponder:
         self.size = image.width, image.height
         wanted = "mono" if group == "fgir" else "rgb"
         if group == "fgir" and image.code != "mono":
-            raise Refused("this camera gives no raw images")
+            raise Refused("this camera has no raw images")
         try:
             return image.converted(wanted)
         except ValueError as error:
@@ -95,7 +95,7 @@ class FrameGrabberResponder:
         if len(rest) != 2:
             raise Refused("a part of an image is [crop] 0 (left top right bottom)")
         if whole(rest[0]) != 0:
-            raise Refused("only rectangles (kind 0) can be cut out")
+            raise Refused("only rectangles (kind 0) can be cropped")
         corners = [whole(element) for element in items(rest[1])]
         if len(corners) != 4:
             raise Refused(f"a rectangle has 2 corners, not {len(corners) / 2:g}")
@@ -107,7 +107,7 @@ class FrameGrabberResponder:
         return Image(part, image.code)
 
     def _size(self) -> tuple[int, int]:
-        """Width and height: as the camera says, else of its images."""
+        """Width and height: the camera's own value, else its images'."""
         if self._camera.has("resolution"):
             width, height = self._camera.use("resolution", lambda found: map(int, found))
             return width, height
@@ -116,7 +116,7 @@ class FrameGrabberResponder:
             self.size = image.width, image.height
         return self.size
 
-    # -- what the lens shows ------------------------------------------------------------------
+    # -- the lens -----------------------------------------------------------------------------
 
     def _lens(self, group: str, verb: str, item: str, rest: Request) -> list[Any]:
         if verb == "set":
@@ -137,13 +137,13 @@ class FrameGrabberResponder:
             case "mirr":
                 return [use("mirror", lambda found: int(bool(found)))]
             case "intp":
-                return [use("intrinsics", lambda found: bottle_of(Property(found)))]
+                return [use("intrinsics", lambda found: dict_elements(Property(found)))]
             case "conf":
                 return use("resolutions", _configurations)
-        raise Refused(f"{item!r} is nothing of a lens")
+        raise Refused(f"{item!r} is not a property of a lens")
 
     def _turn(self, item: str, rest: Request) -> bool:
-        """Adjust something; whether the camera let it happen."""
+        """Change a setting; returns whether the camera accepted it."""
         values: Any
         match item:
             case "res":
@@ -155,7 +155,7 @@ class FrameGrabberResponder:
             case "mirr":
                 member, values = "mirror", _truth(_first(rest, 1)[0])
             case _:
-                raise Refused(f"{item!r} is nothing of a lens that can be set")
+                raise Refused(f"{item!r} is not a property of a lens that can be set")
         try:
             self._camera.store(member, values)
         except Refused as refusal:
@@ -179,7 +179,7 @@ class FrameGrabberResponder:
         if verb == "get":
             return [Vocab("fgc"), Vocab(item), _IS, *self._value(item, feature)]
         if verb != "set":
-            raise Refused(f"{verb!r} is none of has, get, set")
+            raise Refused(f"{verb!r} is not has, get or set")
         self._adjust(item, feature, rest[1:])
         return [_NAK]
 
@@ -192,7 +192,7 @@ class FrameGrabberResponder:
             "onep": "features",
         }.get(item)
         if member is None:
-            raise Refused(f"{item!r} is nothing of a feature")
+            raise Refused(f"{item!r} is not a property of a feature")
         if not self._camera.has(member) or (item == "onep" and not self._camera.has("one_push")):
             return False
         return self._camera.use(member, lambda found: feature in found)
@@ -210,7 +210,7 @@ class FrameGrabberResponder:
             case "mode":
                 mode = self._camera.use("feature_modes", _entry(feature))
                 return [MODES.index(mode) if mode in MODES else MODES.index("unknown")]
-        raise Refused(f"{item!r} is nothing of a feature")
+        raise Refused(f"{item!r} is not a property of a feature")
 
     def _adjust(self, item: str, feature: str, rest: Request) -> None:
         value: Any
@@ -230,7 +230,7 @@ class FrameGrabberResponder:
                 self._camera.ask("one_push", feature)
                 return
             case _:
-                raise Refused(f"{item!r} is nothing of a feature")
+                raise Refused(f"{item!r} is not a property of a feature")
 
         def put(found: Any) -> None:
             _entry(feature)(found)
@@ -258,13 +258,13 @@ def _entry(feature: str) -> Callable[[Mapping[str, Any]], Any]:
 def _feature(rest: Request) -> str:
     index = whole(_first(rest, 1)[0])
     if not 0 <= index < len(FEATURES):
-        raise Refused(f"there are features 0 to {len(FEATURES) - 1}, no {index}")
+        raise Refused(f"there are features 0 to {len(FEATURES) - 1}, not {index}")
     return FEATURES[index]
 
 
 def _first(rest: Request, count: int) -> Request:
     if len(rest) < count:
-        raise Refused("the request ends too early")
+        raise Refused("the request is incomplete")
     return rest[:count]
 
 

@@ -1,9 +1,9 @@
-"""FrameGrabberServer: a camera of yours on the ports of a YARP frame grabber.
+"""FrameGrabberServer: serve your camera on the ports of a YARP frame grabber.
 
-    <name>          its images; whoever connects for replies is answered here as well
+    <name>          its images; RPC clients are answered here too
     <name>/rpc      requests and replies (`responder`)
 
-Rules: no image is grabbed while nobody looks. A receiver that is slow misses images.
+Rules: no image is grabbed while nobody is watching. A slow receiver misses images.
 
 Source: frameGrabber_nws_yarp of YARP 3.x.
 """
@@ -36,7 +36,7 @@ class FrameGrabberServer(Closeable):
     """Serves `device` (see `yarpy.devices.frame_grabber.interface`) to viewers and other programs.
 
     name: the port of the images, for example `/robot/cam/left`.
-    period: seconds between two images.
+    period: seconds between images.
     names: a name client, None for the default.
     Raises AddressError (a name is in use), NoNameServer; ValueError if the device has no image().
     """
@@ -53,13 +53,13 @@ class FrameGrabberServer(Closeable):
         self.device = device
         self._camera = Access(device, 0, Complaints(name), threading.Lock())
         if not self._camera.has("image"):
-            raise ValueError(f"{name}: the device needs image(), which gives the next picture")
+            raise ValueError(f"{name}: the device needs image(), which returns the next picture")
         self._responder = FrameGrabberResponder(self._camera, self._grab, name)
         self._stamp = Stamp()
         with ExitStack() as resources:
             self._rpc = resources.enter_context(RpcServer(f"{name}/rpc", self._answer, names=names))
             self._images = resources.enter_context(
-                BufferedPort(name, callback=self._reply, names=names)
+                BufferedPort(name, callback=self._reply, names=names, port_type="yarp/image")
             )
             self._publisher = Publisher(name, period, self._publish)
             resources.callback(self._publisher.close)
@@ -69,7 +69,7 @@ class FrameGrabberServer(Closeable):
         return f"<FrameGrabberServer {self.name}>"
 
     def _grab(self) -> Image:
-        """The next image, in memory of its own. Raises Refused."""
+        """The next image, in its own memory. Raises Refused."""
 
         def take(image: Any) -> Image | None:
             import numpy as np
@@ -77,12 +77,12 @@ class FrameGrabberServer(Closeable):
             found = image()
             if found is None or isinstance(found, Image):
                 return found
-            # It is sent while the camera fills its array again.
+            # A copy, because the camera refills its array while this is being sent.
             return Image(np.array(found, copy=True, order="C"))
 
         image = self._camera.use("image", take)
         if image is None or not image.width or not image.height:
-            raise Refused("the camera gave no image")
+            raise Refused("the camera returned no image")
         return image
 
     def _answer(self, message: Message) -> object:
@@ -101,7 +101,7 @@ class FrameGrabberServer(Closeable):
         try:
             image = self._grab()
         except Refused:
-            return  # it was logged, or there was none
+            return  # no image, or an error, which was logged
         when = self._camera.ask("timestamp") if self._camera.has("timestamp") else time.time()
         self._responder.size = image.width, image.height
         self._stamp = self._stamp.next(float(when))

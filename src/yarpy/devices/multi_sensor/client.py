@@ -1,9 +1,9 @@
-"""MultiSensor: sensors somewhere else, C++ or Python, to be used like one's own.
+"""MultiSensor: remote sensors, C++ or Python, used like local ones.
 
     with MultiSensor("/icub/imu") as imu:
         print(imu.gyroscopes())               # {"imu": (0.0, 0.1, 0.0)}
 
-Rules: it has every member that `yarpy.devices.multi_sensor.interface` names, so it can be served
+Rules: it has every member listed in `yarpy.devices.multi_sensor.interface`, so it can be served
 again.
 
 Source: multipleanalogsensorsclient of YARP 3.x.
@@ -23,7 +23,7 @@ from yarpy.names.base import NameClient
 from yarpy.port.rpc import RpcClient
 from yarpy.wire.message import Message
 
-#: Seconds that an answer may take.
+#: Seconds to wait for an answer.
 PATIENCE: Final = 10.0
 
 
@@ -32,7 +32,7 @@ _Measures = list[list[tuple[tuple[float, ...], float]]]
 
 
 def read_names(reply: Any) -> list[list[tuple[str, str]]]:
-    """For each kind the sensors, each with its frame, in the answer to `getMetadata`.
+    """The sensors of each kind, each with its frame, from the answer to `getMetadata`.
 
     Raises TypeError, ValueError.
     """
@@ -45,9 +45,9 @@ def read_names(reply: Any) -> list[list[tuple[str, str]]]:
 class MultiSensor(Closeable):
     """The sensors whose ports begin with `remote`.
 
-    local: prefix of the own ports; one is made up without it.
+    local: prefix of the client's own ports; generated if empty.
     carrier: for the measurements.
-    timeout: measurements older than this many seconds count as none.
+    timeout: measurements older than this many seconds are ignored.
     names: a name client, None for the default.
     Raises UnknownName, LinkClosed, RemoteProtocolError (no sensors there); later Timeout.
     """
@@ -164,5 +164,5 @@ class MultiSensor(Closeable):
         except (TypeError, ValueError) as error:
             raise DecodeError(f'"{self.remote}" sends no measurements: {error}') from error
         if [len(row) for row in found] != [len(names) for names in self._sensors]:
-            raise DecodeError(f'"{self.remote}" sends other sensors than it named')
+            raise DecodeError(f'"{self.remote}" sends other sensors than it announced')
         return found

@@ -10,9 +10,9 @@
     MultiSensorServer("/robot/imu", Imu(), period=0.01)
 
 Rules: as for control boards (`yarpy.devices.control_board.interface`): your class inherits nothing
-and has at least one of the methods. Each gives a dict with the values of every sensor of its kind;
-the names and their order must not change while the server runs. A kind whose method raises is
-logged and repeats its last values with their old time.
+and has at least one of the methods. Each returns a dict with the values of every sensor of its
+kind; the names and their order must not change while the server runs. If a method raises, the error
+is logged and the last values of that kind are sent again with their old time.
 
 Source: interfaces of YARP 3.x behind multipleanalogsensorsserver.
 """
@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Protocol, TypeAlias
 
-#: Sensor name -> its values; one number may stand by itself.
+#: Sensor name -> its values, or a single number.
 Readings: TypeAlias = Mapping[str, Sequence[float] | float]
 
 #: The kinds of sensors in the order of the protocol, and how many values one has (0: any number).
@@ -43,12 +43,12 @@ KINDS = {
 class MultiSensorLike(Protocol):
     """Everything a set of sensors can have. For reading; classes need not inherit it."""
 
-    frames: Mapping[str, str]  # sensor name -> name of its frame; without it, the sensor's name
+    frames: Mapping[str, str]  # sensor name -> name of its frame; default: the sensor's name
 
     def timestamps(self) -> Mapping[str, float]:
-        """When sensors were read last, in seconds, by name; without it, when they are asked.
+        """When sensors were last read, in seconds, by name; default: the time of the call.
 
-        Asked after the values of all kinds.
+        Called after the methods of all kinds.
         """
 
     def gyroscopes(self) -> Readings:
@@ -67,7 +67,7 @@ class MultiSensorLike(Protocol):
         """Degrees Celsius."""
 
     def force_torques(self) -> Readings:
-        """Three forces in N and three torques in Nm, of x, y, z."""
+        """Three forces in N and three torques in Nm, along and around x, y, z."""
 
     def contact_loads(self) -> Readings:
         """Loads, N or Nm."""

@@ -1,12 +1,12 @@
-"""MultiSensorServer: sensors of yours, such as an inertial unit, on the ports of YARP.
+"""MultiSensorServer: serve your sensors, such as an inertial unit, on YARP ports.
 
     <name>/measures:o   all values of all sensors, every period, with count and time
     <name>/rpc:o        the names of the sensors, for clients that ask `getMetadata`
 
-Both have the ten kinds of `KINDS` in their order; kinds without sensors are empty lists.
+Both list the ten kinds of `KINDS` in that order; kinds without sensors are empty lists.
 
 Rules: nothing is read while nobody listens. Names and numbers of values are fixed when the server
-starts. A value list is never empty, and all numbers are float64: C++ drops everything else.
+starts. A value list is never empty, and all numbers are float64: C++ drops anything else.
 
 Source: multipleanalogsensorsserver of YARP 3.x.
 """
@@ -33,7 +33,7 @@ from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcServer
 from yarpy.wire.message import Message
 
-#: Kinds that have no frame of their own in C++.
+#: Kinds without a frame in C++.
 _FRAMELESS: Final = frozenset(("contact_loads", "encoder_arrays", "skin_patches"))
 
 _Measurement = tuple[list[float], float]
@@ -43,7 +43,7 @@ class MultiSensorServer(Closeable):
     """Serves `device` (see `yarpy.devices.multi_sensor.interface`) to C++ and Python clients.
 
     name: prefix of the ports, for example `/robot/imu`.
-    period: seconds between two messages (in C++ it is milliseconds).
+    period: seconds between messages (C++ uses milliseconds).
     names: a name client, None for the default.
     Raises AddressError (a name is in use), NoNameServer; ValueError if the device has no sensors.
     """
@@ -93,8 +93,8 @@ class MultiSensorServer(Closeable):
                 found = self._sensors.use(kind, check)
             except Refused as error:
                 raise ValueError(
-                    f"{self.name}: {error.__cause__ or error}; {kind}() has to give its sensors "
-                    "already when the server starts"
+                    f"{self.name}: {error.__cause__ or error}; {kind}() must return its sensors "
+                    "as soon as the server starts"
                 ) from error
             self._last[kind] = {name: (values, now) for name, values in found.items()}
         if not any(self._last.values()):
@@ -114,7 +114,7 @@ class MultiSensorServer(Closeable):
         return listed
 
     def _times(self) -> Mapping[str, float]:
-        """When the device says that its sensors were read, as far as it does."""
+        """When sensors were read, for those of which the device says so."""
         try:
             found = self._sensors.ask("timestamps")
         except Refused:
@@ -122,7 +122,7 @@ class MultiSensorServer(Closeable):
         return found if isinstance(found, Mapping) else {}
 
     def _read(self) -> None:
-        """Take what all sensors measure, then ask when that was."""
+        """Read all sensors, then ask for the times."""
         fresh: dict[str, tuple[dict[str, list[float]], float]] = {}
         for kind, last in self._last.items():
 
@@ -130,13 +130,13 @@ class MultiSensorServer(Closeable):
                 found = _readings(kind, read())
                 before = {name: len(values) for name, (values, _) in last.items()}
                 if {name: len(values) for name, values in found.items()} != before:
-                    raise ValueError("other sensors, or numbers of values, than at the start")
+                    raise ValueError("the sensors or their numbers of values have changed")
                 return found
 
             try:
                 fresh[kind] = self._sensors.use(kind, check), time.time()
             except Refused:
-                continue  # it was logged; its last values stand, with their time
+                continue  # logged; the last values remain, with their time
         times = self._times()
         for kind, (found, now) in fresh.items():
             for name, values in found.items():
@@ -168,10 +168,10 @@ class MultiSensorServer(Closeable):
 
 
 def _readings(kind: str, found: Any) -> dict[str, list[float]]:
-    """What a method gave, checked. Raises TypeError, ValueError."""
+    """A method's result, checked. Raises TypeError, ValueError."""
     if not isinstance(found, Mapping):
         raise TypeError(
-            f"{kind}() gives a dict (sensor name -> values), not {type(found).__name__}"
+            f"{kind}() must return a dict (sensor name -> values), not {type(found).__name__}"
         )
     checked = {}
     for name, values in found.items():

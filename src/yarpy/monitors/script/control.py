@@ -1,6 +1,6 @@
-"""Control: what a script may do besides looking at messages - events, a constraint, a timer.
+"""Control: what a script may do besides handling messages - events, a constraint, a timer.
 
-Rules: any thread may call. Whatever a script has set here is gone when its monitor closes.
+Rules: any thread may call. Everything a script has set here ends when its monitor closes.
 """
 
 from __future__ import annotations
@@ -46,28 +46,28 @@ class Control:
             self._events.set(self, name, lifetime)
 
     def unset_event(self, name: str) -> None:
-        """Take an event away that this monitor has set."""
+        """Remove an event that this monitor has set."""
         self._events.unset(self, name)
 
     def set_constraint(self, text: str) -> None:
         """From now on messages pass only while this is true; "" lets all pass.
 
-        Raises LocalProtocolError if it is no constraint.
+        Raises LocalProtocolError if it is not a constraint.
         """
         self._constraint = Constraint(text)
 
     def get_constraint(self) -> str:
-        """The constraint as it was set. (C++ YARP gives nothing.)"""
+        """The constraint as it was set. (C++ YARP returns nothing.)"""
         return self._constraint.text
 
     def set_trig_interval(self, seconds: float) -> None:
-        """Call `trig` every so many seconds; 0 ends that. (C++ YARP takes seconds for thousands.)
+        """Call `trig` every `seconds`; 0 stops it. (C++ YARP takes one second for a thousand.)
 
         Raises LocalProtocolError below a millisecond.
         """
         if seconds != 0 and not _LEAST <= seconds <= _MOST:
             raise LocalProtocolError(
-                f"the interval of trig is 0, or {_LEAST:g} to {_MOST:g} seconds, not {seconds:g}"
+                f"the interval of trig must be 0, or {_LEAST:g} to {_MOST:g} seconds: {seconds:g}"
             )
         with self._lock:
             self._interval = seconds
@@ -82,7 +82,7 @@ class Control:
         """Stop calling `trig` on a timer."""
         self.set_trig_interval(0)
 
-    # As the scripts of C++ YARP call them.
+    # The names in scripts of C++ YARP.
     setEvent = set_event  # noqa: N815
     unsetEvent = unset_event  # noqa: N815
     setConstraint = set_constraint  # noqa: N815
@@ -97,7 +97,7 @@ class Control:
         return self._constraint.holds(self._events.has)
 
     def close(self) -> None:
-        """End the timer, take all events away."""
+        """End the timer and remove all events."""
         with self._lock:
             self._closed = True
             self._changed.set()
@@ -112,7 +112,7 @@ class Control:
                 if self._closed or not interval:
                     self._timer = None
                     return
-            due = max(due + interval, time.monotonic())  # missed ones are not made up for
+            due = max(due + interval, time.monotonic())  # missed ones are skipped
             if not self._changed.wait(due - time.monotonic()):
                 self._trigger()
             else:

@@ -1,10 +1,9 @@
 """Lua scripts for a portmonitor: those of C++ YARP, with the callbacks in the table PortMonitor.
 
-Rules: every script has a Lua of its own, whose calls are limited to LIMIT instructions and whose
-memory to MEMORY bytes (binding/sandbox.lua). Scripts see YARP's classes (the rest of binding);
-only numbers and strings pass between the languages, and the functions of `_Host`, once. That is for
-speed, and because lupa forgets an object that is handed over again while Lua collects its garbage
-(2.8).
+Rules: every script has its own Lua state, whose calls are limited to LIMIT instructions and whose
+memory to MEMORY bytes (binding/sandbox.lua). Scripts see YARP's classes (the rest of binding).
+Between the languages pass only numbers and strings, and once the functions of `_Host`: for speed,
+and because lupa (2.8) loses an object that is passed again while Lua collects garbage.
 """
 
 from __future__ import annotations
@@ -16,11 +15,10 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any, Final
 
-from yarpy.data.bottle import Bottle
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.image import Image
 from yarpy.data.matrix import Matrix
 from yarpy.data.pixel import pixel_of
-from yarpy.data.property import Property
 from yarpy.data.vector import Vector
 from yarpy.monitors.extra import needed
 from yarpy.monitors.script.control import Control
@@ -37,7 +35,7 @@ _FORMATS: Final = {"<u1": b"<B", "<u2": b"<I2", "<i4": b"<i4", "<i1": b"<i1", "<
 
 
 def lupa() -> Any:
-    """The library. Raises LocalProtocolError, which says what to install, if it is not there."""
+    """The library. If it is missing, LocalProtocolError says what to install."""
     return needed("lupa.lua54", "lua", "a portmonitor with a Lua script")
 
 
@@ -49,7 +47,7 @@ def _source(name: str) -> bytes:
 def _text(data: object) -> str:
     if isinstance(data, bytes):
         return data.decode("utf-8", "surrogateescape")
-    raise TypeError("a string is needed")
+    raise TypeError("expected a string")
 
 
 def _data(text: str) -> bytes:
@@ -60,11 +58,11 @@ class _Host:
     """The Python functions that Lua calls. They raise; `given` turns that into error texts."""
 
     def __init__(self, control: Control) -> None:
-        self.message: Message | None = None  # on its way
+        self.message: Message | None = None  # the current one
         self._control = control
 
     def given(self) -> dict[bytes, Callable[..., object]]:
-        """Each as Lua calls it: returns an error text or None, and then its results."""
+        """Each as Lua calls it: returns an error text or None, then its results."""
         names = [name for name in dir(type(self)) if not name.startswith("_")]
         names = [name for name in names if name not in ("given", "message", "fetch_bottle")]
         found = {name.encode(): partial(_guarded, getattr(self, name)) for name in names}
@@ -74,11 +72,11 @@ class _Host:
 
     def _there(self) -> Message:
         if self.message is None:
-            raise LookupError("there is no message now")
+            raise LookupError("there is no current message")
         return self.message
 
     def fetch_bottle(self) -> tuple[object, ...]:
-        # What nearly every script asks for: without the detour through `_guarded`.
+        # Nearly every script calls this, so it skips the detour through `_guarded`.
         try:
             return None, bytes(self._there().to_bytes())
         except Exception as error:
@@ -170,18 +168,18 @@ class LuaScript:
         self._lua = lua
         folder = b"%s/?.lua;" % _data(str(path.parent))
         lua.globals()[b"package"][b"path"] = folder + lua.globals()[b"package"][b"path"]
-        # Without `system` scripts find nothing outside of Lua but their own folder's modules.
+        # Without `system`, scripts can load only the modules in their own folder.
         run, fail = self._load("sandbox", limit, None if system else _data(str(path.parent)))
         kit = self._load("element", lua.table_from(self._host.given()), fail)
         for name in ("value", "list", "number", "image"):
             self._load(name, kit)
         self._inside = self._load("thing", kit, run)
         self._call("load", source, b"@%s" % _data(str(path)))
-        # As in C++, a script does not get other callbacks while it runs.
+        # As in C++, callbacks that a script defines later are not used.
         self._has = {name for name in _CALLBACKS if self._call("has", name.encode())}
         self._accept = self._inside[b"accept"] if "accept" in self._has else None
         self._update = "update" in self._has
-        self._touched = False  # by `accept`, where there is no `update`
+        self._touched = False  # changed by `accept`, where there is no `update`
 
     def _load(self, name: str, *arguments: object) -> Any:
         return self._lua.execute(_source(name), *arguments, name=f"={name}".encode(), mode="t")
@@ -193,7 +191,7 @@ class LuaScript:
         """The result of a Lua function; of several results a tuple."""
         try:
             done = function(*arguments)
-        except Exception as error:  # out of memory outside of a script
+        except Exception as error:  # out of memory outside a script
             raise ScriptError(f"{self._path}: {error}") from error
         if done is True:
             return None
@@ -230,7 +228,7 @@ class LuaScript:
         return self._made(message, self._call("update_reply"))
 
     def _made(self, message: Message, found: Any) -> object:
-        """What a script has made of a message, from what Lua returns."""
+        """The result of a script for a message, from what Lua returns."""
         self._host.message = None
         if found is None:
             return None

@@ -1,11 +1,11 @@
-"""Which scripts may run: `YARPY_SCRIPTS`, in the environment of the program that has the port.
+"""Which scripts may run: `YARPY_SCRIPTS`, in the environment of the program that owns the port.
 
     (nothing)   those that the program itself requests (Port.connect, Port.attach)
     network     also those requested over the network: a sender's carrier string, `add` and `atch`
     system      Lua scripts have all of Lua: io, os, require of any file
 
-Rules: a request over the network names a file in a context's folder, where the owner of the machine
-has put it, and nothing else: no path, no `..`. A script in Python may do whatever its program may.
+Rules: a request over the network may name only a file in a context's folder, put there by the owner
+of the machine: no path, no `..`. A Python script may do whatever its program may.
 """
 
 from __future__ import annotations
@@ -24,29 +24,29 @@ SYSTEM: Final = "system"
 
 
 def granted(word: str) -> bool:
-    """Whether the setting has this word."""
+    """Whether the setting contains this word."""
     return word in os.environ.get(SETTING, "").replace(",", " ").split()
 
 
 def look_for(place: Place, file: str, context: str) -> Iterator[Path]:
-    """Where a script may be. Raises LocalProtocolError if it must not run in any case."""
+    """Where a script may be. Raises LocalProtocolError if it must not run."""
     if not place.foreign:
         return iter(place.look(file, [context] if context else []))
     if not granted(NETWORK):
         raise LocalProtocolError(
-            f"scripts that the network asks for do not run here: start the program that has this "
+            f"scripts requested over the network do not run here: start the program that owns this "
             f"port with {SETTING}=network, or let it attach the script itself (Port.attach)"
         )
     if not context or not (_is_plain(file) and _is_plain(context)):
         raise LocalProtocolError(
-            "over the network a script is named by a file of a context, +context.NAME+file.NAME, "
-            f'and never by a path: not "{file}" of "{context}"'
+            "over the network a script must be a file in a context, +context.NAME+file.NAME, "
+            f'not a path: "{file}" of "{context}"'
         )
     return _in_context(place.look(file, [context]), context, file)
 
 
 def _in_context(paths: Iterable[Path], context: str, file: str) -> Iterator[Path]:
-    """Those of the paths that lie in a folder of the context."""
+    """The paths that lie in a folder of the context."""
     return (path for path in paths if path.parts[-3:] == ("contexts", context, file))
 
 

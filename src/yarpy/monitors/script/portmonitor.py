@@ -1,17 +1,17 @@
-"""portmonitor: a script rides on a connection, or on a port.
+"""portmonitor: run a script on a connection or a port.
 
     yarpy connect /out /in tcp+recv.portmonitor+type.python+file.gate+context.demo
 
-    type        lua (what is meant without it), python, or dll: a monitor that is installed
-    file        the script, with or without its ending, or the monitor (modifier)
+    type        lua (the default), python, or dll: an installed monitor
+    file        the script, with or without its suffix, or the monitor (modifier)
     context     where scripts are looked for besides the usual places
     constraint  events that let messages pass (`not e_ball`): see constraint.py
 
-Rules: as in C++ YARP, per message: `accept`; then the other monitors of the port are triggered; at
-the receiving end of a connection the constraint; `update`. If `accept` fails the message is
-dropped, if `update` fails it passes unchanged; either way there is a log line, once for each
-complaint. A script that has changed on disk is loaded again; if it then does not start, the one
-before goes on.
+Rules: as in C++ YARP, each message goes through `accept`; then the other monitors of the port are
+triggered; then, at the receiving end of a connection, the constraint; then `update`. If `accept`
+fails the message is dropped, if `update` fails it passes unchanged; each different error is logged
+once. A script that has changed on disk is loaded again; if the new one does not start, the old one
+stays in use.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import parse_text
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.log import logger
@@ -36,7 +36,7 @@ from yarpy.wire.message import Message
 
 log = logger("yarpy.monitors")
 
-_MOST_TOLD: Final = 16  # different complaints that are logged
+_MOST_TOLD: Final = 16  # different errors that are logged
 _NATIVE: Final = "dll"
 _OWN: Final = ("type", "script", "file", "context", "constraint")
 
@@ -56,23 +56,23 @@ def portmonitor(place: Place) -> object:
 
 
 def _one(place: Place) -> object:
-    # The oldest C++ says `script` for `type`.
+    # The oldest C++ versions say `script` for `type`.
     kind = place.text("type") or place.text("script") or "lua"
     file = place.text("file") or "modifier"
     if kind == _NATIVE:
         if file == "portmonitor":
-            raise LocalProtocolError("a portmonitor does not run portmonitors: name a monitor")
+            raise LocalProtocolError("a portmonitor cannot run portmonitor: name another monitor")
         return chain.make(file, place)
     language = _LANGUAGES.get(kind)
     if language is None:
         known = ", ".join((*_LANGUAGES, _NATIVE))
-        raise LocalProtocolError(f'portmonitor knows no type "{kind}"; there are {known}')
+        raise LocalProtocolError(f'portmonitor has no type "{kind}"; use one of {known}')
     load, endings = language
     return PortMonitor(place, load(place), find_script(place, file, place.text("context"), endings))
 
 
 class PortMonitor:
-    """A script at its place. Raises LocalProtocolError if it does not start."""
+    """A running script. Raises LocalProtocolError if it does not start."""
 
     def __init__(self, place: Place, load: Load, path: Path) -> None:
         self._place = place
@@ -91,20 +91,20 @@ class PortMonitor:
             script = self._load(self._path, read_script(self._path), control)
             if not script.create(self._options()):
                 script.close()
-                raise ScriptError(f"{self._path}: create does not return true")
+                raise ScriptError(f"{self._path}: create did not return true")
         except BaseException:
             control.close()
             raise
         return script, control
 
     def _options(self) -> Property:
-        """The arguments of `create`: as in C++, and the parameters that are not ours."""
+        """The arguments of `create`: those of C++, and all parameters that are not ours."""
         place = self._place
         found = Property()
         for token in place.tokens or place.shared:
             name, value = read_token(token)
             if name not in _OWN and name not in ("send", "recv"):
-                words = parse_text(value) if isinstance(value, str) else [value]
+                words = parse_text(value, Bottle) if isinstance(value, str) else [value]
                 found[name] = words[0] if len(words) == 1 else value
         found.update(
             filename=str(self._path),
@@ -117,12 +117,12 @@ class PortMonitor:
         return found
 
     def _current(self) -> Script:
-        """The script, loaded again if its file has changed. Call it with the lock held."""
+        """The script, loaded again if its file has changed. Call with the lock held."""
         if self._watch.changed():
             try:
                 script, control = self._start(self._place.text("constraint"))
             except LocalProtocolError as error:
-                self._complain(error, "the one before goes on")
+                self._complain(error, "the old script stays in use")
             else:
                 log.info("%s: %s was loaded again", self._place, self._path)
                 self._told.clear()
@@ -171,7 +171,7 @@ class PortMonitor:
             try:
                 self._current().trigger()
             except ScriptError as error:
-                self._complain(error, "the next trigger comes all the same")
+                self._complain(error, "the next trigger still comes")
 
     _on_timer = trigger
 
@@ -184,7 +184,7 @@ class PortMonitor:
             return self._current().parameters()
 
     def state(self) -> dict[str, Any]:
-        """Which script runs, and under which constraint."""
+        """Which script runs, and with which constraint."""
         constraint = self.control.get_constraint()
         return {"script": str(self._path), **({"constraint": constraint} if constraint else {})}
 
@@ -195,11 +195,11 @@ class PortMonitor:
                 self._end()
 
     def _end(self) -> None:
-        """End the script that has run."""
+        """End the running script."""
         try:
             self._script.close()
         except ScriptError as error:
-            self._complain(error, "it has ended all the same")
+            self._complain(error, "it was ended anyway")
         self.control.close()
 
 
@@ -212,7 +212,7 @@ def _python(place: Place) -> Load:
 def _lua(place: Place) -> Load:
     from yarpy.monitors.script.lua import LuaScript, lupa
 
-    lupa()  # before the file is looked for: without the library no file helps
+    lupa()  # before looking for the file, which is of no use without the library
     return partial(LuaScript, system=granted(SYSTEM))
 
 

@@ -2,7 +2,7 @@
 
     create(options)        False: refuse the connection; options says between which ports
     accept(message)        whether it may pass
-    update(message)        what goes on instead: a value, a Message, or yarpy.monitors.DROP;
+    update(message)        what replaces it: a value, a Message, or yarpy.monitors.DROP;
                            None: the message unchanged
     update_reply(message)  the same for the reply to a call
     trig()                 another connection of the port let a message pass, or the timer is due
@@ -11,10 +11,10 @@
     destroy()              the connection ends
 
 Messages are yarpy's. The names of C++ YARP 4 (acceptData, updateData, updateReply, setParams,
-getParams) will do as well. `portmonitor` needs no import: see Control.
+getParams) work too. `portmonitor` needs no import: see Control.
 
-Rules: a script has a module of its own, and so variables of its own, for every connection. It runs
-in the program with all its rights and without limits.
+Rules: each connection has its own module, and so its own variables. The script runs with all the
+rights of the program and without limits.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.monitors.base import FAILURES
 from yarpy.monitors.script.control import Control
 from yarpy.monitors.script.script import ScriptError
@@ -58,7 +58,7 @@ class PythonScript:
         module.__file__ = self._path
         vars(module).update(portmonitor=control, PortMonitor=control)
         self._module = module
-        sys.modules[module.__name__] = module  # dataclasses and others look up their module
+        sys.modules[module.__name__] = module  # dataclasses, among others, look up their module
         try:
             exec(compile(source, self._path, "exec"), vars(module))
             kind = getattr(module, "Monitor", None)
@@ -81,7 +81,7 @@ class PythonScript:
         return None
 
     def _failed(self, error: BaseException) -> ScriptError:
-        """What went wrong, and in which line of the script."""
+        """The error, with the line of the script."""
         line: int | None = None
         if isinstance(error, SyntaxError) and error.filename == self._path:
             line = error.lineno
@@ -135,7 +135,7 @@ class PythonScript:
         try:
             return Property.from_bytes(Property(filled if found is None else found).to_bytes())
         except (TypeError, ValueError) as error:
-            raise ScriptError(f"{self._path}: getparam gives no parameters: {error}") from error
+            raise ScriptError(f"{self._path}: getparam returns no dict: {error}") from error
 
     def close(self) -> None:
         try:
@@ -153,7 +153,7 @@ class PythonScript:
 
 
 def _taken(callback: Callback) -> int | None:
-    """How many arguments a function takes by position; None if any number, or unknown."""
+    """How many positional arguments a function takes; None if any number, or unknown."""
     try:
         parameters = inspect.signature(callback).parameters.values()
     except (TypeError, ValueError):

@@ -1,7 +1,7 @@
 """Scripts: the files that a portmonitor runs - where they are, when they change, what they provide.
 
-Rules: whatever the language, a script is an object with the methods of `Script`. It raises
-ScriptError, which names file and line, and nothing else.
+Rules: in any language, a script is an object with the methods of `Script`. It raises only
+ScriptError, which names file and line.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final, Protocol
 
-from yarpy.data.property import Property
+from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError
 from yarpy.monitors.base import Place
 from yarpy.monitors.script.control import Control
 from yarpy.monitors.script.permission import look_for
 from yarpy.wire.message import Message
 
-PATIENCE: Final = 0.5  # seconds between two looks at a file
+PATIENCE: Final = 0.5  # seconds between checks of a file
 LARGEST: Final = 4 << 20  # bytes of a script
 
 
@@ -37,7 +37,7 @@ class Script(Protocol):
         """Whether the message may pass."""
 
     def update(self, message: Message) -> object:
-        """What goes on instead: a value, a Message, DROP; None: the message unchanged."""
+        """What replaces it: a value, a Message, DROP; None: the message unchanged."""
 
     def update_reply(self, message: Message) -> object:
         """The same for the reply to a call."""
@@ -61,7 +61,7 @@ Load = Callable[[Path, bytes, Control], Script]
 def find_script(place: Place, name: str, context: str, endings: Sequence[str]) -> Path:
     """The file of a script, found as configuration files are.
 
-    Raises LocalProtocolError, which says where it may be put, or that it must not run.
+    LocalProtocolError says where it may be put, or that it must not run.
     """
     looked: list[Path] = []
     for ending in endings:
@@ -73,7 +73,7 @@ def find_script(place: Place, name: str, context: str, endings: Sequence[str]) -
     kinds = " or ".join(f'"{name}{ending}"' for ending in endings)
     raise LocalProtocolError(
         f"portmonitor finds no script {kinds}; it looked in {', '.join(where)}"
-        + ("" if context else ', and in no context: give one with "+context.NAME"')
+        + ("" if context else ', but in no context: give one with "+context.NAME"')
     )
 
 
@@ -85,12 +85,12 @@ def read_script(path: Path) -> bytes:
     except OSError as error:
         raise LocalProtocolError(f'"{path}" cannot be read: {error.strerror}') from error
     if len(found) > LARGEST:
-        raise LocalProtocolError(f'"{path}" is not a script: it has more than {LARGEST} bytes')
+        raise LocalProtocolError(f'"{path}" is too large for a script: over {LARGEST} bytes')
     return found
 
 
 class Watch:
-    """Whether a file has changed since the last call; the disk is read only now and then."""
+    """Whether a file has changed since the last call; limits how often the disk is read."""
 
     def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:
         self._path = path
@@ -99,7 +99,7 @@ class Watch:
         self._again = clock() + PATIENCE
 
     def changed(self) -> bool:
-        """Whether it has changed. A file that is missing at the moment has not."""
+        """Whether it has changed. A file that is missing counts as unchanged."""
         now = self._clock()
         if now < self._again:
             return False

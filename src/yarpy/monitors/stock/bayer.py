@@ -1,15 +1,15 @@
-"""bayer: the grey pictures of Bayer cameras become colour at the receiver's end.
+"""bayer: turn the grey pictures of Bayer cameras into colour at the receiver's end.
 
 The sender writes plain `mono` images; the reader gets `rgb`, without padding, and the envelope
-unchanged. Parameters, as in C++ YARP (of several with one name the first counts):
+unchanged. Parameters, as in C++ YARP (of equal names the first counts):
 
-    size    half: a quarter of the pixels, made without interpolation
-    order   the first two pixels of the first two rows: grbg (else), gbrg, rggb, bggr
-    method  bilinear (else), nearest, simple, hqlinear, downsample (means half), ahd,
+    size    half: a quarter of the pixels, without interpolation
+    order   the first two pixels of the first two rows: grbg (default), gbrg, rggb, bggr
+    method  bilinear (default), nearest, simple, hqlinear, downsample (means half), ahd,
             vng and edgesense (both need OpenCV, extra `vision`)
 
-Rules: pixels of a code that names its order (`rggb` ...) have that order unless one is given.
-Widths that are no multiple of 8 have a method of their own, whichever was asked for, as in C++.
+Rules: a pixel code that names an order (`rggb` ...) implies it unless one is given. Widths that are
+not a multiple of 8 always use a method of their own, as in C++.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
     from yarpy.monitors.stock.demosaic import Colour, Grey
 
 _ORDERS = ("grbg", "gbrg", "rggb", "bggr")
-# OpenCV's name of the method, and the width of the frame that C++ YARP leaves black
+# OpenCV's name for the method, and the width of the frame that C++ YARP leaves black
 _OPENCV = {"vng": ("_VNG", 2), "edgesense": ("_EA", 0)}
 _METHODS = (*demosaic.METHODS, "ahd", *_OPENCV)
 
 
 class Bayer:
-    """Makes colour of grey."""
+    """Makes colour from grey."""
 
     def __init__(self, place: Place) -> None:
         if place.sending:
@@ -61,7 +61,7 @@ class Bayer:
         try:
             grey = image.converted("mono").array
         except ValueError as error:
-            raise DecodeError(f"bayer takes images of 8-bit grey: {error}") from error
+            raise DecodeError(f"bayer takes 8-bit grey images: {error}") from error
         whole = image.width % 8 == 0
         make: Callable[[Grey, int, int], Colour]
         if self._half:
@@ -80,7 +80,7 @@ def _method(name: str) -> Callable[[Grey, int, int], Colour]:
     if name in _OPENCV:
         cv2 = needed("cv2", "vision", f'method "{name}" of bayer')
         return partial(_by_opencv, cv2, *_OPENCV[name])
-    raise LocalProtocolError(f'"method" of bayer is one of {", ".join(_METHODS)}, not "{name}"')
+    raise LocalProtocolError(f'bayer has no method "{name}": use one of {", ".join(_METHODS)}')
 
 
 def _by_opencv(cv2: Any, method: str, frame: int, grey: Grey, green: int, red: int) -> Colour:

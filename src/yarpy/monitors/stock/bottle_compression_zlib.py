@@ -1,10 +1,10 @@
-"""bottle_compression_zlib: any message, squeezed with zlib at the sender's end.
+"""bottle_compression_zlib: compress any message with zlib at the sender's end.
 
 On the wire: a Bottle of the uncompressed size in bytes (int32) and a blob, the zlib stream (RFC
-1950) of the message's binary spelling. C++ YARP does the same with all that can be read as a
-Bottle; between two ends of yarpy anything can be sent, a Sound as well.
+1950) of the message's binary spelling. C++ YARP does the same with anything that can be read as a
+Bottle; between two yarpy ends anything can be sent, even a Sound.
 
-Rules: zlib lets other threads run meanwhile. `get` returns the sums of both sizes.
+Rules: zlib releases the GIL. `get` returns the sums of both sizes.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class BottleCompressionZlib:
     def _count(self, before: int, after: int) -> None:
         self._before += before
         self._after += after
-        log.log(self._level, "%s: %d bytes travel as %d", self._place, before, after)
+        log.log(self._level, "%s: %d bytes sent as %d", self._place, before, after)
 
     def parameters(self) -> dict[str, object]:
         return {"uncompressed": self._before, "compressed": self._after}

@@ -1,9 +1,9 @@
-"""Demosaicing: colour out of the grey pictures of cameras whose pixels see one colour each.
+"""Demosaicing: colour from the grey pictures of cameras whose pixels see one colour each.
 
-The results are those of C++ YARP, which has two programs for it. For widths that are a multiple
-of 8 it uses algorithms of libdc1394: `nearest`, `simple`, `bilinear`, `hqlinear` and `downsample`
-are the same to the bit here, with the same black frame where an algorithm lacks neighbours. For
-other widths it averages the existing neighbours, whichever algorithm was asked for.
+The results are those of C++ YARP, which has two implementations. For widths that are a multiple of
+8 it uses algorithms of libdc1394: `nearest`, `simple`, `bilinear`, `hqlinear` and `downsample` are
+bit-identical here, with the same black frame where an algorithm lacks neighbours. For other widths
+it averages the existing neighbours, whatever algorithm was requested.
 
 Rules: grey is uint8 of shape (height, width), colour uint8 of shape (height, width, 3). `green` and
 `red` say where the pattern begins: the column of green in the first row, and the row of red. The
@@ -31,7 +31,7 @@ _ORDERS: Final = {"gr": (0, 0), "gb": (0, 1), "rg": (1, 0), "bg": (1, 1)}
 
 
 def pattern(order: str) -> tuple[int, int]:
-    """`green` and `red` of an order such as `grbg`, of which the first two letters count.
+    """`green` and `red` of an order such as `grbg`; only its first two letters count.
 
     Raises ValueError.
 
@@ -82,10 +82,10 @@ _FAR_ALONG: Final = ((-2, 0), (2, 0))
 def assembled(
     green: int, red: int, own: Any, cross: Any, across: Any, along: Any, opposite: Any
 ) -> Colour:
-    """One picture out of the values of each colour at each kind of pixel.
+    """One picture from the values of each colour at each kind of pixel.
 
-    own: a pixel's own colour. cross: green where there is none. across: red or blue at a green
-    pixel whose row has it, along: whose column has it. opposite: red at blue and blue at red.
+    own: a pixel's own colour. cross: green at pixels of another colour. across: red or blue at a
+    green pixel whose row has it, along: whose column has it. opposite: red at blue, blue at red.
     """
     import numpy as np
 
@@ -124,7 +124,7 @@ def bilinear(grey: Grey, green: int, red: int) -> Colour:
 
 
 def averaged(grey: Grey, green: int, red: int) -> Colour:
-    """The mean of the nearest pixels of each colour that exist, without its fraction."""
+    """The mean of the nearest existing pixels of each colour, rounded down."""
     import numpy as np
 
     views, there = Views(grey, 1), Views(np.ones_like(grey), 1)
@@ -162,7 +162,7 @@ def hqlinear(grey: Grey, green: int, red: int) -> Colour:
 
 
 def _window(grey: Grey, green: int, red: int, averaged: bool) -> Colour:
-    """The colours of the 2 x 2 pixels of which a pixel is the first; last row and column black."""
+    """The colours of the 2 x 2 block that starts at each pixel; last row and column black."""
 
     views = Views(grey, 1)
     own, right, below = views.at(0, 0), views.at(0, 1), views.at(1, 0)
@@ -183,7 +183,7 @@ def nearest(grey: Grey, green: int, red: int) -> Colour:
 
 
 def simple(grey: Grey, green: int, red: int) -> Colour:
-    """As `nearest`, with the mean of the two green pixels."""
+    """Like `nearest`, with the mean of the two green pixels."""
     return _window(grey, green, red, averaged=True)
 
 

@@ -1,10 +1,10 @@
-"""depthimage_compression_zlib: depth images (pixels `dec`), squeezed with zlib at the sender's end.
+"""depthimage_compression_zlib: compress depth images (pixels `dec`) with zlib when sending.
 
 On the wire, as from C++ YARP: a Bottle of width, height, compressed size, uncompressed size (int32)
 and a blob, the zlib stream (RFC 1950) of the rows.
 
-Rules: rows are sent with their padding to 8 bytes, as C++ sends them. C++ receivers refuse such
-rows, which images of an odd width have; this one takes rows with and without.
+Rules: rows are sent padded to 8 bytes, as C++ sends them. C++ receivers refuse padded rows, which
+images of an odd width have; this one accepts both.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class DepthZlib:
             case [int(width), int(height), int(), int(size), bytes(data)]:
                 row = -(-width * _PIXEL // QUANTUM) * QUANTUM
                 if width < 0 or height < 0 or size not in (width * height * _PIXEL, row * height):
-                    raise DecodeError(f"{width} times {height} pixels do not take {size} bytes")
+                    raise DecodeError(f"{width} x {height} pixels do not take {size} bytes")
                 made = unpacked(data, size, min(self._limit, limits().picture))
                 rows: NDArray[np.float32] = np.frombuffer(made, "<f4")
                 return Image(rows.reshape(height, -1 if size else width)[:, :width], "dec")

@@ -1,7 +1,7 @@
 """depthimage_to_mono: depth images (pixels `dec`, in metres) as grey, the nearest brightest.
 
-From 0.2 to 10 m grey is 255 - v * 255 / 9.8 without its fraction, as in C++ YARP; what is nearer,
-farther or not a number is 0. Either end.
+From 0.2 to 10 m grey is 255 - v * 255 / 9.8, truncated, as in C++ YARP; values nearer, farther or
+not a number are 0. Either end.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from yarpy.monitors.base import Place
 from yarpy.monitors.stock.picture import picture
 from yarpy.wire.message import Message
 
-#: metres; C++ divides by the difference, without subtracting the least
+#: metres; C++ divides by the difference without subtracting the minimum
 NEAREST, FARTHEST = 0.2, 10.0
 
 

@@ -1,7 +1,7 @@
 """depthimage_to_rgb: depth images (pixels `dec`, in metres) as colours from blue to black.
 
-The colours of C++ YARP: v / 9.8 runs through blue, green, yellow, red and black; what is nearer
-than 0.2 m, farther than 10 m or not a number is black. Either end.
+The colours of C++ YARP: v / 9.8 runs through blue, green, yellow, red and black; values nearer than
+0.2 m, farther than 10 m or not a number are black. Either end.
 """
 
 from __future__ import annotations

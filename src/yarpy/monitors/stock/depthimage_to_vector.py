@@ -1,6 +1,6 @@
 """depthimage_to_vector: depth images (pixels `dec`) as a Vector of float64, row by row.
 
-As in C++ YARP, but without the padding of rows that C++ takes for pixels. Either end.
+As in C++ YARP, but without the row padding that C++ treats as pixels. Either end.
 """
 
 from __future__ import annotations

@@ -1,12 +1,12 @@
 """Adaptive homogeneity-directed demosaicing: the method `ahd` of Bayer cameras.
 
-The picture is rebuilt twice, with green interpolated along the rows and along the columns; for each
-pixel the version is taken whose neighbourhood is more uniform in CIE Lab, so that colours do not
-mix across an edge. A frame of 3 pixels is averaged, as pictures of odd widths are.
+The picture is rebuilt twice, with green interpolated along the rows and along the columns; each
+pixel comes from the version whose neighbourhood is more uniform in CIE Lab, so that colours do not
+mix across an edge. A frame of 3 pixels is averaged, like pictures of odd widths.
 
-Rules: the results are those of libdc1394, and so of C++ YARP, to the bit. Hence the many integers
-on the way, and what looks odd: its Lab takes 65535 for white although pixels are bytes, and next to
-the frame it counts green as 0 where it has no two neighbours on each side.
+Rules: the results are bit-identical to libdc1394's, and so to C++ YARP's. Hence the many integer
+steps, and some oddities: Lab takes 65535 for white although pixels are bytes, and next to the frame
+green counts as 0 where it lacks two neighbours on a side.
 
 Source: Hirakawa and Parks, Adaptive homogeneity-directed demosaicing algorithm, IEEE Transactions
 on Image Processing 14 (2005).
@@ -75,7 +75,7 @@ def _greened(views: Views, green: int, pair: Pair) -> NDArray[Any]:
 
 
 def _coloured(grey: Grey, greens: NDArray[Any], green: int, red: int) -> Colour:
-    """Red and blue by how far they are from green in the neighbours."""
+    """Red and blue, from their distance to green in the neighbours."""
     import numpy as np
 
     from_green = Views(grey - greens, 1)
@@ -86,11 +86,11 @@ def _coloured(grey: Grey, greens: NDArray[Any], green: int, red: int) -> Colour:
 
 
 def _lab(colour: Colour) -> tuple[Any, Any, Any]:
-    """Lightness and the two tints, 64 to the unit."""
+    """Lightness and the two colour axes, in units of 1/64."""
     import numpy as np
 
     single = np.float32
-    # The straight part of the curve of CIE Lab: all that bytes reach of 65535.
+    # The linear part of the CIE Lab curve: as far as bytes reach, out of 65535.
     curve = single(7.787) * (np.arange(257, dtype=single) / single(65535)) + single(16 / 116)
     shares = []
     for row, white in zip(_XYZ, _WHITE, strict=True):
@@ -114,7 +114,7 @@ def _uniformity(across: tuple[Any, Any, Any], along: tuple[Any, Any, Any]) -> tu
         steps = [[c - np.roll(c, shift, (0, 1)) for c in lab] for shift in (*ACROSS, *ALONG)]
         light.append([abs(step[0]) for step in steps])
         tint.append([step[1] ** 2 + step[2] ** 2 for step in steps])
-    # The tolerance is how much each version differs along the direction in which it was made.
+    # The tolerance is how much each version differs along its own direction of interpolation.
     limits = [
         np.minimum(np.maximum(*kind[0][:2]), np.maximum(*kind[1][2:])) for kind in (light, tint)
     ]

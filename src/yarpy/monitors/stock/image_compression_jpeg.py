@@ -1,10 +1,10 @@
-"""image_compression_jpeg: images as JPEG, compressed at the sender's end. Of yarpy, not of C++.
+"""image_compression_jpeg: images as JPEG, compressed at the sender's end. Only in yarpy, not C++.
 
 On the wire: a Bottle of [jpeg], the pixel code of the image (a vocab) and a blob, the JPEG file.
 The receiver gets an image of the same pixel code; alpha becomes 255.
 
-Rules: libjpeg-turbo lets other threads run meanwhile. Pixels that are not colours are refused: JPEG
-would spoil depth or Bayer patterns.
+Rules: libjpeg-turbo releases the GIL. Pixels that are not colours are refused: JPEG would ruin
+depth or Bayer patterns.
 """
 
 from __future__ import annotations

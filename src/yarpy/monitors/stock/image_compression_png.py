@@ -3,7 +3,7 @@
 On the wire: a Bottle of [png], the pixel code of the image (a vocab) and a blob, the PNG file. The
 receiver gets the same image. C++ YARP has no such monitor.
 
-Rules: needs OpenCV (extra `vision`), which lets other threads run meanwhile.
+Rules: needs OpenCV (extra `vision`), which releases the GIL.
 """
 
 from __future__ import annotations

@@ -2,10 +2,10 @@
 
 Parameters, as in C++ YARP 4: `options_rotate` is rotate_cw, rotate_ccw (a quarter turn), rotate_180
 or rotate_none, `options_flip` is flip_x (upside down), flip_y (left to right), flip_xy or
-flip_none. The turn comes first. Without parameters C++ YARP 3 turns clockwise, and so does this.
+flip_none. Rotation comes first. Without parameters this rotates clockwise, as C++ YARP 3 does.
 
-Rules: every pixel type but those that are patterns of several pixels (Bayer, yuv), which a turn
-would break.
+Rules: every pixel type except patterns of several pixels (Bayer, yuv), which a rotation would
+break.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _CODES = (
 
 
 class ImageRotation:
-    """Turns and mirrors every image."""
+    """Rotates and mirrors every image."""
 
     def __init__(self, place: Place) -> None:
         flip = place.text("options_flip", "flip_none")
@@ -38,7 +38,7 @@ class ImageRotation:
         for key, value, known in (("rotate", turn, _TURNS), ("flip", flip, _FLIPS)):
             if value not in known:
                 raise LocalProtocolError(
-                    f'"options_{key}" is one of {", ".join(known)}, not "{value}"'
+                    f'"options_{key}" must be one of {", ".join(known)}, not "{value}"'
                 )
         self._turn = _TURNS[turn]
         self._flip = _FLIPS[flip]

@@ -1,4 +1,4 @@
-"""image_to_mono: images of any colours, or any grey, as pixels `mono`. Of yarpy, not of C++.
+"""image_to_mono: colour or grey images of any type as pixels `mono`. Only in yarpy, not in C++.
 
 Grey is (r + g + b) / 3, as C++ YARP converts images; see `Image.converted`.
 """
@@ -12,7 +12,7 @@ from yarpy.wire.message import Message
 
 
 class ImageToMono:
-    """Takes the colours out, at either end."""
+    """Removes the colours, at either end."""
 
     def __init__(self, place: Place) -> None:
         pass

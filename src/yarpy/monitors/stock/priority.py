@@ -1,19 +1,19 @@
-"""priority: of several connections into a port, one at a time gets through.
+"""priority: of several connections into a port, let one at a time through.
 
     yarpy connect /ball /eye tcp+recv.priority+st.10+tc.1+bs.20
 
-Rules: it sits at the receiving end of every connection that is to take part; those without it are
-never held back. On the wire there are only these parameters, as in C++:
+Rules: put it at the receiving end of every connection that takes part; connections without it
+always get through. Only these parameters are sent to the receiver, as in C++:
 
     tc       seconds that a message keeps its connection active (1)
     tr       seconds that it rests after having been active; above 0 it behaves as a neuron (0)
-    st       what one message adds, 10 makes it active at once (10)
-    bs       how strong it is: of the active ones the strongest wins (10)
+    st       what one message adds, 10 makes it active immediately (10)
+    bs       its strength: the strongest active connection wins (10)
     ex       links to others, `(/source weight)`: above 0 excite, below 0 inhibit it
     virtual  it never gets through, it only excites and inhibits
 
-In `st`, `bs` and weights of the carrier string, 10 stands for 1. While it runs, `set in` takes `st`
-and `bs` unscaled, and weights in tenths again, as in C++.
+In the carrier string, 10 in `st`, `bs` and weights stands for 1. Later, `set in` takes `st` and
+`bs` unscaled, but weights still in tenths, as in C++.
 """
 
 from __future__ import annotations
@@ -23,8 +23,7 @@ from collections.abc import Callable, Iterable
 from math import isfinite
 from typing import Any, Final
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.property import Property
+from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.errors import LocalProtocolError
 from yarpy.log import logger
@@ -35,7 +34,7 @@ from yarpy.wire.message import Message
 log = logger("yarpy.monitors")
 
 _SCALE: Final = 10.0
-_MOST: Final = 1e9  # larger numbers are mistakes, and would not survive the equations
+_MOST: Final = 1e9  # larger numbers are mistakes, and would overflow the equations
 _LINKS: Final = 1000  # of one connection
 
 
@@ -63,18 +62,18 @@ class Priority:
         )
 
     def _contest(self) -> Contest:
-        """Ours with the others at the port; call it with the group's lock held."""
+        """The contest of all at this port; call with the group's lock held."""
         members = self._group.members
         known: tuple[object, Contest] | None = self._group.shared.get(Priority)
         if known is None or known[0] is not members:
             ours = [one.competitor for one in members if isinstance(one, Priority)]
-            # A port's own monitor is in no group.
+            # A port's own monitor belongs to no group.
             contest = Contest(ours if self.competitor in ours else [self.competitor])
             self._group.shared[Priority] = known = members, contest
         return known[1]
 
     def accept(self, message: Message) -> bool:
-        """Whether this connection is the one that may speak now."""
+        """Whether this connection is the one that may deliver now."""
         with self._group.lock:
             try:
                 return self._contest().decide(self.competitor, self._clock())
@@ -89,7 +88,7 @@ class Priority:
                 return False
 
     def configure(self, parameters: Property) -> None:
-        """`tc tr st bs virtual ex`, any of them. Raises LocalProtocolError, then nothing is
+        """`tc tr st bs virtual ex`, any of them. If it raises LocalProtocolError, nothing has
         changed."""
         one = self.competitor
         tc = _setting(parameters, "tc", one.fade)
@@ -118,7 +117,7 @@ class Priority:
         }
 
     def state(self) -> dict[str, Any]:
-        """The state of the contest: our stimulation and output, and who may speak ("": nobody)."""
+        """The state of the contest: our stimulation and output, and the winner ("": none)."""
         with self._group.lock:
             one, now = self.competitor, self._clock()
             try:
@@ -158,13 +157,13 @@ def _finite(value: Any) -> float:
 def _links(value: str | Bottle | None) -> Bottle:
     """`ex` as C++ keeps it, `ex (/source weight) ...`; empty if there are none.
 
-    A carrier string typed in a shell cannot hold blanks: commas do there, `ex.(/a,-10)(/b,10)`.
+    In a shell, where a carrier string cannot hold blanks, use commas: `ex.(/a,-10)(/b,10)`.
     """
     if value is None or len(value) == 0:
         return Bottle()
     if isinstance(value, str):
         value = Bottle.from_text(value.replace(",", " ").replace(")(", ") ("))
-    # As a group it begins with its own key.
+    # A group begins with its own key.
     return Bottle(["ex", *(item for item in value if item not in ("ex", ""))])
 
 

@@ -1,4 +1,4 @@
-"""segmentationimage_to_rgb: images of labels (`mono` or `mo16`) in 64 colours, far from each other.
+"""segmentationimage_to_rgb: label images (`mono` or `mo16`) in 64 distinct colours.
 
 The colours of C++ YARP, by the label modulo 64. Either end.
 """

@@ -1,7 +1,7 @@
-"""sensorMeasurements_to_vector: position and orientation out of a stream of sensors.
+"""sensorMeasurements_to_vector: position and orientation from a stream of sensors.
 
 Takes the stream of a multi-sensor server on `/measures:o` (ten lists, by kind of sensor) and
-returns a Vector of six: x, y, z of the one position sensor, then the three angles of the one
+returns a Vector of six: x, y, z of the only position sensor, then the three angles of the only
 orientation sensor. As in C++ YARP, messages with none or several of either are refused.
 """
 

@@ -1,13 +1,12 @@
-"""simulated_network_delay: hold every message for a while, as a slow network would.
+"""simulated_network_delay: delay every message, as a slow network would.
 
-Parameter, as in C++ YARP 4: `delay_ms`, 0 without, at most 10000.
+Parameter, as in C++ YARP 4: `delay_ms`, default 0, at most 10000.
 
-Where: at the receiver's end. The wait is then in the thread of that one connection, and the
-sender's other connections go on. At the sender's end, which C++ allows too, the writer itself
-waits, and with it all connections of its port.
+Use it at the receiver's end, where only the thread of that connection waits. At the sender's end,
+which C++ allows too, the writer itself waits, and with it all connections of its port.
 
-Rules: it is a pause, not a delay line: messages that come faster than the delay wait for each
-other, and acknowledgements then slow their sender down, as a narrow network would.
+Rules: it is a pause, not a delay line: messages that come faster than the delay queue up, and
+acknowledgements then slow their sender down, as a narrow network would.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ _MOST = 10_000.0  # milliseconds
 
 
 class SimulatedNetworkDelay:
-    """Holds messages."""
+    """Delays messages."""
 
     def __init__(self, place: Place) -> None:
         self._delay = place.number("delay_ms", 0.0, 0, _MOST) / 1000

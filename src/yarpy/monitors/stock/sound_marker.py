@@ -1,4 +1,4 @@
-"""sound_marker: make the edges of sounds audible and visible, to see how a stream is cut up.
+"""sound_marker: make the edges of sounds audible and visible, to show how a stream is split.
 
 As in C++ YARP 3: five samples of 32000 follow each channel, and the first sample is -32000. (C++
 YARP 4 puts markers into a form of Sound that earlier versions cannot read.) Either end.

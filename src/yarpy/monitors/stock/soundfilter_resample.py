@@ -1,6 +1,6 @@
-"""soundfilter_resample: one channel of a sound, louder or softer, or at another rate.
+"""soundfilter_resample: pick one channel of a sound, change its volume or its rate.
 
-Parameters, as in C++ YARP: `channel` (from 0; all without), `gain_percent` (100 leaves it alone),
+Parameters, as in C++ YARP: `channel` (from 0; default all), `gain_percent` (100: unchanged),
 `frequency` (samples per second), applied in this order. Either end.
 
 Rules: another rate needs soxr (extra `sound`), the library of C++ YARP; each message is resampled
@@ -25,7 +25,7 @@ _MOST = 1_000_000  # samples per second
 
 
 class SoundFilterResample:
-    """Takes a channel, a gain and a rate."""
+    """Applies a channel, a gain and a rate."""
 
     def __init__(self, place: Place) -> None:
         self._channel = int(place.number("channel", -1, -1))

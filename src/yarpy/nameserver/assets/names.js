@@ -1,6 +1,6 @@
 // Every port that the name server knows: alive or not, whose it is, what it is connected to.
 
-import {ask, copyOf, part, pause, rate, say, several} from "/*/common.js";
+import {ask, copyOf, part, pause, portUrl, rate, say, several} from "/*/common.js";
 
 const ROUND = 2000; // ms between questions to the server
 const LINKS = 8; // connections of a port that are listed
@@ -54,7 +54,7 @@ function row(port) {
     say(part(item, "name"), port.name);
   }
   const link = part(item, "name");
-  const url = `http://${here(port.host)}:${port.port}/`;
+  const url = `${portUrl(here(port.host), port.port)}/`;
   if (port.carrier === "tcp" && URL.canParse(url)) link.href = url;
   else link.removeAttribute("href");
   const state = port.alive === true ? "alive" : port.alive === false ? "gone" : port.silent ? "silent" : "unknown";

@@ -1,10 +1,10 @@
 // A robot: what its cameras see, where its joints are and are to go, what its sensors feel.
 // The page talks to the ports of the robot, in HTTP.
 
-import {ask, part, pause, say, seconds} from "/*/common.js";
+import {ask, may, part, pause, say, seconds} from "/*/common.js";
 import {Camera} from "./panel_camera.js";
 import {drawn} from "./panel_curve.js";
-import {Board, gaze, stop, tryJoints, trying} from "./panel_joint.js";
+import {Board, gaze, moves, stop, tryJoints, trying, watchOnly} from "./panel_joint.js";
 import {robot, url} from "./panel_port.js";
 import {Sensors} from "./panel_sensor.js";
 
@@ -21,6 +21,7 @@ function draw() {
 }
 
 async function open() {
+  if (!(await may()).includes("write")) watchOnly();
   const found = await ask("/robot");
   missing = found ? found.missing : "the program of this page, or the name server, does not answer";
   if (!found?.boards.length && !found?.cameras.length) return null;
@@ -40,7 +41,7 @@ async function open() {
   }
   for (const info of found.sensors) parts.set(`${info.name} measures`, new Sensors(info));
   const joints = boards.flatMap((board) => board.joints);
-  for (const id of ["try", "home"]) document.getElementById(id).hidden = !joints.length;
+  for (const id of ["try", "home"]) document.getElementById(id).hidden = !joints.length || !moves;
   document.getElementById("try").onclick = () => (trying ? stop() : tryJoints(joints));
   document.getElementById("home").onclick = () => {
     stop();
@@ -91,6 +92,7 @@ for (;;) {
   document.getElementById("boards").classList.toggle("silent", lost);
   const click = gaze && cameras.length ? ", click on a picture to look there" : "";
   const silent = `the robot has been silent for ${seconds(silence / 1000)}; this page goes on by itself when it is back`;
-  say(state, lost ? silent : `live: drag the sliders${click}`);
+  const live = moves ? `live: drag the sliders${click}` : "live, read only: access.toml lets you look, not move the robot";
+  say(state, lost ? silent : live);
   await pause(500);
 }

@@ -10,6 +10,12 @@ const SEND = 60; // ms between two targets while a slider is dragged
 const PRISMATIC = 1919972449; // the type of a joint that slides
 
 export let gaze = null; // turns the head so many degrees to the right and up
+export let moves = true; // whether whoever has this page open may move the robot
+
+// From now on the page shows the robot and moves nothing.
+export function watchOnly() {
+  moves = false;
+}
 
 class Joint {
   constructor(board, number, name, slides, limits) {
@@ -38,6 +44,7 @@ class Joint {
       this.send();
     };
     this.slider.ondblclick = () => this.go(0);
+    this.slider.disabled = !moves;
     this.paint();
   }
 
@@ -158,7 +165,7 @@ export class Board {
   offerGaze() {
     const joint = (name) => this.joints.find((one) => one.name === name);
     const [pitch, roll, yaw] = ["neck_pitch", "neck_roll", "neck_yaw"].map(joint);
-    if (!pitch || !roll || !yaw) return;
+    if (!pitch || !roll || !yaw || !moves) return;
     gaze = (right, up) => {
       stop();
       const tilt = (roll.now * Math.PI) / 180;

@@ -1,20 +1,26 @@
 // How the panel talks to the ports of a robot: questions, commands, events.
 
+import {portUrl} from "/*/common.js";
+
 const SILENT = 10000; // ms without an event after which they are asked for anew
 
-// Its name, and when this page last heard of its joints or sensors.
+// Its name, and when this page last heard of its joints, which it is to move.
 export const robot = {name: "", heard: null};
 
 // The name of a part without that of its robot.
 export const short = (name) => name.slice(robot.name.length + 1) || name;
 
 // The URL of a port; one of this computer is where the page came from, whoever looks at it.
-export const url = ([host, port]) => `http://${host || location.hostname}:${port}`;
+export const url = ([host, port]) => portUrl(host || location.hostname, port);
 
 // A question to a port, with the values for what follows $. The panel's program asks it: ports let
-// no page of another origin do more than read.
+// no page of another origin do more than read. What only asks is a page, which may be read.
 export async function call([host, port], words, values = {}) {
   const question = words.replace(/\$(\w+)/g, (_, name) => values[name]);
+  if (question.startsWith("get ")) {
+    const asked = new URLSearchParams({host, port, question});
+    return (await fetch(`/get?${asked}`, {signal: AbortSignal.timeout(5000)})).json();
+  }
   const answer = await fetch("/form", {
     method: "POST",
     headers: {"Content-Type": "application/json"},

@@ -3,7 +3,7 @@
 import {copyOf, part, say} from "/*/common.js";
 import {Horizon} from "./horizon.js";
 import {Curves, drawn} from "./panel_curve.js";
-import {listen, robot, short} from "./panel_port.js";
+import {listen, short} from "./panel_port.js";
 
 // The kinds of sensors in a message, and how they are drawn.
 const KINDS = [
@@ -36,7 +36,6 @@ export class Sensors {
 
   show(time, kinds) {
     const {curves, info} = this;
-    robot.heard = performance.now();
     if (kinds[ORIENTATION]?.length) {
       this.horizon ??= openHorizon(info.name);
       [this.horizon.angles] = kinds[ORIENTATION][0];

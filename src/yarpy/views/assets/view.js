@@ -1,6 +1,6 @@
 // Pictures side by side, and what there is to tell of each.
 
-import {ask, copyOf, fileName, part, pause, press, rate, save, say, seconds, several} from "/*/common.js";
+import {ask, copyOf, fileName, may, part, pause, portUrl, press, rate, save, say, seconds, several} from "/*/common.js";
 import {Live, OLD} from "/*/live.js";
 
 const LOOK = 500; // ms between questions to the program
@@ -11,7 +11,7 @@ class Picture {
     this.info = info;
     this.figure = copyOf("picture");
     this.paused = false;
-    const where = () => `http://${location.hostname}:${this.info.port}/?action=stream&${this.info.wish}`;
+    const where = () => `${portUrl(location.hostname, this.info.port)}/?action=stream&${this.info.wish}`;
     const wishes = {drawn: () => this.drawn(), wanted: () => !this.paused};
     this.live = new Live(part(this.figure, "screen"), where, wishes);
     this.canvas = this.live.canvas;
@@ -66,7 +66,7 @@ class Picture {
     const lines = [still ? this.awaited(info) : ""];
     if (info.others) lines.push(`${others}. The last came from ${info.complaint}`);
     say(part(figure, "banner"), lines.join(" ").trim());
-    this.canvas.classList.toggle("clicks", info.clicks);
+    this.canvas.classList.toggle("clicks", info.clicks && acts);
     if (this.live.file === null) this.hint(info);
   }
 
@@ -96,7 +96,7 @@ class Picture {
   clicks() {
     let start = null;
     this.canvas.onpointerdown = (event) => {
-      start = event.button === 0 && this.info.clicks ? this.live.place(event) : null;
+      start = event.button === 0 && this.info.clicks && acts ? this.live.place(event) : null;
       if (start) this.canvas.setPointerCapture(event.pointerId);
     };
     this.canvas.onpointerup = (event) => {
@@ -117,6 +117,7 @@ class Picture {
 // -- the page --
 
 const pictures = [];
+const acts = (await may()).includes("write"); // whether clicks may be sent
 
 async function tell() {
   const status = await ask("/status");
@@ -140,7 +141,8 @@ async function tell() {
   document.title = `${names} - yarpy view`;
   document.getElementById("pause").hidden = pictures.length < 2;
   const moving = status.pictures.filter((info) => info.rate > 0).length;
-  say(state, `${moving} of ${several(pictures.length, "picture", "pictures")} moving`);
+  const readOnly = !acts && status.pictures.some((info) => info.clicks) ? " · read only: clicks are not sent" : "";
+  say(state, `${moving} of ${several(pictures.length, "picture", "pictures")} moving${readOnly}`);
 }
 
 function holdAll() {

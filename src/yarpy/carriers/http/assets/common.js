@@ -1,4 +1,4 @@
-// What the pages of programs share: asking the program, and small words for people.
+// What the pages of programs share: asking the program, and short texts for people.
 
 // What the program says at a path, as JSON; null when it does not answer.
 export async function ask(path) {
@@ -9,6 +9,13 @@ export async function ask(path) {
     return null;
   }
 }
+
+// What whoever has this page open may do with the program's port, such as ["read"]. Without an
+// answer nothing is hidden; the port refuses what it must.
+export const may = async () => (await ask("/*/may")) ?? ["read", "write"];
+
+// Another port, reached as this page was: by https if that was.
+export const portUrl = (host, port) => `${location.protocol}//${host}:${port}`;
 
 export const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
@@ -37,7 +44,7 @@ export function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-// A name for a file out of a port's name and the time: view-left_2026-11-21_19-08-01.123
+// A file name from a port's name and the time: view-left_2026-11-21_19-08-01.123
 export function fileName(port) {
   const now = new Date();
   const local = new Date(now - now.getTimezoneOffset() * 60000).toISOString().slice(0, -1);

@@ -1,5 +1,5 @@
-// Pictures as they come: the stream of JPEG files of a port, drawn on a canvas as fast as this
-// browser can. A stream that ends, or says nothing for long, is asked for again.
+// Live pictures: a port's stream of JPEG files, drawn on a canvas as fast as the browser can. A
+// stream that ends, or stays silent for long, is requested again.
 
 import {pause} from "/*/common.js";
 
@@ -9,8 +9,8 @@ const SILENT = 10000; // ms without a picture after which a stream is asked for 
 const PROBE = 2000; // ms between questions to a port whose stream scripts may not read
 
 export class Live {
-  // screen: the element around the canvas. where(): the URL of the stream. drawn(): a picture was
-  // drawn. wanted(): whether somebody wants to see it; a page in the background never does.
+  // screen: the element around the canvas. where(): the URL of the stream. drawn(): called when a
+  // picture was drawn. wanted(): whether the picture is needed; never on a page in the background.
   constructor(screen, where, {drawn = () => {}, wanted = () => true} = {}) {
     this.canvas = screen.querySelector("canvas");
     this.where = where;
@@ -18,10 +18,10 @@ export class Live {
     this.asked = wanted;
     this.file = null; // the JPEG file on the screen
     this.times = []; // when pictures were drawn, ms
-    this.last = null; // when the newest was
+    this.last = null; // time of the newest
     this.image = null; // in place of the canvas
     this.stream = null; // ends the request
-    this.waiting = null; // the newest file that was not drawn yet
+    this.waiting = null; // the newest file not yet drawn
     document.addEventListener("visibilitychange", () => this.look());
     setInterval(() => this.look(), LOOK);
     this.watch();
@@ -57,7 +57,7 @@ export class Live {
     return x >= 0 && y >= 0 && x < width && y < height ? [x, y] : null;
   }
 
-  // End what is not wanted any more, or comes from where nobody is.
+  // End a stream that is no longer wanted, or whose sender is gone.
   look() {
     const silent = performance.now() - this.heard > SILENT;
     if (!this.wanted || this.url !== this.where() || silent) this.stream?.abort();
@@ -134,7 +134,7 @@ export class Live {
     }
   }
 
-  // Let the browser show the stream, as long as the port answers. It does not tell when it ends.
+  // Let the browser show the stream while the port answers; it does not report the stream's end.
   async show() {
     this.image = new Image();
     this.image.alt = this.canvas.ariaLabel ?? "";
@@ -189,7 +189,7 @@ async function* files(answer) {
 
 const ascii = (bytes) => String.fromCharCode(...bytes);
 
-// Where the header lines end, -1 if they did not come yet.
+// Where the header lines end, -1 if they have not arrived yet.
 function headEnd(data) {
   for (let at = 0; at + 3 < data.length; at++) {
     if (data[at] === 13 && data[at + 1] === 10 && data[at + 2] === 13 && data[at + 3] === 10) {

@@ -4,10 +4,10 @@ const LEFT = 58;
 const RIGHT = 12;
 const TOP = 10;
 const BOTTOM = 24;
-const CALM = 0.06; // of the way that a range shrinks in one drawing
-const OUTAGE = 5; // times the usual distance of two messages: nobody knows what was in between,
-const HICCUP = 0.5; // unless it is shorter than so many seconds
-const SAMPLES = 64; // distances that tell the usual one
+const CALM = 0.06; // fraction by which a range shrinks per drawing
+const OUTAGE = 5; // times the usual interval of messages: no line is drawn across such a gap
+const HICCUP = 0.5; // seconds that a line may always bridge
+const SAMPLES = 64; // intervals from which the usual one is estimated
 
 // Colours that stay apart for most eyes, on light and on dark; a second round is dashed.
 const LIGHT = ["#0072b2", "#d55e00", "#009e73", "#b5179e", "#8a6d00", "#c1121f", "#7a3ff2", "#555f6b"];
@@ -17,7 +17,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 export const colour = (number) => (dark.matches ? DARK : LIGHT)[number % LIGHT.length];
 export const dashes = (number) => (number < LIGHT.length ? [] : [6, 4]);
 
-// A unit as it stands behind a number.
+// A unit as written after a number.
 export const behind = (unit) => (unit === "" || unit === "°" ? unit : ` ${unit}`);
 
 // The index of the first time that is not before `time`.
@@ -32,7 +32,7 @@ export function search(times, time) {
   return low;
 }
 
-// How far apart two messages may be that a line joins, judged by those between two places.
+// The longest interval that a line may bridge, judged by the messages between two places.
 export function outage(times, first, last) {
   const step = Math.max(1, Math.floor((last - first - 1) / SAMPLES));
   const found = [];
@@ -120,7 +120,7 @@ export class Plot {
     this.context.setTransform(scale, 0, 0, scale, 0, 0);
   }
 
-  // What is seen: at once when something would be cut off, calmly when there is room.
+  // The visible range: grows immediately when something would be cut off, shrinks slowly.
   range(curves, start, view) {
     let low = Infinity;
     let high = -Infinity;
@@ -185,7 +185,7 @@ export class Plot {
     }
   }
 
-  // A long unit, at the upper end of the axis; a short one stands behind each number.
+  // A long unit goes to the upper end of the axis, a short one after each number.
   name() {
     const {context} = this;
     context.fillStyle = this.style.getPropertyValue("--soft");
@@ -212,12 +212,12 @@ export class Plot {
         else {
           const place = [x(times[at]), y(values[at])];
           if (!drawing) context.moveTo(...place);
-          context.lineTo(...place); // also to itself: a message between two outages is a dot
+          context.lineTo(...place); // also to itself: a message between two gaps is a dot
           drawing = true;
         }
       }
     } else {
-      // More points than pixels: of each column what enters it, its ends, and what leaves it.
+      // More points than pixels: draw each column's first, lowest, highest and last value.
       let column = null;
       let [low, high, previous] = [0, 0, 0];
       const leave = () => {
@@ -277,7 +277,7 @@ export class Plot {
   }
 }
 
-// The place of the value that is nearest in time; null if there is none.
+// The index of the value nearest in time; null if there is none.
 export function nearest(times, values, time) {
   const at = search(times, time);
   let best = null;

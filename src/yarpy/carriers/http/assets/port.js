@@ -1,6 +1,6 @@
-// The page of a port: what it writes as it is written - a picture, curves, the last value, or one
-// message after the other - and its connections. The page asks for no more than people can see,
-// and for nothing while it is in the background.
+// The page of a port: what it writes, live - a picture, curves, the last value, or a list of
+// messages - and its connections. The page asks for no more than people can see, and for nothing
+// while it is in the background.
 
 import {pause, press, rate, say, seconds, several} from "/*/common.js";
 import {Live, OLD} from "/*/live.js";
@@ -9,14 +9,14 @@ import {cut, isPicture, line, numbers, tree} from "/*/tree.js";
 
 const RATE = 20; // messages a second that the page asks for
 const PICTURES = 15; // pictures a second
-const ROUND = 2000; // ms between questions for the connections
-const LOOK = 250; // ms between changes of words, so that they can be read
+const ROUND = 2000; // ms between requests for the connections
+const LOOK = 250; // ms between changes of text, so that it can be read
 const WINDOW = 10; // seconds of a curve
 const CURVES = 12;
 const KEPT = 3000; // messages of a curve
 const ROWS = 200; // messages, and answers, that are listed
 const LONG = 1000; // characters of one
-const SILENT = 10000; // ms without a message after which they are asked for anew
+const SILENT = 10000; // ms without a message after which they are requested again
 
 const byId = (id) => document.getElementById(id);
 const name = document.querySelector("h1").textContent;
@@ -128,7 +128,7 @@ function row() {
 let events = null;
 let heard = 0;
 
-// Listen while somebody looks.
+// Listen while the page is visible.
 function listen() {
   events?.close();
   events = null;
@@ -140,7 +140,7 @@ function listen() {
     try {
       take(JSON.parse(event.data), event.lastEventId);
     } catch {
-      // not for people; the next one comes
+      // not readable; the next one follows
     }
   };
 }
@@ -201,7 +201,7 @@ const table = plain ? make("table", "", null) : null;
 function showConnections() {
   if (!table) return;
   const found = connections.filter(({source, target}) => ![source, target].includes("web"));
-  const rows = found.filter(({target}) => target !== "null").map((one) => {
+  const rows = found.filter(({target}) => target !== "null" && target !== "").map((one) => {
     const out = one.side === "out";
     const drops = one.drops ? `${one.drops} dropped` : "";
     const cells = [out ? `to ${one.target}` : `from ${one.source}`, one.carrier];
@@ -219,7 +219,7 @@ function showConnections() {
   if (!table.isConnected) plain.replaceWith(table);
 }
 
-// -- what is said to it --
+// -- what is sent to it --
 
 const form = byId("ask");
 const said = make("ol", "said", null);
@@ -247,7 +247,7 @@ form?.addEventListener("submit", async (event) => {
 
 // -- the page --
 
-let sends = true; // it may
+let sends = true; // it may send
 
 function tell() {
   const age = last ? now() - last.time : null;
@@ -262,7 +262,7 @@ function tell() {
     if (real > 1.3 * shows && age < 3) facts.push(`this page shows ${rate(shows)} of them`);
     if (isPicture(last.value)) facts.unshift(line(last.value, LONG));
   } else if (connections !== null) {
-    facts.push(sends ? "it has sent nothing since this page was opened" : "it takes messages and sends none by itself");
+    facts.push(sends ? "it has sent nothing since this page was opened" : "it receives messages and sends none by itself");
   }
   if (paused) facts.push("paused");
   say(byId("state"), facts.join(" · "));

@@ -1,13 +1,13 @@
-// A message for people: as a tree that can be opened, as one line, and its numbers.
+// A message for people: as a tree that can be expanded, as one line, and its numbers.
 
-const ITEMS = 100; // of a list that are shown
-const DEEP = 12; // lists in lists
+const ITEMS = 100; // elements of a list that are shown
+const DEEP = 12; // nested lists
 const LONG = 500; // characters of a word
-const LEAVES = 2000; // elements that are looked at for numbers
+const LEAVES = 2000; // elements that are searched for numbers
 
 export const isPicture = (value) => value?.type === "image" && value.width > 0 && value.height > 0;
 
-// What a value is, as an element; everything in it is text, whatever it looks like.
+// A value as an element; everything in it is text, whatever it looks like.
 export function tree(value, depth = 0) {
   if (typeof value !== "object" || value === null) {
     const leaf = document.createElement("code");
@@ -34,20 +34,20 @@ function add(list, key, element) {
 
 export const cut = (text, most) => (text.length > most ? `${text.slice(0, most)}...` : text);
 
-// One line of it.
+// A value as one line.
 export function line(value, most) {
   if (isPicture(value)) return `image ${value.width} × ${value.height} ${value.pixel}`;
   if (!Array.isArray(value)) return cut(JSON.stringify(value), most);
   return cut(value.map((item) => JSON.stringify(item)).join(" "), most);
 }
 
-// Whether a number tells when something was: as sensors do behind their values, or near our time.
+// Whether a number is a time stamp: the one sensors put after their values, or one near our time.
 function isTime(value, list, at, depth) {
   if (depth > 2 && list.length === 2 && at === 1 && Array.isArray(list[0])) return true;
   return Math.abs(value - Date.now() / 1000) < 86400;
 }
 
-// The numbers in a value but times, each with its name: the word before it, its key, or its place.
+// The numbers in a value except times, each named by the word before it, its key, or its index.
 export function numbers(value) {
   const found = [];
   let place = 0;

@@ -1,13 +1,13 @@
 -- The elements of lists as Lua scripts of C++ YARP see them: how messages are read and written.
 --
--- A list keeps the tags and the values of its elements side by side; `_root` is the list that is the
--- message, which knows whether anything was changed. Only numbers and strings cross over to Python.
--- `host` holds Python functions, each gives an error message or nil, then its results. `fail`
+-- A list keeps the tags and the values of its elements side by side; `_root` is the list of the
+-- whole message, which knows whether anything was changed. Only numbers and strings go to Python.
+-- `host` holds Python functions, which return an error message or nil, then their results. `fail`
 -- raises an error at the line of the script.
 
 local host, fail = ...
 
--- Scripts may call their own globals as they like.
+-- Scripts may redefine globals.
 local pack, unpack, concat = string.pack, string.unpack, table.concat
 local type, error, tonumber, tostring, pairs = type, error, tonumber, tostring, pairs
 local setmetatable, getmetatable = setmetatable, getmetatable
@@ -21,7 +21,7 @@ local FORMATS = {
 }
 local MAX_DEPTH = 100
 
--- What a Python function gives.
+-- The results of a Python function.
 local function checked(problem, ...)
     if problem then
         fail(problem)
@@ -81,7 +81,7 @@ local function read_bottle(data)
     return made
 end
 
--- The code of a list, and what follows it.
+-- The code of a list, and the bytes after it.
 local function pack_list(bottle, depth)
     if depth > MAX_DEPTH then
         fail("lists are nested more than " .. MAX_DEPTH .. " deep")
@@ -184,7 +184,7 @@ local function vocab_text(code)
     return (pack("<i4", code):match("^[^\0]*"))
 end
 
--- What add, put and Value take: a Value, a Bottle, or a plain one of Lua.
+-- What add, put and Value take: a Value, a Bottle, or a plain Lua value.
 local function element(given, root)
     local kind = type(given)
     if kind == "table" then

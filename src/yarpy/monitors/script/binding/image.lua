@@ -1,4 +1,4 @@
--- Image: its pixels as they came, and those rows that were changed as tables of bytes.
+-- Image: its pixels as received, and changed rows as tables of bytes.
 
 local kit = ...
 
@@ -97,7 +97,7 @@ function Image:_write(x, y, channel, value)
     if row == nil then
         row = {}
         local first = y_row * self._row
-        for start = 1, self._row, 4000 do -- so many results of one call are fine
+        for start = 1, self._row, 4000 do -- a call can return this many results
             local last = min(start + 3999, self._row)
             move({ self._data:byte(first + start, first + last) }, 1, last - start + 1,
                 start, row)

@@ -1,11 +1,11 @@
 -- The limits of a script: how long one call may take, and what it may not reach.
 --
 -- A call runs in a coroutine with a count hook; the thread that starts it has none, so it always
--- gets back. Once the limit is passed the hook raises at every instruction outside of this file,
+-- regains control. Once the limit is passed the hook raises at every instruction outside this file,
 -- which no pcall survives. Python is out of reach.
--- What runs inside a single function of Lua's own library is not counted, memory is (by lupa).
+-- Time inside a single library function is not counted; memory is (by lupa).
 
-local LIMIT, FOLDER = ... -- a FOLDER: all that there is of the disk are its modules
+local LIMIT, FOLDER = ... -- with FOLDER, its modules are the only files within reach
 local STEP = 1000
 
 local create, resume, yield = coroutine.create, coroutine.resume, coroutine.yield
@@ -35,7 +35,7 @@ local function tick()
     used = used + STEP
     if used > LIMIT then
         sethook(tick, "", 1)
-        fail("it goes on for more than " .. LIMIT .. " instructions in one call")
+        fail("it runs for more than " .. LIMIT .. " instructions in one call")
     end
 end
 
@@ -62,7 +62,7 @@ function coroutine.wrap(f)
     end
 end
 
--- A handler of the original would run with hooks switched off.
+-- The original would run its handler with hooks switched off.
 function xpcall(f, handler, ...)
     local results = pack(pcall(f, ...))
     if results[1] then
@@ -95,7 +95,7 @@ function os.exit()
     fail("a monitor cannot end the program")
 end
 
-loadstring = _G.load -- as older scripts call it
+loadstring = _G.load -- the name in older scripts
 _G.unpack = unpack
 debug = { traceback = traceback }
 package.loaded.debug = debug
@@ -115,7 +115,7 @@ if FOLDER then
         local made = loaded[name]
         if made == nil then
             if type(name) ~= "string" or not find(name, "^[%w_]+$") then
-                fail("a module has a plain name, and lies beside the script")
+                fail("a module must have a plain name and be in the script's folder")
             end
             local chunk, problem = loadfile(FOLDER .. "/" .. name .. ".lua", "t")
             if not chunk then
@@ -157,7 +157,7 @@ local function back(worker, ok, mark, ...)
     return true, ...
 end
 
--- run(f, ...): true and what f gives, or false and a message.
+-- run(f, ...): true and the results of f, or false and a message.
 local function run(f, ...)
     local worker = idle
     idle = nil

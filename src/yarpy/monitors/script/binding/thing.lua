@@ -1,4 +1,4 @@
--- The `thing` that callbacks are given, the module yarp, and what Python calls.
+-- The `thing` passed to callbacks, the module yarp, and what Python calls.
 
 local kit, run = ...
 
@@ -27,7 +27,7 @@ local function new_things(message)
     return setmetatable({ _message = message, _casts = {} }, things_meta)
 end
 
-local thing = new_things(true) -- the message that is on its way
+local thing = new_things(true) -- the current message
 
 local function fetch_bottle()
     local problem, data = host.fetch_bottle()
@@ -106,7 +106,7 @@ function Things:reset()
     self._writer, self._casts = nil, {}
 end
 
--- How an object goes back: the kind of its bytes, the bytes, and what else that kind takes.
+-- An object as returned to Python: the kind of its bytes, the bytes, and what else that kind takes.
 local function outgoing(object)
     local meta = getmetatable(object)
     if meta == bottle_meta then
@@ -134,7 +134,7 @@ local function is_dirty(object)
     return object._dirty or (object._v and type(object._v) == "table" and object._v._dirty)
 end
 
--- What became of the message: nothing if it is as it was.
+-- The result for the message: nothing if it is unchanged.
 local function result(given)
     if given == nil then
         given = thing
@@ -284,7 +284,7 @@ local inside = {
     destroy = function()
         callback("destroy")()
     end,
-    -- 0: it may not pass, 1: it may, 2: it may and was changed on the way
+    -- 0: it may not pass, 1: it may, 2: it may, and was changed
     accept = function()
         begin()
         if not PortMonitor.accept(thing) then
@@ -322,7 +322,7 @@ local inside = {
     end,
 }
 
--- Each gives true and its results, or false and a message.
+-- Each returns true and its results, or false and a message.
 local guarded = {}
 for name, f in pairs(inside) do
     guarded[name] = function(...)

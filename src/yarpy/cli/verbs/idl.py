@@ -1,0 +1,128 @@
+"""`yarpy idl rosmsg NAME...`: messages and services of ROS.
+
+    idl rosmsg NAME...              show them, as `rosmsg show` does
+    idl rosmsg --raw NAME...        the text of their files, with the comments
+    idl rosmsg --md5 NAME...        their checksums
+    idl rosmsg --python NAME...     a Python module with their classes
+    idl rosmsg --stubs NAME...      the .pyi file for that module
+    idl rosmsg --name /typ@/yarpros answer those who ask for types, until interrupted
+    idl sniff PORT                  a .msg file for what a port sends
+
+A NAME is package/Type, or the path of a .msg or .srv file. Names are looked for in the folders of
+--folder, in folders `msgs` where `yarpy resource` looks for files of the --context, in the packages
+of ROS, and among those that rosbags and yarpy bring.
+
+Differs from C++ (yarpidl_rosmsg): no C++ is written, and nothing is fetched from the web.
+Exit codes: 0 done; 1 not found, or wrong.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from yarpy.cli.output import print_line
+
+if TYPE_CHECKING:
+    from yarpy.idl.rosmsg.library import Library
+
+
+@click.group()
+def command() -> None:
+    """Types of other systems: show them, write code for them."""
+
+
+@command.command()
+@click.argument("names", nargs=-1, metavar="NAME...")
+@click.option("--raw", "form", flag_value="raw", help="Print their files, with the comments.")
+@click.option("--md5", "form", flag_value="md5", help="Print their checksums.")
+@click.option("--python", "form", flag_value="python", help="Print a Python module for them.")
+@click.option("--stubs", "form", flag_value="stubs", help="Print the stubs for that module.")
+@click.option(
+    "--folder",
+    "folders",
+    multiple=True,
+    metavar="DIR",
+    type=click.Path(exists=True, file_okay=False),
+    help="A folder of packages to look in first.",
+)
+@click.option("--context", "contexts", multiple=True, metavar="C", help="A context with `msgs`.")
+@click.option("--name", "port", metavar="PORT", help="Serve types on this port (/typ@/yarpros).")
+def rosmsg(
+    names: tuple[str, ...],
+    form: str | None,
+    folders: tuple[str, ...],
+    contexts: tuple[str, ...],
+    port: str | None,
+) -> int:
+    """Show messages and services of ROS, write Python for them, or tell others of them."""
+    if port is not None:
+        return _serve(port, library_of(folders, contexts))
+    if not names:
+        raise click.UsageError("which types? Give names, such as sensor_msgs/Image")
+    from yarpy.idl.rosmsg.library import Service
+    from yarpy.idl.rosmsg.show import show
+    from yarpy.idl.rosmsg.stub import python, stubs
+
+    library = library_of(folders, contexts)
+    found = [library.load(name) for name in names]
+    if form in ("python", "stubs"):
+        print_line((python if form == "python" else stubs)(found).rstrip("\n"))
+        return 0
+    for each in found:
+        definition = each.definition if isinstance(each, Service) else each._definition
+        if form == "md5":
+            behind = f" {definition.name}" if len(found) > 1 else ""
+            print_line(definition.md5sum + behind)
+            continue
+        if len(found) > 1:
+            print_line(f"[{definition.name}]:")
+        print_line(definition.text.rstrip("\n") if form == "raw" else show(definition))
+    return 0
+
+
+def _serve(name: str, library: Library) -> int:
+    import threading
+
+    from yarpy.cli import log, signals
+    from yarpy.ros.type_server import TypeServer
+
+    log.show()
+    with signals.held():
+        server = TypeServer(name, library)
+        click.get_current_context().call_on_close(server.close)
+    print_line(f"{server.name} answers `twiddle TYPE` and `raw TYPE`")
+    try:
+        threading.Event().wait()
+    except signals.Interrupted:
+        pass
+    return 0
+
+
+@command.command()
+@click.argument("port")
+@click.option("--count", default=1, help="Messages to look at; they must have one structure.")
+def sniff(port: str, count: int) -> int:
+    """Write a .msg file for what PORT sends, so that ROS can read its bytes unchanged."""
+    import yarpy
+    from yarpy.cli.ports import ANY, hear_from, open_port
+    from yarpy.idl.rosmsg.sniff import sniff as write
+
+    with open_port(yarpy.BufferedPort, ANY, strict=True) as reader:
+        hear_from(reader, port)
+        samples = [bytes(reader.read().to_bytes()) for _ in range(max(count, 1))]
+    print_line(write(*samples).rstrip("\n"))
+    return 0
+
+
+def library_of(folders: tuple[str, ...], contexts: tuple[str, ...]) -> Library:
+    """The library that looks in these folders and contexts first."""
+    from yarpy.config.resource import Search
+    from yarpy.idl.rosmsg.catalogue import standard_sources
+    from yarpy.idl.rosmsg.library import Library
+    from yarpy.idl.rosmsg.source import Folder
+
+    search = Search(contexts=contexts)
+    wanted = [path for path in search.candidates("msgs") if path.is_dir()] if contexts else []
+    return Library([*map(Folder, folders), *map(Folder, wanted), *standard_sources()])

@@ -1,0 +1,40 @@
+"""What may stand in a Bottle without being one of its kinds: numpy's, and whatever has `to_wire`.
+
+Rules: a numpy scalar is the Python number that it holds. An array, and an object with `to_wire()`,
+is the list that its message is. numpy is not imported for it: who has an array has numpy.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+
+def plain(value: Any) -> Any:
+    """The Python number that a numpy scalar holds; any other value as it is."""
+    numpy = sys.modules.get("numpy")
+    if numpy is not None and isinstance(value, (numpy.generic, numpy.ndarray)) and not value.ndim:
+        from yarpy.data import array
+
+        return array.scalar(value)
+    return value
+
+
+def message_of(value: Any) -> bytes:
+    """The message that a value is as an element, which is a list then; TypeError if it is none."""
+    numpy = sys.modules.get("numpy")
+    if numpy is not None and isinstance(value, numpy.ndarray):
+        from yarpy.data import array
+
+        return b"".join(array.blocks(value))
+    if hasattr(value, "to_wire") and not isinstance(value, type):
+        return b"".join(value.to_wire())
+    raise TypeError(
+        f"{with_article(type(value).__name__)} cannot be an element of a Bottle; int, float, str, "
+        "bool, bytes, Vocab, lists, dicts, numpy arrays and yarpy.data objects can"
+    )
+
+
+def with_article(name: str) -> str:
+    """`an Image`, `a list`: a type's name for error texts."""
+    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"

@@ -1,0 +1,206 @@
+"""The bytes of ROS to a message: a function for each type, written and compiled once.
+
+    little-endian, packed; a string is uint32 length and bytes, a list uint32 count and elements, an
+    array of fixed length its elements alone; messages in messages follow in place
+
+Rules: numbers that stand side by side are unpacked together, messages in a message are read in the
+same function. Every count is checked against the bytes that are there, and against the limit of
+elements, before memory is taken. Only DecodeError and Truncated come out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from struct import Struct as Packing
+from struct import error as struct_error
+from struct import unpack_from
+from typing import Any, Final
+
+from yarpy.data.limit import limits
+from yarpy.data.value import Buffer
+from yarpy.errors import DecodeError, Truncated
+from yarpy.idl.model import ListOf, Primitive, Struct, Type, smallest
+from yarpy.idl.rosmsg.code import Code
+from yarpy.idl.rosmsg.message import Duration, Message, Time, attribute
+
+#: `read(bytes, position, size, room)` gives a message and the position behind it
+Read = Callable[[Buffer, int, int, list[int] | None], tuple[Any, int]]
+
+#: messages up to this size cannot have too many elements; theirs are not counted
+_SMALL: Final = 1 << 16
+#: messages in a message are read in the same function up to so many values of them
+_INLINE: Final = 100
+_COUNT: Final = 4
+
+
+def reader(
+    struct: Struct, classes: Mapping[Struct, type[Message]], reads: Mapping[Struct, Read]
+) -> Read:
+    """The function that reads a type. `classes` has those of all structs that are in it, `reads`
+    the functions of those in its lists."""
+    writer = _Reader(classes, reads, struct.name)
+    writer.struct(struct, "_o", struct.name)
+    writer.flush()
+    writer.code.line("return _o, _p")
+    read: Read = writer.code.compiled("_read", "_b, _p, _size, _room")
+    return read
+
+
+def whole(name: str, read: Read) -> Callable[[Buffer], Any]:
+    """`from_ros` of a class: what `read` reads must be all of the bytes."""
+
+    def from_ros(view: Buffer) -> Any:
+        size = len(view)
+        try:
+            found, end = read(view, 0, size, None if size <= _SMALL else [limits().elements])
+        except struct_error:
+            raise Truncated(
+                f"{name}: the message goes on beyond its {size} bytes", size + 1
+            ) from None
+        if end != size:
+            raise DecodeError(
+                f"{name} takes {end} bytes, here are {size}: this is another type, or another "
+                "version of it"
+            )
+        return found
+
+    return from_ros
+
+
+class _Reader:
+    def __init__(
+        self, classes: Mapping[Struct, type[Message]], reads: Mapping[Struct, Read], name: str
+    ) -> None:
+        self.classes = classes
+        self.reads = reads
+        self.code = Code()
+        self.code.globals.update(
+            _str=str, _range=range, _short=_short, _take=_take, _times=_times, _tuple=tuple.__new__,
+            _Time=Time, _Duration=Duration,
+        )  # fmt: skip
+        self.after: list[str] = []
+        self.inline = _INLINE
+
+    def flush(self) -> None:
+        """Unpack the numbers of the run, and make of them what is made of them."""
+        found = self.code.run()
+        if found is not None:
+            packing, targets = found
+            self.code.line(f"{', '.join(targets)}, = {self.code.name(packing.unpack_from)}(_b, _p)")
+            self.code.line(f"_p += {packing.size}")
+        for line in self.after:
+            self.code.line(line)
+        self.after.clear()
+
+    def struct(self, struct: Struct, target: str, path: str) -> None:
+        """Make a message and read its fields; `target` is a variable."""
+        cls = self.code.name(self.classes[struct], "C")
+        self.code.line(f"{target} = {cls}.__new__({cls})")
+        for field in struct.fields:
+            self.value(field.type, f"{target}.{attribute(field)}", f"{path}.{field.name}")
+
+    def value(self, kind: Type, target: str, path: str) -> None:
+        if isinstance(kind, Struct):
+            if kind.parts > self.inline:
+                self.flush()
+                read = self.code.name(self.reads[kind])
+                self.code.line(f"{target}, _p = {read}(_b, _p, _size, _room)")
+                return
+            self.inline -= kind.parts
+            inner = self.code.variable()
+            self.struct(kind, inner, path)
+            self.code.line(f"{target} = {inner}")
+        elif isinstance(kind, ListOf):
+            self.list(kind, target, path)
+        else:
+            assert isinstance(kind, Primitive)
+            self.primitive(kind, target, path)
+
+    def primitive(self, kind: Primitive, target: str, path: str) -> None:
+        if kind.is_number:
+            self.code.number(kind.letters, target)
+        elif kind.name == "string":
+            length = self.count()
+            self.room(f"_p + {length}", path)
+            self.code.line(f"{target} = _str(_b[_p:_e], 'utf-8', 'surrogateescape')")
+            self.code.line("_p = _e")
+        else:
+            seconds, nanoseconds = self.code.variable(), self.code.variable()
+            self.code.number(kind.letters, seconds, nanoseconds)
+            cls = "_Time" if kind.name == "time" else "_Duration"
+            self.after.append(f"{target} = _tuple({cls}, ({seconds}, {nanoseconds}))")
+
+    def count(self) -> str:
+        """Read a count or a length; gives the variable."""
+        found = self.code.variable()
+        self.code.number("I", found)
+        self.flush()
+        return found
+
+    def room(self, end: str, path: str) -> None:
+        """Check that the bytes up to `end` are there; it is in `_e` then."""
+        self.code.line(f"_e = {end}")
+        self.code.line("if _e > _size:")
+        self.code.line(f" _short({self.code.name(path)}, _e, _size)")
+
+    def list(self, kind: ListOf, target: str, path: str) -> None:
+        element = kind.element
+        if kind.length is None:
+            count = self.count()
+        else:
+            count = str(kind.length)
+            self.flush()
+        least = smallest(element)
+        self.room(f"_p + {count} * {least}", path)
+        if isinstance(element, Primitive) and element.is_number:
+            self.array(element, count, target)
+            return
+        self.code.line("if _room is not None:")
+        self.code.line(f" _take(_room, {count}, {self.code.name(path)})")
+        if isinstance(element, Primitive) and element.letters:
+            cls = "_Time" if element.name == "time" else "_Duration"
+            self.code.line(f"{target} = _times(_b, _p, {count}, {cls}, {element.letters[0]!r})")
+            self.code.line("_p = _e")
+            return
+        self.code.line(f"_l = {target} = []")
+        self.code.line("_add = _l.append")
+        self.code.line(f"for _ in _range({count}):")
+        self.code.indent(1)
+        if isinstance(element, Struct):
+            read = self.code.name(self.reads[element])
+            self.code.line(f"_x, _p = {read}(_b, _p, _size, _room)")
+        else:
+            self.code.line(f"_n, = {self.code.name(Packing('<I').unpack_from)}(_b, _p)")
+            self.code.line("_p += 4")
+            self.room("_p + _n", path)
+            self.code.line("_x = _str(_b[_p:_e], 'utf-8', 'surrogateescape')")
+            self.code.line("_p = _e")
+        self.code.line("_add(_x)")
+        self.code.indent(-1)
+
+    def array(self, element: Primitive, count: str, target: str) -> None:
+        """Numbers that numpy sees where they are; bools become proper ones, which takes a copy."""
+        import numpy as np
+
+        look = self.code.name(np.frombuffer)
+        is_bool = element.name == "bool"
+        dtype = self.code.name(np.dtype("u1" if is_bool else "<" + element.letters))
+        self.code.line(f"{target} = {look}(_b, {dtype}, {count}, _p){' != 0' if is_bool else ''}")
+        self.code.line("_p = _e")
+
+
+def _short(path: str, need: int, size: int) -> None:
+    raise Truncated(f"{path} takes bytes up to {need}, the message has {size}", need)
+
+
+def _take(room: list[int], count: int, path: str) -> None:
+    room[0] -= count
+    if room[0] < 0:
+        raise DecodeError(
+            f"{path}: more than {limits().elements} strings and messages (YARPY_MAX_ELEMENTS)"
+        )
+
+
+def _times(view: Buffer, at: int, count: int, cls: Callable[..., Any], letter: str) -> list[Any]:
+    numbers = iter(unpack_from(f"<{2 * count}{letter}", view, at))
+    return [cls(*pair) for pair in zip(numbers, numbers, strict=True)]

@@ -1,0 +1,123 @@
+"""The ROS master as a name service.
+
+    node      carrier xmlrpc, at its address
+    service   carrier rossrv+service./name
+
+Rules: only what ROS knows is found here. Ports with the names of nodes register as publishers and
+subscribers themselves (`ros/graph.py`); an ordinary port is seen as a publisher of
+/yarp/registration, as ports of C++ YARP are. There are no properties. Numbers are chosen by ports.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from yarpy.contact import Contact
+from yarpy.errors import AddressError
+from yarpy.names.base import Contacts, Strings
+from yarpy.names.node_name import parse_node_name, ros_name, yarp_name
+from yarpy.names.ros_master import RosMaster, Uri, advertised_host, uri_of
+
+REGISTRATION: Final = "/yarp/registration"
+
+
+class RosNames:
+    """A `NameClient` that asks the master."""
+
+    allocates = False
+
+    def __init__(self, master: RosMaster) -> None:
+        self.master = master
+
+    def register(
+        self,
+        name: str,
+        carrier: str | None = None,
+        host: str | None = None,
+        port: int | None = None,
+        port_type: str | None = None,
+    ) -> Contact:
+        if not port:
+            raise AddressError(f'a ROS master gives out no port numbers: give one for "{name}"')
+        if name.startswith("..."):
+            name = f"/tmp/port/{port}"
+        contact = Contact(carrier or "tcp", name, host or advertised_host(), port)
+        if _is_port(name) and contact.carrier == "tcp":
+            graph = ros_name(name)
+            self.master.call("registerPublisher", graph, REGISTRATION, "*", _own_uri(contact))
+        return contact
+
+    def unregister(self, name: str) -> None:
+        if not _is_port(name):
+            return
+        where = self.master.node(ros_name(name))
+        if where is not None:
+            uri = _own_uri(Contact(host=where.host, port=where.port))
+            self.master.call("unregisterPublisher", ros_name(name), REGISTRATION, uri)
+
+    def query(self, name: str) -> Contact | None:
+        """Where a node, a port or a service is."""
+        found = self._node(name)
+        if found is None:
+            found = self._service(name)
+        return found
+
+    def _node(self, name: str) -> Contact | None:
+        where = self.master.node(ros_name(name))
+        if where is None:
+            return None
+        if self._is_yarp_port(name, where):
+            return Contact("tcp", name, where.host, where.port)
+        return Contact("xmlrpc", name, where.host, where.port)
+
+    def _is_yarp_port(self, name: str, where: Uri) -> bool:
+        """Whether it is an ordinary port of YARP, which registered as no node of ROS does."""
+        publishers, _, _ = self.master.state()
+        return any(topic == REGISTRATION and ros_name(name) in nodes for topic, nodes in publishers)
+
+    def _service(self, name: str) -> Contact | None:
+        where = self.master.service(ros_name(name))
+        if where is None:
+            return None
+        return Contact(f"rossrv+service.{ros_name(name)}", name, where.host, where.port)
+
+    def announce(self, name: str, ok: bool = True) -> None:
+        """Nothing: a master is told when a port registers."""
+
+    def set(self, name: str, key: str, *values: str | int | float) -> Strings:
+        return []
+
+    def get(self, name: str, key: str) -> Strings:
+        return []
+
+    def list(self, prefix: str | None = None) -> Contacts:
+        """Nodes and services, without their addresses: a master tells those one by one; topics have
+        the carrier `topic`."""
+        publishers, subscribers, services = self.master.state()
+        topics = {name for name, _ in (*publishers, *subscribers)}
+        nodes = {node for _, names in (*publishers, *subscribers, *services) for node in names}
+        found = [
+            *(Contact("xmlrpc", yarp_name(node)) for node in sorted(nodes)),
+            *(Contact("topic", yarp_name(topic)) for topic in sorted(topics - {REGISTRATION})),
+            *(Contact("rossrv", yarp_name(name)) for name in sorted(name for name, _ in services)),
+        ]
+        if prefix is None:
+            return found
+        below = prefix.rstrip("/") + "/"
+        return [item for item in found if item.name == prefix or item.name.startswith(below)]
+
+    def close(self) -> None:
+        """Nothing: each question has a connection of its own."""
+
+
+def _is_port(name: str) -> bool:
+    """Whether it is the name of an ordinary port, not of a topic of a node."""
+    try:
+        return parse_node_name(name) is None
+    except AddressError:
+        return False
+
+
+def _own_uri(contact: Contact) -> str:
+    """The address of a port, which calls of ROS reach as well."""
+    return uri_of(contact.host, contact.port)

@@ -1,0 +1,217 @@
+"""Guard: what a peer asks of a port, held against what it may do there.
+
+Rules: only connections of peers with limited rights are guarded; the others pay nothing for each
+message. A refused command or question is answered with the refusal, and the connection goes on; a
+refused message ends it. Requests that change nothing are open to every peer with any right at all,
+and everybody is told the port's name, so that a peer looking for another port notices its mistake.
+
+A peer that may read may also make the port send to a port on the peer's own computer, and end that
+connection; one that may write may end connections from its own computer.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final, Protocol
+
+from yarpy.carriers.base import Carrier, to_write
+from yarpy.contact import parse_contact
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.errors import AccessRefused, DecodeError, YarpError
+from yarpy.link.admission import ASK, Peer
+from yarpy.link.driver import Driver
+from yarpy.link.inbound import Inbound, Owner
+from yarpy.link.outbound import Outbound
+from yarpy.link.receiver import Receiver
+from yarpy.names.address import is_local
+from yarpy.port.registration import Registration
+from yarpy.route import CarrierSpec, parse_carrier
+from yarpy.wire.message import ADMIN, CALL, DATA, QUIT, Message, Refused
+
+# Administrative requests by their first four letters, as `port/admin.py` reads them.
+QUESTIONS: Final = frozenset(("help", "ver", "list", "get", "stat", "pray"))
+CHANGES: Final = frozenset(("add", "del", "set", "prop", "rpup"))
+MONITORS: Final = frozenset(("atch", "dtch"))
+# What ROS nodes ask of each other, whole.
+ROS: Final = frozenset(
+    (
+        *("requestTopic", "getPid", "getBusInfo", "rtop", "pid", "bus", "getBusStats"),
+        *("getMasterUri", "getPublications", "getSubscriptions"),
+    )
+)
+TOLD: Final = frozenset(("publisherUpdate", "paramUpdate", "shutdown"))
+
+
+class Hub(Owner, Protocol):
+    """What a guard needs of its port."""
+
+    registration: Registration
+    inputs: tuple[Inbound, ...]
+    outputs: tuple[Outbound, ...]
+
+
+def inbound(hub: Hub, driver: Driver, carrier: Carrier) -> Inbound:
+    """A connection into a port. Raises AccessRefused if it comes in vain; it is closed then."""
+    admission = driver.admission
+    if admission.everything:
+        return Inbound(hub, driver, carrier)
+    for right in to_write(carrier.route):
+        if why := admission.refusal(right):
+            driver.transport.close()
+            raise AccessRefused(why)
+    return GuardedInbound(hub, driver, carrier)
+
+
+def to_read(spec: CarrierSpec) -> list[str]:
+    """The rights that a reader needs: more if its monitors ride on our end, and if it wants what
+    the port receives."""
+    wanted = ["read", *(["attach"] if spec.send else [])]
+    return [*wanted, "administer"] if spec.log is not None else wanted
+
+
+class _Checked(Receiver):
+    """The receiving end of such a connection: its messages are judged before anybody sees them."""
+
+    def __init__(self, link: GuardedInbound) -> None:
+        super().__init__(link.driver, link.carrier)
+        self._link = link
+
+    def advance(self, deadline: float | None) -> Message:
+        message = super().advance(deadline)
+        if message.key in (DATA, CALL):
+            self._link.judge(message)
+        return message
+
+
+class GuardedInbound(Inbound):
+    """A connection of a peer that may not do everything."""
+
+    def __init__(self, hub: Hub, driver: Driver, carrier: Carrier) -> None:
+        super().__init__(hub, driver, carrier)
+        self._hub = hub
+        self.receiver = _Checked(self)
+        self.counter = self.receiver.counter
+
+    def judge(self, message: Message) -> None:
+        """Refuse a message that must not come. Raises AccessRefused, which ends the connection."""
+        why = self.driver.admission.refusal("write")
+        if not why:
+            return
+        receiver = self.receiver
+        if message.key == CALL and receiver.open_question(message):
+            message.reply(Refused(why))
+        elif self.carrier.spelling == "text":
+            self.carrier.encode_lines(self.driver.stream, [why])
+            self.driver.flush()
+        receiver.counter.drops += 1
+        raise AccessRefused(why)
+
+    def _answer(self, message: Message) -> Bottle | list[str] | None:
+        right = self._right(message)
+        why = self.driver.admission.refusal(right) if right else ""
+        if not why:
+            return super()._answer(message)
+        if message.key == ADMIN:
+            return Refused(why)
+        if message.key == "*":
+            return [f"This is {self._hub.name} at tcp://{self._address}/", why]
+        return [why]
+
+    @property
+    def _address(self) -> str:
+        return self._hub.registration.contact.address
+
+    def _tell(self, error: YarpError) -> None:
+        if not isinstance(error, AccessRefused):  # which was logged when it was refused
+            super()._tell(error)
+
+    # -- what a request needs ---------------------------------------------------------------------
+
+    def _right(self, message: Message) -> str:
+        """The right that a command needs; "" if anybody may give it."""
+        key, rest = message.key, message.text
+        if key in (QUIT, "?", "h"):
+            return ""
+        if key == "*":
+            return ASK
+        if key == "r":
+            allows = self.driver.admission.allows
+            return next((one for one in to_read(self.route.spec) if not allows(one)), "")
+        if key == ADMIN:
+            return self._right_to_ask(message)
+        if key == "/":
+            return self._right_to_add("/" + rest)
+        if key == "!" and self._goes_to_peer(rest):
+            return "read"
+        if key == "~" and self._comes_from_peer(rest):
+            return "write"
+        return "administer"
+
+    def _right_to_ask(self, message: Message) -> str:
+        try:
+            request = message.as_(Bottle)
+        except DecodeError:
+            return ASK  # it gets an error
+        words = [plain_text(word) if isinstance(word, str) else "" for word in request[:3]]
+        name, second, third = (*words, "", "", "")[:3]
+        verb = name[:4]
+        if name in ROS or verb in QUESTIONS or (verb == "prop" and second[:4] == "get"):
+            return ASK
+        if verb in MONITORS:
+            return "attach"
+        if verb == "add":
+            return self._right_to_add(f"{third}:/{second}" if third else second)
+        if verb == "del":
+            return self._right_to_delete(second)
+        return "administer" if verb in CHANGES or name in TOLD else "write"
+
+    def _right_to_add(self, target: str) -> str:
+        wanted = parse_contact(target)
+        spec = parse_carrier(wanted.carrier)
+        admission = self.driver.admission
+        if spec.send and not admission.allows("attach"):
+            return "attach"
+        if spec.log is None and not admission.allows("administer"):
+            try:
+                contact = self._hub.registration.locate(wanted)
+            except YarpError:
+                contact = None
+            if contact is not None and _is_of(admission.peer, contact.host):
+                return "read"
+        return "administer"
+
+    def _right_to_delete(self, name: str) -> str:
+        goes, comes = self._goes_to_peer(name), self._comes_from_peer(name)
+        if goes and not any(link.route.source == name for link in self._hub.inputs):
+            return "read"
+        if comes and not any(link.route.target == name for link in self._hub.outputs):
+            return "write"
+        return "administer"
+
+    def _goes_to_peer(self, name: str) -> bool:
+        """Whether our outputs of that name, if any, lead to the computer of the peer."""
+        peer = self.driver.admission.peer
+        found = [link for link in self._hub.outputs if link.route.target == name]
+        return bool(found) and all(_is_of(peer, _remote(link)) for link in found)
+
+    def _comes_from_peer(self, name: str) -> bool:
+        """Whether our inputs of that name, if any, come from the computer of the peer."""
+        peer = self.driver.admission.peer
+        found = [link for link in self._hub.inputs if link.route.source == name]
+        return bool(found) and all(
+            link.driver.admission.peer.address == peer.address or _is_of(peer, _remote(link))
+            for link in found
+        )
+
+
+def _is_of(peer: Peer, host: str) -> bool:
+    """Whether an address is one of the peer's computer."""
+    return bool(host) and (host == peer.address or (peer.here and is_local(host)))
+
+
+def _remote(link: Inbound | Outbound) -> str:
+    try:
+        remote: Any = link.driver.transport.remote
+        return str(remote[0])
+    except OSError:
+        return ""

@@ -1,0 +1,304 @@
+"""Membership: a port as a topic or a service of a node.
+
+Rules: what is registered with the master is unregistered in the same words. A subscriber dials
+every publisher that the master names, and again when a connection breaks, ever more rarely; a
+publisher that the master takes from the list is left. A client dials its service when there is one.
+Nothing here waits for a peer but threads of its own. They are few, although whoever can call the
+node can name any number of publishers.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from yarpy.contact import Contact
+from yarpy.errors import AddressError, DecodeError, UnknownType, YarpError
+from yarpy.link import handshake
+from yarpy.link.inbound import Inbound
+from yarpy.link.outbound import Outbound
+from yarpy.log import logger
+from yarpy.names.node_name import (
+    ANY_TYPE,
+    CLIENT,
+    PUBLISHER,
+    SERVER,
+    SUBSCRIBER,
+    NodeName,
+    check_graph_name,
+    master_type,
+)
+from yarpy.names.ros_master import RosMaster, Uri, call, parse_uri, uri_of
+from yarpy.port.hub import Hub
+from yarpy.route import Declared, Route
+from yarpy.wire.message import Packet
+
+log = logger("yarpy.ros")
+
+DIALLING: Final = 10.0  # seconds for a publisher to say where its topic is
+SOON: Final = 0.5  # seconds before a publisher that did not answer is dialled again
+LONGEST: Final = 30.0
+SLOWER: Final = 1.6
+SEEKING: Final = 2.0  # seconds between questions for a service that is not there yet
+PUBLISHERS: Final = 1000  # of a topic
+DIALS: Final = 16  # publishers that are dialled at a time
+LONG: Final = 1000  # characters of an address
+
+
+@dataclass(slots=True)
+class _Publisher:
+    """A publisher that we should be connected to, by the address of its node."""
+
+    uri: str
+    link: Inbound | None = None
+    dialling: bool = False
+    due: float = 0.0
+    pause: float = SOON
+    told: str = ""
+    listed: bool = True  # by the master that there is now
+
+
+@dataclass(slots=True)
+class Place:
+    """Where a node is: its name, the master, and its addresses."""
+
+    node: str
+    master: RosMaster
+    uri: str  # of the node's port
+    host: str
+
+
+@dataclass(eq=False)
+class Membership:
+    """What a port does in the graph. `kind` is the class of its messages, or a Service; None: it
+    takes that of its peers. `latched`: who subscribes late gets the last message."""
+
+    name: NodeName
+    type: str = ""
+    kind: Any = None
+    latched: bool = False
+    clock: Callable[[], float] = time.time
+    hub: Hub | None = None
+    place: Place | None = None
+    last: Packet | None = None  # of a latched publisher
+    _publishers: dict[str, _Publisher] = field(default_factory=dict)
+    _dials: int = 0  # under way, also to publishers that were taken from the list since
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _registered: tuple[str, ...] = ()
+    _closed: bool = False
+    _seek: float = 0.0  # when a client asks for its service again
+
+    def __post_init__(self) -> None:
+        self.topic = check_graph_name(self.name.topic)
+        self.node = check_graph_name(self.name.node)
+
+    @property
+    def declared(self) -> Declared:
+        """What connections tell of the port."""
+        return Declared(self.node, self.topic, self.type, self.kind, self.latched, clock=self.clock)
+
+    @property
+    def shown_type(self) -> str:
+        """The type that the master is told."""
+        return master_type(self.type)
+
+    def is_like(self, other: Membership) -> bool:
+        """Whether both do the same with the same topic."""
+        return (self.topic, self.name.category) == (other.topic, other.name.category)
+
+    def tell_apart(self, number: int) -> None:
+        """It is one of several subscribers of the node to its topic, the `number`-th: it calls
+        itself differently, since a publisher of rospy keeps one connection to each name."""
+        hub = self.hub
+        assert hub is not None
+        own = hub.registration
+        own.declared = replace(own.declared, node=f"{self.node}_{number}")
+
+    # -- the master -------------------------------------------------------------------------------
+
+    def register(self, place: Place, again: bool = False) -> None:
+        """Tell the master. `again`: it was told before, or another one was. Raises NoNameServer,
+        RemoteProtocolError, LocalProtocolError."""
+        hub, category = self.hub, self.name.category
+        assert hub is not None
+        self.place = place
+        if category == PUBLISHER:
+            words = ("Publisher", self.topic, self.shown_type, place.uri)
+        elif category == SUBSCRIBER:
+            words = ("Subscriber", self.topic, self.shown_type, place.uri)
+        elif category == SERVER:
+            words = ("Service", self.topic, uri_of(place.host, hub.port, "rosrpc"), place.uri)
+        else:
+            self.look()
+            return
+        self._registered = words
+        found = place.master.call(f"register{words[0]}", self.node, *words[1:])
+        if category == SUBSCRIBER:
+            self.update(found if isinstance(found, list) else [], again)
+
+    def unregister(self) -> None:
+        """Tell the master that it is over, in the same words. Raises as `register`."""
+        self._closed = True
+        words, place = self._registered, self.place
+        if not words or place is None:
+            return
+        self._registered = ()
+        uri = words[2] if words[0] == "Service" else words[3]
+        place.master.call(f"unregister{words[0]}", self.node, words[1], uri, timeout=2.0)
+
+    # -- a subscriber -----------------------------------------------------------------------------
+
+    def update(self, uris: Sequence[object], again: bool = False) -> None:
+        """The publishers are these now. `again`: the master may have forgotten some."""
+        named = {uri: None for uri in uris if isinstance(uri, str) and len(uri) <= LONG}
+        if len(named) > PUBLISHERS:
+            log.warning(
+                "%s: %s publishers are named; the first %s are dialled",
+                *(self.topic, len(named), PUBLISHERS),
+            )
+        wanted = dict.fromkeys([*named][:PUBLISHERS])
+        with self._lock:
+            for publisher in self._publishers.values():
+                if again:
+                    publisher.listed = publisher.uri in wanted
+            gone = [
+                item for uri, item in self._publishers.items() if item.listed and uri not in wanted
+            ]
+            for item in gone:
+                del self._publishers[item.uri]
+            for uri in wanted:
+                self._publishers.setdefault(uri, _Publisher(uri)).listed = True
+        for item in gone:
+            if item.link is not None:
+                item.link.close()
+        self.look()
+
+    def look(self) -> None:
+        """Dial what should be connected and is not."""
+        hub = self.hub
+        if hub is None or hub.closing or self._closed:
+            return
+        if self.name.category == CLIENT:
+            self._look_for_service(hub)
+            return
+        now = time.monotonic()
+        with self._lock:
+            due = [item for item in self._publishers.values() if self._is_due(hub, item, now)]
+            due = sorted(due, key=lambda item: item.due)[: DIALS - self._dials]
+            self._dials += len(due)
+            for item in due:
+                item.dialling = True
+            for uri in [uri for uri, item in self._publishers.items() if self._is_over(hub, item)]:
+                del self._publishers[uri]
+        for item in due:
+            threading.Thread(
+                target=self._dial, args=(hub, item), name=f"yarpy dial {item.uri}", daemon=True
+            ).start()
+
+    def _is_due(self, hub: Hub, item: _Publisher, now: float) -> bool:
+        alive = item.link is not None and item.link in hub.inputs
+        return item.listed and not alive and not item.dialling and now >= item.due
+
+    def _is_over(self, hub: Hub, item: _Publisher) -> bool:
+        """Whether it is one of a former master, and has gone."""
+        return not item.listed and not item.dialling and item.link not in hub.inputs
+
+    def _dial(self, hub: Hub, item: _Publisher) -> None:
+        try:
+            item.link = self._connected(hub, item.uri)
+            item.pause, item.told = SOON, ""
+        except (YarpError, OSError) as error:
+            if str(error) != item.told and not (hub.closing or self._closed):
+                item.told = str(error)
+                log.warning(
+                    "%s: no connection to the publisher at %s: %s; it is tried again",
+                    *(hub.name, item.uri, error),
+                )
+        finally:
+            # Also one that was there for a moment only is not dialled again at once.
+            item.due = time.monotonic() + item.pause
+            item.pause = min(item.pause * SLOWER, LONGEST)
+            item.dialling = False
+        with self._lock:
+            self._dials -= 1
+            unwanted = self._publishers.get(item.uri) is not item or self._closed
+        if unwanted and item.link is not None:
+            item.link.close()
+
+    def _connected(self, hub: Hub, uri: str) -> Inbound:
+        """A connection from a publisher. Raises YarpError, OSError."""
+        found = call(
+            parse_uri(uri), "requestTopic", self.node, self.topic, [["TCPROS"]], timeout=DIALLING
+        )
+        where = _place(found)
+        spec = f"tcpros+role.pub+topic.{self.topic}"
+        route = Route(hub.name, uri, spec, where.port, declared=hub.registration.declared)
+        contact = Contact("tcpros", "", where.host, where.port)
+        driver, carrier = handshake.greet(contact, route, limit=hub.limit)
+        fields: dict[str, str] = getattr(carrier, "fields", {})
+        route.source, route.target = fields.get("callerid") or uri, hub.name
+        link = Inbound(hub, driver, carrier)
+        hub.take_input(link)
+        threading.Thread(target=hub.serve_input, args=(link,), daemon=True).start()
+        return link
+
+    def uri_of(self, link: Inbound) -> str:
+        """The address of the node that an input comes from; "" if the master did not name it."""
+        with self._lock:
+            found = (item.uri for item in self._publishers.values() if item.link is link)
+            return next(found, "")
+
+    # -- a client ---------------------------------------------------------------------------------
+
+    def _look_for_service(self, hub: Hub) -> None:
+        """Connect the client to its service, if there is one."""
+        place, now = self.place, time.monotonic()
+        if place is None or hub.outputs or now < self._seek:
+            return
+        self._seek = now + SEEKING
+        where = place.master.service(self.topic)
+        if where is None:
+            return
+        spec = f"rossrv+service.{self.topic}"
+        route = Route(hub.name, self.topic, spec, where.port, declared=hub.registration.declared)
+        contact = Contact("rossrv", self.topic, where.host, where.port)
+        driver, carrier = handshake.greet(contact, route, limit=hub.limit)
+        hub.add_output_link(Outbound(driver, carrier))
+
+    # -- a latched publisher ----------------------------------------------------------------------
+
+    def welcome(self, link: Outbound) -> None:
+        """A subscriber has come."""
+        packet = self.last
+        if packet is not None:
+            try:
+                link.send(packet)
+            except (YarpError, ValueError, TypeError):
+                pass  # it has gone, or the next message tells what is wrong
+
+
+def _place(found: object) -> Uri:
+    """Where a publisher says that its topic is. Raises AddressError."""
+    if isinstance(found, list) and len(found) >= 3 and found[0] == "TCPROS":
+        host, port = found[1], found[2]
+        if isinstance(host, str) and host and isinstance(port, int) and 0 < port < 65536:
+            return Uri(host, port)
+    raise AddressError(f"the publisher offers no TCPROS connection, but {str(found)[:80]}")
+
+
+def kind_of(type_: str, category: str) -> Any:
+    """The class or Service of a type; None, with a warning, if nobody has its definition."""
+    if type_ in ("", ANY_TYPE):
+        return None
+    from yarpy.idl.rosmsg.library import default_library
+
+    library, name = default_library(), master_type(type_)
+    try:
+        return library.service(name) if category in (CLIENT, SERVER) else library.message(name)
+    except (UnknownType, DecodeError) as error:
+        if "/" in type_ and not type_.startswith("yarp/"):
+            log.warning("%s; the type is taken from who connects", error)
+        return None

@@ -1,0 +1,103 @@
+"""Opening, connecting and calling back in an event loop."""
+
+import asyncio
+import threading
+import urllib.request
+
+import pytest
+
+import yarpy
+from yarpy import aio
+
+
+@pytest.fixture(autouse=True)
+def names():
+    with yarpy.NameServer():
+        yield
+
+
+def test_cancelled_opening_leaves_no_port_behind():
+    async def main():
+        for patience in (0, 0.0005, 0.002, 0.005):
+            reader = aio.Port("/aio/in")
+            opening = asyncio.create_task(reader.open())
+            await asyncio.sleep(patience)
+            if opening.cancel():
+                with pytest.raises(asyncio.CancelledError):
+                    await opening
+            await reader.close()
+            for _ in range(2000):
+                if yarpy.query("/aio/in") is None and not _open_ports():
+                    break
+                await asyncio.sleep(0.01)
+            assert not _open_ports()
+
+    def _open_ports():
+        return [thread for thread in threading.enumerate() if thread.name == "yarpy /aio/in"]
+
+    asyncio.run(main())
+
+
+def test_port_opened_by_two_tasks_at_once_is_one():
+    async def main():
+        reader = aio.Port("/aio/in")
+        await asyncio.gather(reader.open(), reader.open())
+        await reader.close()
+        assert yarpy.query("/aio/in") is None
+
+    asyncio.run(main())
+
+
+def test_connections_are_made_awaited_and_told_in_the_loop():
+    async def main():
+        heard: list[str] = []
+        threads: set[int] = set()
+
+        def hear(event: yarpy.ConnectionEvent) -> None:
+            threads.add(threading.get_ident())
+            heard.append(str(event))
+
+        async with aio.Port("/aio/in", on_connection=hear) as reader:
+            async with aio.Port("/aio/out", port_type="yarp/bottle") as writer:
+                assert not await reader.wait_for_inputs(timeout=0.05)
+                await reader.listen_to("/aio/out", "fast_tcp")
+                assert await reader.wait_for_inputs(timeout=10)
+                assert await writer.wait_for_outputs(timeout=10)
+                made = await writer.connect("/aio/in")
+                assert (made.target, made.carrier) == ("/aio/in", "tcp")
+                await writer.write([1])
+                assert await writer.flush(10)
+                assert (await reader.read(timeout=10)).value == [1]
+                assert writer.stats["outputs"][0]["messages"] == 1
+                assert yarpy.query("/aio/out") == writer.contact
+            while len(heard) < 4:
+                await asyncio.sleep(0.01)
+        assert heard[0] == "Receiving input from /aio/out to /aio/in using fast_tcp"
+        assert threads == {threading.get_ident()}
+
+    asyncio.run(asyncio.wait_for(main(), 30))
+
+
+def test_administrative_messages_and_pages_are_answered_in_the_loop():
+    async def main():
+        threads: set[int] = set()
+
+        async def answer(message: yarpy.Message) -> object:
+            threads.add(threading.get_ident())
+            return ["mine"]
+
+        async with aio.Port("/aio/asked") as port:
+            port.on_admin(answer)
+            port.on_page(lambda path, fields: f"<h1>{path}</h1>")
+            assert await asyncio.to_thread(yarpy.admin, "/aio/asked", "who") == ["mine"]
+            page = await asyncio.to_thread(
+                urllib.request.urlopen, f"http://{port.contact.address}/x", timeout=10
+            )
+            with page:
+                assert page.read() == b"<h1>/x</h1>"
+            port.on_admin(None)
+            answered = await asyncio.to_thread(yarpy.admin, "/aio/asked", "who")
+            assert answered[0] == "fail"
+        assert threads == {threading.get_ident()}
+
+    asyncio.run(asyncio.wait_for(main(), 30))

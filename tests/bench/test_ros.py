@@ -1,0 +1,25 @@
+"""The benchmark of ROS topics runs; how fast they are is not tested."""
+
+import sys
+from pathlib import Path
+
+import pytest
+from support.ros import needs_ros
+
+BENCH = Path(__file__).resolve().parents[2] / "bench"
+sys.path.insert(0, str(BENCH))
+
+import ros  # noqa: E402
+
+
+def test_every_pair(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    needs_ros()
+    if not Path("/usr/bin/rosmaster").exists():
+        pytest.skip("no rosmaster: apt-get install python3-rosmaster")
+    monkeypatch.setattr(sys, "argv", ["ros.py", "--seconds", "0.2"])
+    for name in ("ROS_MASTER_URI", "ROS_IP", "YARPY_SERVER"):
+        monkeypatch.setenv(name, "")
+    ros.main()
+    table = capsys.readouterr().out
+    for name in ("text", "image"):
+        assert f"{name:6} rospy " in table

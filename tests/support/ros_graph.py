@@ -1,0 +1,105 @@
+"""A ROS 1 of our own: a master on a free port, rospy programs, the command line tools.
+
+Rules: everything on the loopback, with a home of its own. Where the packages are missing the tests
+skip and say so. What is started here ends with `close`.
+"""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from support.patience import patience
+from support.port import free_port
+from support.process import Process
+from support.ros import PYTHON, needs_ros
+from support.wait import wait_until
+
+from yarpy.names.ros_master import RosMaster
+
+TOOLS = ("rosmaster", "rostopic", "rosnode", "rosservice", "rosparam")
+
+
+class RosGraph:
+    """A master and what runs around it."""
+
+    def __init__(self, home: Path) -> None:
+        needs_ros()
+        missing = [tool for tool in TOOLS if not Path("/usr/bin", tool).exists()]
+        if missing:
+            pytest.skip(f"missing of ROS 1: apt-get install python3-{' python3-'.join(missing)}")
+        self.home = home
+        self.port = free_port()
+        self.uri = f"http://127.0.0.1:{self.port}/"
+        self.master = RosMaster(self.uri)
+        self.environment: Mapping[str, str] = {
+            "PATH": "/usr/bin:/bin",
+            "HOME": str(home),
+            "ROS_MASTER_URI": self.uri,
+            "ROS_IP": "127.0.0.1",
+            "ROS_LOG_DIR": str(home / "log"),
+            "PYTHONUNBUFFERED": "1",
+            "ROS_PACKAGE_PATH": "/usr/share",
+        }
+        self.core: Process
+        self._running: list[Process] = []
+        self.start()
+
+    def start(self) -> None:
+        """Start the master, again on the same port."""
+        self.core = self.run("rosmaster", "--core", "-p", str(self.port))
+        wait_until(self.master.answers, patience(20.0), "the ROS master answers")
+
+    def run(self, *words: str) -> Process:
+        """Start a tool of ROS."""
+        process = Process([PYTHON, f"/usr/bin/{words[0]}", *words[1:]], env=self.environment)
+        self._running.append(process)
+        return process
+
+    def tool(self, *words: str, timeout: float = 30.0) -> str:
+        """What a tool of ROS prints until it ends."""
+        done = subprocess.run(
+            [PYTHON, f"/usr/bin/{words[0]}", *words[1:]],
+            env=dict(self.environment),
+            capture_output=True,
+            text=True,
+            timeout=patience(timeout),
+        )
+        return done.stdout + done.stderr
+
+    def python(self, program: str, *arguments: str) -> Process:
+        """Start a program of ROS's Python."""
+        process = Process([PYTHON, "-c", program, *arguments], env=self.environment)
+        self._running.append(process)
+        return process
+
+    def yarpy(self, *words: str, **variables: str) -> Process:
+        """Start a command of ours, without a YARP name server unless `variables` name one."""
+        environment = {
+            **{key: os.environ[key] for key in ("PATH", "PYTHONPATH") if key in os.environ},
+            **{key: self.environment[key] for key in ("HOME", "ROS_MASTER_URI", "ROS_IP")},
+            "YARP_CONFIG_HOME": str(self.home),
+            "PYTHONUNBUFFERED": "1",
+            **variables,
+        }
+        process = Process([sys.executable, "-m", "yarpy", *words], env=environment)
+        self._running.append(process)
+        return process
+
+    def close(self) -> None:
+        """End everything."""
+        for process in reversed(self._running):
+            process.stop()
+
+
+@contextmanager
+def ros_graph(home: Path) -> Iterator[RosGraph]:
+    """A graph for as long as a test takes."""
+    graph = RosGraph(home)
+    try:
+        yield graph
+    finally:
+        graph.close()
