@@ -89,12 +89,17 @@ def test_why(access: Access, who: str, right: str, port: str, allowed: bool, tol
 @pytest.mark.parametrize(
     ("who", "right", "port", "told"),
     [
-        ("robot.lab", "read", "/a", '"robot.lab" is nobody: write an address'),
-        ("", "read", "/a", '"" is nobody'),
-        ("tls:", "read", "/a", '"tls:" is nobody'),
+        ("robot.lab", "read", "/a", '"robot.lab" names nobody: write an address'),
+        ("", "read", "/a", '"" names nobody'),
+        ("tls:", "read", "/a", '"tls:" names nobody'),
         ("token:view", "read", "/a", 'no web token is called "view" in /etc/access.toml: panel'),
-        ("loopback", "wirte", "/a", '"wirte" is no right: read, write, administer, attach'),
-        ("loopback", "read", "a", '"a" is no port'),
+        (
+            "loopback",
+            "wirte",
+            "/a",
+            'there is no right "wirte"; the rights are read, write, administer, attach',
+        ),
+        ("loopback", "read", "a", '"a" is not the name of a port'),
     ],
 )
 def test_what_cannot_be_meant(access: Access, who: str, right: str, port: str, told: str) -> None:

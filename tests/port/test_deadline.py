@@ -17,7 +17,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.link import outbound
-from yarpy.link.patience import STRANGERS
+from yarpy.link.write_timeout import STRANGERS
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import MessagePort
 

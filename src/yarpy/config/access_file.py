@@ -129,8 +129,8 @@ class _Reader:
             if key not in known:
                 raise self.mistake(
                     self.line(key, start),
-                    f'"{key}" is nothing that can stand here{where}'
-                    f"{_meant(key, known)}: {', '.join(known)}",
+                    f'"{key}" has no meaning here{where}{_meant(key, known)}; '
+                    f"this may hold {', '.join(known)}",
                 )
 
     def rule(self, number: int, table: Mapping[str, Any]) -> Rule:
@@ -153,15 +153,16 @@ class _Reader:
                 known = (*RIGHTS, ALL)
                 raise self.mistake(
                     self.line(f'"{right}"', start),
-                    f'may: "{right}" is no right{_meant(right, known)}: {", ".join(known)}',
+                    f'may: there is no right "{right}"{_meant(right, known)}; '
+                    f"the rights are {', '.join(known)}",
                 )
         ports = self._words(table, "ports", start) if "ports" in table else ()
         for one in ports:
             if not one.startswith(("/", "*")):
                 raise self.mistake(
                     self.line(f'"{one}"', start),
-                    f'ports: "{one}" is no port: names begin with "/", and a * stands for any '
-                    'text, as in "/icubSim/*"',
+                    f'ports: "{one}" is not the name of a port: names begin with "/", and a * '
+                    'stands for any text, as in "/icubSim/*"',
                 )
         return Rule(who, frozenset(may), ports, start)
 
@@ -190,10 +191,10 @@ class _Reader:
         try:
             meant = ip_network(one, strict=False)
         except ValueError:
-            raise self.mistake(line, f'who: "{one}" is nobody: write {_WHO}') from None
+            raise self.mistake(line, f'who: "{one}" names nobody: write {_WHO}') from None
         own = one.partition("/")[0]
         raise self.mistake(
-            line, f'who: "{one}" is one computer and a range: write "{own}" or "{meant}"'
+            line, f'who: "{one}" is both one computer and a range: write "{own}" or "{meant}"'
         )
 
     def tokens(self, table: Any) -> Iterator[tuple[str, str]]:
@@ -230,4 +231,4 @@ def _meant(word: str, known: tuple[str, ...]) -> str:
     from difflib import get_close_matches
 
     near = get_close_matches(word.lower(), known, n=1)
-    return f'; did you mean "{near[0]}"?' if near else ""
+    return f' (did you mean "{near[0]}"?)' if near else ""

@@ -94,8 +94,8 @@ def peer_from(text: str, access: Access | None) -> Peer:
                 address = str(ip_address(fact))
             except ValueError:
                 raise AddressError(
-                    f'"{fact}" is nobody: write an address (192.168.1.9), loopback, tls:NAME, key '
-                    "or token:NAME, several with commas"
+                    f'"{fact}" names nobody: write an address (192.168.1.9), loopback, tls:NAME, '
+                    "key or token:NAME, several with commas"
                 ) from None
             here = same_computer(address, "")
     return Peer(address, here, tuple(names), key, token)
@@ -107,9 +107,9 @@ def explained(access: Access | None, who: str, right: str, port: str) -> tuple[b
     access: None without a file. Raises AddressError for what cannot be meant.
     """
     if right not in RIGHTS:
-        raise AddressError(f'"{right}" is no right: {", ".join(RIGHTS)}')
+        raise AddressError(f'there is no right "{right}"; the rights are {", ".join(RIGHTS)}')
     if not port.startswith("/"):
-        raise AddressError(f'"{port}" is no port: names begin with "/"')
+        raise AddressError(f'"{port}" is not the name of a port: names begin with "/"')
     peer = peer_from(who, access)
     if access is None:
         limits = {"attach": " (scripts where YARPY_SCRIPTS says so)"}.get(right, "")

@@ -1,8 +1,8 @@
 """Descriptors: how many file descriptors the process has left. The last of them are the program's.
 
 Rules: a program that cannot open its own files fails, one that takes no more connections waits. So
-a port leaves a reserve. Counting them takes time, so it is done when those that were
-free at the last count may be half used up, and not more often than every RECOUNT seconds.
+a port leaves a reserve. Counting descriptors takes time, so it is done when those that were free at
+the last count may be half used up, and not more often than every RECOUNT seconds.
 """
 
 from __future__ import annotations

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from yarpy.errors import LocalProtocolError, Timeout, YarpError
 from yarpy.link.background import Background
 from yarpy.link.intake import Intake
-from yarpy.link.patience import ALL, NOTHING, PART, STRANGERS
 from yarpy.link.sender import Sender, interrupts, seconds
+from yarpy.link.write_timeout import ALL, NOTHING, PART, STRANGERS
 from yarpy.qos import Sched, schedule
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import CALL, Message, Packet

@@ -2,9 +2,9 @@
 
 Rules: one message at a time, under `lock`. When messages follow each other without a pause, the
 first leaves at once and those behind it are gathered into one send; a short timer sends what a
-writer leaves behind. Of a message of which a part has left the rest waits
-in the stream, and leaves before any other. A reader that keeps its writer waiting for longer than
-its `patience` is cut off.
+writer leaves behind. When a part of a message has left, its rest waits in the stream and leaves
+before any other. A reader that keeps its writer waiting for longer than its `write_timeout` is cut
+off.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.link.background import GATHER_SECONDS, Sweeper
 from yarpy.link.confirmation import Confirmation, Fate
 from yarpy.link.counter import Counter
-from yarpy.link.patience import ALL, NOTHING, PART, Patience, Sent
 from yarpy.link.window import WINDOW, Window
+from yarpy.link.write_timeout import ALL, NOTHING, PART, Sent, WriteTimeout
 from yarpy.log import logger
 from yarpy.wire.message import UNSENDABLE, Packet
 
@@ -45,7 +45,7 @@ class Sender:
         self.route: Route = carrier.route
         self.counter = Counter(since=time.time())
         self.lock = threading.Lock()  # one message at a time on the wire
-        self.patience = Patience(limit)
+        self.write_timeout = WriteTimeout(limit)
         self.broken = False
         self.reason = ""  # why we have ended it
         self.halfway = False  # the rest of a message waits in the stream
@@ -67,7 +67,7 @@ class Sender:
         If that is a part, `finish` sends the rest. With `copies` it follows by itself, and the
         message may be changed. Raises LinkClosed.
         """
-        if self.patience.limit is None:
+        if self.write_timeout.limit is None:
             if deadline is None:
                 with self.lock:
                     return self._send(packet, None, copies)
@@ -77,21 +77,21 @@ class Sender:
                 return self._send(packet, deadline, copies)
             finally:
                 self.lock.release()
-        until = self.patience.until(deadline)
+        until = self.write_timeout.until(deadline)
         sent = NOTHING
         if self._lock_by(until):
             try:
                 sent = self._send(packet, until, copies)
             finally:
                 self.lock.release()
-        if self.patience.over(sent is ALL):
+        if self.write_timeout.over(sent is ALL):
             self.counter.drops += sent is NOTHING
             raise self.cut()
         return sent
 
     def finish(self, deadline: float | None = None) -> bool:
         """Send the rest of a message by `deadline`; whether it has left. Raises LinkClosed."""
-        until = self.patience.until(deadline)
+        until = self.write_timeout.until(deadline)
         done = False
         if self._lock_by(until):
             try:
@@ -100,7 +100,7 @@ class Sender:
                 done = not self.halfway or self._flush_by(until)
             finally:
                 self.lock.release()
-        if self.patience.over(done):
+        if self.write_timeout.over(done):
             raise self.cut()
         return done
 
@@ -245,7 +245,7 @@ class Sender:
 
     def sweep(self, timeout: float | None = None) -> bool:
         """Send what a burst left behind; False if that takes longer than `timeout` seconds."""
-        until = self.patience.until(None if timeout is None else time.monotonic() + timeout)
+        until = self.write_timeout.until(None if timeout is None else time.monotonic() + timeout)
         if not self._lock_by(until):
             return False
         try:
@@ -254,7 +254,7 @@ class Sender:
             done = True  # as far as ever
         finally:
             self.lock.release()
-        if self.patience.over(done):
+        if self.write_timeout.over(done):
             self.cut()
         return done
 
@@ -339,7 +339,7 @@ class Sender:
         self.driver.transport.interrupt()  # frees a thread that is stuck in sending
         with self.lock:
             if not self.broken:
-                limit = self.patience.limit
+                limit = self.write_timeout.limit
                 self.reason = f"it did not take a message within {limit:g} s"
                 log.warning(
                     "%s: %s does not read, and is disconnected: %s",

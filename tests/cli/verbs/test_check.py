@@ -64,6 +64,6 @@ def test_access_with_a_mistake(here, monkeypatch, tmp_path):
     monkeypatch.setenv("YARPY_ACCESS", str(file))
     said = here("check", "--access")
     assert said.code == 1
-    assert 'line 3: may: "raed" is no right; did you mean "read"?' in said.err
+    assert 'line 3: may: there is no right "raed" (did you mean "read"?)' in said.err
     for words in (("--access", "loopback"), ("loopback", "read", "/arm")):
         assert here("check", *words).code != 0

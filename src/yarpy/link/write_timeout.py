@@ -27,8 +27,8 @@ PART: Final = Sent.PART
 ALL: Final = Sent.ALL
 
 
-class Patience:
-    """With one reader. `limit` in seconds; None: as long as it likes."""
+class WriteTimeout:
+    """Of one reader. `limit` in seconds; None: as long as it likes."""
 
     def __init__(self, limit: float | None = None) -> None:
         self.limit = limit
