@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import doctest
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import yarpy
 from yarpy import contact
 from yarpy.contact import Contact, check_name, parse_contact
 from yarpy.errors import AddressError
@@ -96,3 +98,10 @@ def test_long_name_is_not_repeated_in_full() -> None:
     with pytest.raises(AddressError) as caught:
         check_name("/" + "x" * 100_000)
     assert len(str(caught.value)) < 200
+
+
+@pytest.mark.parametrize("name", [None, 5, b"/arm"])
+def test_what_is_no_text(name: Any) -> None:
+    for use in (parse_contact, yarpy.Port, yarpy.query, lambda name: yarpy.connect(name, "/b")):
+        with pytest.raises(AddressError, match='a text such as "/arm", not '):
+            use(name)

@@ -60,8 +60,10 @@ class Contact:
 def parse_contact(text: str) -> Contact:
     """Read `/name`, `carrier://name`, `/host:port`, `carrier://host:port[/name]`, `host:port`.
 
-    An empty carrier in the result means that none was given. Raises AddressError for an empty text.
+    An empty carrier in the result means that none was given. Raises AddressError for an empty text,
+    or none.
     """
+    check_text(text)
     if not text:
         raise AddressError('an empty port name; names start with "/", addresses are /host:port')
     carrier, rest = "", text
@@ -93,6 +95,12 @@ def _host_port(text: str) -> tuple[str, int] | None:
     if number > 65535:
         raise AddressError(f'"{text}": a TCP port number is at most 65535')
     return host.strip("[]"), number
+
+
+def check_text(name: object) -> None:
+    """Raise AddressError for what is not a text at all, such as None or a number."""
+    if not isinstance(name, str):
+        raise AddressError(f'the name of a port is a text such as "/arm", not {name!r:.80}')
 
 
 def check_name(name: str) -> str:

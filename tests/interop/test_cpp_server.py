@@ -1,5 +1,8 @@
 """yarpy ports at the C++ name server: registering, asking, closing, and the server's death."""
 
+import os
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 
@@ -7,6 +10,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.environment import configured_for
+from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
@@ -137,3 +141,19 @@ def test_closing_without_a_server(server: CppYarp) -> None:
     assert time.monotonic() - began < 2
     with pytest.raises(yarpy.NoNameServer):
         yarpy.Port("/ours")
+
+
+def test_what_answers_in_text_is_told_from_a_port(cpp_names: CppYarp) -> None:
+    """C++'s own `yarp rpc /root` tries three times and says nothing that helps."""
+    host, port = yarpy.query("/root").host, yarpy.query("/root").port
+    said = subprocess.run(
+        [sys.executable, "-m", "yarpy", "rpc", "/root"],
+        input="list\n",
+        capture_output=True,
+        text=True,
+        timeout=patience(20),
+        env={**os.environ, "YARPY_SERVER": f"{host}:{port}"},
+    )
+    assert said.returncode == 1
+    assert said.stderr.startswith('error: "/root" does not answer as a port does (')
+    assert "yarpy name list" in said.stderr

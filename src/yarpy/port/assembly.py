@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Final
 
 from yarpy.config.configuration import port_number
+from yarpy.contact import check_text
 from yarpy.names.base import NameClient
 from yarpy.names.node_name import Category
 from yarpy.port import admin, command, disconnecting, fork, reconnect
@@ -52,6 +53,7 @@ def open_hub(
 
     Raises AddressError (name unusable, name or port in use), NoNameServer.
     """
+    check_text(name)
     fork.prepare()
     part = part or find_part(name, category, port_type, names)
     if part is not None:

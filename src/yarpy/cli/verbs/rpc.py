@@ -22,7 +22,14 @@ import yarpy
 from yarpy.cli import prompt
 from yarpy.cli.output import print_line
 from yarpy.cli.stderr import complain
-from yarpy.errors import LinkClosed, UnknownName, WrongPort, YarpError
+from yarpy.errors import (
+    DecodeError,
+    LinkClosed,
+    RemoteProtocolError,
+    UnknownName,
+    WrongPort,
+    YarpError,
+)
 
 if TYPE_CHECKING:
     from yarpy.port.probe import Caller
@@ -55,6 +62,11 @@ class Target:
                 return _bottle(self._caller.ask(question))
             except WrongPort:
                 raise
+            except DecodeError as error:
+                raise RemoteProtocolError(
+                    f'"{self._port}" does not answer as a port does ({error}); '
+                    "a name server of C++ YARP is asked with `yarpy name list` or `yarpy name help`"
+                ) from error
             except (LinkClosed, UnknownName) as error:
                 self._caller = None
                 pause = next(pauses, None)
