@@ -16,6 +16,7 @@ TREE = [
     ("WrongPort", errors.UnknownName),
     ("UnknownType", LookupError),
     ("UnknownPlugin", LookupError),
+    ("MissingFile", FileNotFoundError),
     ("NoNameServer", ConnectionError),
     ("PortClosed", RuntimeError),
     ("LinkClosed", ConnectionError),

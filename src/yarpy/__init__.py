@@ -23,6 +23,8 @@ _WHERE = {
     "Connection": "yarpy.port.connection",
     "ConnectionEvent": "yarpy.port.connection",
     "Message": "yarpy.wire.message",
+    "Module": "yarpy.module",
+    "ResourceFinder": "yarpy.resource",
     "Page": "yarpy.carriers.http.page",
     "Contact": "yarpy.contact",
     "Qos": "yarpy.qos",
@@ -59,6 +61,7 @@ _WHERE = {
     "WrongPort": "yarpy.errors",
     "UnknownPlugin": "yarpy.errors",
     "UnknownType": "yarpy.errors",
+    "MissingFile": "yarpy.errors",
     "NoNameServer": "yarpy.errors",
     "PortClosed": "yarpy.errors",
     "LinkClosed": "yarpy.errors",
@@ -97,6 +100,7 @@ if TYPE_CHECKING:
     from yarpy.errors import LinkClosed as LinkClosed
     from yarpy.errors import LocalProtocolError as LocalProtocolError
     from yarpy.errors import LoginRefused as LoginRefused
+    from yarpy.errors import MissingFile as MissingFile
     from yarpy.errors import NoNameServer as NoNameServer
     from yarpy.errors import NotAllowed as NotAllowed
     from yarpy.errors import PortClosed as PortClosed
@@ -108,6 +112,7 @@ if TYPE_CHECKING:
     from yarpy.errors import UnknownType as UnknownType
     from yarpy.errors import WrongPort as WrongPort
     from yarpy.errors import YarpError as YarpError
+    from yarpy.module import Module as Module
     from yarpy.names.base import NameClient as NameClient
     from yarpy.names.client import YarpNameClient as YarpNameClient
     from yarpy.nameserver.local import LocalNames as LocalNames
@@ -128,6 +133,7 @@ if TYPE_CHECKING:
     from yarpy.port.rpc import RpcServer as RpcServer
     from yarpy.qos import Qos as Qos
     from yarpy.realtime import realtime as realtime
+    from yarpy.resource import ResourceFinder as ResourceFinder
     from yarpy.wire.message import Message as Message
 
 

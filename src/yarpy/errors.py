@@ -6,6 +6,7 @@
     |   `-- WrongPort                    ... or another port has its number by now
     |-- UnknownType (LookupError)        nobody has the definition of this type
     |-- UnknownPlugin (LookupError)      no installed carrier, type, monitor or command of that name
+    |-- MissingFile (FileNotFoundError)  a file that was asked for is nowhere, or cannot be read
     |-- NoNameServer (ConnectionError)   no name server answers
     |-- PortClosed (RuntimeError)        the port was closed or interrupted meanwhile
     |-- LinkClosed (ConnectionError)     the other side of a connection went away
@@ -46,6 +47,10 @@ class UnknownType(YarpError, LookupError):
 
 class UnknownPlugin(YarpError, LookupError):
     """No installed plug-in has that name."""
+
+
+class MissingFile(YarpError, FileNotFoundError):
+    """A file that was asked for is nowhere, or cannot be read."""
 
 
 class NoNameServer(YarpError, ConnectionError):

@@ -50,6 +50,7 @@ ALONE = {
 }
 TOGETHER = {
     "listener.py",
+    "module.py",
     "netcat.sh",
     "rpc_client.py",
     "rpc_server.py",
@@ -146,6 +147,17 @@ def test_rpc(server: yarpy.NameServer):
                 "get other   -> nobody has set other",
             ]
         interrupt(calculator)
+
+
+def test_module(server: yarpy.NameServer):
+    with start("module.py", "--name", "/tock", "--rate", "50", **server.environment) as module:
+        assert yarpy.wait_for("/tock/quit", timeout=10)
+        with yarpy.RpcClient("/tock/rpc") as client:
+            assert client.call("count")[0] > 0
+            assert client.call("rate", 100) == ["ok"]
+            assert client.call("rate", 0)[0] == "fail"
+        interrupt(module)
+        assert yarpy.query("/tock/out") is None
 
 
 @needs_netcat

@@ -28,7 +28,7 @@ DEEPEST = 20  # files that include one another
 LARGEST = 16 << 20  # bytes of one file
 LONGEST = 1 << 20  # characters that the variables in a line may add to it
 
-# Finds a file in a context (a name; "" for none); None if there is none.
+# Finds a file, by name, in a context ("" for none); None if there is none.
 Find = Callable[[str, str], Path | None]
 
 _NESTING = re.compile(r'[\\"(){}]')
