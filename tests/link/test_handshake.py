@@ -17,6 +17,7 @@ from yarpy.carriers.text import Text
 from yarpy.contact import Contact
 from yarpy.errors import (
     LinkClosed,
+    LocalProtocolError,
     RemoteProtocolError,
     Timeout,
     UnknownPlugin,
@@ -87,6 +88,37 @@ def test_without_a_key_nobody_gets_in() -> None:
     ):
         greet(contact, Route("/me", "/target", "text_ack"), timeout=0.5)
     assert isinstance(found[0], YarpError)
+
+
+@pytest.mark.skipif(not hasattr(socket, "TCP_USER_TIMEOUT"), reason="an option of Linux")
+def test_a_connection_says_for_both_ends_when_a_silent_host_is_dead() -> None:
+    with answering(welcomed()) as (contact, found):
+        driver, _ = greet(contact, Route("/me", "/target", "tcp+peer_timeout.60"))
+    for side in (driver, found[0][0]):
+        sock = side.transport.sock
+        assert sock.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) == 60_000
+        side.transport.close()
+
+
+def test_what_cannot_be_a_time_limit_is_refused_at_both_ends() -> None:
+    contact = Contact("tcp", "/target", "127.0.0.1", free_port())
+    with pytest.raises(LocalProtocolError, match=r"as in tcp\+peer_timeout\.60"):
+        greet(contact, Route("/me", "/target", "tcp+peer_timeout.soon"))
+
+    with answering(welcomed()) as (contact, found):
+        route = Route("/me (peer_timeout 0)", "/target", "text")
+        greet(contact, route)[0].transport.close()
+    assert isinstance(found[0], RemoteProtocolError)
+    assert "peer_timeout.0" in str(found[0])
+
+
+def test_a_connection_over_datagrams_takes_no_time_limit_for_silence() -> None:
+    with (
+        answering(welcomed()) as (contact, found),
+        pytest.raises(LocalProtocolError, match="peer_timeout is for connections over TCP"),
+    ):
+        greet(contact, Route("/me", "/target", "udp+peer_timeout.60"))
+    assert isinstance(found[0], RemoteProtocolError)
 
 
 def test_nobody_there() -> None:

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from yarpy.transports.peer_timeout import SETTING, peer_timeout
+from yarpy.transports.peer_timeout import SETTING, asked_timeout, peer_timeout
 from yarpy.transports.tcp import TcpListener, TcpTransport, dial
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="options of Linux")
@@ -67,12 +67,29 @@ def test_what_is_no_time_is_told_once(
 
 
 @linux
+def test_a_connection_may_have_a_time_of_its_own(pair: tuple[TcpTransport, TcpTransport]) -> None:
+    pair[0].limit_silence(60)
+    assert [option(side, "TCP_USER_TIMEOUT") for side in pair] == [60_000, 25_000]
+
+
+@pytest.mark.parametrize("said", ["0", "", "-3", "1.5", "86401", "9" * 5000, "²", "soon"])
+def test_what_a_connection_cannot_ask_for(said: str) -> None:
+    assert [asked_timeout("1"), asked_timeout("86400")] == [1, 86400]
+    with pytest.raises(ValueError, match=r"tcp\+peer_timeout\.60"):
+        asked_timeout(said)
+
+
+@linux
+@pytest.mark.parametrize("asked", [True, False])
 def test_a_reader_that_takes_nothing_is_no_dead_host(
-    pair: tuple[TcpTransport, TcpTransport], monkeypatch: pytest.MonkeyPatch
+    asked: bool, pair: tuple[TcpTransport, TcpTransport], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The kernel alone would end the connection when the time is over."""
-    monkeypatch.setenv(SETTING, "1")
     near, far = pair
+    if asked:
+        near.limit_silence(1)
+    else:
+        monkeypatch.setenv(SETTING, "1")
     near.sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, 1000)
     sent = 0
     near.sock.setblocking(False)

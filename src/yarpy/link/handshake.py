@@ -28,6 +28,7 @@ from yarpy.errors import (
 from yarpy.link.admission import Gate, peer_of
 from yarpy.link.driver import Driver
 from yarpy.route import UNDECLARED, Declared, Route
+from yarpy.transports.peer_timeout import PARAMETER, asked_timeout
 from yarpy.transports.tcp import TcpTransport, dial
 from yarpy.transports.tls_setting import FIRST_BYTE, WORD, has_certificate, required
 from yarpy.wire.stream import DEFAULT_LIMIT
@@ -91,7 +92,8 @@ def greet(
 ) -> tuple[Driver, Carrier]:
     """Dial `contact` and open the connection that `route` describes.
 
-    Raises UnknownPlugin, LinkClosed (nobody there, hung up), Timeout, RemoteProtocolError.
+    Raises UnknownPlugin, LinkClosed (nobody there, hung up), Timeout, RemoteProtocolError,
+    LocalProtocolError.
     """
     route.host, route.port = contact.host, contact.port
     kind = find_carrier(route.spec.base)
@@ -102,11 +104,13 @@ def greet(
     if secure and kind.connectionless:
         raise LocalProtocolError(f"TLS protects no datagrams: take tls, not {kind.name}")
     carrier = kind(route)
+    silence = _silence(route)
     driver = call(contact, timeout, limit, group, secure)
     try:
         if key and (not carrier.foreign or _speaks_first(driver)):
             driver.run(prove_initiator(driver.stream, key), time.monotonic() + PROVING)
         driver.run(carrier.greet(driver.stream), deadline)
+        _limit_silence(driver, silence, route)
     except OSError as error:
         driver.transport.close()
         if isinstance(error, LinkClosed | Timeout):
@@ -201,11 +205,36 @@ def welcome(
     try:
         while (other := driver.run(carrier.welcome(driver.stream, first), deadline)) is not None:
             carrier = other  # the first bytes alone did not decide it
+        try:
+            _limit_silence(driver, _silence(carrier.route), carrier.route)
+        except LocalProtocolError as error:
+            driver.transport.close()  # not always the one that we were given
+            raise RemoteProtocolError(str(error)) from error
     except RemoteProtocolError:
         with suppress(YarpError):
             driver.flush()  # the protocol's answer to that
         raise
     return driver, carrier
+
+
+def _silence(route: Route) -> int | None:
+    """The seconds without a word after which a connection takes its peer's host for dead, if it has
+    a limit of its own. Raises LocalProtocolError."""
+    said = route.spec.value(PARAMETER)
+    try:
+        return None if said is None else asked_timeout(said)
+    except ValueError as error:
+        raise LocalProtocolError(str(error)) from error
+
+
+def _limit_silence(driver: Driver, seconds: int | None, route: Route) -> None:
+    if seconds is None:
+        return
+    if not isinstance(driver.transport, TcpTransport):
+        raise LocalProtocolError(
+            f"{PARAMETER} is for connections over TCP, which {route.spec.base} does not keep"
+        )
+    driver.transport.limit_silence(seconds)
 
 
 def _opening(transport: TcpTransport, speaks_first: bool, deadline: float) -> int:

@@ -1,5 +1,6 @@
 """Peers that die without a word: how long a TCP connection outlives a host that is switched off or
-cut off. `YARPY_PEER_TIMEOUT`, in seconds, in the environment of the program; 0: hours.
+cut off. `YARPY_PEER_TIMEOUT`, in seconds, in the environment of the program; 0: hours. For one
+connection `+peer_timeout.60` behind its carrier, which counts at both of its ends.
 
 Rules: the kernel notices, for both sides: keepalive where nothing is on its way, TCP_USER_TIMEOUT
 where something is. That option ends a connection to a reader that takes nothing for so long, too,
@@ -23,6 +24,8 @@ log = logger("yarpy.transports")
 
 SETTING: Final = "YARPY_PEER_TIMEOUT"
 DEFAULT: Final = 25.0  # seconds
+PARAMETER: Final = "peer_timeout"  # of a carrier
+LONGEST: Final = 86_400  # seconds that it may say, since a stranger may
 
 _RTO_MAX: Final = 44  # TCP_RTO_MAX_MS, since Linux 6.15
 
@@ -44,9 +47,20 @@ def _seconds(said: str) -> float:
     return seconds
 
 
-def notice_death(sock: socket.socket) -> None:
-    """Let the kernel end the TCP connection of `sock` when the peer's host is dead."""
-    timeout = peer_timeout()
+def asked_timeout(said: str) -> int:
+    """The seconds that a connection asks for itself. Raises ValueError."""
+    if said.isascii() and said.isdigit() and len(said) < 9 and 1 <= int(said) <= LONGEST:
+        return int(said)
+    raise ValueError(
+        f"{PARAMETER}.{said[:40]}: write a whole number of seconds from 1 to {LONGEST}, as in "
+        f"tcp+{PARAMETER}.60"
+    )
+
+
+def notice_death(sock: socket.socket, timeout: float | None = None) -> None:
+    """Let the kernel end the TCP connection of `sock` when the peer's host is dead: when nothing
+    comes from there for `timeout` seconds; None: as the environment says."""
+    timeout = peer_timeout() if timeout is None else timeout
     if not timeout:
         return
     # After a while of silence it asks three times.
@@ -71,15 +85,17 @@ class Vigil:
 
     While everything that was sent is acknowledged and more waits, the reader's window is closed,
     and the kernel asks for it from time to time; its host lives as long as that is answered.
+    `timeout` is that of the connection; None: as the environment says.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, timeout: float | None = None) -> None:
+        self._timeout = timeout
         self._spared = False  # TCP_USER_TIMEOUT is off
 
     def gives_up(self, sock: socket.socket) -> bool:
         """Whether the host of a reader that takes nothing does not answer either."""
         info = tcp_info(sock) if hasattr(socket, "TCP_USER_TIMEOUT") else None
-        timeout = peer_timeout()
+        timeout = peer_timeout() if self._timeout is None else self._timeout
         if info is None or not timeout:
             return False
         closed = not info.on_the_way and info.unsent > 0

@@ -32,6 +32,12 @@ class TcpTransport(SocketTransport):
             notice_death(sock)
         self._vigil = Vigil()
 
+    def limit_silence(self, seconds: float) -> None:
+        """Take the peer's host for dead after so many seconds without a word from it."""
+        if self.sock.family != getattr(socket, "AF_UNIX", None):
+            notice_death(self.sock, seconds)
+            self._vigil = Vigil(seconds)
+
     def peek(self) -> int:
         """The first byte that comes, left unread; -1 for the end."""
         first = self.sock.recv(1, socket.MSG_PEEK)
