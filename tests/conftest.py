@@ -11,6 +11,8 @@ import hypothesis
 import pytest
 from support.patience import FACTOR
 
+from yarpy import log
+
 hypothesis.settings.register_profile("yarpy", deadline=None)  # the machine may be busy
 hypothesis.settings.load_profile("yarpy")
 pytest_plugins = ["support.browser"]
@@ -60,3 +62,8 @@ def pytest_configure(config: pytest.Config) -> None:
     hang_up = getattr(signal, "SIGHUP", None)
     if hang_up is not None and signal.getsignal(hang_up) is signal.SIG_IGN:
         signal.signal(hang_up, signal.SIG_DFL)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Each test may see as many warnings as a program in its first minute."""
+    log._kinds.clear()

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from yarpy.log import logger, readable
+import yarpy.log
+from yarpy.log import BURST, MINUTE, logger, readable
 
 SOURCE = Path(__file__).parents[1] / "src" / "yarpy"
 
@@ -43,6 +44,45 @@ def test_records(caplog: pytest.LogCaptureFixture) -> None:
         "1 of 2",
     ]
     assert logger("yarpy.test_log") is log and len(log.filters) == 1
+
+
+def test_strangers_cannot_fill_the_log(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = 1000.0
+    monkeypatch.setattr("yarpy.log.time.monotonic", lambda: now)
+    log = logger("yarpy.test_log_flood")
+
+    def flood(count: int) -> list[str]:
+        caplog.clear()
+        with caplog.at_level(logging.INFO, "yarpy"):
+            for number in range(count):
+                log.warning("%s: connection from %s refused: %s", "/in", number, "not you\x1b")
+        return [record.getMessage() for record in caplog.records]
+
+    lines = flood(1000)
+    assert len(lines) == BURST
+    assert lines[0] == "/in: connection from 0 refused: not you\\x1b"
+    assert lines[-1].endswith("not you\\x1b (others like it are only counted for a minute)")
+    assert flood(200) == []
+    with caplog.at_level(logging.INFO, "yarpy"):
+        log.warning("%s: connection from %s refused: %s", "/other", 1, "not you")
+        log.warning("%s: something else", "/in")
+        for _ in range(2 * BURST):
+            log.info("%s: nothing bad", "/in")
+    assert len(caplog.records) == 2 + 2 * BURST
+    now += MINUTE
+    assert flood(2)[:2] == [
+        f"/in: connection from 0 refused: not you\\x1b (and {1200 - BURST} like it since)",
+        "/in: connection from 1 refused: not you\\x1b",
+    ]
+
+
+def test_what_is_known_of_warnings_is_bounded() -> None:
+    log = logger("yarpy.test_log_kinds")
+    for number in range(3000):
+        log.warning("%s: refused", number)
+    assert len(yarpy.log._kinds) <= 1000
 
 
 def test_everybody_logs_that_way() -> None:

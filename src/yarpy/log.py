@@ -1,15 +1,18 @@
-"""Loggers whose records are safe to read in a terminal.
+"""Loggers whose records are safe to read in a terminal, and too few to fill a disk.
 
     log = logger("yarpy.port")
 
 Rules: names, addresses and reasons come from strangers, and a terminal obeys the control characters
 in what it shows. So what a terminal would obey, what ends a line, and what turns the direction of a
-text around is escaped in every record, whatever handler takes it.
+text around is escaped in every record, whatever handler takes it. Strangers can also have a line
+logged as often as they like: of warnings that are alike, with the same words about the same port,
+BURST a minute are shown, and the others are counted.
 """
 
 from __future__ import annotations
 
 import re
+import time
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -17,15 +20,20 @@ if TYPE_CHECKING:
 
 # Control characters (of ASCII and C1), marks of direction, ends of lines.
 _HIDDEN: Final = re.compile(r"[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+BURST: Final = 20  # warnings that are alike in a minute
+MINUTE: Final = 60.0  # seconds
+_KINDS: Final = 1000  # of which this is known at a time
+_WARNING: Final = 30  # of logging, which is imported late
+
 _SHORT: Final = {"\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
 def logger(name: str) -> logging.Logger:
-    """The logger of that name. What it logs is `readable`."""
+    """The logger of that name. What it logs is `readable`, and limited."""
     import logging  # late: `readable` alone does not need it
 
     found = logging.getLogger(name)
-    found.addFilter(_make_readable)  # once, however often
+    found.addFilter(_screen)  # once, however often
     return found
 
 
@@ -45,11 +53,51 @@ def _escaped(letter: str) -> str:
     return _SHORT.get(letter) or (f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}")
 
 
-def _make_readable(record: logging.LogRecord) -> bool:
+def _screen(record: logging.LogRecord) -> bool:
+    """Whether a record is shown, made readable."""
+    more = _more(record) if record.levelno >= _WARNING else ""
+    return more is not None and _make_readable(record, more)
+
+
+class _Kind:
+    """Warnings that are alike: when the minute of the first began, and how many there were."""
+
+    __slots__ = ("begin", "count")
+
+    def __init__(self) -> None:
+        self.begin = time.monotonic()
+        self.count = 0
+
+
+_kinds: dict[tuple[str, str, str], _Kind] = {}  # threads that meet here may count wrong by one
+
+
+def _more(record: logging.LogRecord) -> str | None:
+    """What to say behind a warning of others like it; None: it is one too many."""
+    args = record.args
+    about = str(args[0]) if isinstance(args, tuple) and args else ""
+    key = record.name, str(record.msg), about
+    kind = _kinds.get(key)
+    before = 0
+    if kind is None or time.monotonic() - kind.begin >= MINUTE:
+        before = max(kind.count - BURST, 0) if kind is not None else 0
+        _kinds.pop(key, None)
+        kind = _kinds[key] = _Kind()
+        if len(_kinds) > _KINDS:
+            _kinds.pop(next(iter(_kinds)), None)
+    kind.count += 1
+    if kind.count > BURST:
+        return None
+    if before:
+        return f" (and {before} like it since)"
+    return " (others like it are only counted for a minute)" if kind.count == BURST else ""
+
+
+def _make_readable(record: logging.LogRecord, more: str) -> bool:
     try:
         text = record.getMessage()
     except Exception:
         return True  # the handler reports what is wrong with it
-    if _HIDDEN.search(text) is not None:
-        record.msg, record.args = readable(text), ()
+    if more or _HIDDEN.search(text) is not None:
+        record.msg, record.args = readable(text) + more, ()
     return True
