@@ -242,6 +242,45 @@ def test_a_reader_has_the_port_connected_to_its_own_computer(
             yarpy.connect("/cam", "/elsewhere", names=names)
 
 
+def test_a_port_is_made_to_receive_only_by_a_writer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, names: yarpy.LocalNames
+) -> None:
+    """Over mjpeg and the like, who is connected to receives."""
+    other = '[[allow]]\nwho = "loopback"\nmay = "all"\nports = "/cam"\n'
+    rule = '[[allow]]\nwho = "loopback"\nmay = "{}"\nports = "/view"\n'
+    write(tmp_path, monkeypatch, other + rule.format("read"))
+    with yarpy.Port("/cam", names=names), yarpy.Port("/view", names=names) as view:
+        for carrier in ("mjpeg", "mjpeg+recv.priority"):
+            with pytest.raises(yarpy.AccessRefused, match=r"may not (write to|attach monitors to)"):
+                yarpy.admin("/view", "add", "/cam", carrier, names=names)
+                yarpy.connect("/cam", "/view", carrier, names=names)
+        assert not view.inputs
+    write(tmp_path, monkeypatch, other + rule.format("write"))
+    with yarpy.Port("/cam", names=names), yarpy.Port("/view", names=names) as view:
+        yarpy.connect("/cam", "/view", "mjpeg", names=names)
+        wait_until(lambda: [link.source for link in view.inputs] == ["/cam"])
+
+
+def test_a_name_server_is_connected_by_its_administrators_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who may register may give commands, which are messages; its events are not for all."""
+    allow(tmp_path, monkeypatch, "register")
+    with yarpy.NameServer() as server, yarpy.Port("/mine") as mine:
+        for request in (["add", "/mine"], ["add", "/mine", "udp"], ["add", "/mine", "mjpeg"]):
+            answer = yarpy.admin("/root", *request)
+            assert "may not administer /root" in answer[1]
+        host, number = server.address.split(":")
+        with socket.create_connection((host, int(number)), patience(5.0)) as sock:
+            sock.sendall(b"CONNECT me\r\n/mine\r\n")
+            file = sock.makefile("rb")
+            assert file.readline() == b"Welcome me\r\n"
+            assert b"may not administer /root" in file.readline()
+            file.close()
+        assert not server.hub.outputs
+        assert not mine.inputs
+
+
 def test_a_writer_ends_what_it_began(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, names: yarpy.LocalNames
 ) -> None:

@@ -109,7 +109,7 @@ class Ruled(Admission):
         super().__init__(peer)
         self._access = access
         self._port = port
-        self._names = names
+        self.directory = self._names = names
         self._rights = {right for right in RIGHTS if access.rule_for(peer, right, port)}
         if names and access.knows(peer):
             # Commands are messages there; those that change something need `register`.

@@ -48,10 +48,12 @@ class Admission:
     """What one peer may do with one port: everything.
 
     `everything`: nothing needs to be asked for each message. `open`: there are no rules at all.
+    `directory`: the port is a name server's, whose events are for those who are told of them.
     """
 
     everything: bool = True
     open: bool = True
+    directory: bool = False
     takes_tokens: bool = False  # whether a token may change something
 
     def __init__(self, peer: Peer = Peer()) -> None:

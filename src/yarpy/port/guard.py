@@ -6,7 +6,8 @@ refused message ends it. Requests that change nothing are open to every peer wit
 and everybody is told the port's name, so that a peer looking for another port notices its mistake.
 
 A peer that may read may also make the port send to a port on the peer's own computer, and end that
-connection; one that may write may end connections from its own computer.
+connection; one that may write may make it receive from there, and end such connections. Not so a
+name server, where commands are messages, so that reading and writing mean no more than asking.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from yarpy.data.text import plain_text
 from yarpy.errors import AccessRefused, DecodeError, YarpError
 from yarpy.link.admission import ASK, Peer
 from yarpy.link.driver import Driver
+from yarpy.link.handshake import find_carrier
 from yarpy.link.inbound import Inbound, Owner
 from yarpy.link.outbound import Outbound
 from yarpy.link.receiver import Receiver
@@ -169,16 +171,21 @@ class GuardedInbound(Inbound):
         wanted = parse_contact(target)
         spec = parse_carrier(wanted.carrier)
         admission = self.driver.admission
-        if spec.send and not admission.allows("attach"):
+        try:
+            receives = not find_carrier(spec.base).push  # such a connection brings messages to us
+        except YarpError:
+            receives = False
+        if (spec.recv if receives else spec.send) and not admission.allows("attach"):
             return "attach"
-        if spec.log is None and not admission.allows("administer"):
-            try:
-                contact = self._hub.registration.locate(wanted)
-            except YarpError:
-                contact = None
-            if contact is not None and _is_of(admission.peer, contact.host):
-                return "read"
-        return "administer"
+        if admission.directory or spec.log is not None or admission.allows("administer"):
+            return "administer"
+        try:
+            contact = self._hub.registration.locate(wanted)
+        except YarpError:
+            contact = None
+        if contact is None or not _is_of(admission.peer, contact.host):
+            return "administer"
+        return "write" if receives else "read"
 
     def _right_to_delete(self, name: str) -> str:
         goes, comes = self._goes_to_peer(name), self._comes_from_peer(name)
