@@ -28,7 +28,7 @@ from yarpy.carriers.tcpros import TcpRos
 from yarpy.errors import AccessRefused, DecodeError, RemoteProtocolError, YarpError
 from yarpy.route import UNDECLARED, Declared, Route
 from yarpy.testing import CarrierConformance, End
-from yarpy.wire.effects import May
+from yarpy.wire.effects import HEAR, May
 from yarpy.wire.message import Message, Packet
 from yarpy.wire.stream import ByteStream
 
@@ -326,7 +326,7 @@ def test_who_may_not_read_is_told() -> None:
     stream.head = 8
     steps = carrier.welcome(stream, b"")
     stream.head = 0
-    assert next(steps) == May("read")
+    assert next(steps) == May(HEAR)
     with pytest.raises(AccessRefused, match="not you"):
         steps.send("not you")
     assert b"error=not you" in b"".join(stream.take_output())

@@ -25,6 +25,10 @@ from yarpy.link import handshake
 from yarpy.nameserver.local import LocalNames
 
 FAST = 5.0  # seconds that nothing here needs
+UPGRADE = (
+    b"Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+    b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+)
 
 
 @pytest.fixture
@@ -36,6 +40,10 @@ def names() -> LocalNames:
 def echo(names: LocalNames) -> Iterator[yarpy.RpcServer]:
     with yarpy.RpcServer("/echo", lambda m: ["ok", "echo", m.value], names=names) as server:
         yield server
+
+
+def where(port: yarpy.RpcServer) -> tuple[str, int]:
+    return "127.0.0.1", port.contact.port
 
 
 def client(port: yarpy.RpcServer | yarpy.Port | yarpy.BufferedPort) -> HTTPConnection:
@@ -307,6 +315,55 @@ def test_refusal_reaches_who_still_sends(echo: yarpy.RpcServer) -> None:
     connection.close()
     with closing(client(echo)) as another:
         assert get(another, "/?req=x")[0] == 200
+
+
+@pytest.mark.parametrize(
+    ("request_", "status"),
+    [
+        (b"POST /form HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999999\r\n\r\n", 413),
+        (b"POST /RPC2 HTTP/1.1\r\nHost: x\r\nContent-Length: 99999999999\r\n\r\n", 413),
+        (b"GET /?ws HTTP/1.1\r\nHost: x\r\n\r\n", 426),
+        (b"GET /?action=stream HTTP/1.1\r\nHost: x\r\n\r\n", 403),
+    ],
+)
+def test_who_is_refused_occupies_nothing_for_long(
+    echo: yarpy.RpcServer, request_: bytes, status: int
+) -> None:
+    """It said a minute, or ten seconds, would do."""
+    with socket.create_connection(where(echo), 8) as sock:
+        sock.sendall(request_)
+        said = sock.makefile("rb").read()  # to the end of the connection
+        assert said.startswith(b"HTTP/1.1 %d " % status)
+
+
+def test_message_that_cannot_be_read_is_400(echo: yarpy.RpcServer) -> None:
+    with yarpy.NameServer() as server:
+        for host, port in (("127.0.0.1", server.port), where(echo)):
+            connection = HTTPConnection(host, port, timeout=FAST)
+            for query in ("/?req=", "/?data="):
+                connection.request("GET", query + "(" * 4000)
+                answer = connection.getresponse()
+                assert answer.status == 400
+                assert answer.read() == b"text with lists nested more than 100 deep\n"
+            assert get(connection, "/?req=list")[0] == 200
+            connection.close()
+
+
+def test_port_that_sends_nothing_says_so(echo: yarpy.RpcServer) -> None:
+    why = b"this port sends nothing by itself, it answers what it is asked\n"
+    connection = client(echo)
+    for query in ("/?action=snapshot", "/?action=stream", "/r", "/r?sse"):
+        connection.request("GET", query)
+        answer = connection.getresponse()
+        assert (answer.status, answer.read()) == (403, why)
+    assert "read" not in json.loads(get(connection, "/*/may")[1])
+    connection.close()
+    for first in (b"GET /?action=snapshot HTTP/1.1\r\n", b"GET /?ws&read HTTP/1.1\r\n" + UPGRADE):
+        with socket.create_connection(where(echo), FAST) as sock:
+            sock.sendall(first + b"Host: localhost\r\n\r\n")
+            said = sock.makefile("rb").readline()
+            assert said.startswith(b"HTTP/1.1 403 ")
+    assert not echo.outputs
 
 
 def test_ports_talk_http(names: LocalNames, echo: yarpy.RpcServer) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 import time
 
 import pytest
+from support.patience import patience
 from support.wait import wait_until
 
 from yarpy import network
@@ -21,9 +23,12 @@ from yarpy.errors import (
     Timeout,
     UnknownName,
 )
+from yarpy.link.handshake import greet
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer
+from yarpy.route import Route
+from yarpy.wire import framing
 from yarpy.wire.message import Message
 
 
@@ -53,6 +58,29 @@ def test_arguments_are_the_message(
         RpcClient("/server", names=names) as client,
     ):
         assert client.call(*arguments, timeout=5) == ["heard", heard]
+
+
+def test_who_wants_to_read_is_told_that_there_is_nothing(
+    names: LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
+    with RpcServer("/server", echo, names=names) as server:
+        where = "127.0.0.1", server.contact.port
+        with socket.create_connection(where, patience(5.0)) as sock, sock.makefile("rwb") as line:
+            line.write(b"CONNECT me\r\nr\r\nd\r\n5\r\n")
+            line.flush()
+            assert [line.readline() for _ in range(3)] == [
+                b"Welcome me\r\n",
+                b"this port sends nothing by itself, it answers what it is asked\r\n",
+                b"5\r\n",
+            ]
+        driver, _ = greet(server.contact, Route("/me", "/server"))
+        driver.stream.write(*framing.encode_text_command("r"))
+        driver.flush()
+        with pytest.raises(LinkClosed):  # binary, where nothing can be said
+            driver.run(driver.stream.more(1000), time.monotonic() + patience(5.0))
+        driver.transport.close()
+        wait_until(lambda: "/me over tcp closed: it wants to read: this port" in caplog.text)
+        assert not server.outputs
 
 
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text_ack", "unix_stream", "local"])

@@ -34,7 +34,7 @@ from yarpy.data import jpeg
 from yarpy.data.image import Image, is_image
 from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, RemoteProtocolError
 from yarpy.route import Route
-from yarpy.wire.effects import Open, Switch
+from yarpy.wire.effects import HEAR, Open, Switch
 from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
@@ -88,7 +88,7 @@ class Mjpeg(Carrier):
             yield from refuse(stream, 421, not_ours(headers.get("host", "")))
         try:
             target = line.decode("latin-1").split()[1]
-            options = read_stream_options((yield from screen(stream, target, headers, "read")))
+            options = read_stream_options((yield from screen(stream, target, headers, HEAR)))
         except ValueError as error:
             yield from refuse(stream, 400, str(error))
         self.begin(stream, options, headers)

@@ -38,7 +38,7 @@ from yarpy.carriers.ros_header import (
 from yarpy.errors import AccessRefused, RemoteProtocolError, YarpError
 from yarpy.log import logger, readable
 from yarpy.route import Route
-from yarpy.wire.effects import May
+from yarpy.wire.effects import HEAR, May
 from yarpy.wire.message import DATA, UNSENDABLE, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import LARGE, ByteStream
@@ -120,7 +120,7 @@ class TcpRos(Carrier):
                 Route("", route.target, spec, route.port, route.host, declared=route.declared),
                 fields,
             )
-        why = yield May("read")
+        why = yield May(HEAR)
         if why:
             stream.write(encode_header({"error": why}))
             raise AccessRefused(why)

@@ -29,6 +29,7 @@ from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError
 from yarpy.route import Route
 from yarpy.wire import framing
+from yarpy.wire.effects import HEAR
 from yarpy.wire.message import ADMIN, CALL, QUIT, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
@@ -122,7 +123,7 @@ class WebSocket(Carrier):
         if self.push and not origins.admits(headers, "tls" in self.route.spec.tokens):
             text = "pages of this origin may only read (&read); see YARPY_WEB_ORIGINS"
             yield from refuse(stream, 403, text)
-        right = "read" if not self.push else "write" if self._key == CALL else "ask"
+        right = HEAR if not self.push else "write" if self._key == CALL else "ask"
         yield from screen(stream, f"/?ws{wished}", headers, right)
         offered = headers.get("sec-websocket-protocol", "").replace(",", " ").split()
         self.json = JSON in offered

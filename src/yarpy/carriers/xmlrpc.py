@@ -155,16 +155,16 @@ class XmlRpc(Carrier):
             yield from refuse(stream, 411, "an XML-RPC call needs a Content-Length, not chunks")
         if int(size) > most:
             text = f"an XML-RPC call has at most {most} bytes"
-            yield from refuse(stream, 413, text, rest=int(size) - stream.waiting)
+            yield from refuse(stream, 413, text)
         origins = origins_of()
         if origins.turns_away(headers, self.route.host):
-            yield from refuse(stream, 421, not_ours(headers.get("host", "")), rest=int(size))
+            yield from refuse(stream, 421, not_ours(headers.get("host", "")))
         if not origins.admits(headers, "tls" in self.route.spec.tokens):
             text = "pages of this origin may only read; see YARPY_WEB_ORIGINS"
-            yield from refuse(stream, 403, text, rest=int(size))
+            yield from refuse(stream, 403, text)
         # What the call itself needs shows in its body.
         target = head.target.decode("latin-1")
-        yield from screen(stream, target, headers, "ask", rest=int(size))
+        yield from screen(stream, target, headers, "ask")
 
     def _respond(self, stream: ByteStream, body: bytes) -> None:
         stream.write(_RESPONSE.format(status="200 OK", size=len(body)).encode() + body)

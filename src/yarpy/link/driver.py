@@ -20,7 +20,7 @@ from yarpy.transports.datagram import open_mcast, open_udp
 from yarpy.transports.inproc import InprocTransport, open_inproc
 from yarpy.transports.tcp import CONNECT_TIMEOUT, dial
 from yarpy.transports.unix import open_unix
-from yarpy.wire.effects import Claim, Group, May, Open, Switch
+from yarpy.wire.effects import HEAR, Claim, Group, May, Open, Switch, Within
 from yarpy.wire.framing import REFUSED, refused
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import DEFAULT_LIMIT, Buffer, ByteStream, ObjectStream
@@ -50,6 +50,7 @@ class Driver:
         self.transport = transport
         self.stream = ByteStream(limit)
         self.admission = Admission()  # what the peer may do with our port
+        self.silence = ""  # why nobody can hear what our port writes: it never writes
         self.eager = _CORES > 1  # whether polling may beat sleeping
         self._looks = False  # poll for the next bytes instead of sleeping
         self._skip = 0  # waits to pass before polling is tried again
@@ -83,8 +84,13 @@ class Driver:
                     except Timeout as error:
                         if intake is not None and deadline is None:
                             intake.wait()
-                        self.tell_late(steps, error)
-                        raise
+                        told = self.tell_late(steps, error)
+                        if told is error:
+                            raise
+                        raise told from error
+                    answer = None
+                elif isinstance(effect, Within):
+                    deadline = _sooner(deadline, effect.seconds)
                     answer = None
                 else:
                     answer = self._perform(effect, deadline)
@@ -104,16 +110,21 @@ class Driver:
                     self.transport.limit_waiting(None, sends=False)
                 intake.since = 0.0
 
-    def tell_late(self, steps: Steps[Any], error: Timeout) -> None:
-        """Let a protocol that waits say goodbye to a peer that was too slow."""
+    def tell_late(self, steps: Steps[Any], error: Timeout) -> YarpError:
+        """Let a protocol that waits say goodbye to a peer that was too slow; the error that it ends
+        with, nearly always `error` itself."""
+        told: YarpError = error
         try:
             steps.throw(error)
-        except (StopIteration, YarpError):
-            pass  # the timeout itself, nearly always
+        except StopIteration:
+            pass
+        except YarpError as other:
+            told = other
         try:
             self.flush()
         except YarpError:
             pass  # nobody listens
+        return told
 
     def flush(self, deadline: float | None = None) -> None:
         """Send what the protocol wrote.
@@ -257,6 +268,8 @@ class Driver:
     def judge(self, effect: May | Claim) -> str | bool | None:
         """Answer what a protocol asks about its peer's rights."""
         if isinstance(effect, May):
+            if effect.right == HEAR:
+                return self.judge(May("read", effect.asking)) or self.silence
             if effect.asking:
                 return "" if self.admission.allows(effect.right) else REFUSED
             return self.admission.refusal(effect.right)
@@ -310,6 +323,12 @@ class Driver:
             if effect.kind == "inproc":
                 return open_inproc(effect.listen, local, remote)
         raise LocalProtocolError(f"{effect} is not something a connection can do")
+
+
+def _sooner(deadline: float | None, seconds: float | None) -> float | None:
+    """The earlier of a deadline and one in so many seconds; None: there is no such."""
+    own = None if seconds is None else time.monotonic() + seconds
+    return own if deadline is None else deadline if own is None else min(deadline, own)
 
 
 def _first_line(stream: ByteStream) -> str:

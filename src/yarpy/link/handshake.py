@@ -168,11 +168,13 @@ def welcome(
     carriers: Iterable[type[Carrier]] | None = None,
     gate: Gate | None = None,
     declared: Declared = UNDECLARED,
+    silence: str = "",
 ) -> tuple[Driver, Carrier] | None:
     """Answer a peer that dialled the port called `target`; None if it hung up without a word.
 
-    gate: who may do what there. declared: what the port says of itself. Raises RemoteProtocolError
-    for bytes that no carrier knows (the peer was told), AccessRefused, LinkClosed, Timeout.
+    gate: who may do what there. declared: what the port says of itself. silence: why it writes
+    nothing that could be heard. Raises RemoteProtocolError for bytes that no carrier knows (the
+    peer was told), AccessRefused, LinkClosed, Timeout.
     """
     deadline = time.monotonic() + PATIENCE
     opening = _opening(transport, bool(key), deadline)
@@ -185,6 +187,7 @@ def welcome(
     elif required():
         _turn_away(transport)
     driver = Driver(transport, limit)
+    driver.silence = silence
     if key:
         driver.run(prove_acceptor(driver.stream, key), time.monotonic() + PROVING)
     try:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
-from yarpy.errors import LinkClosed, Timeout, YarpError
+from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.driver import Driver
 from yarpy.link.receiver import Receiver
 from yarpy.link.turn import SILENCE, Turn
@@ -157,6 +157,10 @@ class Inbound:
         if message.key == QUIT:
             self._quit = True
         elif message.key == "r":
+            if self.driver.silence and self.route.spec.log is None:
+                if self.carrier.spelling == "text":
+                    return [self.driver.silence]
+                raise RemoteProtocolError(f"it wants to read: {self.driver.silence}")
             self._reversed = True
             if isinstance(message.payload, Carrier):
                 self.successor = message.payload

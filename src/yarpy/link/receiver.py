@@ -189,8 +189,10 @@ class Receiver:
             steps = self._steps
             if steps is not None and time.monotonic() > self._due - 0.01:
                 self._steps = None
-                self.driver.tell_late(steps, error)
-                raise RemoteProtocolError("the peer sends a message too slowly") from error
+                told = self.driver.tell_late(steps, error)
+                if isinstance(told, Timeout):
+                    told = RemoteProtocolError("the peer sends a message too slowly")
+                raise told from error
             raise
 
     def limit(self, seconds: float | None) -> None:

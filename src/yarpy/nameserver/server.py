@@ -39,7 +39,7 @@ from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
 from yarpy.transports.bind import listening_host
 from yarpy.transports.tcp import is_taken
-from yarpy.wire.message import JSON, Lines, Message, Packet, Refused
+from yarpy.wire.message import JSON, Lines, Malformed, Message, Packet, Refused
 
 if TYPE_CHECKING:
     from yarpy.names.discovery import Responder
@@ -189,17 +189,20 @@ class NameServer:
         if is_loopback(peer):
             peer = self.host  # a program of this host: others reach it as they reach us
         structured = message.text == JSON
-        if why := self._refusal(link, message):
+        try:
+            words = message.as_(Bottle)
+        except DecodeError as error:
+            if message.answer is not None:
+                message.reply(Malformed(str(error)))
+            return
+        if why := self._refusal(link, words):
             self._refuse(message, why)
             return
-        if structured:  # as C++ says it behind a command that came by HTTP
-            reply = self.service.answer([*message.as_(Bottle), Bottle(["format", "json"])], peer)
-        elif message.spelling == "text":
-            reply = self.service.answer_text(message.payload, peer)
-        else:
-            reply = self.service.answer(message.as_(Bottle), peer)
+        # as C++ says it behind a command that came by HTTP
+        command = [*words, Bottle(["format", "json"])] if structured else words
+        reply = self.service.answer(command, peer)
         if self.on_command is not None:
-            self.on_command(Bottle(message.as_(Bottle)).to_text(), peer)
+            self.on_command(words.to_text(), peer)
         self._follow(reply)  # first, so that the events of one client keep their order
         if message.answer is not None:
             message.reply(
@@ -207,20 +210,15 @@ class NameServer:
                 if structured
                 else (reply.bottle if reply.bottle is not None else Lines(reply.lines))
             )
-        words = message.as_(Bottle)
         if len(words) > 2 and words[0] == "announce" and not words[2] and self._collector:
             self._collector.suspect(plain_text(words[1]))
 
-    def _refusal(self, link: Inbound, message: Message) -> str:
+    def _refusal(self, link: Inbound, words: Bottle) -> str:
         """Why the peer may not give such a command; "" if it may."""
         admission = link.driver.admission
         if admission.open:
             return ""
-        try:
-            wanted = needed(message.as_(Bottle))
-        except DecodeError:
-            return ""  # it is no command
-        return next(filter(None, (admission.refusal(*one) for one in wanted)), "")
+        return next(filter(None, (admission.refusal(*one) for one in needed(words))), "")
 
     def _refuse(self, message: Message, why: str) -> None:
         if message.answer is None:

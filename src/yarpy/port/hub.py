@@ -49,6 +49,7 @@ log = logger("yarpy.port")
 # Most inputs over datagrams of a port: each costs us a thread and a socket, but costs its sender
 # nothing, since no connection is left that would end with the sender's program.
 MAX_DATAGRAM_INPUTS: Final = 256
+SILENT: Final = "this port sends nothing by itself, it answers what it is asked"
 
 
 class Reconnect(Protocol):
@@ -127,7 +128,8 @@ class Hub:
         self.dialling = Dialling()
         self.seat: Seat | None = None  # in the graph of a node
         self.monitoring = Monitoring(self)
-        self.reception = Reception(registration, limit, self.run_input, directory)
+        silence = "" if admits_outputs else SILENT
+        self.reception = Reception(registration, limit, self.run_input, directory, silence)
 
     # -- what it is -------------------------------------------------------------------------------
 
@@ -284,6 +286,10 @@ class Hub:
         route = carrier.route
         route.source, route.target = self.name, route.source
         if any(map(driver.admission.refusal, guard.to_read(route.spec))):
+            driver.transport.close()
+            return
+        if not self.admits_outputs and route.spec.log is None:
+            log.warning("%s: connection %s refused: %s", self.name, route, SILENT)
             driver.transport.close()
             return
         output = Outbound(driver, carrier, dialled=False)

@@ -28,7 +28,8 @@ log = logger("yarpy.port")
 class Reception:
     """Welcomes connections and hands each to `serve`, which runs in its thread until it ends.
 
-    directory: it is a name server's port.
+    directory: it is a name server's port. silence: why the port writes nothing that could be
+    heard.
     """
 
     def __init__(
@@ -37,6 +38,7 @@ class Reception:
         limit: int,
         serve: Callable[[Driver, Carrier], None],
         directory: bool = False,
+        silence: str = "",
     ) -> None:
         self._registration = registration
         self._limit = limit
@@ -45,6 +47,7 @@ class Reception:
         self._arriving: set[threading.Thread] = set()  # connections that are being welcomed
         self._open = threading.Event()
         self._directory = directory
+        self._silence = silence
         self._gate: Gate | None = None  # of the name that the port has in the end
         self._closing = False
 
@@ -86,6 +89,7 @@ class Reception:
                 limit=self._limit,
                 gate=gate,
                 declared=own.declared,
+                silence=self._silence,
             )
         except AccessRefused:
             transport.close()  # logged where it was refused

@@ -20,7 +20,7 @@ from yarpy.port.connection import ConnectionEvent, PortConnection
 from yarpy.port.mailbox import Callback, Mailbox
 from yarpy.port.part import Part
 from yarpy.route import Route
-from yarpy.wire.message import CALL, UNSENDABLE, Message, Packet
+from yarpy.wire.message import CALL, UNSENDABLE, Malformed, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
 
 log = logger("yarpy.port")
@@ -79,7 +79,7 @@ class RpcServer(BasePort):
             reply = self._handler(message)
         except DecodeError as error:
             log.warning("%s: message from %s: %s", self.name, message.source, error)
-            reply = Bottle([Vocab("fail"), str(error)])
+            reply = Malformed(str(error))
         except Exception as error:
             log.exception("%s: the handler failed on %r", self.name, message)
             reply = Bottle([Vocab("fail"), f"{type(error).__name__}: {error}"])

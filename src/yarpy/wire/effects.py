@@ -3,14 +3,14 @@
 Rules: plain values, no behaviour. `None` asks for more bytes; everything else is listed here. A
 connection greets over TCP; carriers that move elsewhere (UDP, multicast, Unix sockets, in-process)
 `Open` the new place, tell the peer about it, and `Switch` onto it. One whose peer hangs up after
-the first answer opens `tcp` to ask again. `Within` and `Show` are for `decode` alone.
+the first answer opens `tcp` to ask again. `Show` is for `decode` alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from yarpy.wire.steps import Effect
 from yarpy.wire.stream import ByteStream
@@ -47,6 +47,7 @@ class Group(Effect):
 @dataclass(frozen=True, slots=True)
 class Within(Effect):
     """A message has begun to come: it has `seconds` to its end, or raises Timeout inside `decode`.
+    The same of the rest of a greeting.
 
     None: no message is under way any more. The end of `decode` says so too.
     """
@@ -68,11 +69,16 @@ class Show(Effect):
     fields: Mapping[str, str]
 
 
+#: to read what the port writes from now on: the right "read", at a port that writes at all
+HEAR: Final = "hear"
+
+
 @dataclass(frozen=True, slots=True)
 class May(Effect):
     """Ask whether the peer may do that here; the driver sends back why not, or "".
 
-    `link/admission.py` lists the rights. `asking`: the peer did not try to, so nothing is logged.
+    `link/admission.py` lists the rights, and there is HEAR. `asking`: the peer did not try to, so
+    nothing is logged.
     """
 
     right: str

@@ -59,11 +59,20 @@ class Lines(tuple[str, ...]):
 
 
 class Refused(Bottle):
-    """The answer to a peer that may not do what it asks for: `[fail]` and why."""
+    """The answer to a peer that may not do what it asks for: `[fail]` and why. `status`: the same
+    in HTTP."""
+
+    status = 403
 
     def __init__(self, why: str) -> None:
         super().__init__([Vocab("fail"), why])
         self.why = why
+
+
+class Malformed(Refused):
+    """The answer to a message that cannot be read."""
+
+    status = 400
 
 
 class Encoded:

@@ -32,6 +32,7 @@ from yarpy.carriers.http.message import (
 )
 from yarpy.carriers.http.origin import not_ours, origins_of
 from yarpy.carriers.http.page import Pieces
+from yarpy.carriers.http.refusal import linger
 from yarpy.carriers.http.response import (
     CUT_OFF,
     LATE,
@@ -48,7 +49,7 @@ from yarpy.carriers.http.response import (
 from yarpy.carriers.http.token import claim, cookie
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.route import Route
-from yarpy.wire.effects import Flush, May, Show, Within
+from yarpy.wire.effects import HEAR, Flush, May, Show, Within
 from yarpy.wire.message import CALL, QUIT, Lines, Message, Packet, Refused
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
@@ -58,7 +59,6 @@ if TYPE_CHECKING:
 
     from yarpy.carriers.http.request import Form, Intent, Request
 
-DRAIN: Final = 1 << 20  # bytes of a refused body that are read, so that the refusal arrives
 TIME: Final = 60.0  # seconds a connection may be idle, and a request may take to arrive
 
 _RIGHTS: Final = ("read", "write", "administer", "attach", "register")
@@ -199,15 +199,7 @@ class Http(Carrier):
         self._stays = False
         self._respond(stream, complaint(status, text))
         if status in (413, 431):
-            # Closing while the peer still sends would reset the connection and lose our answer.
-            left = DRAIN
-            while left > 0:
-                try:
-                    yield from stream.more(1)
-                except LinkClosed:
-                    break
-                left -= stream.waiting
-                stream.head = stream.tail
+            yield from linger(stream)
         raise RemoteProtocolError(f"HTTP {status}: {text}")
 
     def _understood(self, stream: ByteStream, request: Request) -> Steps[Intent | Carrier | None]:
@@ -235,7 +227,7 @@ class Http(Carrier):
             self._respond(stream, NO_SUCH_METHOD)
             return None
         if request.method == "GET" and request.target.startswith("/?action="):
-            if why := (yield May("read")):
+            if why := (yield May(HEAR)):
                 self._respond(stream, complaint(403, why))
                 return None
             return self._show_pictures(stream, request.target)
@@ -283,7 +275,7 @@ class Http(Carrier):
             return  # nobody is waiting for it any more
         try:
             if isinstance(value, Refused):
-                response = complaint(403, value.why)
+                response = complaint(value.status, value.why)
             else:
                 response = self._responder.reply(intent, value, self._host)
             if response.endless:
@@ -439,6 +431,6 @@ def _rights() -> Steps[list[str]]:
     """What the peer may do, for pages that show it."""
     found = []
     for right in _RIGHTS:
-        if not (yield May(right, asking=True)):
+        if not (yield May(HEAR if right == "read" else right, asking=True)):
             found.append(right)
     return found

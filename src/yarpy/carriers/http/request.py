@@ -26,6 +26,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.json import Outer, from_json
 from yarpy.errors import DecodeError
 from yarpy.wire import framing
+from yarpy.wire.effects import HEAR
 from yarpy.wire.message import ADMIN, CALL, DATA, JSON, Message, Spelling
 
 Form: TypeAlias = Literal["page", "json", "text", "none", "events", "reply_page"]
@@ -39,7 +40,7 @@ MAY: Final = "/*/may"  # what whoever asks may do, for pages that show it
 # message asks or changes something, the port judges.
 _RIGHTS: Final = {
     **dict.fromkeys(("*", "?", "h", ADMIN), "ask"),
-    "r": "read",
+    "r": HEAR,
     CALL: "write",
     DATA: "write",
 }

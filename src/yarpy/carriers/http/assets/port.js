@@ -2,7 +2,7 @@
 // messages - and its connections. The page asks for no more than people can see, and for nothing
 // while it is in the background.
 
-import {pause, press, rate, say, seconds, several} from "/*/common.js";
+import {may, pause, press, rate, say, seconds, several} from "/*/common.js";
 import {Live, OLD} from "/*/live.js";
 import {Plot, colour, dashes} from "/*/plot.js";
 import {cut, isPicture, line, numbers, tree} from "/*/tree.js";
@@ -127,12 +127,13 @@ function row() {
 
 let events = null;
 let heard = 0;
+let hears = false; // whoever has this page open may read, and the port sends something by itself
 
 // Listen while the page is visible.
 function listen() {
   events?.close();
   events = null;
-  if (document.hidden || paused) return;
+  if (!hears || document.hidden || paused) return;
   heard = performance.now();
   events = new EventSource(`/r?sse&rate=${RATE}`);
   events.onmessage = (event) => {
@@ -298,7 +299,10 @@ async function learn() {
 }
 
 connections = [];
-listen();
+may().then((found) => {
+  hears = found.includes("read");
+  listen();
+});
 requestAnimationFrame(draw);
 learn();
 port(["prop", "get", name]).then(({port: kind}) => (sends = kind?.is_output !== 0)).catch(() => {});
