@@ -7,8 +7,15 @@ import pytest
 from support.ros_link import ADD, STRING, AddTwoInts, String
 
 from yarpy.carriers import ros_greeting
-from yarpy.carriers.ros_greeting import answer_header, message_kind, mismatch, own_header
-from yarpy.errors import RemoteProtocolError
+from yarpy.carriers.ros_greeting import (
+    MAX_FIELDS,
+    answer_header,
+    message_kind,
+    mismatch,
+    own_header,
+    service_kind,
+)
+from yarpy.errors import DecodeError, RemoteProtocolError
 from yarpy.route import Declared, Route
 
 
@@ -57,3 +64,18 @@ def test_an_answer_repeats_what_was_asked() -> None:
         "x": "1",
         "type": "*",
     }
+
+
+def test_a_stranger_describes_only_so_much() -> None:
+    """Each field costs far more than its text, once a value is read."""
+    text = "".join(f"int8[] a{n}\n" for n in range(MAX_FIELDS))
+    kind = message_kind({"type": "p/M", "message_definition": text})
+    assert kind is not None and len(kind._names) == MAX_FIELDS
+    fields = {"type": "p/M", "message_definition": f"{text}int8 one_more\n"}
+    with pytest.raises(DecodeError, match="p/M: more than 400 fields, with those of the messages"):
+        message_kind(fields)
+    inner = f"M m\nint8 x\n{'=' * 80}\nMSG: p/M\n{text}"
+    with pytest.raises(DecodeError, match="p/N: more than 400 fields"):
+        message_kind({"type": "p/N", "message_definition": inner})
+    with pytest.raises(DecodeError, match="p/SRequest: more than 400"):
+        service_kind({"type": "p/S", "message_definition": f"{text}int8 one_more\n---\n"})

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from yarpy.idl.rosmsg.message import Message as Ros
 
 ANY: Final = "*"
+#: of a type that a peer describes, with those of the messages in it: each becomes code once a value
+#: is read or written. The largest message of ROS has 63
+MAX_FIELDS: Final = 400
 _SHOWN: Final = 300  # characters of an error of the peer
 
 
@@ -108,7 +111,7 @@ def message_kind(fields: Header) -> type[Ros] | None:
     from yarpy.idl.rosmsg.library import default_library
 
     library, text = default_library(), fields.get("message_definition", "")
-    kind = library.message_of(name, text) if text else library.message(name)
+    kind = library.message_of(name, text, MAX_FIELDS) if text else library.message(name)
     _check_known(fields, kind)
     return kind
 
@@ -121,7 +124,8 @@ def service_kind(fields: Header) -> Service | None:
     from yarpy.idl.rosmsg.library import default_library
 
     library, text = default_library(), fields.get("message_definition", "")
-    kind = library.service_of(name, text) if "\n---" in f"\n{text}" else library.service(name)
+    described = "\n---" in f"\n{text}"
+    kind = library.service_of(name, text, MAX_FIELDS) if described else library.service(name)
     if not text:
         _check_known(fields, kind)
     return kind

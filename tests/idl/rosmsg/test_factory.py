@@ -1,9 +1,13 @@
 """The class of a type: fields, defaults, constants, documentation."""
 
+import inspect
+from typing import Any
+
 import numpy as np
 import pytest
 
 from yarpy.idl.model import PRIMITIVES, Enum, ListOf
+from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.rosmsg.factory import annotation
 from yarpy.idl.rosmsg.library import Library
 from yarpy.idl.rosmsg.message import Duration, Time
@@ -83,3 +87,33 @@ def test_annotations(library: Library) -> None:
     assert annotation(ListOf(PRIMITIVES["binary"])) == "list[bytes]"
     assert annotation(Enum("Colour", PRIMITIVES["int32"], {})) == "Any"
     assert np.dtype(found["f32s"][11:18])
+
+
+def test_nothing_is_compiled_before_it_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who describes a type need not ever send a value."""
+    compiled: list[str] = []
+    compile_it = Code.compiled
+
+    def counted(code: Code, name: str, arguments: str) -> Any:
+        compiled.append(name)
+        return compile_it(code, name, arguments)
+
+    monkeypatch.setattr(Code, "compiled", counted)
+    text = f"int8 x\nB[] many\nB one\n{'=' * 80}\nMSG: p/B\nstring[] words\n"
+    kind = Library([]).message_of("p/A", text)
+    assert compiled == []
+    assert kind.from_ros(bytes(1 + 4 + 4)).x == 0
+    assert compiled == ["_read", "_read"]
+    first = kind(5)
+    kind(6)
+    assert compiled[2:] == ["__init__", "__init__"]
+    assert first.to_ros() == (b"\5" + bytes(8),)
+    assert compiled[4:] == ["_write", "_write"]
+    assert [*inspect.signature(kind).parameters] == ["x", "many", "one"]
+    assert len(compiled) == 6
+
+    class Derived(kind):  # type: ignore[misc, valid-type]
+        pass
+
+    assert Derived(x=7).to_ros() == (b"\7" + bytes(8),)
+    assert len(compiled) == 6

@@ -15,6 +15,7 @@ from typing import Final
 
 from yarpy.errors import DecodeError, UnknownType
 from yarpy.idl.rosmsg.definition import (
+    MAX_DECLARATIONS,
     Definition,
     ServiceDefinition,
     resolve,
@@ -48,8 +49,11 @@ class Catalogue:
     *standard_sources()])` looks into a folder of yours before.
     """
 
-    def __init__(self, sources: Sequence[Source] | None = None) -> None:
+    def __init__(
+        self, sources: Sequence[Source] | None = None, most: int = MAX_DECLARATIONS
+    ) -> None:
         self.sources = list(standard_sources() if sources is None else sources)
+        self._most = most  # fields of a type
         self._messages: dict[str, Definition] = {}
         self._services: dict[str, ServiceDefinition] = {}
 
@@ -64,7 +68,7 @@ class Catalogue:
     def _message(self, name: str) -> Definition:
         found = self._messages.get(name)
         if found is None:
-            found = resolve(self._parsed(name, ""), self._parsed, self._messages)
+            found = resolve(self._parsed(name, ""), self._parsed, self._messages, self._most)
         return self._messages.setdefault(name, found)
 
     def service(self, name: str) -> ServiceDefinition:
@@ -75,17 +79,17 @@ class Catalogue:
             found = self._service(name, self._text(name, "srv", "").text)
         return self._services.setdefault(name, found)
 
-    def message_of(self, name: str, full: str) -> Definition:
-        """A message type from a full text, as a connection brings it. Types that the text lacks
-        come from the sources. Nothing of it is kept here."""
+    def message_of(self, name: str, full: str, most: int = MAX_DECLARATIONS) -> Definition:
+        """A message type from a full text, as a connection brings it, of at most so many fields.
+        Types that the text lacks come from the sources. Nothing of it is kept here."""
         name = peer_type_name(name)
-        return self._around(_split(name, full), name)._message(name)
+        return self._around(_split(name, full), name, most)._message(name)
 
-    def service_of(self, name: str, full: str) -> ServiceDefinition:
+    def service_of(self, name: str, full: str, most: int = MAX_DECLARATIONS) -> ServiceDefinition:
         """A service type from a full text: request, `---`, response, then the types in them."""
         name = peer_type_name(name)
         texts = _split(name, full)
-        return self._around(texts, name)._service(name, texts[name])
+        return self._around(texts, name, most)._service(name, texts[name])
 
     def read(self, path: str | os.PathLike[str]) -> Definition | ServiceDefinition:
         """The type of a `.msg` or `.srv` file. The folder it lies in, or the one above `msg` and
@@ -101,12 +105,13 @@ class Catalogue:
             return near._service(name, text)
         return resolve(parse_message(text, name), near._parsed, near._messages)
 
-    def _around(self, texts: dict[str, str], name: str) -> Catalogue:
-        return Catalogue([Texts(texts, f"the definition of {name}"), *self.sources])
+    def _around(self, texts: dict[str, str], name: str, most: int) -> Catalogue:
+        return Catalogue([Texts(texts, f"the definition of {name}"), *self.sources], most)
 
     def _service(self, name: str, text: str) -> ServiceDefinition:
         request, response = (
-            resolve(half, self._parsed, self._messages) for half in parse_service(text, name)
+            resolve(half, self._parsed, self._messages, self._most)
+            for half in parse_service(text, name)
         )
         return ServiceDefinition(name, text, request, response)
 

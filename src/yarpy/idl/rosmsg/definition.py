@@ -104,21 +104,26 @@ def split_full_text(name: str, text: str) -> dict[str, str]:
 
 
 def resolve(
-    parsed: MessageText, find: Callable[[str, str], MessageText], known: dict[str, Definition]
+    parsed: MessageText,
+    find: Callable[[str, str], MessageText],
+    known: dict[str, Definition],
+    most: int = MAX_DECLARATIONS,
 ) -> Definition:
     """The type of a text. `find(name, within)` gives the texts of others or raises; what is in
-    `known` is not asked for, what is found is put there."""
-    return _Resolver(find, known).resolve(parsed)
+    `known` is not asked for, what is found is put there. `most`: fields that are resolved."""
+    return _Resolver(find, known, most).resolve(parsed)
 
 
 class _Resolver:
     def __init__(
-        self, find: Callable[[str, str], MessageText], known: dict[str, Definition]
+        self, find: Callable[[str, str], MessageText], known: dict[str, Definition], most: int
     ) -> None:
         self.find = find
         self.known = known
+        self.most = most
         self.path: list[str] = []
         self.declared = 0
+        self.fields = 0
 
     def resolve(self, parsed: MessageText) -> Definition:
         if len(self.path) == MAX_DEPTH:
@@ -129,6 +134,11 @@ class _Resolver:
             raise DecodeError(
                 f"{self.path[0]}: more than {MAX_DECLARATIONS} fields and constants, with those of "
                 "the messages in it"
+            )
+        self.fields += len(parsed.fields)
+        if self.fields > self.most:
+            raise DecodeError(
+                f"{self.path[0]}: more than {self.most} fields, with those of the messages in it"
             )
         used: dict[str, Definition] = {}
         fields = []

@@ -3,6 +3,8 @@ and written.
 
 Rules: made from a Definition and the classes of the types in it, nothing else. A default is made
 anew for each object; numbers side by side are arrays, which have the length that is declared.
+What has to be compiled is compiled when it is first used: a type may come from a stranger who
+never sends a value of it.
 """
 
 from __future__ import annotations
@@ -36,7 +38,6 @@ def make(
         "__slots__": names,
         "__doc__": documentation(struct),
         "__module__": f"{_PACKAGE}.{package}" if package else _PACKAGE,
-        "__init__": _initialiser(struct, used),
         "__annotations__": {attribute(item): annotation(item.type) for item in struct.fields},
         "_type": definition.name,
         "_md5sum": definition.md5sum,
@@ -52,16 +53,27 @@ def make(
     }
     made: type[Message] = type(name, (Message,), namespace)
     classes = {**used, struct: made}
-    read = reader.reader(struct, classes, {kind: cls._read for kind, cls in used.items()})
-    write = writer.writer(struct, {kind: cls._write for kind, cls in used.items()})
-    for attr, value in {
-        "_read": staticmethod(read),
-        "_write": staticmethod(write),
-        "from_ros": staticmethod(reader.whole(definition.name, read)),
-        "to_ros": writer.whole(struct, write),
+    for attr, make_it in {
+        "__init__": lambda: _initialiser(struct, used),
+        "_read": lambda: staticmethod(reader.reader(struct, classes)),
+        "_write": lambda: staticmethod(writer.writer(struct, used)),
+        "from_ros": lambda: staticmethod(reader.whole(definition.name, made._read)),
+        "to_ros": lambda: writer.whole(struct, made._write),
     }.items():
-        setattr(made, attr, value)
+        setattr(made, attr, _Late(made, attr, make_it))
     return made
+
+
+class _Late:
+    """An attribute of a class that is made when it is first asked for."""
+
+    def __init__(self, owner: type[Message], name: str, make_it: Callable[[], Any]) -> None:
+        self._owner, self._name, self._make_it = owner, name, make_it
+
+    def __get__(self, instance: Message | None, owner: type[Message]) -> Any:
+        found = self._make_it()
+        setattr(self._owner, self._name, found)  # of two threads the later one wins
+        return found.__get__(instance, owner)
 
 
 def annotation(kind: Type) -> str:

@@ -17,7 +17,7 @@ from weakref import finalize
 
 from yarpy.errors import DecodeError, UnknownType
 from yarpy.idl.rosmsg.catalogue import Catalogue
-from yarpy.idl.rosmsg.definition import Definition, ServiceDefinition
+from yarpy.idl.rosmsg.definition import MAX_DECLARATIONS, Definition, ServiceDefinition
 from yarpy.idl.rosmsg.factory import make
 from yarpy.idl.rosmsg.message import Message
 from yarpy.idl.rosmsg.source import Source
@@ -90,20 +90,20 @@ class Library:
         """A service type. UnknownType, DecodeError."""
         return self._service(self.catalogue.service(name), self._classes)
 
-    def message_of(self, name: str, full_text: str) -> type[Message]:
+    def message_of(self, name: str, full_text: str, most: int = MAX_DECLARATIONS) -> type[Message]:
         """The class of a type as a peer describes it (`type` and `message_definition` of its
-        connection). UnknownType, DecodeError."""
+        connection), of at most so many fields. UnknownType, DecodeError."""
         key = name, sha256(full_text.encode("utf-8", "surrogatepass")).digest()
         found = self._texts.get(key)
         if found is None:
-            found = self._class(self.catalogue.message_of(name, full_text), self._met)
+            found = self._class(self.catalogue.message_of(name, full_text, most), self._met)
             self._texts[key] = found
             _trim(self._texts)
         return found
 
-    def service_of(self, name: str, full_text: str) -> Service:
+    def service_of(self, name: str, full_text: str, most: int = MAX_DECLARATIONS) -> Service:
         """A service type as a peer describes it. UnknownType, DecodeError."""
-        return self._service(self.catalogue.service_of(name, full_text), self._met)
+        return self._service(self.catalogue.service_of(name, full_text, most), self._met)
 
     def _service(
         self, definition: ServiceDefinition, classes: dict[_Key, type[Message]]

@@ -33,12 +33,9 @@ _INLINE: Final = 100
 _COUNT: Final = 4
 
 
-def reader(
-    struct: Struct, classes: Mapping[Struct, type[Message]], reads: Mapping[Struct, Read]
-) -> Read:
-    """The function that reads a type. `classes` has those of all structs that are in it, `reads`
-    the functions of those in its lists."""
-    writer = _Reader(classes, reads, struct.name)
+def reader(struct: Struct, classes: Mapping[Struct, type[Message]]) -> Read:
+    """The function that reads a type. `classes` has its own, and those of all structs in it."""
+    writer = _Reader(classes)
     writer.struct(struct, "_o", struct.name)
     writer.flush()
     writer.code.line("return _o, _p")
@@ -68,11 +65,8 @@ def whole(name: str, read: Read) -> Callable[[Buffer], Any]:
 
 
 class _Reader:
-    def __init__(
-        self, classes: Mapping[Struct, type[Message]], reads: Mapping[Struct, Read], name: str
-    ) -> None:
+    def __init__(self, classes: Mapping[Struct, type[Message]]) -> None:
         self.classes = classes
-        self.reads = reads
         self.code = Code()
         self.code.globals.update(
             _str=str, _range=range, _short=_short, _take=_take, _times=_times, _tuple=tuple.__new__,
@@ -103,7 +97,7 @@ class _Reader:
         if isinstance(kind, Struct):
             if kind.parts > self.inline:
                 self.flush()
-                read = self.code.name(self.reads[kind])
+                read = self.code.name(self.classes[kind]._read)
                 self.code.line(f"{target}, _p = {read}(_b, _p, _size, _room)")
                 return
             self.inline -= kind.parts
@@ -167,7 +161,7 @@ class _Reader:
         self.code.line(f"for _ in _range({count}):")
         self.code.indent(1)
         if isinstance(element, Struct):
-            read = self.code.name(self.reads[element])
+            read = self.code.name(self.classes[element]._read)
             self.code.line(f"_x, _p = {read}(_b, _p, _size, _room)")
         else:
             self.code.line(f"_n, = {self.code.name(Packing('<I').unpack_from)}(_b, _p)")

@@ -15,7 +15,7 @@ from yarpy.data.value import BIG, Blocks
 from yarpy.idl.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.rosmsg.fault import array_of, fault, wrong_length
-from yarpy.idl.rosmsg.message import attribute
+from yarpy.idl.rosmsg.message import Message, attribute
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,9 +26,9 @@ Write = Callable[[Any, Callable[[bytes | memoryview], None]], None]
 _INLINE = 100
 
 
-def writer(struct: Struct, writes: Mapping[Struct, Write]) -> Write:
-    """The function that writes a type; `writes` has those of the structs in its lists."""
-    made = _Writer(writes)
+def writer(struct: Struct, classes: Mapping[Struct, type[Message]]) -> Write:
+    """The function that writes a type; `classes` has those of the structs in it."""
+    made = _Writer(classes)
     made.struct(struct, "_o", struct.name)
     made.flush()
     write: Write = made.code.compiled("_write", "_o, _add")
@@ -65,8 +65,8 @@ def joined(pieces: list[bytes | memoryview]) -> Blocks:
 
 
 class _Writer:
-    def __init__(self, writes: Mapping[Struct, Write]) -> None:
-        self.writes = writes
+    def __init__(self, classes: Mapping[Struct, type[Message]]) -> None:
+        self.classes = classes
         self.code = Code()
         self.code.globals.update(_len=len, _str=str, _wrong=wrong_length)
         #: lines that follow the numbers of the run
@@ -90,7 +90,7 @@ class _Writer:
         if isinstance(kind, Struct):
             if kind.parts > self.inline:
                 self.flush()
-                self.code.line(f"{self.code.name(self.writes[kind])}({source}, _add)")
+                self.code.line(f"{self.code.name(self.classes[kind]._write)}({source}, _add)")
                 return
             self.inline -= kind.parts
             inner = self.code.variable()
@@ -138,7 +138,7 @@ class _Writer:
         self.code.line(f"for _x in {items}:")
         self.code.indent(1)
         if isinstance(element, Struct):
-            self.code.line(f"{self.code.name(self.writes[element])}(_x, _add)")
+            self.code.line(f"{self.code.name(self.classes[element]._write)}(_x, _add)")
         else:
             assert isinstance(element, Primitive)
             self.primitive(element, "_x")
