@@ -122,13 +122,15 @@ class RosMaster:
         """Where a node answers; None if the master knows none of that name. Raises as `call`."""
         return self._look_up("lookupNode", name, "http")
 
-    def service(self, name: str) -> Uri | None:
+    def service(self, name: str, timeout: float | None = None) -> Uri | None:
         """Where a service listens; None if there is none. Raises as `call`."""
-        return self._look_up("lookupService", name, "rosrpc")
+        return self._look_up("lookupService", name, "rosrpc", timeout)
 
-    def _look_up(self, method: str, name: str, scheme: str) -> Uri | None:
+    def _look_up(
+        self, method: str, name: str, scheme: str, timeout: float | None = None
+    ) -> Uri | None:
         try:
-            found = self.call(method, "/yarpy", name)
+            found = self.call(method, "/yarpy", name, timeout=timeout)
         except LocalProtocolError:
             return None
         try:

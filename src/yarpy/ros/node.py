@@ -19,20 +19,10 @@ from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
 from typing import Any, Final, Self, TypeAlias, TypeVar
 
-from yarpy.contact import Contact
 from yarpy.data.stamp import Stamp
-from yarpy.data.value import Vocab
-from yarpy.errors import (
-    LocalProtocolError,
-    NoNameServer,
-    RemoteProtocolError,
-    UnknownName,
-    YarpError,
-)
+from yarpy.errors import LocalProtocolError, NoNameServer, UnknownName, YarpError
 from yarpy.idl.rosmsg.library import Service, default_library
 from yarpy.idl.rosmsg.message import Message as RosMessage
-from yarpy.link import handshake
-from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.node_name import (
     PUBLISHER,
@@ -49,12 +39,12 @@ from yarpy.port.base import BasePort
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox
 from yarpy.port.port import MessagePort, envelope_of
 from yarpy.port.rpc import RpcServer
+from yarpy.ros.calls import Calls
 from yarpy.ros.graph import GRAPH, GraphNode
 from yarpy.ros.membership import Membership
 from yarpy.ros.part import RosPart, services, without_masters
 from yarpy.ros.type_server import ask_type_server
-from yarpy.route import Declared, Route
-from yarpy.wire.message import CALL, Message, Packet
+from yarpy.wire.message import Message, Packet
 
 P = TypeVar("P", bound=BasePort)
 
@@ -143,7 +133,7 @@ class Node:
         else:
             self._names, self.master = _found(names)
         self._ports: list[Any] = []
-        self._calls: dict[str, Outbound] = {}
+        self._calls = Calls(self.name, self.master)
         plain = without_masters(self._names)
         self._node: GraphNode = GRAPH.use(self.name, self.master, plain, open_hub)
         self._closed = False
@@ -219,50 +209,14 @@ class Node:
 
         `arguments` are an object of the request type, a dict of its fields, or the fields. Raises
         UnknownName (nobody serves it), RemoteProtocolError (the server failed, and says why; or is
-        of another type), Timeout, LinkClosed.
+        of another type), Timeout, LinkClosed, NoNameServer. Calls of a service take turns.
         """
         kind = _service(type_)
-        question = _question(kind, arguments)
-        name = self.resolve(service)
-        link = self._connected(name, kind)
-        reply = link.call(Packet(question, key=CALL), timeout)
-        if reply is None:
-            raise RemoteProtocolError(f"{name} gives no answer")
-        if isinstance(found := getattr(reply, "ros", None), RosMessage):
-            return found
-        reason = reply.value
-        text = str(reason[1]) if len(reason) > 1 else "it does not say why"
-        if isinstance(reason[0], Vocab):
-            raise RemoteProtocolError(f"{name} failed: {text}")
-        raise RemoteProtocolError(f"{name} answers nothing that can be read")
-
-    def _connected(self, name: str, kind: Service) -> Outbound:
-        """A connection to a service: the one there is, if it lives."""
-        key = f"{name} {kind.md5sum}"
-        link = self._calls.get(key)
-        if link is not None and not link.ended():
-            return link
-        where = self.master.service(name)
-        if where is None:
-            raise UnknownName(
-                f'nobody serves "{name}": is its program running? (`rosservice list`)'
-            )
-        declared = Declared(self.name, name, kind.name, kind)
-        route = Route(self.name, name, f"rossrv+service.{name}", where.port, declared=declared)
-        contact = Contact("rossrv", name, where.host, where.port)
-        link = Outbound(*handshake.greet(contact, route))
-        self._calls[key] = link
-        return link
+        return self._calls.call(self.resolve(service), kind, _question(kind, arguments), timeout)
 
     def wait_for_service(self, service: str, timeout: float | None = None) -> bool:
         """Wait until somebody serves it; False if time is over. Raises NoNameServer."""
-        name = self.resolve(service)
-        deadline = None if timeout is None else time.monotonic() + timeout
-        while self.master.service(name) is None:
-            if deadline is not None and time.monotonic() >= deadline:
-                return False
-            time.sleep(0.05)
-        return True
+        return self._calls.wait(self.resolve(service), timeout)
 
     # -- parameters -------------------------------------------------------------------------------
 
@@ -330,8 +284,7 @@ class Node:
         self._closed = True
         for port in self._ports:
             port.close()
-        for link in self._calls.values():
-            link.close()
+        self._calls.close()
         GRAPH.leave(self._node)
 
     def __enter__(self) -> Self:
