@@ -104,11 +104,17 @@ def test_addresses_that_are_none(text: str) -> None:
         parse_uri(text)
 
 
-def test_the_advertised_host() -> None:
+def test_the_advertised_host(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("YARPY_BIND", raising=False)
     assert advertised_host({"ROS_HOSTNAME": "robot", "ROS_IP": "10.0.0.1"}) == "robot"
     assert advertised_host({"ROS_IP": "10.0.0.1"}) == "10.0.0.1"
     assert advertised_host({"YARP_IP": "10.0.0.2"}) == "10.0.0.2"
     assert advertised_host({})
+    monkeypatch.setenv("YARPY_BIND", "local")
+    assert advertised_host({"ROS_HOSTNAME": "robot", "ROS_IP": "10.0.0.1"}) == "127.0.0.1"
+    monkeypatch.setenv("YARPY_BIND", "10.0.0.7")
+    assert advertised_host({"ROS_HOSTNAME": "robot"}) == "robot"
+    assert advertised_host({}) == "10.0.0.7"
 
 
 def test_examples() -> None:

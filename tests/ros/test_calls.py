@@ -41,9 +41,9 @@ def test_the_time_of_a_call_covers_dialling(
     monkeypatch.setattr(handshake, "greet", noted)
     where = f"rosrpc://127.0.0.1:{silent}"
     graph.master.call("registerService", "/deaf", "/silence", where, "http://127.0.0.1:1/")
-    with Node("/impatient") as node:
-        with pytest.raises(Timeout, match=rf"/silence was not called within .*:{silent} did not"):
-            node.call("/silence", TRIGGER, timeout=0.2)
+    match = rf"/silence was not called within .*:{silent} did not"
+    with Node("/impatient") as node, pytest.raises(Timeout, match=match):
+        node.call("/silence", TRIGGER, timeout=0.2)
     assert given[0] <= 0.2
     graph.master.call("unregisterService", "/deaf", "/silence", where)
 

@@ -239,3 +239,37 @@ print("saw", image.width, image.height, image.encoding, image.header.stamp.to_ns
         assert (message.as_(yarpy.Image).array == pixels).all()
         stamp = message.stamp
         assert stamp is not None and stamp.time > 1e9
+
+
+def test_a_port_of_yarp_is_a_topic_too(graph: RosGraph) -> None:
+    names = yarpy.LocalNames()
+    with (
+        yarpy.Port("/eye", names=names) as port,
+        yarpy.BufferedPort("/viewer", names=names, strict=True) as viewer,
+        Node("/watcher") as watcher,
+    ):
+        port.connect("/viewer")
+        pixels = np.arange(12, dtype="u1").reshape(3, 4)
+        with Node("/eyes") as node:
+            node.attach(port, "~left", "sensor_msgs/Image")
+            with pytest.raises(AddressError, match="/eye is a topic or a service of a node"):
+                node.attach(port, "~right", "sensor_msgs/Image")
+            with (
+                yarpy.Port("/other", names=names) as other,
+                pytest.raises(AddressError, match="publishes /eyes/left already"),
+            ):
+                node.attach(other, "~left", "sensor_msgs/Image")
+            images = watcher.subscriber("/eyes/left", "sensor_msgs/Image")
+            wait_until(lambda: images.inputs, patience(10), "the subscriber has come")
+            port.write(yarpy.Image(pixels), yarpy.Stamp(3, 12.5))
+            image = images.take(timeout=patience(5))
+            assert (image.encoding, image.header.seq) == ("mono8", 3)
+            assert image.header.stamp == (12, 500_000_000)
+            assert (viewer.read(timeout=patience(5)).as_(yarpy.Image).array == pixels).all()
+        assert "Publishers: None" in graph.tool("rostopic", "info", "/eyes/left")
+        port.write("still a port")
+        assert viewer.read(timeout=patience(5)).value == "still a port"
+        with Node("/others") as node:
+            node.attach(port, "/again", "std_msgs/String")
+            port.close()
+            assert "/others" not in graph.tool("rosnode", "list").split()

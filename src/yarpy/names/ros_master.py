@@ -185,11 +185,13 @@ def uri_of(host: str, port: int, scheme: str = "http") -> str:
 
 def advertised_host(environment: Mapping[str, str] = os.environ) -> str:
     """The host under which nodes of this computer are known: ROS_HOSTNAME, ROS_IP, or the address
-    that leads outward."""
+    that leads outward; but of one that no other computer reaches, the loopback."""
+    bound = listening_host()
+    if is_loopback(bound):
+        return bound
     for variable in ("ROS_HOSTNAME", "ROS_IP"):
         if environment.get(variable):
             return environment[variable]
-    bound = listening_host()
     if bound:
         return bound
     chosen = environment.get("YARP_IP", "")

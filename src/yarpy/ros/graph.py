@@ -121,8 +121,11 @@ class GraphNode:
 
         def close() -> None:
             for member in self.members:
-                if member.hub is not None:
-                    member.hub.close()
+                hub = member.hub
+                if hub is not None and not member.attached:
+                    hub.close()
+                elif hub is not None and hub.seat is not None:
+                    hub.seat.leave()
             if self.on_shutdown is not None:
                 self.on_shutdown()
 

@@ -74,12 +74,14 @@ class Place:
 @dataclass(eq=False)
 class Membership:
     """What a port does in the graph. `kind` is the class of its messages, or a Service; None: it
-    takes that of its peers. `latched`: who subscribes late gets the last message."""
+    takes that of its peers. `latched`: who subscribes late gets the last message. `attached`: the
+    port was there before, and outlives the node."""
 
     name: NodeName
     type: str = ""
     kind: Any = None
     latched: bool = False
+    attached: bool = False
     clock: Callable[[], float] = time.time
     hub: Hub | None = None
     place: Place | None = None

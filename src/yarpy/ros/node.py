@@ -20,7 +20,13 @@ from types import TracebackType
 from typing import Any, Final, Self, TypeAlias, TypeVar
 
 from yarpy.data.stamp import Stamp
-from yarpy.errors import LocalProtocolError, NoNameServer, UnknownName, YarpError
+from yarpy.errors import (
+    AddressError,
+    LocalProtocolError,
+    NoNameServer,
+    UnknownName,
+    YarpError,
+)
 from yarpy.idl.rosmsg.library import Service, default_library
 from yarpy.idl.rosmsg.message import Message as RosMessage
 from yarpy.names.base import NameClient
@@ -36,14 +42,16 @@ from yarpy.names.node_name import (
 from yarpy.names.ros_master import DEFAULT_URI, VARIABLE, RosMaster
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
+from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox
 from yarpy.port.port import MessagePort, envelope_of
 from yarpy.port.rpc import RpcServer
 from yarpy.ros.calls import Calls
-from yarpy.ros.graph import GRAPH, GraphNode
+from yarpy.ros.graph import GRAPH, GraphNode, join
 from yarpy.ros.membership import Membership
 from yarpy.ros.part import RosPart, services, without_masters
 from yarpy.ros.type_server import ask_type_server
+from yarpy.route import Declared
 from yarpy.wire.message import Message, Packet
 
 P = TypeVar("P", bound=BasePort)
@@ -133,6 +141,7 @@ class Node:
         else:
             self._names, self.master = _found(names)
         self._ports: list[Any] = []
+        self._attached: list[tuple[Hub, Declared]] = []  # with what they said of themselves before
         self._calls = Calls(self.name, self.master)
         plain = without_masters(self._names)
         self._node: GraphNode = GRAPH.use(self.name, self.master, plain, open_hub)
@@ -153,6 +162,27 @@ class Node:
         member = self._member(topic, PUBLISHER, kind._type, kind)
         member.latched = latch
         return self._keep(Publisher(self, member, kind))
+
+    def attach(self, port: BasePort, topic: str, type_: Type) -> None:
+        """Publish what an open port of YARP writes as a topic too, until either is closed.
+
+        Its messages become messages of the type (`docs/ros.md` says which do); what does not fit
+        is not sent, and the log says why. Raises AddressError for a port that belongs to a topic
+        already, UnknownType.
+        """
+        hub = port._hub
+        if hub.seat is not None:
+            raise AddressError(f"{port.name} is a topic or a service of a node already")
+        kind = _message_class(type_)
+        member = self._member(topic, PUBLISHER, kind._type, kind)
+        member.attached = True
+        before, hub.registration.declared = hub.registration.declared, member.declared
+        try:
+            join(member, hub, self.master, without_masters(self._names), open_hub)
+        except YarpError:
+            hub.registration.declared = before
+            raise
+        self._attached.append((hub, before))
 
     def subscriber(
         self,
@@ -284,6 +314,11 @@ class Node:
         self._closed = True
         for port in self._ports:
             port.close()
+        for hub, before in self._attached:
+            seat, hub.seat = hub.seat, None
+            hub.registration.declared = before
+            if seat is not None:
+                seat.leave()
         self._calls.close()
         GRAPH.leave(self._node)
 

@@ -26,6 +26,7 @@ from yarpy.sim.joint import Joint
 
 if TYPE_CHECKING:
     from yarpy.names.base import NameClient
+    from yarpy.port.base import BasePort
 
 NAME: Final = "/icubSim"
 FPS: Final = 30.0
@@ -71,7 +72,9 @@ class Robot(Closeable):
         from yarpy.devices import ControlBoardServer, FrameGrabberServer, MultiSensorServer
 
         self.name = name = prefix(name)
+        self.parts = parts
         self.ports: list[str] = []  # prefixes
+        self.images: dict[str, BasePort] = {}  # the ports of the cameras, by their parts' names
         with ExitStack() as resources:
             for part, board in parts.boards.items():
                 server = ControlBoardServer(f"{name}/{part}", board, names=names)
@@ -79,6 +82,7 @@ class Robot(Closeable):
             for part, camera in parts.cameras.items():
                 grabber = FrameGrabberServer(f"{name}/{part}", camera, 1 / fps, names=names)
                 self.ports.append(resources.enter_context(grabber).name)
+                self.images[part] = grabber.images
             for part, sensors in parts.sensors.items():
                 measures = MultiSensorServer(f"{name}/{part}", sensors, names=names)
                 self.ports.append(resources.enter_context(measures).name)

@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 from support.command_line import CommandLine
 from support.patience import patience
+from support.port import free_port
 from support.process import Process
+from support.ros_graph import ros_graph
 from support.wait import wait_until
 
 PATIENCE = patience(30.0)
@@ -30,6 +32,7 @@ def lonely(tmp_path_factory: pytest.TempPathFactory) -> CommandLine:
 def demo(lonely: CommandLine):
     with lonely.start("demo") as process:
         process.wait_line("Ctrl-C ends it all", timeout=PATIENCE)
+        assert "With ROS" not in process.stdout
         yield process
         process.signal(signal.SIGINT)
         assert process.wait(PATIENCE) == 0, process.stderr
@@ -164,3 +167,29 @@ def test_others_reach_it_only_when_asked(lonely: CommandLine, options: list[str]
             assert reached == bool(options)
         process.signal(signal.SIGINT)
         assert process.wait(PATIENCE) == 0
+
+
+def test_it_is_a_node_where_a_ros_master_answers(tmp_path: Path):
+    with ros_graph(tmp_path) as graph:
+        lonely = CommandLine(tmp_path, {"ROS_MASTER_URI": graph.uri})
+        with lonely.start("demo", "--no-browser") as process:
+            process.wait_line("Ctrl-C ends it all", timeout=PATIENCE)
+            assert f"With ROS, whose master answers at {graph.uri}:" in process.stdout
+            echo = line(process, "rostopic echo").split()
+            assert "neck_yaw" in graph.tool(*echo, "-n", "1")
+            service = line(process, "rosservice call").split()[2]
+            assert "SetModelConfiguration" in graph.tool("rosservice", "type", service)
+            topic = line(process, "image_view").partition(":=")[2]
+            assert "sensor_msgs/Image" in graph.tool("rostopic", "type", topic)
+            process.signal(signal.SIGINT)
+            assert process.wait(PATIENCE) == 0, process.stderr
+            assert process.stderr == ""
+        assert "/icubSim" not in graph.tool("rosnode", "list").split()
+
+
+@pytest.mark.parametrize("uri", ["http://127.0.0.1:{}/", "http://nowhere.invalid:{}/", "nonsense"])
+def test_it_is_silent_without_a_ros_master(lonely: CommandLine, tmp_path: Path, uri: str):
+    other = CommandLine(tmp_path, {"ROS_MASTER_URI": uri.format(free_port())})
+    said = other.run("demo", "--no-browser", "--seconds", "0.2", timeout=PATIENCE)
+    assert (said.returncode, said.stderr) == (0, "")
+    assert "ROS" not in said.stdout

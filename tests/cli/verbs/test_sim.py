@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from support.patience import patience
+from support.ros_graph import ros_graph
 from support.wait import wait_until
 
 import yarpy
@@ -33,6 +34,21 @@ def test_robot_of_a_name(cli, names):
         assert process.wait() == 0, process.stderr
         assert "Traceback" not in process.stderr
     assert names.list("/robbie") == []
+
+
+def test_a_node_of_ros(tmp_path):
+    with ros_graph(tmp_path) as graph:
+        assert graph.yarpy("namespace", "/ros").wait() == 0
+        assert graph.yarpy("detect", "--ros").wait() == 0
+        with graph.yarpy("sim", "--ros", "--size", "64x48", ROS_MASTER_URI="") as process:
+            process.wait_line(r"^/icubSim is ready", stream="out", timeout=PATIENCE)
+            topics = graph.tool("rostopic", "list").split()
+            for topic in ("/icubSim/joint_states", "/icubSim/cam/left", "/icubSim/cam/right"):
+                assert topic in topics
+            assert "neck_yaw" in graph.tool("rostopic", "echo", "-n", "1", "/icubSim/joint_states")
+            process.signal(signal.SIGINT)
+            assert process.wait(PATIENCE) == 0, process.stderr
+        assert "/icubSim" not in graph.tool("rosnode", "list").split()
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,10 @@
     --no-browser   open no browser
     --lan          let the other computers of this network see and move the robot too
 
-It prints what to try, with curl, with netcat, with yarpy, with C++ YARP. The numbers of its ports
-are 10000 and those behind it, or any free ones if somebody has those. Nothing is written to the
-configuration. Exit code: 0.
+It prints what to try, with curl, with netcat, with yarpy, with C++ YARP, and with ROS where a
+master answers on this computer (with --lan: anywhere). The numbers of its ports are 10000 and those
+behind it, or any free ones if somebody has those. Nothing is written to the configuration.
+Exit code: 0.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import logging
 import os
 import sys
 import threading
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -58,8 +60,19 @@ With C++ YARP, after `yarp conf {where}`:
   yarpmotorgui --robot {bare} --parts "(head)"
 
 In a C++ program: device remote_controlboard, remote {robot}/head, local /client.
-Ctrl-C ends it all.
+{ros}Ctrl-C ends it all.
 """
+
+TRY_ROS: Final = """
+With ROS, whose master answers at {master}:
+
+  rostopic echo {robot}/joint_states
+  rosrun image_view image_view image:={robot}/cam/left
+  rosservice call {robot}/set_model_configuration '' '' '[neck_yaw]' '[0.5]'
+
+"""
+
+QUICK: Final = 0.5  # seconds for a ROS master to answer
 
 
 @click.command()
@@ -79,10 +92,11 @@ def command(seconds: float | None, no_browser: bool, lan: bool) -> int:
         with (
             _name_server() as server,
             Robot(NAME, icub_head(), names=server.client) as robot,
+            _in_ros(robot, master := _ros_master(lan)),
             _page(server) as page,
         ):
             Panel(page, robot.name, server.client)
-            print_line(_advice(server, robot, page))
+            print_line(_advice(server, robot, page, master))
             if not no_browser:
                 open_page(url_of(page.address))
             threading.Event().wait(seconds)
@@ -115,7 +129,41 @@ def _page(server: yarpy.NameServer) -> yarpy.Port:
     raise AssertionError("unreachable")
 
 
-def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port) -> str:
+def _ros_master(lan: bool) -> str:
+    """Where a ROS master answers that can reach the robot; "" if there is none."""
+    from yarpy.config.configuration import configuration
+    from yarpy.names.address import is_local
+    from yarpy.names.ros_master import VARIABLE, RosMaster, parse_uri, uri_of
+
+    stored = [each for each in configuration(os.environ).servers if each.mode == "ros"]
+    uri = os.environ.get(VARIABLE) or next((uri_of(each.host, each.port) for each in stored), "")
+    found: list[str] = []
+
+    def ask() -> None:
+        try:
+            master = RosMaster(uri, QUICK)
+            if (lan or is_local(parse_uri(uri).host)) and master.answers():
+                found.append(master.uri)
+        except (yarpy.YarpError, OSError):
+            pass  # there is none
+
+    if uri:
+        asking = threading.Thread(target=ask, name="yarpy ros", daemon=True)
+        asking.start()
+        asking.join(2 * QUICK)  # a host that has to be looked up may take longer
+    return found[0] if found else ""
+
+
+def _in_ros(robot: Robot, master: str) -> AbstractContextManager[object]:
+    """The robot as a node of ROS too, if there is a master."""
+    if not master:
+        return nullcontext()
+    from yarpy.sim.ros_robot import RosRobot
+
+    return RosRobot(robot, master)
+
+
+def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port, master: str) -> str:
     from yarpy.names.address import is_loopback, outward_address
     from yarpy.transports.bind import listening_host
 
@@ -133,6 +181,7 @@ def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port) -> str:
         rpc=rpc.address,
         nc=rpc.address.replace(":", " "),
         yarpy=_own_name(),
+        ros=TRY_ROS.format(robot=robot.name, master=master) if master else "",
     )
 
 

@@ -4,6 +4,7 @@
     --fps HZ          pictures per second of its cameras (30)
     --size WxH        of its pictures, in pixels (320x240)
     --mujoco FILE     this model instead of the head: joints, cameras, inertial sensors
+    --ros             as a node of ROS 1 too: pictures, joint states, a service that moves joints
 
 Exit codes: 0 ended by a signal; 1 the names are in use, the file is no model, MuJoCo is missing.
 """
@@ -55,7 +56,10 @@ class Size(click.ParamType[tuple[int, int]]):
     metavar="FILE",
     help="Simulate this MuJoCo model (XML) instead.",
 )
-def command(robot: str | None, fps: float, size: tuple[int, int], model: str | None) -> int:
+@click.option("--ros", is_flag=True, help="Be a node of ROS 1 too.")
+def command(
+    robot: str | None, fps: float, size: tuple[int, int], model: str | None, ros: bool
+) -> int:
     """Simulate a robot: joints, cameras and sensors on YARP ports."""
     from yarpy.sim.robot import NAME, Robot, icub_head
 
@@ -72,6 +76,11 @@ def command(robot: str | None, fps: float, size: tuple[int, int], model: str | N
     with signals.held():
         opened = Robot(robot or name, parts, fps)
         click.get_current_context().call_on_close(opened.close)
+        if ros:
+            from yarpy.sim.ros_robot import RosRobot
+
+            node = RosRobot(opened)
+            click.get_current_context().call_on_close(node.close)
     print_line(f"{opened.name} is ready: {' '.join(opened.ports)}")
     try:
         threading.Event().wait()

@@ -39,6 +39,7 @@ class FrameGrabberServer(Closeable):
     period: seconds between images.
     names: a name client, None for the default.
     Raises AddressError (a name is in use), NoNameServer; ValueError if the device has no image().
+    `images` is the port of the images.
     """
 
     def __init__(
@@ -58,7 +59,7 @@ class FrameGrabberServer(Closeable):
         self._stamp = Stamp()
         with ExitStack() as resources:
             self._rpc = resources.enter_context(RpcServer(f"{name}/rpc", self._answer, names=names))
-            self._images = resources.enter_context(
+            self.images = resources.enter_context(
                 BufferedPort(name, callback=self._reply, names=names, port_type="yarp/image")
             )
             self._publisher = Publisher(name, period, self._publish)
@@ -96,7 +97,7 @@ class FrameGrabberServer(Closeable):
             message.reply(self._answer(message))
 
     def _publish(self) -> None:
-        if not self._images.outputs:
+        if not self.images.outputs:
             return
         try:
             image = self._grab()
@@ -105,4 +106,4 @@ class FrameGrabberServer(Closeable):
         when = self._camera.ask("timestamp") if self._camera.has("timestamp") else time.time()
         self._responder.size = image.width, image.height
         self._stamp = self._stamp.next(float(when))
-        self._images.write(image, self._stamp)
+        self.images.write(image, self._stamp)

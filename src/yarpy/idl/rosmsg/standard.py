@@ -63,5 +63,17 @@ bool is_dense
     "audio_common_msgs/AudioData": "uint8[] data\n",
 }
 
-#: what a type server is asked by, since whoever asks needs no definition for that
-SERVICES: Final = {"test_roscpp/TestStringString": "string str\n---\nstring str\n"}
+#: by which a type server is asked, and by which the simulated robot is moved: neither needs a
+#: definition that somebody has
+SERVICES: Final = {
+    "test_roscpp/TestStringString": "string str\n---\nstring str\n",
+    "gazebo_msgs/SetModelConfiguration": """\
+string model_name
+string urdf_param_name
+string[] joint_names
+float64[] joint_positions
+---
+bool success
+string status_message
+""",
+}

@@ -1,0 +1,123 @@
+"""RosRobot: a simulated robot as a node of ROS 1, beside its ports of YARP.
+
+    /icubSim/cam/left                   sensor_msgs/Image, each camera
+    /icubSim/joint_states               sensor_msgs/JointState, all joints of all parts
+    /icubSim/set_model_configuration    gazebo_msgs/SetModelConfiguration: moves joints
+
+Rules: ROS measures angles in radians and lengths in metres, YARP in degrees and millimetres. All
+names are below the robot's own, so that it is not taken for another one. Nothing is measured or
+drawn while nobody subscribes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from math import isfinite, radians
+from typing import Any, Final
+
+from yarpy.data.stamp import Stamp
+from yarpy.devices.closeable import Closeable
+from yarpy.devices.control_board.interface import ControlMode
+from yarpy.devices.publisher import Publisher
+from yarpy.names.node_name import ros_name
+from yarpy.ros.node import Node
+from yarpy.sim.robot import Robot
+
+PERIOD: Final = 0.02  # seconds between joint states
+SERVICE: Final = "gazebo_msgs/SetModelConfiguration"
+_UNITS: Final = {"prismatic": 0.001}  # metres in a millimetre
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """Where a joint is found, and what one of its units is in ROS."""
+
+    name: str
+    board: Any
+    number: int
+    unit: float
+
+
+class RosRobot(Closeable):
+    """Shows `robot` to ROS while it is open; a context manager. `master` as in ROS_MASTER_URI.
+
+    Raises AddressError if the robot has a name that ROS does not allow, NoNameServer.
+    """
+
+    def __init__(self, robot: Robot, master: str | None = None) -> None:
+        self._model = robot.name.strip("/")
+        self._joints = _joints(robot)
+        self._stamp = Stamp()
+        with ExitStack() as resources:
+            self.node = node = resources.enter_context(Node(robot.name, master=master))
+            for part, port in robot.images.items():
+                if "@" not in port.name:  # else it is a topic already, by its name
+                    node.attach(port, ros_name(f"{robot.name}/{part}"), "sensor_msgs/Image")
+            if self._joints:
+                self._states = node.publisher("~joint_states", "sensor_msgs/JointState")
+                node.service("~set_model_configuration", SERVICE, self._move)
+                publisher = Publisher(f"{robot.name}/joint_states", PERIOD, self._publish)
+                resources.callback(publisher.close)
+            self._resources = resources.pop_all()
+
+    def _publish(self) -> None:
+        """Send where the joints are, and how fast they move."""
+        if not self._states.outputs:
+            return
+        positions = {board: board.encoders() for board in self._boards()}
+        speeds = {board: board.encoder_speeds() for board in positions}
+        when = max(max(board.timestamps()) for board in positions)
+        self._stamp = self._stamp.next(when)
+        state = {
+            "name": [joint.name for joint in self._joints],
+            "position": [positions[each.board][each.number] * each.unit for each in self._joints],
+            "velocity": [speeds[each.board][each.number] * each.unit for each in self._joints],
+        }
+        self._states.write(state, self._stamp)
+
+    def _boards(self) -> dict[Any, None]:
+        return dict.fromkeys(joint.board for joint in self._joints)
+
+    def _move(self, asked: Any) -> tuple[bool, str]:
+        """Let joints move to positions; the answer does not wait until they are there."""
+        problem = self._problem(asked.model_name, asked.joint_names, asked.joint_positions)
+        if problem:
+            return False, problem
+        wanted = dict(zip(asked.joint_names, map(float, asked.joint_positions), strict=True))
+        for board in self._boards():
+            chosen = [joint for joint in self._joints if joint.board is board]
+            chosen = [joint for joint in chosen if joint.name in wanted]
+            if chosen:
+                numbers = [joint.number for joint in chosen]
+                board.switch_control_modes(numbers, [ControlMode.POSITION] * len(numbers))
+                board.position_move(numbers, [wanted[each.name] / each.unit for each in chosen])
+        return True, ""
+
+    def _problem(self, model: str, names: Sequence[str], positions: Sequence[float]) -> str:
+        """Why it cannot be done; "" if it can."""
+        known = [joint.name for joint in self._joints]
+        if model not in ("", self._model):
+            return f"there is no model {model!r} here, only {self._model}"
+        if len(names) != len(positions):
+            return f"{len(names)} names of joints with {len(positions)} positions"
+        for name, position in zip(names, positions, strict=True):
+            if name not in known:
+                return f"there is no joint {name!r}, only {', '.join(known)}"
+            if not isfinite(position):
+                return f"{name} cannot move to {position}"
+        return ""
+
+
+def _joints(robot: Robot) -> list[_Joint]:
+    """All joints, each with a name of its own: with its part's where two have the same."""
+    found: list[_Joint] = []
+    boards = robot.parts.boards
+    names = [name for board in boards.values() for name in board.axis_names]
+    for part, board in boards.items():
+        kinds = getattr(board, "axis_types", ["revolute"] * len(board.axis_names))
+        for number, (name, kind) in enumerate(zip(board.axis_names, kinds, strict=True)):
+            full = name if names.count(name) == 1 else f"{part}/{name}"
+            found.append(_Joint(full, board, number, _UNITS.get(kind, radians(1.0))))
+    return found
