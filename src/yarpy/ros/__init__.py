@@ -4,8 +4,8 @@
         chatter = node.publisher("/chatter", "std_msgs/String")
         chatter.write("hello")
 
-`node` is what programs use. Ports whose names are those of topics (`/chatter+@/talker`) belong to
-nodes as well; `membership` says how.
+`node` is what programs use; `bag_reader` and `bag_writer` are for the files of rosbag. Ports whose
+names are those of topics (`/chatter+@/talker`) belong to nodes as well; `membership` says how.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 _WHERE = {
+    "BagReader": "yarpy.ros.bag_reader",
+    "BagWriter": "yarpy.ros.bag_writer",
     "Node": "yarpy.ros.node",
     "Publisher": "yarpy.ros.node",
     "Subscriber": "yarpy.ros.node",
@@ -20,6 +22,8 @@ _WHERE = {
 }
 
 if TYPE_CHECKING:
+    from yarpy.ros.bag_reader import BagReader as BagReader
+    from yarpy.ros.bag_writer import BagWriter as BagWriter
     from yarpy.ros.node import Node as Node
     from yarpy.ros.node import Publisher as Publisher
     from yarpy.ros.node import Subscriber as Subscriber
