@@ -45,7 +45,7 @@ class Topic(NamedTuple):
     """What a file has of a topic: package/Type, and how many messages."""
 
     type: str
-    count: int
+    messages: int
 
 
 class BagReader:
@@ -62,7 +62,8 @@ class BagReader:
         self.path = Path(path)
         self._file = _Bounded(self.path)
         self._kinds: dict[int, type[Message]] = {}
-        self._reader: Any = Reader(self._file)
+        file: Any = self._file  # it has what is asked of a path
+        self._reader: Any = Reader(file)
         try:
             self._try(self._reader.open)
         except DecodeError:
@@ -82,11 +83,11 @@ class BagReader:
         found: dict[str, Topic] = {}
         for each in self._reader.connections:
             before = found.get(each.topic)
-            type_ = self._try(lambda each=each: peer_type_name(each.msgtype))
+            type_ = self._try(peer_type_name, each.msgtype)
             found[each.topic] = (
                 Topic(type_, each.msgcount)
                 if before is None
-                else before._replace(count=before.count + each.msgcount)
+                else before._replace(messages=before.messages + each.msgcount)
             )
         return found
 
@@ -110,11 +111,11 @@ class BagReader:
             connections, start=_nanoseconds(start), stop=_nanoseconds(end)
         )
         while True:
-            item = self._try(lambda: next(found, None))
+            item: Any = self._try(next, found, None)
             if item is None:
                 return
             connection, time, data = item
-            message = self._try(lambda c=connection, d=data: self._kind(c).from_ros(d))
+            message = self._try(self._decoded, connection, data)
             yield Recorded(connection.topic, message, Time(*divmod(time, _SECOND)))
 
     def __iter__(self) -> Iterator[Recorded]:
@@ -130,10 +131,13 @@ class BagReader:
             self._kinds[connection.id] = kind
         return kind
 
-    def _try(self, step: Callable[[], T]) -> T:
+    def _decoded(self, connection: Any, data: bytes) -> Message:
+        return self._kind(connection).from_ros(data)
+
+    def _try(self, step: Callable[..., T], *arguments: Any) -> T:
         """The result of a step. Whatever goes wrong in it is in the file: DecodeError."""
         try:
-            return step()
+            return step(*arguments)
         except YarpError as error:
             raise _with_path(error, self.path) from error
         except Exception as error:

@@ -1,0 +1,124 @@
+"""Programs written with roscpp, the C++ library of ROS: those of rosbag and of topic_tools."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.patience import patience
+from support.process import Process
+from support.ros_graph import RosGraph
+from support.wait import wait_until
+
+import yarpy
+from yarpy.idl.rosmsg.library import Library
+from yarpy.idl.rosmsg.native import to_value
+from yarpy.idl.rosmsg.source import Texts
+from yarpy.ros.bag_reader import BagReader
+from yarpy.ros.bag_writer import BagWriter
+from yarpy.ros.node import Node
+
+RECORD, PLAY = Path("/usr/lib/rosbag/record"), Path("/usr/lib/rosbag/play")
+RELAY, MUX = Path("/usr/lib/topic_tools/relay"), Path("/usr/lib/topic_tools/mux")
+
+
+def start(graph: RosGraph, program: Path, *words: str) -> Process:
+    """A program of roscpp, which ends with its `with` block."""
+    if not program.exists():
+        package = "python3-rosbag" if "rosbag" in str(program) else "topic-tools"
+        pytest.skip(f"missing of ROS 1: apt-get install {package}")
+    return Process([str(program), *words], env=graph.environment, cwd=graph.home)
+
+
+@pytest.fixture
+def node(graph: RosGraph) -> Iterator[Node]:
+    with Node("/beside_cpp") as found:
+        yield found
+
+
+def test_a_relay_hears_and_is_heard(graph: RosGraph, node: Node) -> None:
+    """It takes any type (`*`), and publishes as what it met."""
+    out = node.publisher("/images", "sensor_msgs/Image")
+    into = node.subscriber("/relayed", "sensor_msgs/Image")
+    pixels = np.arange(4 * 5 * 3, dtype="u1").reshape(4, 5, 3)
+    with start(graph, RELAY, "/images", "/relayed"):
+        assert out.wait_for_outputs(timeout=patience(20))
+
+        def arrived() -> bool:
+            out.write(yarpy.Image(pixels), yarpy.Stamp(7, 12.5))
+            return into.waiting > 0
+
+        wait_until(arrived, patience(20), "the relay publishes")
+        message = into.take(patience(10))
+        assert (to_value(message).array == pixels).all()
+        assert message.header.stamp == (12, 500_000_000)
+        assert "relay" in into.inputs[0].source
+    wait_until(lambda: not (out.outputs or into.inputs), patience(20), "its end is noticed")
+
+
+def test_rosbag_records_us_and_plays_to_us(graph: RosGraph, node: Node, tmp_path: Path) -> None:
+    path = tmp_path / "recorded.bag"
+    out = node.publisher("/steps", "sensor_msgs/JointState")
+    with start(graph, RECORD, "-O", str(path), "-l", "20", "/steps") as recorder:
+        assert out.wait_for_outputs(timeout=patience(20))
+        for number in range(20):
+            out.write({"name": ["a"], "position": [float(number)]})
+        assert recorder.wait(patience(20)) == 0
+    with BagReader(path) as bag:
+        assert [each.message.position[0] for each in bag] == [*range(20)]
+    steps = node.subscriber("/played", "sensor_msgs/JointState")
+    with start(graph, PLAY, "-d", "1", str(path), "/steps:=/played") as player:
+        assert [steps.take(patience(20)).position[0] for _ in range(20)] == [*range(20)]
+        assert player.wait(patience(20)) == 0
+
+
+def test_rosbag_plays_what_we_wrote(graph: RosGraph, node: Node, tmp_path: Path) -> None:
+    path = tmp_path / "ours.bag"
+    with BagWriter(path, "lz4") as bag:
+        for number in range(5):
+            bag.write("/ours", number, 100.0 + number / 100, "std_msgs/Int32")
+    heard = node.subscriber("/ours")
+    with start(graph, PLAY, "-d", "1", str(path)):
+        assert [heard.take(patience(20)).data for _ in range(5)] == [*range(5)]
+
+
+def test_services_of_roscpp(graph: RosGraph, node: Node) -> None:
+    texts = {
+        "topic_tools/MuxList": "---\nstring[] topics\n",
+        "topic_tools/MuxSelect": "string topic\n---\nstring prev_topic\n",
+    }
+
+    class Services(Texts):
+        def find(self, name: str, kind: str) -> str | None:
+            return self.texts.get(name) if kind == "srv" else None
+
+    library = Library([Services(texts, "this test")])
+    with start(graph, MUX, "/chosen", "/left", "/right"):
+        assert node.wait_for_service("/mux/select", patience(20))
+        assert node.wait_for_service("/mux/list", patience(20))
+        listed = node.call("/mux/list", library.service("topic_tools/MuxList"))
+        assert listed.topics == ["/left", "/right"]
+        select = library.service("topic_tools/MuxSelect")
+        assert node.call("/mux/select", select, "/right").prev_topic == "/left"
+        assert node.call("/mux/select", select, "/left").prev_topic == "/right"
+        left = node.publisher("/left", "std_msgs/String")
+        chosen = node.subscriber("/chosen", "std_msgs/String")
+
+        def arrived() -> bool:
+            left.write("from the left")
+            return bool(chosen.inputs)
+
+        wait_until(arrived, patience(20), "the mux publishes")
+        left.write("from the left")
+        assert chosen.take(patience(10)).data == "from the left"
+
+
+def test_the_graph_of_roscpp_sees_us(graph: RosGraph, node: Node) -> None:
+    """A latched message, and a header that names its publisher."""
+    node.publisher("/map", "std_msgs/String", latch=True).write("the map")
+    with start(graph, RELAY, "/map", "/map_again"):
+        assert "the map" in graph.tool("rostopic", "echo", "-n", "1", "/map")
+        info = graph.tool("rostopic", "info", "/map")
+        assert "relay" in info and "* /beside_cpp (http" in info
