@@ -14,7 +14,7 @@ from support.process import Process
 from support.wait import wait_until
 
 import yarpy
-from yarpy.port import probe, reconnect
+from yarpy.port import identity, probe, reconnect
 from yarpy.route import Route
 
 RECOVERY = 20.0  # generous on a busy machine; the goal is 2 s, and the benchmark tells
@@ -159,6 +159,28 @@ def restored(names: yarpy.LocalNames) -> float:
             link.driver.transport.interrupt()
         wait_until(lambda: other._hub.outputs not in ((), before))
         return time.monotonic() - began
+
+
+def test_a_name_that_turns_up_elsewhere_is_not_awaited_where_it_was(
+    names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its old host is dead and answers nothing, and the name is at another address by now."""
+    monkeypatch.setattr(identity, "PATIENCE", 3600.0)
+    with (
+        yarpy.BufferedPort("/out", names=names) as out,
+        socket.create_server(("127.0.0.1", 0)) as dead,
+    ):
+        dead.settimeout(RECOVERY)
+        with yarpy.BufferedPort("/in", names=names) as in_:
+            out.connect("/in")
+            wait_until(lambda: in_.inputs)
+            names.register("/in", "tcp", "127.0.0.1", dead.getsockname()[1])
+            for link in in_._hub.inputs:
+                link.driver.transport.interrupt()
+            held = dead.accept()  # it is being dialled, and says nothing
+        names.unregister("/in")
+        with held[0], yarpy.BufferedPort("/in", names=names):
+            wait_until(lambda: out.outputs, RECOVERY, "connected to where the name is now")
 
 
 def test_a_question_without_an_answer_delays_nobody(

@@ -192,10 +192,15 @@ def _asks(link: Outbound) -> bool:
 
 
 def open_output(
-    hub: Hub, contact: Contact, target: str, spec: CarrierSpec, lost: Route | None = None
+    hub: Hub,
+    contact: Contact,
+    target: str,
+    spec: CarrierSpec,
+    lost: Route | None = None,
+    timeout: float | None = None,
 ) -> None:
-    """Dial `contact` and take the connection in; `lost` is the one that it takes the place of.
-    Raises as `dial`."""
+    """Dial `contact` and take the connection in; `lost` is the one that it takes the place of,
+    `timeout` the seconds for which its listener may be silent then. Raises as `dial`."""
     route = Route(hub.name, target, spec, contact.port, declared=hub.registration.declared)
     try:
         chain = hub.monitoring.outgoing(route)
@@ -205,12 +210,12 @@ def open_output(
         raise LocalProtocolError(str(error)) from error
     try:
         try:
-            driver, speaker = _greet(hub, contact, route, lost)
+            driver, speaker = _greet(hub, contact, route, lost, timeout)
         except (LinkClosed, Timeout):
             other = _other_address(hub, contact)
             if other is None:
                 raise
-            driver, speaker = _greet(hub, other, route, lost)
+            driver, speaker = _greet(hub, other, route, lost, timeout)
             contact = other
         if not route.peer and not identity.is_camera(route):
             identity.learn(contact, route, hub.key)
@@ -241,10 +246,12 @@ def open_output(
         raise LinkClosed(str(error)) from error
 
 
-def _greet(hub: Hub, contact: Contact, route: Route, lost: Route | None) -> tuple[Driver, Carrier]:
+def _greet(
+    hub: Hub, contact: Contact, route: Route, lost: Route | None, timeout: float | None
+) -> tuple[Driver, Carrier]:
     """Open the connection, once the listener is known to be the port that is meant."""
     if lost is not None and lost.peer:
-        identity.confirm_again(contact, lost, hub.key)
+        identity.confirm_again(contact, lost, hub.key, timeout)
         route.peer = lost.peer
     else:
         known = identity.properties_of(hub.service())

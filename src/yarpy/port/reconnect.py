@@ -37,6 +37,9 @@ TICK: Final = 0.1  # seconds between looks at what is broken
 CALM: Final = 0.5  # seconds between looks when nothing is
 LOCKED: Final = 60.0  # seconds between two logins: cameras lock those out who try too often
 LONGEST: Final = 30.0  # seconds between attempts at something that stays away
+SILENCE: Final = (
+    1.0  # seconds for a first answer; a dead host gives none, and its name may be elsewhere
+)
 SLOWER: Final = 1.3  # so much longer is each pause than the one before, and up to so much by chance
 INPUT_PATIENCE: Final = 60.0  # seconds for a sender that vanished to come back
 
@@ -51,6 +54,7 @@ class _Lost:
     since: float = field(default_factory=time.monotonic)
     pause: float = TICK
     due: float = 0.0
+    timeout: float = SILENCE  # twice as long after each one: a port that is alive may be slow
     seen_gone: bool = False
     told: str = ""  # what was logged last: each reason is told once, not at every attempt
 
@@ -252,7 +256,8 @@ class Reconnector:
             contact = hub.registration.locate(parse_contact(peer))
             if contact is None:
                 return False
-            connecting.open_output(hub, contact, peer, route.spec, route)
+            item.timeout, timeout = min(2 * item.timeout, identity.PATIENCE), item.timeout
+            connecting.open_output(hub, contact, peer, route.spec, route, timeout)
             if item in self._lost:
                 way = "from" if item.incoming else "to"
                 log.info("%s: the connection %s %s is back", hub.name, way, peer)
