@@ -56,7 +56,7 @@ class NameService:
 
     `lock` is held meanwhile. Hold it yourself to look at `store` or `topology`. `is_alive(contact)`
     tells whether the port of that name still has its address; it may take a while, so it is asked
-    without the lock.
+    without the lock. So is `elsewhere(name)`, which says where a name is that nobody has here.
     """
 
     def __init__(
@@ -68,6 +68,7 @@ class NameService:
         self.store = store
         self.topology = topology
         self._is_alive = is_alive
+        self.elsewhere: Callable[[str], Contact | None] | None = None
         self.lock = threading.RLock()  # a registration changes store, pools and rules together
         self._subscriber: dict[str, Callable[[list[Any]], Reply]] = {
             "subscribe": self._subscribe,
@@ -96,7 +97,9 @@ class NameService:
         """The first words of commands."""
         return frozenset({*self._subscriber, *self._registry, "NAME_SERVER", "bot"})
 
-    def answer(self, command: Sequence[Any], peer_host: str = "") -> Reply:
+    def answer(
+        self, command: Sequence[Any], peer_host: str = "", *, ask_elsewhere: bool = True
+    ) -> Reply:
         """The reply to a command that came from `peer_host` ("" when that is not known)."""
         words, nested = without_request(command)
         verb = plain_text(words[0]) if words else ""
@@ -116,6 +119,8 @@ class NameService:
         registry = self._registry.get(verb)
         if registry is None:
             return old(())
+        if verb == "query" and ask_elsewhere and (strange := self._strange(words)) is not None:
+            return found(strange, nested)
         held = self._held(words, peer_host) if verb == "register" else None
         with self.lock:
             if held is not None and self.store.query(held.name) == held:
@@ -142,13 +147,23 @@ class NameService:
         words = command[1:] if command and plain_text(command[0]) == "bot" else command
         if not words or plain_text(words[0]) not in READING:
             return None
-        return self.answer(command).text_lines()[0]
+        return self.answer(command, ask_elsewhere=False).text_lines()[0]
 
     # --- registry
 
     def _query(self, words: list[Any], nested: bool, peer: str) -> Reply:
         network, name = split_network(undecorate(_word(words, 1))[1])
         return found(self.store.query(name, network), nested)
+
+    def _strange(self, words: list[Any]) -> Contact | None:
+        """Where a name is that nobody has here."""
+        network, name = split_network(undecorate(_word(words, 1))[1])
+        if self.elsewhere is None or network is not None:
+            return None
+        with self.lock:
+            if name in self.store:
+                return None
+        return self.elsewhere(name)
 
     def _held(self, words: list[Any], peer: str) -> Contact | None:
         """Where a living port has the name that is registered once more on the same host.

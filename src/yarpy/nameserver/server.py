@@ -24,6 +24,7 @@ from yarpy.link.inbound import Inbound
 from yarpy.log import logger
 from yarpy.names.address import is_loopback, local_addresses
 from yarpy.names.default import DEFAULT, client_of, secret
+from yarpy.names.ros_master import RosMaster, parse_uri
 from yarpy.nameserver.collector import Collector
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.folder import Folder
@@ -44,6 +45,7 @@ from yarpy.wire.message import JSON, Lines, Malformed, Message, Packet, Refused
 if TYPE_CHECKING:
     from yarpy.names.discovery import Responder
     from yarpy.nameserver.database import Database
+    from yarpy.nameserver.ros_delegate import RosDelegate
 
 log = logger("yarpy.name_server")
 
@@ -86,7 +88,8 @@ class NameServer:
 
     host: the address to tell others; the server listens on all. portdb, subdb: SQLite files for
     registrations and for subscriptions; without, nothing survives the server. discoverable: answer
-    multicast searches (`yarpy detect`). web: a directory whose files browsers see at `/web/`.
+    multicast searches (`yarpy detect`). web: a directory whose files browsers see at `/web/`. ros:
+    the address of a ROS master, which is told of topics and services, and asked for names.
     Raises AddressError if the port number is taken, or there is no such directory.
     """
 
@@ -101,6 +104,7 @@ class NameServer:
         cautious: bool = False,
         discoverable: bool = False,
         web: str | Path | None = None,
+        ros: str = "",
     ) -> None:
         folder = Folder(web) if web is not None else None
         desk = _Desk()
@@ -128,6 +132,7 @@ class NameServer:
         self._database: Database | None = None
         self._responder: Responder | None = None
         self._collector: Collector | None = None
+        self._ros: RosDelegate | None = None
         self._queues: list[SimpleQueue[Action | None]] = [SimpleQueue() for _ in range(WORKERS)]
         self._events: SimpleQueue[Bottle | None] = SimpleQueue()
         self.on_command: Callable[[str, str], None] | None = None
@@ -135,6 +140,8 @@ class NameServer:
             if portdb is not None or subdb is not None:
                 self._open_database(portdb, subdb, cautious)
             self._register_self()
+            if ros:
+                self._join_ros(ros)
             for queue in self._queues:
                 self._start(lambda queue=queue: self._work(queue), "wiring")  # type: ignore[misc]
             self._start(self._tell, "events")
@@ -210,8 +217,12 @@ class NameServer:
                 if structured
                 else (reply.bottle if reply.bottle is not None else Lines(reply.lines))
             )
-        if len(words) > 2 and words[0] == "announce" and not words[2] and self._collector:
-            self._collector.suspect(plain_text(words[1]))
+        if len(words) > 1 and words[0] == "announce":
+            name, alive = plain_text(words[1]), len(words) < 3 or bool(words[2])
+            if not alive and self._collector:
+                self._collector.suspect(name)
+            elif alive and self._ros is not None:
+                self._ros.announced(name)
 
     def _refusal(self, link: Inbound, words: Bottle) -> str:
         """Why the peer may not give such a command; "" if it may."""
@@ -242,6 +253,8 @@ class NameServer:
     def _follow(self, reply: Reply) -> None:
         """Publish the events of a command and start its actions."""
         for event in reply.events:
+            if self._ros is not None and event[0] == Vocab("del"):
+                self._ros.gone(str(event[1]))
             if self._hub.outputs and self._events.qsize() < MAX_EVENTS:
                 self._events.put(event)
         for action in reply.actions:
@@ -258,6 +271,15 @@ class NameServer:
         answer(Bottle(["set", self.name, "process", os.getpid()]))
         answer(Bottle(["register", "fallback", "mcast", GROUP, default_port(os.environ)]))
         answer(Bottle(["set", self.name, "nameserver", "true"]))
+
+    def _join_ros(self, uri: str) -> None:
+        from yarpy.nameserver.ros_delegate import NAME, RosDelegate
+
+        master = RosMaster(uri)
+        where = parse_uri(uri)
+        self.service.answer(Bottle(["register", NAME, "xmlrpc", where.host, where.port]))
+        self._ros = RosDelegate(master, self.service)
+        self.service.elsewhere = self._ros.query
 
     def _open_database(
         self, portdb: str | Path | None, subdb: str | Path | None, cautious: bool
@@ -327,6 +349,9 @@ class NameServer:
         """Stop serving. Registered ports go on, and register again with the next server."""
         self._pages.close()
         self.client.close()
+        if self._ros is not None:
+            self._ros.close()
+            self._ros = None
         self._hub.close()
         for queue in self._queues:
             queue.put(None)

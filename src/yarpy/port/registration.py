@@ -158,6 +158,8 @@ class Registration:
         bound = listening_host()
         names.set(self.name, "ips", *([bound] if bound else local_addresses()))
         names.set(self.name, "process", os.getpid())
+        if self.declared.node:
+            names.set(self.name, "ros", "own")  # no name server has to tell the master of us
         names.announce(self.name)
 
     def service(self) -> NameClient | None:

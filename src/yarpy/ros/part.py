@@ -1,7 +1,8 @@
 """The part of a port whose name is that of a topic or service: which master, which name service.
 
-Rules: the master is the one among the name services in use, else that of ROS_MASTER_URI. Without
-one the port is an ordinary port with a long name. A YARP server is told of it too, if one answers.
+Rules: the master is the one among the name services in use, else that of ROS_MASTER_URI, else the
+one that a YARP server knows as `/ros` (`yarpserver --ros`). Without one the port is an ordinary
+port with a long name. A YARP server is told of it too, if one answers.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from yarpy.names.default import DEFAULT
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.names.node_name import NodeName
 from yarpy.names.ros import RosNames
-from yarpy.names.ros_master import VARIABLE, RosMaster
+from yarpy.names.ros_master import VARIABLE, RosMaster, uri_of
 from yarpy.port.hub import Hub
 from yarpy.ros.graph import join
 from yarpy.ros.membership import Membership, kind_of
@@ -72,6 +73,8 @@ def services(names: NameClient | None) -> tuple[NameClient | None, RosMaster | N
     uri = os.environ.get(VARIABLE, "")
     if master is None and uri:
         master = RosMaster(uri)
+    if master is None:
+        master = _behind(names)
     if master is not None:
         ask_type_server(master)
     if missing is not None and master is None:
@@ -79,6 +82,18 @@ def services(names: NameClient | None) -> tuple[NameClient | None, RosMaster | N
     if master is not None and not given:
         names = _of([item for item in _all(names) if _answers(item)])
     return names, master
+
+
+def _behind(names: NameClient | None) -> RosMaster | None:
+    """The master that a YARP server delegates to."""
+    for item in _all(names):
+        try:
+            where = item.query("/ros") if isinstance(item, YarpNameClient) else None
+        except NoNameServer:
+            continue
+        if where is not None and where.carrier == "xmlrpc":
+            return RosMaster(uri_of(where.host, where.port))
+    return None
 
 
 def _answers(names: NameClient) -> bool:

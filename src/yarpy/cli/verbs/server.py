@@ -5,6 +5,8 @@
     --write                  replace the address that is stored in the address file
     --read                   use the stored address even if it is not one of this computer
     --web DIR                show the files of a directory to browsers, at /web/
+    --ros                    tell the ROS master of ROS_MASTER_URI of topics and services, and ask
+                             it for names; YARP_USE_ROS in the environment means the same
 
 Where it listens: what the options say; else the address that is stored for the namespace (or that
 YARPY_SERVER says), because that is where programs look; else an address of this computer and port
@@ -212,6 +214,7 @@ def _parts(text: str) -> tuple[str, str, str]:
     metavar="DIR",
     help="Show the files of a directory at /web/.",
 )
+@click.option("--ros", is_flag=True, help="Tell the ROS master of topics, ask it for names.")
 @click.option("--local", is_flag=True, help="Let nobody but this computer reach it.")
 @click.option("--silent", is_flag=True, help="Print warnings and errors only.")
 @click.option("--verbose", is_flag=True, help="Print all that is logged.")
@@ -224,6 +227,7 @@ def command(
     write: bool,
     read: bool,
     web: str | None,
+    ros: bool,
     local: bool,
     silent: bool,
     verbose: bool,
@@ -243,8 +247,11 @@ def command(
     if place.note:
         warn(place.note)
     say = _nothing if silent else print_line
+    master = _ros_master() if ros or os.environ.get("YARP_USE_ROS") else ""
+    if master:
+        say(f"Using ROS with ROS_MASTER_URI={master}")
     try:
-        _serve(found, place, portdb, subdb, cautious, web, say)
+        _serve(found, place, portdb, subdb, cautious, web, master, say)
     except Interrupted:
         say("Name server ends.")
     return 0
@@ -257,6 +264,7 @@ def _serve(
     subdb: str,
     cautious: bool,
     web: str | None,
+    ros: str,
     say: object,
 ) -> None:
     """Serve until a signal comes."""
@@ -281,6 +289,7 @@ def _serve(
             cautious=cautious,
             discoverable=not is_loopback(listening_host()),
             web=web,
+            ros=ros,
         )
     except AddressError as error:
         raise _explained(server, error) from error
@@ -307,6 +316,19 @@ def _serve(
         service.close()
         if scribe is not None:
             scribe.close()
+
+
+def _ros_master() -> str:
+    """The address of the ROS master. Raises AddressError if the environment names none."""
+    from yarpy.names.ros_master import VARIABLE, RosMaster
+
+    uri = os.environ.get(VARIABLE, "")
+    if not uri:
+        raise AddressError(f"--ros needs {VARIABLE}: export {VARIABLE}=http://localhost:11311/")
+    master = RosMaster(uri, 1.0)
+    if not master.answers():
+        warn(f"no ROS master answers at {uri} yet; it is asked again for every name")
+    return uri
 
 
 def _nothing(text: str) -> None:
