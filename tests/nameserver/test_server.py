@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import socket
@@ -86,6 +87,25 @@ def test_a_port_that_is_silent_keeps_its_number(monkeypatch: pytest.MonkeyPatch)
     with NameServer() as server, socket.create_server(("127.0.0.1", 0)) as silent:
         stuck = server.client.register("/stuck", "tcp", "127.0.0.1", silent.getsockname()[1])
         assert server.client.register("/stuck") == stuck
+
+
+def test_only_a_refused_connection_proves_that_a_port_is_gone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    there = yarpy.Contact("tcp", "/far", "192.0.2.1", 10002)
+    with NameServer() as server:
+        for error, lives in (
+            (OSError(errno.EHOSTUNREACH, "No route to host"), True),
+            (OSError(errno.ENETUNREACH, "Network is unreachable"), True),
+            (TimeoutError("timed out"), True),
+            (ConnectionRefusedError("Connection refused"), False),
+        ):
+
+            def dial(*_: object, error: OSError = error) -> None:
+                raise error
+
+            monkeypatch.setattr("yarpy.link.handshake.dial", dial)
+            assert server._is_alive(there) is lives, error
 
 
 # ---------------------------------------------------------------------------------- captures

@@ -178,15 +178,16 @@ class NameServer:
         return self._is_here(host) and is_taken(number)
 
     def _is_alive(self, contact: Contact) -> bool:
-        """Whether the port of that name is there; one that is silent may be stopped or busy."""
+        """Whether the port of that name is there; one that is silent may be stopped or busy, and a
+        host that cannot be reached may come back."""
         if self._is_here(contact.host) and not is_taken(contact.port):
             return False
         try:
             return probe.who(contact, BUSY, secret()) == contact.name
         except Timeout:
             return True
-        except (YarpError, OSError):
-            return False
+        except (YarpError, OSError) as error:
+            return not probe.is_refused(error)
 
     def _is_here(self, host: str) -> bool:
         return host == self.host or is_loopback(host)
