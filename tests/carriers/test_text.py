@@ -268,3 +268,26 @@ def test_a_name_that_a_terminal_would_obey(name: str) -> None:
         stream = ByteStream()
         with pytest.raises(RemoteProtocolError, match="control characters"):
             run(carrier.welcome(stream, first), stream, [name.encode() + b"\r\n"])
+
+
+@pytest.mark.parametrize(
+    ("said", "shown"),
+    [
+        ("plain é 日本 🙂 \u05d0\u200f", "plain é 日本 🙂 \u05d0\u200f"),
+        ("\x1b]0;title\x07\x1b[2J", "\\x1b]0;title\\x07\\x1b[2J"),
+        ("\x9b2J\x85\x7f\x01", "\\x9b2J\\x85\\x7f\x01"),
+        ("a\tb", "a\tb"),
+        ("caf\udce9 \udc9b2J", "caf\udce9 \\x9b2J"),
+    ],
+)
+def test_what_a_stranger_stored_does_not_command_a_terminal(said: str, shown: str) -> None:
+    carrier, stream = Text(Route("/a", "/b")), ByteStream()
+    carrier.encode_lines(stream, [said])
+    carrier.encode_reply(stream, Lines([said, said]))
+    carrier.encode_reply(stream, [said])
+    expected = [shown] * 3 + [f'"{shown}"']
+    lines = b"".join(stream.take_output()).decode("utf-8", "surrogateescape")
+    assert lines == "".join(f"{line}\r\n" for line in expected)
+    carrier.encode(stream, Packet([said]))  # data are the program's
+    sent = b"".join(stream.take_output()).decode("utf-8", "surrogateescape")
+    assert sent == f'D\r\n"{said}"\r\n'

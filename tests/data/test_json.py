@@ -222,3 +222,11 @@ def test_long_integers_are_refused(digits: int) -> None:
         from_json("9" * digits)
     with pytest.raises(DecodeError):
         from_json(f"[1, -{'9' * digits}]")
+
+
+def test_control_characters_are_escaped_for_terminals() -> None:
+    said = "\x1b[2J \x9b2J \x07\x85 é 🙂"
+    text = to_json([said])
+    assert not any(letter in text for letter in "\x1b\x9b\x07\x85")
+    assert json.loads(text) == [said]
+    assert from_json(text) == [said]

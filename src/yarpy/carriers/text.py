@@ -2,10 +2,13 @@
 
 Rules: a line with the port command, then, for data and admin, a line with the payload in Bottle
 text. A payload continues on the next lines while a bracket or quote is open. `text_ack` answers
-each command with a line `<ACK>`.
+each command with a line `<ACK>`. Answers are for people: what a terminal would obey is escaped in
+them, since a stranger may have stored it here. Data are what was sent, as for C++ YARP.
 """
 
 from __future__ import annotations
+
+import re
 
 from yarpy.carriers.base import ASKS_FOR_KEY, Carrier, Limits
 from yarpy.data import codec
@@ -18,6 +21,10 @@ from yarpy.wire.stream import ByteStream
 
 MAX_LINE = 1 << 24  # bytes of one payload spelled as text
 _END = b"\r\n"
+# What a terminal obeys, not what it ignores, which C++ YARP sends as it is. Bytes beyond ASCII that
+# are no UTF-8 are surrogates here.
+_OBEYED = re.compile(r"[\x05\x07\x08\x0b\x0c\x0e\x0f\x11\x13\x1b\x7f-\x9f\udc80-\udc9f]")
+_SUSPECT = bytes((5, 7, 8, 11, 12, 14, 15, 17, 19, 27, *range(127, 160)))  # bytes of such
 
 
 class Text(Carrier):
@@ -84,7 +91,7 @@ class Text(Carrier):
 
     def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
         for line in lines:
-            stream.write(line.encode("utf-8", "surrogateescape") + _END)
+            stream.write(_tame(line.encode("utf-8", "surrogateescape")) + _END)
 
 
 class TextAck(Text):
@@ -113,7 +120,17 @@ class TextAck(Text):
 
 def reply_text(value: object) -> bytes:
     """A reply as shown to people: a line of text, or its own lines."""
-    return value.to_text() if isinstance(value, Lines) else codec.encode_text(value) + _END
+    return _tame(value.to_text() if isinstance(value, Lines) else codec.encode_text(value) + _END)
+
+
+def _tame(text: bytes) -> bytes:
+    """The text with escapes in place of the control characters that a terminal obeys, those beyond
+    ASCII (C1) too."""
+    if len(text.translate(None, _SUSPECT)) < len(text):
+        shown = text.decode("utf-8", "surrogateescape")
+        shown = _OBEYED.sub(lambda found: f"\\x{ord(found[0]) & 0xFF:02x}", shown)
+        return shown.encode("utf-8", "surrogateescape")
+    return text
 
 
 def read_text(stream: ByteStream, limit: int) -> Steps[bytes]:

@@ -15,6 +15,7 @@ its `type` is the word in front of them, and null is the vocab `null`.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, Literal, TypeAlias
 
@@ -27,6 +28,7 @@ from yarpy.errors import DecodeError
 Outer: TypeAlias = Literal["auto", "list", "dict"]
 
 _TYPE: Final = "type"
+_C1 = re.compile(r"[\x80-\x9f]")  # control characters, which a terminal obeys
 
 
 def to_json(value: object, outer: Outer = "auto", *, pixels: bool = True) -> str:
@@ -39,7 +41,10 @@ def to_json(value: object, outer: Outer = "auto", *, pixels: bool = True) -> str
 
     plain = _plain_top(value, outer, pixels)
     text = json.dumps(plain, ensure_ascii=False, allow_nan=False)
-    return text if text.isascii() or _encodable(text) else _mended(text)
+    if text.isascii():
+        return text
+    text = _C1.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    return text if _encodable(text) else _mended(text)
 
 
 def from_json(text: str | bytes | bytearray | memoryview) -> Any:
