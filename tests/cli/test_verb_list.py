@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
+import click
 import pytest
 
 from yarpy.cli.verb_list import GROUPS, VERBS
@@ -15,3 +18,14 @@ def test_a_line_says_it(verb: str) -> None:
 
 def test_each_verb_is_in_one_group() -> None:
     assert len(VERBS) == sum(map(len, GROUPS.values()))
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_lists_of_commands_are_not_cut_off(verb: str) -> None:
+    """What `yarpy VERB --help` says of each command of a group fits into 80 columns."""
+    command = import_module(f"yarpy.cli.verbs.{verb}").command
+    if not isinstance(command, click.Group):
+        return
+    with click.Context(command, info_name=verb, terminal_width=80) as context:
+        _, _, listed = command.get_help(context).partition("Commands:")
+    assert listed and "..." not in listed

@@ -68,6 +68,17 @@ def test_comments_become_documentation() -> None:
     assert parse_message("int8 a\n# of b\nint8 b # too", "p/T").fields[1].doc == "of b\ntoo"
 
 
+def test_comments_behind_declarations_go_on_below_themselves() -> None:
+    """As those of actionlib_msgs/GoalStatus."""
+    text = (
+        "int8 ONE=1 # the first\n           #   of them\nint8 TWO=2 # the second\n\n"
+        "   # above\nint8 a\nstring S=x # y\n  # not of S\nint8 b # last\n  # of all\n# free\n"
+    )
+    parsed = parse_message(text, "p/T")
+    assert [each.doc for each in parsed.constants] == ["the first\nof them", "the second", ""]
+    assert [each.doc for each in parsed.fields] == ["above", "not of S\nlast\nof all"]
+
+
 def test_banners_of_rosmsg_show_are_skipped() -> None:
     assert fields("[pkg/Type]:\nint32 a") == [("a", "int32", False, None)]
 

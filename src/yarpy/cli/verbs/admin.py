@@ -22,7 +22,7 @@ def command(ctx: click.Context) -> None:
         raise click.UsageError("Please supply a command: rpc or write", ctx)
 
 
-@command.command("rpc")
+@command.command("rpc", short_help="Send commands to PORT, print the replies.")
 @click.argument("port")
 @click.argument("name", default="")
 def admin_rpc(port: str, name: str) -> int:
@@ -33,7 +33,7 @@ def admin_rpc(port: str, name: str) -> int:
     return rpc.talk(port, name, admin=True)
 
 
-@command.command("write")
+@command.command("write", short_help="Send commands to each REMOTE.")
 @click.argument("port")
 @click.argument("remotes", nargs=-1, metavar="REMOTE...", required=True)
 def admin_write(port: str, remotes: tuple[str, ...]) -> int:

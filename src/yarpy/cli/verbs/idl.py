@@ -33,7 +33,7 @@ def command() -> None:
     """Types of other systems: show them, write code for them."""
 
 
-@command.command()
+@command.command(short_help="Messages of ROS: show them, write Python, serve them.")
 @click.argument("names", nargs=-1, metavar="NAME...")
 @click.option("--raw", "form", flag_value="raw", help="Print their files, with the comments.")
 @click.option("--md5", "form", flag_value="md5", help="Print their checksums.")
@@ -100,7 +100,7 @@ def _serve(name: str, library: Library) -> int:
     return 0
 
 
-@command.command()
+@command.command(short_help="Write a .msg file for what PORT sends.")
 @click.argument("port")
 @click.option("--count", default=1, help="Messages to look at; they must have one structure.")
 def sniff(port: str, count: int) -> int:

@@ -27,7 +27,7 @@ def command() -> None:
     """Show or set the priority of a connection's packets."""
 
 
-@command.command()
+@command.command(short_help="Print the priority of the packets of both ends.")
 @of_a_connection
 @click.option("--tos", "form", flag_value="tos", help="As a TOS byte (what is printed anyway).")
 @click.option("--dscp", "form", flag_value="dscp", help="As a DSCP class.")

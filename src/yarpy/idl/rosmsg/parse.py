@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import ast
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from yarpy.errors import DecodeError
@@ -122,6 +122,7 @@ def parse_message(text: str, name: str, first_line: int = 1) -> MessageText:
             raise DecodeError(f"{name}, line {number}: {error}") from None
         if len(reader.fields) + len(reader.constants) > MAX_DECLARATIONS:
             raise DecodeError(f"{name}: more than {MAX_DECLARATIONS} fields and constants")
+    reader.settle()
     fields, constants = tuple(reader.fields), tuple(reader.constants)
     seen: set[str] = set()
     for word in [item.name for item in fields] + [item.name for item in constants]:
@@ -141,6 +142,8 @@ class _Reader:
         self.top: list[str] = []
         self.above: list[str] = []
         self.at_top = True
+        self.remarked: list[Any] = []  # whose last declaration has a comment behind it
+        self.below: list[str] = []  # how that goes on
 
     def read(self, line: str) -> None:
         code, _, remark = line.partition("#")
@@ -152,15 +155,30 @@ class _Reader:
         if code.startswith("["):
             return
         self.at_top = False
+        self.settle()
         above, self.above = self.above, []
         if "=" in code:
-            self.constants.append(_constant(line, code, above, remark))
+            constant = _constant(line, code, above, remark)
+            self.constants.append(constant)
+            self.remarked = self.constants if remark and constant.spelled != "string" else []
         else:
             self.fields.append(self._field(code, "\n".join([*above, remark]).strip()))
+            self.remarked = self.fields if remark else []
+
+    def settle(self) -> None:
+        """No comment of the last declaration follows any more."""
+        if self.below:
+            last = self.remarked[-1]
+            self.remarked[-1] = replace(last, doc="\n".join([last.doc, *self.below]))
+        self.remarked, self.below = [], []
 
     def _remark(self, line: str, remark: str) -> None:
         """A comment that stands alone, or an empty line, which ends one."""
         is_comment = line.lstrip().startswith("#")
+        if is_comment and self.remarked and line[:1].isspace():  # it goes on below itself
+            self.below.append(remark)
+            return
+        self.settle()
         if self.at_top:
             self.top.append(remark)
         elif is_comment:
