@@ -236,3 +236,13 @@ def test_memory_that_is_laid_out_as_on_the_wire() -> None:
     assert Image.from_wire(b"".join(image.to_wire())) == image
     with pytest.raises(ValueError, match="3 times 3 pixels take 24 bytes, here are 16"):
         Image.over(memoryview(rows), 3, 3, "mono", 8)
+
+
+def test_an_image_without_pixels_cannot_be_vast():
+    """82 bytes had a Bayer filter take a gigabyte for the rows around none."""
+    head = b"".join(map(bytes, Image(np.zeros((0, 5), "u1")).to_wire()))
+    assert Image.from_wire(head).width == 5
+    at = head.index(struct.pack("<i", 5) + bytes(4))
+    for width, height in ((1 << 28, 0), (0, 1 << 28), (65537, 0)):
+        with pytest.raises(DecodeError, match="an Image of"):
+            Image.from_wire(head[:at] + struct.pack("<2i", width, height) + head[at + 8 :])

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
 from yarpy.carriers.http.login import MAX_CHALLENGES, parse_challenges
 from yarpy.carriers.http.port_page import page
 from yarpy.carriers.http.request import Request, page_asked, read_fields, read_intent
+from yarpy.carriers.http.token import taken
 from yarpy.config.configuration import parse_server
 from yarpy.config.ini import parse_ini
 from yarpy.contact import parse_contact
@@ -34,6 +36,7 @@ from yarpy.idl.rosmsg.source import Standard
 from yarpy.monitors.constraint import Constraint
 from yarpy.names.discovery import respond
 from yarpy.names.registration_line import parse_registration, plain
+from yarpy.names.ros_master import parse_uri
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.topology import Topology
@@ -115,6 +118,19 @@ def _call(data: bytes) -> object:
 
 def _method(data: bytes) -> object:
     return xmlrpc.decode_call(b"<methodCall><methodName>" + data + b"</methodName></methodCall>")
+
+
+def _answer(data: bytes) -> object:
+    answer = (
+        b"<methodResponse><params><param><value>"
+        + data
+        + b"</value></param></params></methodResponse>"
+    )
+    for each in (answer, b"<methodResponse><fault>" + data + b"</fault></methodResponse>", data):
+        for decode in (xmlrpc.decode_answer, xmlrpc.decode_plain_answer):
+            with suppress(*REFUSALS):
+                decode(each)
+    return xmlrpc.decode_answer(answer)
 
 
 def _named(data: bytes) -> object:
@@ -231,6 +247,28 @@ GRAMMARS = {
             *(b"</string>", b"<dateTime.iso8601>", b"</dateTime.iso8601>", b"\0", b"\xff"),
             *(b"9" * 20,),
         ),
+    ),
+    "xmlrpc answer": Grammar(
+        _answer,
+        (
+            *((b"", piece, b"") for piece in (b"<value>", b"1", b"&amp;", b"<fault>")),
+            (b"<array><data>", b"<value>1</value>", b"</data></array>"),
+        ),
+        (
+            *(b"<i4>", b"</i4>", b"<array>", b"</array>", b"<data>", b"</data>", b"<value>"),
+            *(b"</value>", b"<string>", b"</string>", b"1", b"<struct>", b"</struct>", b"<nil/>"),
+            *(b"<member>", b"</member>", b"<name>", b"</name>", b"faultCode", b"faultString"),
+        ),
+    ),
+    "ros address": Grammar(
+        _of_text(parse_uri),
+        ((b"http://", b"a", b""), (b"http://a:", b"1", b""), (b"http://", b":", b"")),
+        (b"http://", b"rosrpc://", b"a", b":", b"1", b"/", b"[", b"]", b"%"),
+    ),
+    "web token": Grammar(
+        _of_text(taken),
+        ((b"/?", b"token=", b""), (b"/?token=", b"%41", b""), (b"/?", b"a&", b"")),
+        (b"/", b"?", b"token=", b"a", b"&", b"=", b"%41", b"%", b"#"),
     ),
     "xmlrpc method": Grammar(_method, ((b"", b"1", b"e"), (b"", b"(", b"")), _TEXT_PIECES),
     "stamp": Grammar(

@@ -11,34 +11,48 @@ import random
 import struct
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from fuzz.grammar import GRAMMARS, REFUSALS
+from monitors.test_shipped import CASES
 from support.capture import CAPTURES, load_capture
+from support.ros_link import AddTwoInts, String
 from support.ros_value import filled
 from support.vectors import rows
 
 import yarpy
 from yarpy import registry
+from yarpy.carriers.ros_header import LENGTH, encode_header
 from yarpy.data import codec, jpeg
 from yarpy.data.image import Image
-from yarpy.errors import YarpError
+from yarpy.devices.control_board.state import State
+from yarpy.devices.multi_sensor.client import read_names
+from yarpy.devices.multi_sensor.interface import KINDS
+from yarpy.errors import DecodeError, YarpError
 from yarpy.idl.rosmsg.library import Library
 from yarpy.idl.rosmsg.native import to_value
 from yarpy.idl.rosmsg.sniff import sniff
 from yarpy.idl.rosmsg.source import Standard
 from yarpy.link.handshake import recognise
+from yarpy.monitors.base import Place
+from yarpy.monitors.chain import Chain
 from yarpy.monitors.stock import png
 from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.names.discovery import respond
-from yarpy.route import Route
+from yarpy.route import UNDECLARED, Declared, Route
 from yarpy.testing import End
 from yarpy.testing.drive import Stalled
 from yarpy.wire.datagram import Assembler
-from yarpy.wire.message import DATA, Packet
+from yarpy.wire.message import DATA, Message, Packet
 from yarpy.wire.stream import DatagramStream
+
+try:
+    import cv2
+except ImportError:
+    cv2 = None  # type: ignore[assignment]
 
 LIMIT = 1 << 22  # bytes of a message here: what takes more is a finding
 TYPES = (
@@ -86,8 +100,6 @@ def _picture(data: bytes) -> None:
 
 
 def _png(data: bytes) -> None:
-    import cv2
-
     # The checksums are set right: a damaged file would not come further than to them.
     fixed, at = bytearray(data), 8
     while at + 12 <= len(fixed):
@@ -109,27 +121,34 @@ def _datagrams(data: bytes) -> None:
         assembler.add(data[at : at + 64])
 
 
-def _accept(data: bytes) -> None:
-    """Whoever dials, in pieces."""
-    end = End(piece=1 + len(data) % 97, limit=LIMIT)
-    end.begin(_serve(end))
-    end.feed(data)
+def _accept(declared: Declared = UNDECLARED) -> Callable[[bytes], None]:
+    """Whoever dials, in pieces, a port that says this of itself."""
+
+    def read(data: bytes) -> None:
+        end = End(piece=1 + len(data) % 97, limit=LIMIT)
+        end.begin(_serve(end, declared))
+        end.feed(data)
+
+    return read
 
 
-def _serve(end: End) -> Any:
+def _serve(end: End, declared: Declared) -> Any:
     """What a port does with a connection, reduced to its bytes."""
     stream = end.stream
     first = bytes((yield from stream.read_exact(8)))
     kind = recognise(first)
     if kind is None:
         return
-    carrier = kind(Route("", "/r", kind.name, 10002, "127.0.0.1"))
+    carrier = kind(Route("", "/r", kind.name, 10002, "127.0.0.1", declared=declared))
     while (other := (yield from carrier.welcome(end.stream, first))) is not None:
         carrier = other
     for _ in range(100):
         message = yield from carrier.decode(end.stream)
         if message.key in ("q", "r"):
             return
+        if message.key in ("d", "D", "a"):
+            with suppress(DecodeError):
+                _ = message.value
         if message.key in ("d", "a"):
             carrier.encode_reply(end.stream, [1, "two"])
         elif message.key != "D":
@@ -150,12 +169,17 @@ def _dial(name: str) -> Callable[[bytes], None]:
             yield from carrier.greet(end.stream)
             if not carrier.push:
                 while True:
-                    yield from carrier.decode(end.stream)
+                    message = yield from carrier.decode(end.stream)
+                    with suppress(DecodeError):
+                        _ = message.value
             if isinstance(end.stream, DatagramStream):
                 return
             carrier.encode(end.stream, Packet([1, "two"], key=DATA))
             while True:
-                yield from carrier.expect_reply(end.stream)
+                reply = yield from carrier.expect_reply(end.stream)
+                if reply is not None:
+                    with suppress(DecodeError):
+                        _ = reply.value
                 if carrier.acks:
                     yield from carrier.expect_ack(end.stream)
 
@@ -163,6 +187,10 @@ def _dial(name: str) -> Callable[[bytes], None]:
         end.feed(data)
 
     return read
+
+
+def _encoded(value: object) -> bytes:
+    return b"".join(codec.encode(value))
 
 
 def _said(sender: str) -> tuple[bytes, ...]:
@@ -173,6 +201,30 @@ def _said(sender: str) -> tuple[bytes, ...]:
         if path.stem != "groups"
     }
     return tuple(sorted(said for said in found if 0 < len(said) < 4000))
+
+
+def _monitor(name: str, spelled: str, value: Any) -> Target:
+    """What comes to a monitor at the receiver's end; it may refuse, in its own time."""
+    _, *tokens = spelled.split("+")
+    place = Place("/w", "/r", tokens=tuple(tokens), limit=LIMIT)
+    there = replace(place, sending=True)
+    kind = registry.monitors.load(name)
+    packet = Packet(value)
+    packed = (
+        Chain([kind(there)], "there").send(packet)
+        if name.endswith(("zlib", "peg", "png"))
+        else None
+    )
+    seed = b"".join((packed or packet).blocks)
+    return Target(lambda data: Chain([kind(place)], "here").take(Message(DATA, data)), (seed,))
+
+
+def _devices(data: bytes) -> None:
+    """What clients of devices are told."""
+    message = codec.decode_as(data, yarpy.Bottle)
+    with suppress(TypeError, ValueError):
+        read_names(message)
+    State.from_bottle(message)
 
 
 def _sniffed(data: bytes) -> None:
@@ -218,6 +270,15 @@ _ANSWERS = (
     b"Welcome /r\r\n(1 two)\r\n<ACK>\r\n",
 )
 
+_TYPED = {"callerid": "/a", "md5sum": "*", "type": "*"}
+_SUBSCRIBER = encode_header(_TYPED | {"topic": "/topic", "message_definition": "string data\n"})
+_CLIENT = encode_header(_TYPED | {"service": "/add", "persistent": "1"})
+_DEVICES = (
+    State(2, {}).to_bottle(),
+    yarpy.Bottle([[[[["name", "frame"]]] for _ in KINDS]]),
+)
+_PASSIVE = ("simulated_network_delay", "throttleDown", "stats_monitor")  # read nothing of it
+
 TARGETS = {
     **{
         f"grammar {name}": Target(
@@ -245,7 +306,24 @@ TARGETS = {
         lambda data: respond(data, str), (b"NAME_SERVER query /root", *_MESSAGES[:9])
     ),
     "datagrams": Target(_datagrams, _said("a")[:40]),
-    "accepting": Target(_accept, _said("a"), refusals=(YarpError, Stalled)),
+    "accepting": Target(_accept(), (*_said("a"), _SUBSCRIBER), refusals=(YarpError, Stalled)),
+    "accepting tcpros": Target(
+        _accept(Declared("/node", "/topic", "std_msgs/String", String)),
+        (_SUBSCRIBER,),
+        refusals=(YarpError, Stalled),
+    ),
+    "accepting rossrv": Target(
+        _accept(Declared("/node", "/add", "rospy_tutorials/AddTwoInts", AddTwoInts)),
+        (_CLIENT + LENGTH.pack(16) + bytes(16) + LENGTH.pack(16) + bytes(16),),
+        refusals=(YarpError, Stalled),
+    ),
+    "devices": Target(_devices, (*_MESSAGES[:20], *map(_encoded, _DEVICES))),
+    **{
+        f"monitor {name}": _monitor(name, spelled, value)
+        for spelled, _, value, _ in CASES
+        if (name := spelled.partition("+")[0]) not in _PASSIVE
+        and not (name.endswith("png") and cv2 is None)
+    },
     **{
         f"dialling {name}": Target(
             _dial(name), (*_said("b")[:60], *_ANSWERS), refusals=(YarpError, Stalled)
@@ -257,9 +335,5 @@ TARGETS = {
         )
     },
 }
-try:
-    import cv2
-except ImportError:
-    pass
-else:
+if cv2 is not None:
     TARGETS["png"] = Target(_png, (png.encode(cv2, Image(_PIXELS)),))

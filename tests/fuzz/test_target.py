@@ -10,6 +10,9 @@ from fuzz.target import TARGETS, Target
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from yarpy import registry
+from yarpy.link.handshake import recognise
+
 FOUND = sorted(path for path in CORPUS.glob("*/*") if path.is_file())
 BY_FOLDER = {name.replace(" ", "_"): target for name, target in TARGETS.items()}
 
@@ -51,3 +54,14 @@ def test_what_is_wrong_is_noticed() -> None:
 
     assert "IndexError: oh" in tried(Target(wrong), b"")[0]
     assert tried(Target(bytes), b"")[0] == ""
+
+
+def test_every_carrier_is_tried_in_both_roles() -> None:
+    """But `tls`, which is tcp in TLS, and `local`, whose peer is this process."""
+    carriers = {*registry.carriers.names()} - {"tls", "local"}
+    assert {f"dialling {name}" for name in carriers} <= {*TARGETS}
+    accepting = [name for name in TARGETS if name.startswith("accepting")]
+    seeds = [seed[:8] for name in accepting for seed in TARGETS[name].seeds if len(seed) >= 8]
+    found = {kind.name for kind in map(recognise, seeds) if kind is not None}
+    assert carriers - found == {"rossrv"}  # begins as tcpros does
+    assert any(b"service=" in seed for name in accepting for seed in TARGETS[name].seeds)

@@ -28,6 +28,8 @@ _BEGINNING = (256, 4, 9, _MAT, 9)
 
 #: row padding of images that C++ allocates, also meant by quantum 0
 QUANTUM = 8
+#: the longest side of an image that has no pixels
+MAX_EMPTY = 1 << 16
 
 
 class Image(Wired):
@@ -97,7 +99,9 @@ class Image(Wired):
         if head[:5] != _BEGINNING or head[6:8] != (257, 5) or head[14] != 12:
             return None
         code, depth, quantum, flipped, width, height = head[5], head[8], *head[10:14]
-        if width < 0 or height < 0 or quantum < 0:
+        # Without pixels the sides cost nothing to claim, but what works row by row takes memory.
+        vast = not (width and height) and max(width, height) > MAX_EMPTY
+        if width < 0 or height < 0 or quantum < 0 or vast:
             raise DecodeError(f"an Image of {width} times {height} with quantum {quantum}")
         self = cls.__new__(cls)
         self.width, self.height = width, height
