@@ -18,6 +18,7 @@ from yarpy.carriers.base import Carrier, to_write
 from yarpy.contact import parse_contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
+from yarpy.data.xmlrpc import Plain
 from yarpy.errors import AccessRefused, DecodeError, YarpError
 from yarpy.link.admission import ASK, Peer
 from yarpy.link.driver import Driver
@@ -32,16 +33,17 @@ from yarpy.wire.message import ADMIN, CALL, DATA, QUIT, Message, Refused
 
 # Administrative requests by their first four letters, as `port/admin.py` reads them.
 QUESTIONS: Final = frozenset(("help", "ver", "list", "get", "stat", "pray"))
-CHANGES: Final = frozenset(("add", "del", "set", "prop", "rpup"))
+CHANGES: Final = frozenset(("add", "del", "set", "prop"))
 MONITORS: Final = frozenset(("atch", "dtch"))
-# What ROS nodes ask of each other, whole.
+# What ROS nodes ask of each other, and what they are told, whole. Over XML-RPC a refusal has ROS's
+# three elements.
 ROS: Final = frozenset(
     (
         *("requestTopic", "getPid", "getBusInfo", "rtop", "pid", "bus", "getBusStats"),
         *("getMasterUri", "getPublications", "getSubscriptions"),
     )
 )
-TOLD: Final = frozenset(("publisherUpdate", "paramUpdate", "shutdown"))
+TOLD: Final = frozenset(("publisherUpdate", "paramUpdate", "shutdown", "rpup"))
 
 
 class Hub(Owner, Protocol):
@@ -114,7 +116,8 @@ class GuardedInbound(Inbound):
         if not why:
             return super()._answer(message)
         if message.key == ADMIN:
-            return Refused(why)
+            by_ros = self.carrier.foreign and _verb(message) in TOLD
+            return Plain([-1, why, 0]) if by_ros else Refused(why)
         if message.key == "*":
             return [f"This is {self._hub.name} at tcp://{self._address}/", why]
         return [why]
@@ -154,8 +157,7 @@ class GuardedInbound(Inbound):
             request = message.as_(Bottle)
         except DecodeError:
             return ASK  # it gets an error
-        words = [plain_text(word) if isinstance(word, str) else "" for word in request[:3]]
-        name, second, third = (*words, "", "", "")[:3]
+        name, second, third = _words(request)
         verb = name[:4]
         if name in ROS or verb in QUESTIONS or (verb == "prop" and second[:4] == "get"):
             return ASK
@@ -222,3 +224,14 @@ def _remote(link: Inbound | Outbound) -> str:
         return str(remote[0])
     except OSError:
         return ""
+
+
+def _words(request: Bottle) -> list[str]:
+    """The first three words of a request; "" for what is none."""
+    words = [plain_text(word) if isinstance(word, str) else "" for word in request[:3]]
+    return [*words, "", "", ""][:3]
+
+
+def _verb(message: Message) -> str:
+    """The first word of a request that could be read."""
+    return _words(message.as_(Bottle))[0]
