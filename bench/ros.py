@@ -3,7 +3,8 @@
 One program publishes on /ping and waits for what another one, of the same kind, sends back on
 /pong; `mixed` is yarpy asking and rospy answering. Both sides make the message anew and look into
 it, as programs do. A master, rospy and the messages are taken from the system (apt-get install
-python3-rosmaster python3-rospy python3-sensor-msgs).
+python3-rosmaster python3-rospy python3-sensor-msgs). yarpy runs in the system's Python too where
+that is of the same version: that of a distribution is compiled with more care than one's own.
 
     python bench/ros.py [--seconds 5]
 """
@@ -17,6 +18,7 @@ import statistics
 import subprocess
 import sys
 import time
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -108,12 +110,18 @@ def ask(size: int, seconds: float) -> list[float]:
 def measure(asker: str, echoer: str, size: int, seconds: float) -> list[float]:
     """Seconds for each round trip from a program of one kind to one of another and back."""
     with subprocess.Popen(
-        command(echoer, "echo", size), stdout=subprocess.PIPE, stdin=subprocess.PIPE, text=True
+        command(echoer, "echo", size),
+        env=environment(echoer),
+        stdout=subprocess.PIPE,
+        stdin=subprocess.PIPE,
+        text=True,
     ) as other:
         assert other.stdout is not None and other.stdin is not None
         assert other.stdout.readline() == "ready\n"
         words = [*command(asker, "ask", size), str(seconds)]
-        said = subprocess.run(words, capture_output=True, text=True, timeout=seconds + 60)
+        said = subprocess.run(
+            words, env=environment(asker), capture_output=True, text=True, timeout=seconds + 60
+        )
         other.kill()
     if said.returncode:
         raise SystemExit(said.stderr)
@@ -124,7 +132,23 @@ def command(kind: str, role: str, size: int) -> list[str]:
     """How a program of a kind is started."""
     if kind == "rospy":
         return [SYSTEM, "-c", ROSPY, role, str(size)]
-    return [sys.executable, __file__, "--role", role, str(size)]
+    return [interpreter(), __file__, "--role", role, str(size)]
+
+
+def environment(kind: str) -> dict[str, str]:
+    """Variables for a program of a kind: ours needs our packages."""
+    if kind == "rospy":
+        return dict(os.environ)
+    packages = [str(ROOT / "src"), *(path for path in sys.path if "site-packages" in path)]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(packages)}
+
+
+@cache
+def interpreter() -> str:
+    """The Python for yarpy: the system's, if it is of the version that our packages are for."""
+    code = "import sys; print(sys.version_info[:2])"
+    said = subprocess.run([SYSTEM, "-c", code], capture_output=True, text=True)
+    return SYSTEM if said.stdout == f"{sys.version_info[:2]}\n" else sys.executable
 
 
 def run(seconds: float) -> dict[str, dict[str, float]]:
