@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
+import socket
+import threading
+
 import numpy as np
 import pytest
 from support.patience import patience
 from support.ros_graph import RosGraph
+from support.steps import measured
 from support.wait import wait_until
 
 import yarpy
 import yarpy.idl
 import yarpy.ros
+from yarpy.carriers.ros_header import encode_header
 from yarpy.errors import (
     AddressError,
     LocalProtocolError,
@@ -18,7 +24,7 @@ from yarpy.errors import (
     UnknownName,
     UnknownType,
 )
-from yarpy.ros.node import Node
+from yarpy.ros.node import Node, Publisher
 
 LISTENER = """
 import rospy, sys
@@ -273,3 +279,54 @@ def test_a_port_of_yarp_is_a_topic_too(graph: RosGraph) -> None:
             node.attach(port, "/again", "std_msgs/String")
             port.close()
             assert "/others" not in graph.tool("rosnode", "list").split()
+
+
+@pytest.mark.parametrize("readers", [1, 2])
+@pytest.mark.parametrize("face", ["publisher", "port"])
+def test_a_picture_is_published_without_a_copy(graph: RosGraph, readers: int, face: str) -> None:
+    """1080p: the bytes go from the array to the sockets."""
+    image = yarpy.Image(np.zeros((1080, 1920, 3), "u1"))
+    size = image.array.nbytes
+    with contextlib.ExitStack() as opened:
+        if face == "publisher":
+            node = opened.enter_context(Node("/still"))
+            out: yarpy.Port | Publisher = node.publisher("/still_eye", "sensor_msgs/Image")
+        else:
+            out = opened.enter_context(yarpy.Port("/still_eye+@/still~sensor_msgs/Image"))
+        sinks = [opened.enter_context(Sink("/still_eye", out.contact.port)) for _ in range(readers)]
+        wait_until(lambda: len(out.outputs) == readers, patience(10), "all have come")
+        out.write(image)  # whatever is made once
+        for sink in sinks:
+            wait_until(lambda sink=sink: sink.count > size, patience(10), "the first came")
+        with measured() as peak:
+            for _ in range(3):
+                out.write(image)
+        assert peak.bytes < size // 10
+        for sink in sinks:
+            wait_until(lambda sink=sink: sink.count > 4 * size, patience(10), "all came")
+
+
+class Sink:
+    """A subscriber that takes what comes into one small buffer, and counts it."""
+
+    def __init__(self, topic: str, port: int) -> None:
+        self.count = 0
+        self._line = socket.create_connection(("127.0.0.1", port))
+        kind = yarpy.idl.load("sensor_msgs/Image")
+        fields = {"callerid": "/sink", "topic": topic, "type": kind._type, "md5sum": kind._md5sum}
+        self._line.sendall(encode_header(fields))
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        room = bytearray(1 << 16)
+        while taken := self._line.recv_into(room):
+            self.count += taken
+
+    def __enter__(self) -> Sink:
+        return self
+
+    def __exit__(self, *details: object) -> None:
+        self._line.shutdown(socket.SHUT_RDWR)
+        self._thread.join()
+        self._line.close()

@@ -90,7 +90,7 @@ class Publisher(MessagePort):
             self._count = (self._count + 1) & 0x7FFFFFFF
             now = Stamp(self._count, self._member.clock())
             value = to_message(value, self.type, now if stamp is None else None)
-        elif (value._type, value._md5sum) != (self.type._type, self.type._md5sum):
+        elif type(value) is not self.type and _identity(type(value)) != _identity(self.type):
             raise TypeError(f"{self.name} takes {self.type._type}, not {value._type}")
         if self._member.latched:
             envelope = envelope_of(stamp) if stamp is not None else b""
@@ -359,6 +359,10 @@ def _found(names: NameClient | None) -> tuple[NameClient | None, RosMaster]:
     except NoNameServer:
         master = None
     return names, master or RosMaster(os.environ.get(VARIABLE) or DEFAULT_URI)
+
+
+def _identity(kind: type[RosMessage]) -> tuple[str, str]:
+    return kind._type, kind._md5sum
 
 
 def _message_class(type_: Type) -> type[RosMessage]:
