@@ -62,6 +62,8 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
     },
     # What ports may be part of beside their connections; it has ports of its own, too.
     "graphs": {"ros": "yarpy.ros.part:part_of"},
+    # What typed clients call with: `yarpy.idl` is pure, and so below all ports.
+    "clients": {"rpc": "yarpy.port.rpc:RpcClient", "aio": "yarpy.aio.rpc:RpcClient"},
 }
 
 
@@ -167,3 +169,4 @@ types: Final = Registry("types")
 monitors: Final = Registry("monitors")
 commands: Final = Registry("commands")
 graphs: Final = Registry("graphs")
+clients: Final = Registry("clients")

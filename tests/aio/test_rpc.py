@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+from urllib.request import urlopen
 
 import pytest
 
@@ -71,3 +72,28 @@ def test_server_takes_plain_functions_and_closes_over_a_question():
                 pass  # it was closed before its answer had left
 
     asyncio.run(asyncio.wait_for(main(), 30))
+
+
+def test_tell_and_pages():
+    heard: list[object] = []
+
+    class Handler:
+        async def __call__(self, message: yarpy.Message) -> None:
+            heard.append(message.value)
+
+        def page(self, path: str, fields: object) -> str:
+            return "<p>mine</p>"
+
+    async def main():
+        async with (
+            aio.RpcServer("/aio/server", Handler()) as server,
+            aio.RpcClient("/aio/server") as client,
+        ):
+            await client.tell(["go", 1])
+            await client.call("and")
+            assert heard == [["go", 1], ["and"]]
+            address = server.port.address
+            page = await asyncio.to_thread(lambda: urlopen(f"http://{address}/", timeout=10).read())
+            assert page == b"<p>mine</p>"
+
+    asyncio.run(main())

@@ -30,3 +30,9 @@ def test_numpy_and_rosbags_come_when_they_are_needed() -> None:
     code = "import sys, yarpy.idl.rosmsg.library; print({'numpy', 'rosbags'} & {*sys.modules})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
+
+
+def test_thrift_without_lark_and_numpy_until_they_are_needed() -> None:
+    code = "import sys; from yarpy.idl import thrift; print({'numpy', 'lark'} & {*sys.modules})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"

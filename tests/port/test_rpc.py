@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import threading
 import time
+from urllib.request import urlopen
 
 import pytest
 from support.patience import patience
@@ -29,7 +30,7 @@ from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.route import Route
 from yarpy.wire import framing
-from yarpy.wire.message import Message
+from yarpy.wire.message import Encoded, Message
 
 
 def echo(message: Message) -> object:
@@ -453,3 +454,59 @@ def test_servers_and_clients_hear_of_connections(names: LocalNames) -> None:
         "Removing output from /client to /server",
         "Sending output from /client to /server using tcp",
     ]
+
+
+def test_tell_sends_without_waiting_for_an_answer(names: LocalNames) -> None:
+    heard: list[Message] = []
+    with (
+        RpcServer("/server", heard.append, names=names),
+        RpcClient("/server", names=names) as client,
+    ):
+        client.tell(["go", 1])
+        assert client.call("and", 2) == []
+        assert [message.value for message in heard] == [["go", 1], ["and", 2]]
+        assert [message.answer is None for message in heard] == [True, False]
+    with pytest.raises(PortClosed):
+        client.tell([1])
+
+
+def test_a_handler_with_a_page_shows_it(names: LocalNames) -> None:
+    class Handler:
+        def __call__(self, message: Message) -> object:
+            return message.value
+
+        def page(self, path: str, fields: object) -> str | None:
+            return "<p>mine</p>" if path == "/" else None
+
+    with RpcServer("/server", Handler(), names=names) as server:
+        with urlopen(f"http://{server.address}/", timeout=10) as page:
+            assert page.read() == b"<p>mine</p>"
+        with urlopen(f"http://{server.address}/*", timeout=10) as page:
+            assert b"/server" in page.read()
+
+
+def test_questions_may_say_where_their_reply_ends(names: LocalNames) -> None:
+    """A list of lists as C++ writes it, which is no Bottle."""
+    data = bytes.fromhex("0001000001000000 0101000001000000 0101000001000000 07000000")
+
+    class Question:
+        def to_wire(self) -> tuple[bytes, ...]:
+            return (b"\4\1\0\0\1\0\0\0\2\0\0\0hi",)
+
+        @staticmethod
+        def ending(limit: int) -> object:
+            class Walk:
+                done = False
+
+                def advance(self, view: memoryview) -> int:
+                    self.done = len(view) >= len(data)
+                    return len(data)
+
+            return Walk()
+
+    with RpcServer("/server", lambda message: Encoded(data), names=names):
+        for carrier in ("tcp", "fast_tcp"):
+            with RpcClient("/server", names=names, carrier=carrier) as client:
+                for _ in range(2):
+                    message = client.ask(Question())
+                    assert message is not None and message.payload == data

@@ -51,7 +51,11 @@ class RpcServer(BasePort[rpc.RpcServer]):
         )  # fmt: skip
 
     def _make(self) -> rpc.RpcServer:
-        return self._open_server(handler=self._ask_loop(self._answer))
+        server = self._open_server(handler=self._ask_loop(self._answer))
+        page = getattr(self._handler, "page", None)
+        if page is not None:
+            server.on_page(page)
+        return server
 
     async def _answer(self, message: Message) -> object:
         task = asyncio.current_task()
@@ -114,3 +118,9 @@ class RpcClient(BasePort[rpc.RpcClient]):
         async with self._turn:
             client = (await self.open()).port
             return await asyncio.to_thread(client.ask, question, timeout)
+
+    async def tell(self, statement: object) -> None:
+        """Send it without waiting for an answer."""
+        async with self._turn:
+            client = (await self.open()).port
+            await asyncio.to_thread(client.tell, statement)

@@ -233,6 +233,7 @@ class Outbound:
                 if self.sender.window.open:
                     self.sender.window.collect(wait=True, until=deadline)
                 carrier, stream = self.carrier, driver.stream
+                stream.ending = getattr(packet.value, "ending", None)
                 carrier.encode(stream, packet)
                 self.sender.flush(deadline)
                 if not stream.waiting:

@@ -69,6 +69,9 @@ class RpcServer(BasePort):
                     part=part,
                 )
             )
+            page = getattr(handler, "page", None)
+            if page is not None:
+                self.on_page(page)
         finally:
             self._opened.set()
 
@@ -198,6 +201,16 @@ class RpcClient(BasePort):
         except YarpError as error:
             if link.broken:
                 self._hub.drop_output(link, str(error))
+            raise
+
+    def tell(self, statement: object) -> None:
+        """Send it without waiting for an answer; errors as of `call`."""
+        self._check_open()
+        link = self._link()
+        try:
+            link.send(Packet(statement))
+        except LinkClosed as error:
+            self._hub.drop_output(link, str(error))
             raise
 
     def _link(self) -> Outbound:

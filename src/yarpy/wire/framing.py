@@ -260,8 +260,8 @@ def parse_command(text: str) -> Message:
 
 def read_payload(stream: ByteStream) -> Steps[bytes | memoryview]:
     """A payload that comes without a length, as replies come: walk it to its end."""
-    walker = Walker(stream.limit)
     limit = stream.limit
+    walker = Walker(limit) if stream.ending is None else stream.ending(limit)
 
     def extent(view: memoryview) -> tuple[bytes, int] | int:
         need = walker.advance(view)
@@ -278,7 +278,7 @@ def parse_reply(stream: ByteStream) -> Message | None:
     As with `parse_plain`, nothing is waited for. Replies have no length: decoding finds it.
     """
     head, tail = stream.head, stream.tail
-    if tail - head > LARGE:
+    if tail - head > LARGE or stream.ending is not None:
         return None
     data = bytes(stream.buffer[head:tail])
     found = decode_leading(data)

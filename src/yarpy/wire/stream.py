@@ -11,7 +11,7 @@ nothing holds it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Final, TypeAlias, TypeVar
+from typing import Final, Protocol, TypeAlias, TypeVar
 
 from yarpy.errors import LinkClosed, RemoteProtocolError
 from yarpy.wire.steps import Steps
@@ -57,6 +57,15 @@ def _is_free(buffer: bytearray) -> bool:
 _REUSES: Final = _parts_hold()
 
 
+class Walk(Protocol):
+    """Finds the end of a message in a buffer that grows; see `yarpy.data.walker`."""
+
+    done: bool
+
+    def advance(self, view: Buffer) -> int:
+        """The least number of bytes that the message has; its length, once `done`."""
+
+
 class ByteStream:
     """Bytes in, bytes out. `limit` is the largest message, in bytes, that is accepted.
 
@@ -73,6 +82,7 @@ class ByteStream:
         "_spare",
         "_view",
         "buffer",
+        "ending",
         "head",
         "limit",
         "paused",
@@ -86,6 +96,8 @@ class ByteStream:
         self.tail = 0
         self.limit = limit
         self.paused = False
+        #: what finds the end of the reply that is expected, where it is no Bottle
+        self.ending: Callable[[int], Walk] | None = None
         self._eof = False
         self._output: list[Buffer] = []
         self._big: memoryview | None = None  # where a large read lands

@@ -1,0 +1,208 @@
+"""Method: how the call of one method and its answer are written and read.
+
+    request    256 n, the words of the name, the arguments, structs spliced in
+    answer     256 n, the result, a struct spliced in; nothing for void
+
+    get_long_method_name    the words [get] [long] method [name]: vocabs up to four letters
+
+Rules: pure functions of bytes, made on first use. Only trailing arguments that have a default may
+be missing. A result that is External is the whole answer.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from struct import Struct as Packing
+from typing import Any, Final, TypeVar
+
+from yarpy.data import codec
+from yarpy.data.value import LIST, STRING, VOCAB32, Buffer, vocab_code
+from yarpy.errors import DecodeError
+from yarpy.idl.thrift import fast, reader
+from yarpy.idl.thrift.extent import Ending, ending_of
+from yarpy.idl.thrift.fast import Part
+from yarpy.idl.thrift.kind import External, Kind, flat, kind_of, name_of
+from yarpy.idl.thrift.structure import _New
+from yarpy.idl.thrift.word import SERVICE, original
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_PAIR: Final = Packing("<ii").pack
+
+
+def method(function: F) -> F:
+    """Mark a method of a service that others can call."""
+    function._thrift_oneway = False  # type: ignore[attr-defined]
+    return function
+
+
+def oneway(function: F) -> F:
+    """Mark one whose caller does not wait for an answer."""
+    function._thrift_oneway = True  # type: ignore[attr-defined]
+    return function
+
+
+class Method:
+    """A method of a service. `names`: those that its annotations may mention."""
+
+    def __init__(
+        self, attribute: str, function: Any, names: Callable[[], Mapping[str, Any]]
+    ) -> None:
+        self.attribute = attribute
+        self.name = original(attribute, SERVICE)
+        self.function = function
+        self.oneway: bool = function._thrift_oneway
+        self.doc = inspect.cleandoc(function.__doc__ or "")
+        self.words = self.name.split("_")
+        self._names = names
+
+    @cached_property
+    def signature(self) -> inspect.Signature:
+        return inspect.signature(self.function)
+
+    @cached_property
+    def parts(self) -> list[Part]:
+        """The arguments."""
+        names = self._names()
+        found = []
+        for each in [*self.signature.parameters.values()][1:]:
+            if each.kind is not each.POSITIONAL_OR_KEYWORD or each.annotation is each.empty:
+                raise TypeError(
+                    f"{self.name}: the argument {each} needs a type: {each.name}: float"
+                )
+            kind, nested = kind_of(each.annotation, names)
+            found.append(Part(original(each.name), kind, nested))
+        return found
+
+    @cached_property
+    def defaults(self) -> list[Callable[[], Any]]:
+        """What the last arguments are if they are missing."""
+        found: list[Callable[[], Any]] = []
+        for each in [*self.signature.parameters.values()][1:]:
+            if each.default is not each.empty:
+                found.append(_maker(each.default))
+        return found
+
+    @cached_property
+    def result(self) -> Kind | None:
+        """What it answers with; None for nothing."""
+        annotation = self.signature.return_annotation
+        if annotation is None or annotation is inspect.Signature.empty or annotation == "None":
+            return None
+        return kind_of(annotation, self._names())[0]
+
+    # -- requests ---------------------------------------------------------------------------------
+
+    @cached_property
+    def head(self) -> bytes:
+        """The name as it is sent: the count of the list counts arguments, too."""
+        pieces = []
+        for word in self.words:
+            data = word.encode()
+            if len(data) <= 4:
+                pieces.append(_PAIR(VOCAB32, vocab_code(data)))
+            else:
+                pieces.append(_PAIR(STRING, len(data)) + data)
+        count = len(self.words) + sum(1 if p.nested else flat(p.kind) for p in self.parts)
+        return _PAIR(LIST, count) + b"".join(pieces)
+
+    @cached_property
+    def ask(self) -> fast.Dump:
+        """The request for these arguments, all of them. TypeError, OverflowError."""
+        return fast.dump(self.name, self.parts, self.head)
+
+    @cached_property
+    def read_arguments(self) -> fast.Load:
+        """The arguments that begin at a place. DecodeError."""
+        return fast.load(self.name, self.parts, self.defaults)
+
+    # -- answers ----------------------------------------------------------------------------------
+
+    @cached_property
+    def answer(self) -> Callable[[Any], bytes]:
+        """The answer with a result. TypeError, OverflowError."""
+        result = self.result
+        if result is None:
+            empty = _PAIR(LIST, 0)
+            return lambda value: empty
+        if isinstance(result, External):
+            return lambda value: b"".join(codec.encode(value))
+        path = f"the result of {self.name}"
+        return fast.dump(path, [Part("", result)], _PAIR(LIST, flat(result)))
+
+    def bottle_answer(self, value: Any) -> bytes:
+        """The same as a Bottle, whatever C++ would make of it."""
+        result = self.result
+        if result is None or isinstance(result, External):
+            return self.answer(value)
+        head = _PAIR(LIST, flat(result))
+        path = f"the result of {self.name}"
+        return fast.slow_dump(path, [Part("", result)], [value], head, bottle=True)
+
+    @cached_property
+    def _load_result(self) -> fast.Load:
+        assert self.result is not None
+        return fast.load(f"the result of {self.name}", [Part("", self.result)])
+
+    def read_answer(self, data: Buffer) -> Any:
+        """The result in an answer. DecodeError."""
+        result = self.result
+        if result is None:
+            return None
+        if isinstance(result, External):
+            return codec.decode_as(data, reader.class_of(result))
+        return self._load_result(reader.spread(data), 8)[0]
+
+    @cached_property
+    def ending(self) -> Ending | None:
+        """What finds the end of its answers, where they are no Bottles."""
+        return ending_of(self.result)
+
+    # -- for people -------------------------------------------------------------------------------
+
+    @property
+    def prototype(self) -> str:
+        """As it is written in a `.thrift` file, without the numbers."""
+        result = "void" if self.result is None else name_of(self.result)
+        arguments = []
+        first = len(self.parts) - len(self.defaults)
+        for at, part in enumerate(self.parts):
+            text = f"{name_of(part.kind)} {part.name}"
+            if at >= first:
+                text += f" = {shown(self.defaults[at - first]())}"
+            arguments.append(text)
+        return f"{'oneway ' if self.oneway else ''}{result} {self.name}({', '.join(arguments)})"
+
+
+def shown(value: Any) -> str:
+    """A default as Thrift spells it."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    name = getattr(value, "name", None)
+    if name is not None and hasattr(value, "_thrift"):
+        return f"{type(value).__name__}.{name}"
+    if isinstance(value, str):
+        return f'"{value}"'
+    if hasattr(value, "__array_interface__"):
+        return repr(value.tolist())
+    return repr(value)
+
+
+def _maker(default: Any) -> Callable[[], Any]:
+    if isinstance(default, _New):
+        return default.make
+    return lambda: default
+
+
+def first_word(data: bytes, at: int) -> tuple[str, int, int]:
+    """The word that begins at a place, the place behind it, and its tag. DecodeError."""
+    tag, length = reader.pair(data, at)
+    if tag == VOCAB32:
+        word = length.to_bytes(4, "little", signed=True).rstrip(b"\0").decode("utf-8", "replace")
+        return word, at + 8, tag
+    if tag != STRING or length < 0 or at + 8 + length > len(data):
+        raise DecodeError("the name of a method is a word, or several")
+    end = at + 8 + length
+    return data[at + 8 : end].decode("utf-8", "replace").rstrip("\0"), end, tag

@@ -1,0 +1,245 @@
+"""Service: what a server subclasses, and what a client has the methods of.
+
+    class Camera(camera.Camera):                  yarpy.RpcServer("/cam/rpc", Camera())
+        def set_speed(self, speed): ...           camera.connect("/cam/rpc").set_speed(1.5)
+
+    name of a method    one word, or the words between its `_`, as strings or vocabs
+    help, help NAME     the names of the methods; one of them with its documentation
+    getRemoteProtocolVersion      `const i16 protocol_version` of the file, and 3 12 0
+    help_failure        (yarpy) why the last call of this client failed
+
+Rules: every request is answered, a failed one with `[fail]`: alone for programs, as in C++, since
+they cannot read more; with the reason for people and whoever spells names as people do. A method
+may be a coroutine function where `yarpy.aio.RpcServer` serves it. What a method raises is logged,
+and is the reason. Inherited methods are called as own ones. A oneway call is answered before it is
+done, where somebody wants an answer.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Awaitable, Mapping
+from inspect import isawaitable
+from struct import Struct as Packing
+from typing import Any, ClassVar, Final, Self
+
+from yarpy import registry
+from yarpy.data.bottle import Bottle
+from yarpy.data.value import LIST, STRING, VOCAB32, Int16, Vocab
+from yarpy.errors import DecodeError, LocalProtocolError
+from yarpy.idl.thrift import reader
+from yarpy.idl.thrift.kind import namespace_of
+from yarpy.idl.thrift.method import Method, first_word
+from yarpy.idl.thrift.payload import FAILURE, VERSION, Payload
+from yarpy.log import logger
+
+log = logger("yarpy.idl")
+
+#: what others are told the version of YARP is whose wire this is
+YARP_VERSION: Final = (3, 12, 0)
+
+_DIRECT: Final = "__direct__"
+#: clients whose last failure is remembered
+_REMEMBERED: Final = 100
+_FAILED: Final = Packing("<iii").pack(LIST + 9, 1, 0x6C696166)
+_MANY: Final = 0x796E616D
+_DONE: Final = Packing("<iiii").pack(LIST, 1, 9, 0x656E6F64)
+
+
+class Service:
+    """The base of all services."""
+
+    _thrift: ClassVar[str] = "service"
+    _version: ClassVar[int] = 0
+    _methods: ClassVar[dict[str, Method]] = {}
+    _namespace: ClassVar[Mapping[str, Any] | None] = None
+    _failures: OrderedDict[str, str]
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        own = {
+            method.name: method
+            for method in (
+                Method(name, value, lambda owner=cls: namespace_of(owner))  # type: ignore[misc]
+                for name, value in cls.__dict__.items()
+                if hasattr(value, "_thrift_oneway")
+            )
+        }
+        cls._methods = {**cls._methods, **own}
+
+    # -- serving ----------------------------------------------------------------------------------
+
+    def __call__(self, message: Any) -> Any:
+        """Answer a message: a Service is the handler of an RpcServer."""
+        person = message.spelling == "text" or message.source == "web"
+        try:
+            data = bytes(reader.spread(message.to_bytes()))
+            name, at, by_hand = self._named(data)
+            person = person or by_hand
+            method = self._methods.get(name)
+            if method is None:
+                return self._extra(name, data, at, message)
+            values = method.read_arguments(data, at)
+            function = getattr(self, method.attribute)
+            if method.oneway and message.wants_reply:
+                message.reply(Payload(_DONE))
+            result = function(*values)
+            if isawaitable(result):
+                return self._finished(method, result, message, person)
+        except Exception as error:
+            return self._failed(error, message, person)
+        return self._answer(method, result, message, person)
+
+    def _answer(self, method: Method, result: Any, message: Any, person: bool) -> Any:
+        if method.oneway:
+            return None
+        try:
+            if person:
+                return Payload(method.bottle_answer(result))
+            return Payload(method.answer(result))
+        except Exception as error:
+            return self._failed(error, message, person)
+
+    async def _finished(
+        self, method: Method, result: Awaitable[Any], message: Any, person: bool
+    ) -> Any:
+        try:
+            found = await result
+        except Exception as error:
+            return self._failed(error, message, person)
+        return self._answer(method, found, message, person)
+
+    def _named(self, data: bytes) -> tuple[str, int, bool]:
+        """The method that a request names, where its arguments begin, and whether it is spelled as
+        people do. What is not a method is its first word."""
+        word, at, tag = first_word(data, 8)
+        if word == _DIRECT:
+            word, at, tag = first_word(data, at)
+        methods = self._methods
+        begin, begin_at, name = word, at, word
+        by_hand = tag == STRING and (len(word) <= 4 or "_" in word)
+        for _ in range(self._longest()):
+            if name in methods:
+                return name, at, by_hand
+            if name in ("help", VERSION, FAILURE) or at >= len(data):
+                break
+            try:
+                word, at, tag = first_word(data, at)
+            except DecodeError:
+                break
+            by_hand = by_hand or (tag == STRING and len(word) <= 4)
+            name = f"{name}_{word}"
+        return begin, begin_at, by_hand
+
+    def _longest(self) -> int:
+        """The words of the longest name."""
+        found = type(self).__dict__.get("_longest_")
+        if found is None:
+            found = max((len(each.words) for each in self._methods.values()), default=1)
+            type(self)._longest_ = found  # type: ignore[attr-defined]
+        return int(found)
+
+    def _extra(self, name: str, data: bytes, at: int, message: Any) -> Any:
+        """What every service answers beside its methods."""
+        if name == "help":
+            asked = first_word(data, at)[0] if at < len(data) else ""
+            return Payload(_many(self.help(asked)))
+        if at == len(data) and name == VERSION:
+            numbers = (self._version, *YARP_VERSION)
+            if message.spelling == "text":
+                return Bottle([Int16(number) for number in numbers])
+            return Payload(Packing("<iihhhh").pack(LIST, 1, *numbers))
+        if at == len(data) and name == FAILURE:
+            return Bottle([self._remembered().get(message.source, "")])
+        known = ", ".join([*self._methods][:8]) + (" ..." if len(self._methods) > 8 else "")
+        raise DecodeError(f'no method "{name}": there are {known}; send help for all')
+
+    def _failed(self, error: Exception, message: Any, person: bool) -> Any:
+        if isinstance(error, DecodeError):
+            reason = str(error)
+            log.warning("%s: request of %s: %s", type(self).__name__, message.source, reason)
+        elif isinstance(error, NotImplementedError):
+            reason = f"{type(self).__name__} does not have this method"
+            log.warning("%s: request of %s: %s", type(self).__name__, message.source, reason)
+        else:
+            reason = f"{type(error).__name__}: {error}"
+            log.error(
+                "%s failed on a request of %s", type(self).__name__, message.source, exc_info=error
+            )
+        if not message.wants_reply:
+            return None
+        if person:
+            return Bottle([Vocab("fail"), reason])
+        failures = self._remembered()
+        failures.pop(message.source, None)
+        failures[message.source] = reason[:1000]
+        while len(failures) > _REMEMBERED:
+            failures.popitem(last=False)
+        return Payload(_FAILED)
+
+    def _remembered(self) -> OrderedDict[str, str]:
+        found: OrderedDict[str, str] | None = self.__dict__.get("_failures")
+        if found is None:
+            found = self.__dict__.setdefault("_failures", OrderedDict())
+        return found
+
+    def help(self, name: str = "") -> list[str]:
+        """The names of all methods; or how one is called, and what it says about itself."""
+        if not name or name == "--all":
+            return ["*** Available commands:", *self._methods, "help"]
+        method = self._methods.get(name)
+        if method is None:
+            return ["Command not found"]
+        return [method.prototype, *([method.doc] if method.doc else [])]
+
+    def page(self, path: str, fields: Mapping[str, str]) -> str | None:
+        """The page of the server's port: its methods as forms."""
+        from yarpy.idl.thrift.page import page
+
+        return page(self) if path == "/" else None
+
+    # -- calling ----------------------------------------------------------------------------------
+
+    @classmethod
+    def connect(
+        cls, target: str, *, timeout: float | None = None, carrier: str = "tcp", **options: Any
+    ) -> Self:
+        """A client of the server `target`, with the methods of this service.
+
+        A call raises Timeout after `timeout` seconds, RemoteProtocolError if the server refuses it,
+        LinkClosed if it is gone; all name the method. `options` are those of `yarpy.RpcClient`.
+        `with`, or `close()`, ends the connection.
+        """
+        from yarpy.idl.thrift.client import client_class
+
+        port = registry.clients.load("rpc")(target, carrier=carrier, **options)
+        return client_class(cls)(port, timeout)  # type: ignore[no-any-return]
+
+    @classmethod
+    def connect_async(
+        cls, target: str, *, timeout: float | None = None, carrier: str = "tcp", **options: Any
+    ) -> Any:
+        """The same for event loops: `async with` it, and await its methods."""
+        from yarpy.idl.thrift.client import client_class
+
+        port = registry.clients.load("aio")(target, carrier=carrier, **options)
+        return client_class(cls, waits=True)(port, timeout)
+
+    def close(self) -> Any:
+        """End the connection of a client."""
+        raise LocalProtocolError(f"{type(self).__name__} is no client: nothing to close")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+
+def _many(lines: list[str]) -> bytes:
+    """`[many]` and a list of strings, each with its tag, as C++ writes them."""
+    pieces = [Packing("<iiiiii").pack(LIST, 2, VOCAB32, _MANY, LIST, len(lines))]
+    for line in lines:
+        data = line.encode("utf-8", "surrogateescape")
+        pieces += (Packing("<ii").pack(STRING, len(data)), data)
+    return b"".join(pieces)

@@ -1,0 +1,143 @@
+"""Interfaces: names, includes, and rules that C++ YARP has."""
+
+from pathlib import Path
+
+import pytest
+
+from yarpy.errors import DecodeError
+from yarpy.idl.thrift import kind as kinds
+from yarpy.idl.thrift.document import EnumText, StructText
+from yarpy.idl.thrift.interface import enum_base, external, read_interface, text_interface
+from yarpy.idl.thrift.parse import parse
+
+
+def test_types_behind_typedefs() -> None:
+    found = text_interface(
+        'typedef i32 (yarp.type="yarp::conf::vocab32_t") vocab\ntypedef vocab word\n'
+        'typedef i16 (yarp.type="unsigned short") u\ntypedef list<u> us\n'
+        'typedef double (yarp.type="yarp::conf::float64_t") d\nstruct S { 1: word w }'
+    )
+    types = {each.name: each.type for each in found.document.declarations[:5]}  # type: ignore[union-attr]
+    kinds_of = {name: found.resolve(type_)[1] for name, type_ in types.items()}
+    assert kinds_of["word"] is kinds.VOCAB and kinds_of["u"] is kinds.UI16
+    assert kinds_of["d"] is kinds.DOUBLE
+
+
+@pytest.mark.parametrize(
+    ("given", "base"),
+    [
+        ("int8_t", kinds.I8),
+        ("std::uint8_t", kinds.UI8),
+        ("int16_t", kinds.I16),
+        ("std::uint32_t", kinds.UI32),
+        ("int64_t", kinds.I64),
+        ("yarp::conf::vocab32_t", kinds.VOCAB),
+        ("int", kinds.I32),
+    ],
+)
+def test_bases_of_enums(given: str, base: kinds.Scalar) -> None:
+    found = text_interface(f'enum E {{ A = 1 }} (yarp.enumbase = "{given}")')
+    enum = found.document.declarations[0]
+    assert isinstance(enum, EnumText) and enum_base(found, enum) is base
+
+
+def test_types_of_cpp() -> None:
+    def found(annotations: str) -> kinds.External | None:
+        struct = parse(f"struct V {{ 1: list<double> c }} ({annotations})").declarations[0]
+        assert isinstance(struct, StructText)
+        return external(struct)
+
+    assert found('yarp.name = "yarp::sig::Vector"') == kinds.External(
+        "yarp::sig::Vector", 1, "yarpy.Vector"
+    )
+    assert found('yarp.name = "a::B" yarp.bottlesize = "3"') == kinds.External("a::B", 3)
+    assert found('yarp.bottlesize = "0" cpp.name = "a"') == kinds.External("a", 1)
+    assert found('x = "y"') is None
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("struct A { 1: Pont p }\nstruct Point {}", 'f:1: no type "Pont": did you mean "Point"?'),
+        ("struct A {}\n\nenum A { B }", 'f:3: "A" is there already, in line 1'),
+        ("struct A { 1: i32 a, 2: i32 a }", 'f:1: "a" is there twice in A'),
+        ("struct A { 1: i32 a, 1: i32 b }", '"b" and "a" in A have one number, 1'),
+        ("struct A { 1: A a }", 'f:1: "A" contains itself: put it into a list'),
+        ("struct A { 1: B b }\nstruct B { 1: A a }", "contains itself"),
+        ("typedef b a\ntypedef a b", "is defined by itself"),
+        ("enum A { B, B }", '"B" is there twice in A'),
+        ('enum A { B } (yarp.enumbase = "float")', '"float" is no type of integers'),
+        ('typedef i64 (yarp.type = "yarp::conf::vocab32_t") a', ""),
+        ("struct _A {}", '"_A" begins with _'),
+        ("service A extends B {}", 'f:1: no service "B"'),
+        ("struct B {}\nservice A extends B {}", 'f:2: "B" is no service'),
+        ("service A extends A {}", '"A" extends itself'),
+        ("service A { void get(), void get_all() }", 'called "get_all": "get" would be called'),
+        ("service A { void help_me() }", "the word help is taken"),
+        ("service A { void help() }", "the word help is taken"),
+        ("service A { void a__b() }", "cannot call names with __"),
+        ("service A { void a_() }", "with _ at their end"),
+        ("service A { oneway i32 a() }", '"a" is oneway, so its result must be void'),
+        ("service A { void a(1: i32 x, 2: i32 x) }", '"x" is there twice in a'),
+        ("service A { void a() }\nservice B extends A { void a() }", "that B extends has it, too"),
+        ("service A { i33 a() }", 'no type "i33": did you mean'),
+        ("service A {}\nstruct S { 1: A a }", '"A" is no type'),
+        ("struct S {}\nstruct T { 1: map<S, i32> m }", "keys of a map can only be"),
+        ('include "a.thrift"', "a text cannot include"),
+    ],
+)
+def test_rules(text: str, error: str) -> None:
+    if not error:
+        assert text_interface(text, "f")
+        return
+    with pytest.raises(DecodeError) as caught:
+        text_interface(text, "f")
+    assert error in str(caught.value) and str(caught.value).startswith("f:")
+
+
+def test_many_values_are_refused_in_time() -> None:
+    lines = ["struct S0 { 1: i32 a, 2: i32 b }"]
+    lines += [f"struct S{at} {{ 1: S{at - 1} a, 2: S{at - 1} b }}" for at in range(1, 60)]
+    with pytest.raises(DecodeError, match="has more than 10000 values"):
+        text_interface("\n".join(lines))
+
+
+def test_included_files(tmp_path: Path) -> None:
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "geometry.thrift").write_text("struct Point { 1: i32 x }")
+    (tmp_path / "arm.thrift").write_text(
+        'include "geometry.thrift"\nstruct A { 1: geometry.Point p }'
+    )
+    with pytest.raises(DecodeError, match=r'arm.thrift:1: no file "geometry.thrift" in'):
+        read_interface(tmp_path / "arm.thrift")
+    found = read_interface(tmp_path / "arm.thrift", [tmp_path / "lib"])
+    assert found.name == "arm" and [*found.includes] == ["geometry"]
+    (tmp_path / "geometry.thrift").write_text("struct Pt {}")  # that beside it comes first
+    with pytest.raises(DecodeError, match=r'arm.thrift:2: no type "geometry.Point": did you mean'):
+        read_interface(tmp_path / "arm.thrift", [tmp_path / "lib"])
+
+
+def test_files_that_include_each_other_are_refused(tmp_path: Path) -> None:
+    for name, other in (("a", "b"), ("b", "c"), ("c", "a")):
+        (tmp_path / f"{name}.thrift").write_text(f'include "{other}.thrift"')
+    with pytest.raises(DecodeError, match=r"c\.thrift:1: files include each other: a.thrift -> b"):
+        read_interface(tmp_path / "a.thrift")
+    (tmp_path / "self.thrift").write_text('include "self.thrift"')
+    with pytest.raises(DecodeError, match="include each other"):
+        read_interface(tmp_path / "self.thrift")
+
+
+def test_a_file_may_be_included_twice_by_different_ways(tmp_path: Path) -> None:
+    (tmp_path / "base.thrift").write_text("struct P { 1: i32 x }")
+    (tmp_path / "a.thrift").write_text('include "base.thrift"\nstruct A { 1: base.P p }')
+    (tmp_path / "b.thrift").write_text('include "a.thrift"\ninclude "base.thrift"')
+    found = read_interface(tmp_path / "b.thrift")
+    assert found.includes["a"].includes["base"] is found.includes["base"]
+
+
+def test_files_that_are_no_text(tmp_path: Path) -> None:
+    (tmp_path / "a.thrift").write_bytes(b"struct A {}\n\xff")
+    with pytest.raises(DecodeError, match=r"a\.thrift:2: the file is not UTF-8 text"):
+        read_interface(tmp_path / "a.thrift")
+    with pytest.raises(FileNotFoundError):
+        read_interface(tmp_path / "none.thrift")

@@ -1,0 +1,217 @@
+"""The text of modules: readable, typed, and what the file says."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.thrift import GOLDEN
+
+from yarpy.errors import DecodeError
+from yarpy.idl.thrift.interface import read_interface, text_interface
+from yarpy.idl.thrift.library import loads
+from yarpy.idl.thrift.module import python, stubs
+
+TEXT = """\
+const i32 LIMIT = 4
+const double HALF = 1
+const string NAME = 'a "b"'
+const list<string> WORDS = ["a", "b"]
+const map<string, i32> COUNTS = { "a": LIMIT, "b": Way.BACK }
+/** Which way. */
+enum Way { LEFT = 1, BACK = 5, None = 7 } (yarp.enumbase = "int8_t")
+/** Where it is.
+ *  In metres. */
+struct Point {
+  /** To the right. */
+  1: double x = 2,
+  2: Way way = Way.BACK,
+  3: list<i32> list_ = [1, 2],
+  4: bool from = true,
+  5: binary data = "abc",
+  6: Way other = 5
+}
+const Point ORIGIN = { "x": 1.5, "way": Way.LEFT }
+struct Vector {} (yarp.name = "yarp::sig::Vector")
+struct Thing {} (yarp.name = "my::Thing")
+struct Line { 1: Point begin, 2: Point end (yarp.nested = "true"), 3: Vector v, 4: Thing t }
+service Robot {
+  /** Goes there. */
+  bool go(1: Line line, 2: Point to = { "x": 3.0 }, 3: list<double> speeds = [1.5]);
+}
+"""
+
+
+def test_readable() -> None:
+    text = python(text_interface(TEXT, "robot.thrift"))
+    assert (
+        text
+        == '''\
+"""The interface robot, written by `yarpy idl thrift`."""
+
+from typing import Annotated, Final
+
+import yarpy
+from yarpy.idl import thrift
+
+LIMIT: Final = 4
+HALF: Final = 1.0
+NAME: Final = 'a "b"'
+WORDS: Final = ["a", "b"]
+COUNTS: Final = {"a": LIMIT, "b": 5}
+
+
+class Way(thrift.Enum, base=thrift.i8):
+    """Which way."""
+
+    LEFT = 1
+    BACK = 5
+    None_ = 7
+
+
+class Point(thrift.Struct):
+    """Where it is.
+    In metres.
+    """
+
+    #: To the right.
+    x: float = 2.0
+    way: Way = Way.BACK
+    list_: thrift.Int32s = thrift.new(lambda: [1, 2])
+    from_: bool = True
+    data: bytes = b"abc"
+    other: Way = Way.BACK
+
+
+ORIGIN: Final = Point(x=1.5, way=Way.LEFT)
+Vector = Annotated[yarpy.Vector, thrift.External("yarp::sig::Vector", 1, "yarpy.Vector")]
+Thing = Annotated[object, thrift.External("my::Thing")]
+
+
+class Line(thrift.Struct):
+    begin: Point = thrift.new(lambda: Point())
+    end: thrift.Nested[Point] = thrift.new(lambda: Point())
+    v: Vector = thrift.new(yarpy.Vector)
+    t: Thing = thrift.new(yarpy.Bottle)
+
+
+class Robot(thrift.Service):
+    @thrift.method
+    def go(
+        self,
+        line: Line,
+        to: Point = thrift.new(lambda: Point(x=3.0)),
+        speeds: thrift.Float64s = thrift.new(lambda: [1.5]),
+    ) -> bool:
+        """Goes there."""
+        raise NotImplementedError
+
+
+connect = Robot.connect
+connect_async = Robot.connect_async
+'''
+    )
+
+
+def test_it_runs_and_is_what_the_file_says() -> None:
+    made = loads(TEXT, "robot")
+    assert made.COUNTS == {"a": 4, "b": 5} and made.Point(1.5, made.Way.LEFT) == made.ORIGIN
+    assert made.Line().to_text() == (
+        "2.0 5 (1 2) [ok] {97 98 99} 5 (2.0 5 (1 2) [ok] {97 98 99} 5) () ()"
+    )
+    assert made.Point.__doc__ == "Where it is.\n    In metres.\n    "
+    assert made.Robot().help("go")[0].startswith("bool go(Line line, Point to = Point(x=3.0,")
+
+
+def test_the_linter_likes_it_and_types_are_right(tmp_path: Path) -> None:
+    """`ruff format` leaves it alone, mypy checks it and a program that uses it."""
+    for name, interface in (
+        ("robot", text_interface(TEXT, "robot.thrift")),
+        ("capt", read_interface(GOLDEN / "capt.thrift")),
+    ):
+        (tmp_path / f"{name}.py").write_text(python(interface))
+    config = str(Path(__file__).parents[3] / "pyproject.toml")
+    run = [sys.executable, "-m"]
+    done = subprocess.run(
+        [*run, "ruff", "format", "--diff", "--config", config, "."],
+        cwd=tmp_path, capture_output=True, text=True, timeout=50,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    for name in ("robot", "capt"):
+        interface = (
+            text_interface(TEXT, "robot.thrift")
+            if name == "robot"
+            else read_interface(GOLDEN / "capt.thrift")
+        )
+        (tmp_path / f"{name}.pyi").write_text(stubs(interface))
+    (tmp_path / "use.py").write_text(
+        "import capt\nimport robot\n\n"
+        "line: robot.Line = robot.Line(robot.Point(x=1.0, list_=[1, 2]))\n"
+        "good: bool = robot.connect('/r').go(line, speeds=[1.5, 2])\n"
+        "total: int = capt.connect('/c').add(1, 2)\n"
+        "mean: float = capt.Lists(ld=[1.0]).ld.mean()\n"
+        "bad: str = capt.connect('/c').add(1, 2)  # type: ignore[assignment]\n"
+        "capt.connect('/c').add('one', 2)  # type: ignore[arg-type]\n"
+    )
+    done = subprocess.run(
+        [*run, "mypy", "--strict", "--warn-unused-ignores", "use.py"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=50,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("struct A { 1: i32 a = 'x' }", "f:1: expected a value for i32, found 'x'"),
+        ("struct A { 1: i8 a = 300 }", r"300 \(300\) does not fit in i8"),
+        ("struct A { 1: bool a = 2 }", "expected a value for bool, found 2"),
+        ("struct A { 1: string a = 2 }", "expected a value for string"),
+        ("struct A { 1: list<i32> a = 2 }", "expected a value for a list, found 2"),
+        ("struct A { 1: map<i32, i32> a = [1] }", "expected a value for a map, found a list"),
+        ("enum E { A }\nstruct S { 1: E e = E.B }", "f:2: E is one of A, not E.B"),
+        ("enum E { A }\nstruct S { 1: E e = 'A' }", "expected a value for E, found 'A'"),
+        ("enum E { A = 300 } (yarp.enumbase = 'int8_t')", "does not fit in i8"),
+        ("const i32 A = B\nconst i32 B = 1", 'the constant "B" comes later'),
+        ("const i32 A = C", 'no constant "C"'),
+        ("struct S {}\nconst i32 A = S", '"S" is no constant'),
+        ("struct S { 1: i32 a }\nconst S A = { 'b': 1 }", "S has no field 'b'"),
+        ("struct S { 1: i32 a }\nconst S A = 5", "expected a value for S, found 5"),
+        ("service S { void f(1: i32 a = 1, 2: i32 b) }", '"b" needs a default'),
+    ],
+)
+def test_values_must_fit(text: str, error: str) -> None:
+    with pytest.raises(DecodeError, match=error):
+        python(text_interface(text, "f"))
+
+
+def test_nothing_in_a_file_becomes_code() -> None:
+    evil = '*/ """ + str(print("x")) + """ \\\\'
+    text = (
+        f"/** {evil[3:]} \n second \x07 \u2028 line */\n"
+        f'struct A {{ /** {evil[3:]} */ 1: string a = \'""" {evil[3:15]}\' }}\n'
+    )
+    made = loads(text, "evil")
+    assert made.A().a.startswith('""" ')
+    assert 'print("x")' in made.A.__doc__
+
+
+def test_names_that_would_hide_what_a_module_needs() -> None:
+    made = loads(
+        "enum thrift { A }\nstruct yarpy { 1: thrift t, 2: V v }\n"
+        'struct V {} (yarp.name = "yarp::sig::Vector")\nservice connect { thrift f() }',
+        "x",
+    )
+    assert made.yarpy().t is made.thrift.A
+    assert made.connect._methods["f"].prototype == "thrift f()"
+
+
+def test_types_that_come_later() -> None:
+    made = loads(
+        "struct A { 1: list<B> bs, 2: B b, 3: E e, 4: E f = E.Y }\ntypedef list<B> Bs\n"
+        "struct B { 1: i32 x = 3 }\nenum E { X, Y }\nstruct C { 1: Bs bs }",
+        "x",
+    )
+    made_a = made.A(bs=[made.B(1)])
+    assert made.A.from_wire(made_a.to_wire()[0]) == made_a and made_a.f is made.E.Y
+    assert made.C(bs=[made.B()]).to_text() == "((3))"

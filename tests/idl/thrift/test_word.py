@@ -1,0 +1,18 @@
+"""Names that Python needs for itself."""
+
+import keyword
+
+from yarpy.idl.thrift.word import ENUM, PYTHON, SERVICE, STRUCT, attribute, original
+
+
+def test_there_and_back() -> None:
+    for taken in (PYTHON, STRUCT, SERVICE, ENUM):
+        for name in (*taken, *(f"{each}_" for each in taken), "x", "x_", "From"):
+            assert original(attribute(name, taken), taken) == name
+            assert not keyword.iskeyword(attribute(name, taken))
+
+
+def test_only_what_is_needed_is_changed() -> None:
+    assert attribute("from") == "from_" and attribute("frame") == "frame"
+    assert attribute("to_dict", STRUCT) == "to_dict_" and attribute("to_dict") == "to_dict"
+    assert attribute("close", SERVICE) == "close_" and attribute("name", ENUM) == "name_"
