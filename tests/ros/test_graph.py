@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 from support.patience import patience
@@ -197,3 +198,21 @@ def test_a_yarp_server_is_told_too(graph: RosGraph) -> None:
             assert len(reader.inputs) == 1
         assert not any(map(yarpy.query, ours))
     assert not registered(graph, "/known") and not registered(graph, "/listener")
+
+
+def test_a_node_with_nothing_to_do_sleeps(graph: RosGraph, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Node("/calm_talker") as talker, Node("/calm") as node:
+        out = talker.publisher("/calm_words", "std_msgs/String")
+        into = node.subscriber("/calm_words", "std_msgs/String")
+        assert out.wait_for_outputs(timeout=patience(10))
+        (member,) = node._node.members
+        time.sleep(0.1)  # what that caused
+        looks = []
+        monkeypatch.setattr(member, "look", lambda: looks.append(True))
+        time.sleep(1.5)
+        assert len(looks) < 3
+        monkeypatch.undo()
+        out.close()
+        wait_until(lambda: not into.inputs, patience(10), "its end is noticed")
+        again = talker.publisher("/calm_words", "std_msgs/String")
+        assert again.wait_for_outputs(timeout=patience(10))

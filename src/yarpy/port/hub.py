@@ -332,6 +332,8 @@ class Hub:
         if known:
             self.past["inputs"].add(link.counter, link.lost)
         self.on_inputs()
+        if self.seat is not None:
+            self.seat.lost()
         return known
 
     # -- connections out --------------------------------------------------------------------------
@@ -361,6 +363,8 @@ class Hub:
             if link.chain is not None:
                 link.chain.close()
             self.callbacks.report(link, created=False, reason=reason)
+            if self.seat is not None:
+                self.seat.lost()
             if lost and link.dialled and not self.closing:
                 self.crew.reconnect.output_lost(self, link.route)
         return known

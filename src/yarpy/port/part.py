@@ -27,6 +27,9 @@ class Seat(Protocol):
     def welcome(self, link: Outbound, /) -> None:
         """A reader has dialled the port."""
 
+    def lost(self) -> None:
+        """A connection of the port has ended."""
+
     def leave(self) -> None:
         """The port closes."""
 

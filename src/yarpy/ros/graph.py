@@ -2,7 +2,9 @@
 
 Rules: a node begins with its first member, or with a `Node` of the program, and ends with the last.
 A thread of its own tells the master what it does not know: at once, after it was restarted, or when
-it comes at last. On exit everything is unregistered. Forked children have no nodes.
+it comes at last. It sleeps until a connection ends, one is due to be dialled, or the master is to
+be asked, more rarely as long as nothing changes. On exit everything is unregistered. Forked
+children have no nodes.
 """
 
 from __future__ import annotations
@@ -28,8 +30,11 @@ from yarpy.route import Declared
 
 log = logger("yarpy.ros")
 
-LOOK: Final = 0.25  # seconds between looks at connections
-ASK: Final = 2.0  # seconds between questions to the master
+ASK: Final = 2.0  # seconds between questions to the master at first, and after any change
+SLOWER: Final = 1.5
+SLOWEST: Final = 6.0
+SOON: Final = 0.5  # seconds, while it does not know some member
+SHORTEST: Final = 0.02  # seconds between looks, whatever happens
 
 
 class Opener(Protocol):
@@ -95,8 +100,10 @@ class GraphNode:
             if same:
                 member.tell_apart(len(same) + 1)
             self.members = (*self.members, member)
+        member.changed = self._wake.set
         try:
             member.register(self.place)
+            self._wake.set()
             return
         except NoNameServer as error:
             log.warning("%s joins the graph once the master is there: %s", self.name, error)
@@ -140,20 +147,28 @@ class GraphNode:
     # -- the thread -------------------------------------------------------------------------------
 
     def _run(self) -> None:
-        due = time.monotonic() + ASK
+        pause = ASK
+        ask = time.monotonic() + pause
         while not self._ended:
-            self._wake.wait(LOOK)
+            due = min([ask, *(member.due() for member in self.members)])
+            self._wake.wait(max(due - time.monotonic(), SHORTEST))
             self._wake.clear()
             if self._ended:
                 return
+            now = time.monotonic()
             try:
-                if self._unknown or time.monotonic() >= due:
-                    due = time.monotonic() + ASK
+                if self._unknown:
+                    ask = min(ask, now + SOON)
+                if now >= ask:
+                    pause = SOON if self._unknown else min(max(pause, ASK) * SLOWER, SLOWEST)
+                    ask = now + pause
                     self._ask_master()
                 for member in self.members:
                     member.look()
             except YarpError as error:
                 self._tell(str(error))
+                pause = ASK
+                ask = min(ask, now + pause)
             except Exception:
                 log.exception("the node %s met a defect", self.name)
 
@@ -241,6 +256,10 @@ class Joined:
         """A subscriber has dialled."""
         if self._member.latched:
             self._member.welcome(link)
+
+    def lost(self) -> None:
+        """A connection has ended, which may have to be dialled again."""
+        self._member.changed()
 
     def leave(self) -> None:
         """The port closes."""

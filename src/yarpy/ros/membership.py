@@ -13,6 +13,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from math import inf
 from typing import Any, Final
 
 from yarpy.contact import Contact
@@ -86,6 +87,7 @@ class Membership:
     hub: Hub | None = None
     place: Place | None = None
     last: Packet | None = None  # of a latched publisher
+    changed: Callable[[], object] = field(default=lambda: None)  # there may be something to do
     _publishers: dict[str, _Publisher] = field(default_factory=dict)
     _dials: int = 0  # under way, also to publishers that were taken from the list since
     _lock: threading.Lock = field(default_factory=threading.Lock)
@@ -200,6 +202,21 @@ class Membership:
                 target=self._dial, args=(hub, item), name=f"yarpy dial {item.uri}", daemon=True
             ).start()
 
+    def due(self) -> float:
+        """When to look again, as time.monotonic has it, if nothing happens before."""
+        hub = self.hub
+        if hub is None or hub.closing or self._closed:
+            return inf
+        if self.name.category == CLIENT:
+            return inf if hub.outputs or self.place is None else self._seek
+        with self._lock:
+            if self._dials >= DIALS:
+                return inf
+            return min(
+                (item.due for item in self._publishers.values() if self._is_due(hub, item, inf)),
+                default=inf,
+            )
+
     def _is_due(self, hub: Hub, item: _Publisher, now: float) -> bool:
         alive = item.link is not None and item.link in hub.inputs
         return item.listed and not alive and not item.dialling and now >= item.due
@@ -229,6 +246,7 @@ class Membership:
             unwanted = self._publishers.get(item.uri) is not item or self._closed
         if unwanted and item.link is not None:
             item.link.close()
+        self.changed()
 
     def _connected(self, hub: Hub, uri: str) -> Inbound:
         """A connection from a publisher. Raises YarpError, OSError."""
