@@ -9,6 +9,7 @@ import threading
 import numpy as np
 import pytest
 from support.patience import patience
+from support.process import Process
 from support.ros_graph import RosGraph
 from support.steps import measured
 from support.wait import wait_until
@@ -107,6 +108,21 @@ def test_the_tools_of_ros_see_a_native(graph: RosGraph) -> None:
         assert graph.tool("rostopic", "type", "/words").strip() == "std_msgs/String"
     assert "/native" not in graph.tool("rosnode", "list").split()
     assert "/switch" not in graph.tool("rosservice", "list").split()
+
+
+def test_rates_are_measured_as_of_a_native(graph: RosGraph) -> None:
+    with Node("/ticker") as node:
+        ticks = node.publisher("/ticks", "std_msgs/String")
+        for tool, unit in (("hz", "average rate: "), ("bw", "B/s")):
+            with graph.run("rostopic", tool, "/ticks") as measuring:
+                assert ticks.wait_for_outputs(timeout=patience(20))
+
+                def printed(measuring: Process = measuring, unit: str = unit) -> bool:
+                    ticks.write("x" * 100)
+                    return any(unit in line for _, line in measuring.lines)
+
+                wait_until(printed, patience(20), tool)
+            wait_until(lambda: not ticks.outputs, patience(10), "it has gone")
 
 
 def test_who_subscribes_late_gets_a_latched_message(graph: RosGraph) -> None:

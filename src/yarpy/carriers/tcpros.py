@@ -45,7 +45,7 @@ from yarpy.wire.stream import LARGE, ByteStream
 
 log = logger("yarpy.link")
 
-#: how much two lengths in front say that this is a header: less than any letters do
+#: how strongly two lengths in front suggest a header: less than the letters of any other protocol
 _HINT: Final = 1
 
 

@@ -5,7 +5,7 @@
 
 Rules: only what ROS knows is found here. Ports with the names of nodes register as publishers and
 subscribers themselves (`ros/graph.py`); an ordinary port is seen as a publisher of
-/yarp/registration, as ports of C++ YARP are. There are no properties. Numbers are chosen by ports.
+/yarp/registration, as ports of C++ YARP are. There are no properties. Ports choose their numbers.
 """
 
 from __future__ import annotations

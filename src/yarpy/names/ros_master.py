@@ -3,9 +3,9 @@
     master = RosMaster("http://localhost:11311/")
     master.call("registerSubscriber", "/me", "/chatter", "std_msgs/String", "http://here:1234/")
 
-Rules: a call takes `timeout` seconds at most, and has a connection of its own. Whatever does not
-answer, or not as a master would, is an error that says where it was asked and what to do. Source:
-ros sections 2 to 4.
+Rules: a call takes `timeout` seconds at most, and has a connection of its own. What does not
+answer, or answers unlike a master, is an error that says who was asked and what to do. Source: ros
+sections 2 to 4.
 """
 
 from __future__ import annotations

@@ -89,7 +89,7 @@ class GraphNode:
     def add(self, member: Membership) -> None:
         """Make a port a member, and tell the master, now if it answers.
 
-        Raises AddressError for a second publisher or server of the same name: one of them only
+        Raises AddressError for a second publisher or server of the same name: only one of them
         would be found.
         """
         with self._lock:

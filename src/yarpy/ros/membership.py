@@ -3,8 +3,8 @@
 Rules: what is registered with the master is unregistered in the same words. A subscriber dials
 every publisher that the master names, and again when a connection breaks, ever more rarely; a
 publisher that the master takes from the list is left. A client dials its service when there is one.
-Nothing here waits for a peer but threads of its own. They are few, although whoever can call the
-node can name any number of publishers.
+Only threads made for that wait for a peer, and they are few: whoever can call the node can name any
+number of publishers.
 """
 
 from __future__ import annotations

@@ -80,9 +80,9 @@ class Publisher(MessagePort):
     ) -> int:
         """Send `value` to every subscriber; returns how many connections took it.
 
-        `stamp` is number and time of a message with a header; without it images and other values
-        of YARP have the time that it is, and objects of the type what they say. Raises PortClosed;
-        TypeError, ValueError or OverflowError for what is nothing of the type.
+        `stamp` goes into the header, if the type has one. Without it images and other values of
+        YARP get the present time, and objects of the type keep their own. Raises PortClosed;
+        TypeError, ValueError or OverflowError for a value that does not fit the type.
         """
         if not isinstance(value, RosMessage):
             from yarpy.idl.rosmsg.native import to_message
@@ -118,7 +118,7 @@ class Subscriber(MessagePort):
 
 
 def value_of(message: Message) -> Any:
-    """A received message as an object of its type; of what came without a type, the value."""
+    """A received message as an object of its type; one that came without a type as its value."""
     return getattr(message, "ros", None) or message.value
 
 
@@ -127,7 +127,8 @@ class Node:
 
     master: as ROS_MASTER_URI; without it the master of the environment or of `yarpy detect --ros`.
     names: a name client that learns of the ports too; None: the default one, if there is any.
-    Raises AddressError for names that cannot be, or that another node of this computer has.
+    Raises AddressError for a name that ROS does not allow, or that another living node has at the
+    name server.
     """
 
     def __init__(
@@ -216,8 +217,8 @@ class Node:
     def service(
         self, service: str, type_: str | Service, handler: Callable[[Any], object]
     ) -> RpcServer:
-        """Serve: `handler(question)` gets an object of the request type and returns one of the
-        response type, or a list or dict of its fields. What it raises is told to the client.
+        """Serve a service: `handler(question)` gets an object of the request type and returns one
+        of the response type, or a list or dict of its fields. What it raises is told to the client.
 
         Raises AddressError, UnknownType.
         """
@@ -278,8 +279,8 @@ class Node:
     # -- time -------------------------------------------------------------------------------------
 
     def now(self) -> float:
-        """The time of ROS in seconds: that of /clock where /use_sim_time was set when the node
-        began, 0 before the first such message; else that of the system."""
+        """The time in seconds: the system's; or, where /use_sim_time was set when the node began,
+        the last one that /clock said, 0 before the first."""
         return time.time() if self._simulated is None else self._simulated
 
     def _is_simulated(self) -> bool:

@@ -97,7 +97,7 @@ def _behind(names: NameClient | None) -> RosMaster | None:
 
 
 def _answers(names: NameClient) -> bool:
-    """Whether a configured server is there; ROS does without one that is not."""
+    """Whether a configured server answers; beside ROS, one that does not is left out."""
     return not isinstance(names, YarpNameClient) or names.alive()
 
 
