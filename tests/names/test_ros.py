@@ -6,7 +6,7 @@ import pytest
 from support.ros_graph import RosGraph, ros_graph
 
 import yarpy
-from yarpy.errors import AddressError
+from yarpy.errors import AddressError, LocalProtocolError, UnknownName
 from yarpy.names.default import DefaultNames
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.names.ros import RosNames
@@ -49,6 +49,18 @@ rospy.spin()
         node, service = names.query("/helper"), names.query("/rest")
         assert node is not None and node.carrier == "xmlrpc" and node.port > 0
         assert service is not None and service.carrier == "rossrv+service./rest"
+        master = names.query("/ros")
+        assert master is not None and (master.carrier, master.port) == ("xmlrpc", graph.port)
+        with yarpy.RpcClient("/ros", names=names) as client:
+            client.call("setParam", "/me", "/answer", 42)
+            assert client.call("getParam", "/me", "/answer")[2] == 42
+        with (
+            yarpy.Port("/strange", names=names) as port,
+            pytest.raises(UnknownName, match=r'"/rosout" is a topic of ROS.*/rosout@/NODE'),
+        ):
+            port.connect("/rosout")
+        with pytest.raises(LocalProtocolError, match="need a name server of YARP"):
+            yarpy.connect("topic://rosout", "/strange", names=names)
         kinds = {item.name: item.carrier for item in names.list()}
         assert (kinds["/helper"], kinds["/rest"], kinds["/rosout"]) == ("xmlrpc", "rossrv", "topic")
 

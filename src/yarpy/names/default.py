@@ -73,7 +73,7 @@ def _client(server: Server) -> NameClient:
         from yarpy.names.ros import RosNames
         from yarpy.names.ros_master import RosMaster, uri_of
 
-        return RosNames(RosMaster(uri_of(server.host, server.port)))
+        return RosNames(RosMaster(uri_of(server.host, server.port)), server.namespace)
     return client_of(server)
 
 

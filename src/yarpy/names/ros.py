@@ -16,18 +16,19 @@ from yarpy.contact import Contact
 from yarpy.errors import AddressError
 from yarpy.names.base import Contacts, Strings
 from yarpy.names.node_name import parse_node_name, ros_name, yarp_name
-from yarpy.names.ros_master import RosMaster, Uri, advertised_host, uri_of
+from yarpy.names.ros_master import RosMaster, Uri, advertised_host, parse_uri, uri_of
 
 REGISTRATION: Final = "/yarp/registration"
 
 
 class RosNames:
-    """A `NameClient` that asks the master."""
+    """A `NameClient` that asks the master, which is found under `name` itself."""
 
     allocates = False
 
-    def __init__(self, master: RosMaster) -> None:
+    def __init__(self, master: RosMaster, name: str = "/ros") -> None:
         self.master = master
+        self.name = name
 
     def register(
         self,
@@ -56,10 +57,13 @@ class RosNames:
             self.master.call("unregisterPublisher", ros_name(name), REGISTRATION, uri)
 
     def query(self, name: str) -> Contact | None:
-        """Where a node, a port or a service is."""
+        """Where a node, a port or a service is, or the master."""
         found = self._node(name)
         if found is None:
             found = self._service(name)
+        if found is None and name == self.name:
+            where = parse_uri(self.master.uri)
+            found = Contact("xmlrpc", name, where.host, where.port)
         return found
 
     def _node(self, name: str) -> Contact | None:

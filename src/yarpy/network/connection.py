@@ -347,7 +347,10 @@ def ask_server(names: NameClient | None, command: Sequence[Any]) -> Bottle:
     client = getattr(client, "clients", [client])[0]
     request = getattr(client, "request", None)
     if request is None:
-        raise LocalProtocolError("topics and persistent connections need a name server")
+        raise LocalProtocolError(
+            "topics and persistent connections need a name server of YARP; in a topic of ROS ports "
+            "take part by their names (/TOPIC@/NODE)"
+        )
     reply: Bottle = request(list(command))
     if reply and plain_text(reply[0]) == "fail":
         raise LocalProtocolError(f"the name server refuses: {reply.to_text()}")

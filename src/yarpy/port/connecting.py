@@ -85,8 +85,13 @@ def unknown(name: str, names: object) -> UnknownName:
 
     near: list[str] = []
     try:
-        known = [contact.name for contact in names.list()]  # type: ignore[attr-defined]
-        near = get_close_matches(name, known, n=1)
+        known = {contact.name: contact for contact in names.list()}  # type: ignore[attr-defined]
+        if name in known and known[name].carrier == "topic":
+            return UnknownName(
+                f'"{name}" is a topic of ROS, not a port: a port whose name is {name}@/NODE takes '
+                "part in it"
+            )
+        near = get_close_matches(name, known.keys() - {name}, n=1)
     except (YarpError, AttributeError):
         pass
     hint = f'did you mean "{near[0]}"?' if near else "is its program running?"
@@ -146,7 +151,7 @@ def dial(hub: Hub, wanted: Contact, lost: Route | None = None, own: bool = False
             f'"{hub.name}" cannot be connected to itself: a write waits until it is read, and both '
             "would be done here; a BufferedPort() or a callback reads meanwhile"
         )
-    if contact.carrier.startswith(probe.SERVICE) and spec.base == "tcp":
+    if probe.is_of_ros(contact) and spec.base == "tcp":
         spec = replace(parse_carrier(contact.carrier), own=own)  # it speaks nothing else
     kind = find_carrier(spec.base)
     if kind.name == "http" and contact.name and not probe.is_ours(contact, secret_=hub.key):

@@ -232,8 +232,9 @@ def _deadline(timeout: float) -> float:
     return time.monotonic() + timeout
 
 
-#: how a service of ROS is found by name
-SERVICE: Final = "rossrv+"
+def is_of_ros(contact: Contact) -> bool:
+    """Whether it is a node, a service or the master of ROS, which speak protocols of their own."""
+    return contact.carrier == "xmlrpc" or contact.carrier.startswith("rossrv+")
 
 
 class Caller:
@@ -253,8 +254,8 @@ class Caller:
         admin: bool = False,
         timeout: float = 10.0,
     ) -> None:
-        if contact.carrier.startswith(SERVICE):
-            carrier = contact.carrier  # a service of ROS speaks nothing else
+        if is_of_ros(contact) and not (admin and contact.carrier == "xmlrpc"):
+            carrier = contact.carrier  # nodes of YARP are administered as any port
         if not find_carrier(parse_carrier(carrier).base).replies:
             raise LocalProtocolError(f'"{carrier}" carries no replies; call over tcp')
         route = Route(name, contact.name or f"/{contact.address}", carrier, contact.port)

@@ -84,13 +84,13 @@ class Target:
         from yarpy.cli.service import masters
         from yarpy.contact import parse_contact
         from yarpy.network.connection import confirmed
-        from yarpy.port.probe import ANONYMOUS, SERVICE, Caller
+        from yarpy.port.probe import ANONYMOUS, Caller, is_of_ros
         from yarpy.ros.type_server import ask_type_server
 
         carrier = parse_contact(self._port).carrier or "tcp"
         name = self._name or ANONYMOUS
         found = confirmed(self._port, carrier=carrier)
-        if found.carrier.startswith(SERVICE):
+        if is_of_ros(found):
             for master in masters():
                 ask_type_server(master.master)
         return Caller(found, name, carrier=carrier, admin=self._admin)
