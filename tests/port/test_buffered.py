@@ -184,3 +184,39 @@ def test_call_to_a_buffered_port_gets_an_empty_answer_or_the_readers(names):
         message = reader.read(timeout=5)
         assert message.value == ["x"]
         assert not message.wants_reply
+
+
+def test_reading_policy_may_be_chosen_after_opening(names: yarpy.LocalNames) -> None:
+    with (
+        yarpy.BufferedPort("/out", strict=True, names=names) as out,
+        yarpy.BufferedPort("/in", names=names) as in_,
+    ):
+        out.connect("/in")
+        out.write([0])
+        wait_until(lambda: in_.waiting)
+        in_.read_strictly()
+        in_.read_strictly()
+        for number in range(1, 4):
+            out.write([number])
+        wait_until(lambda: in_.waiting == 4)
+        assert [in_.read(timeout=5).value for _ in range(4)] == [[0], [1], [2], [3]]
+        for number in range(4, 7):
+            out.write([number])
+        wait_until(lambda: in_.waiting == 3)
+        in_.read_strictly(False)  # of what waits the newest stays
+        assert in_.read(timeout=5).value == [6]
+        assert in_.poll() is None
+        in_.interrupt()
+        in_.read_strictly()
+        with pytest.raises(yarpy.PortClosed):
+            in_.read(timeout=5)
+        in_.resume()
+        out.write([7])
+        assert in_.read(timeout=5).value == [7]
+
+
+def test_callback_gets_everything_anyway(names: yarpy.LocalNames) -> None:
+    with yarpy.BufferedPort("/in", names=names, callback=lambda message: None) as in_:
+        in_.read_strictly()
+        with pytest.raises(yarpy.PortClosed, match="hands its messages to a callback"):
+            in_.read(timeout=1)

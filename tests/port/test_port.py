@@ -525,3 +525,41 @@ def test_bottle_is_bottle(names: LocalNames) -> None:
         out.connect("/in")
         out.write(Bottle.from_text("1 (a b) [set]"))
         assert in_.read(timeout=5).as_(Bottle).to_text() == "1 (a b) [set]"
+
+
+def test_asking_every_connected_port(names: LocalNames) -> None:
+    from yarpy.port.port import BufferedPort
+    from yarpy.port.rpc import RpcServer
+
+    with (
+        Port("/asker", names=names) as asker,
+        RpcServer("/one", lambda message: ["one", *message.value], names=names),
+        RpcServer("/two", lambda message: ["two", *message.value], names=names),
+        BufferedPort("/silent", names=names) as silent,
+    ):
+        assert asker.ask(["hi"]) == []
+        asker.connect("/one")
+        asker.write(["first"])  # acknowledged, while a question follows
+        assert [answer.value for answer in asker.ask(["hi"])] == [["one", "hi"]]
+        asker.connect("/two")
+        assert [answer.value[0] for answer in asker.ask(["hi"])] == ["one", "two"]
+        asker.connect("/silent")
+        assert len(asker.ask(["hi"], timeout=5)) >= 2  # who only listens does not stop it
+        assert silent.read(timeout=5).value == ["hi"]
+        asker.close()
+        with pytest.raises(PortClosed):
+            asker.ask(["hi"])
+
+
+def test_question_that_is_not_answered_in_time_ends_its_connection(names: LocalNames) -> None:
+    from yarpy.port.rpc import RpcServer
+
+    done = threading.Event()
+    with (
+        Port("/asker", names=names) as asker,
+        RpcServer("/slow", lambda message: done.wait(20), names=names),
+    ):
+        asker.connect("/slow")
+        assert asker.ask(["hi"], timeout=0.05) == []
+        assert asker.outputs == []
+        done.set()

@@ -384,6 +384,13 @@ class Hub:
 
     # -- ending -----------------------------------------------------------------------------------
 
+    def exchange(self, mailbox: Mailbox) -> None:
+        """Hand what comes from now on to another mailbox."""
+        with self.lock:
+            if self.closing or self.interrupted:
+                mailbox.interrupt()
+            self.mailbox, self.receive = mailbox, mailbox.put
+
     def interrupt(self) -> None:
         """Stop reading and writing; connections stay."""
         self.interrupted = True

@@ -89,6 +89,10 @@ class Mailbox:
             self._clear()
             self.stopped = False
 
+    def surrender(self) -> list[tuple[Inbound, Message]]:
+        """What waits here, for another mailbox."""
+        return []
+
     def abandon(self, why: str) -> None:
         """Stop for ever, in a process where threads that had a lock may be missing."""
         self._gate = threading.Lock()
@@ -136,6 +140,11 @@ class Latest(Mailbox):
             else:
                 self._drop(older[0])
 
+    def surrender(self) -> list[tuple[Inbound, Message]]:
+        with self._gate:
+            item, self._item = self._item, None
+        return [item] if item else []
+
     def _next(self, token: object) -> Message | None:
         with self._gate:
             item, self._item = self._item, None
@@ -169,6 +178,16 @@ class Fifo(Mailbox):
                 return
             self._drop(link)
         self._free(size)
+
+    def surrender(self) -> list[tuple[Inbound, Message]]:
+        found = []
+        with self._gate:
+            while not self.stopped and not self._ready.empty():
+                token = self._ready.get_nowait()
+                assert isinstance(token, tuple)
+                found.append(token[1:])
+                self._free(token[0])
+        return found
 
     def _next(self, token: object) -> Message | None:
         assert isinstance(token, tuple)

@@ -21,7 +21,7 @@ from yarpy.port.connection import ConnectionEvent
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox, Rendezvous
 from yarpy.port.reader import Reader
-from yarpy.wire.message import Message, Packet
+from yarpy.wire.message import CALL, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
 
 Args = TypeVarTuple("Args")
@@ -217,6 +217,27 @@ class Port(MessagePort):
             spin,
         )
 
+    def ask(self, value: object, timeout: float | None = None) -> list[Message]:
+        """Ask every connected port, one after the other; the answers of those that give one.
+
+        `RpcClient` asks one and says what went wrong: here a connection that breaks, or over which
+        no answer came within `timeout` seconds, is dropped, counted and logged. Raises PortClosed.
+        """
+        self._check_open()
+        packet = Packet(value, key=CALL)
+        answers = []
+        for link in self._hub.outputs:
+            if link.log or link.carrier.delivery.lossy:
+                continue  # somebody looks on
+            try:
+                answer = link.call(packet, timeout)
+            except YarpError as error:
+                self._hub.drop_output(link, str(error), lost=isinstance(error, LinkClosed))
+                continue
+            if answer is not None:
+                answers.append(answer)
+        return answers
+
 
 class BufferedPort(MessagePort):
     """A port between loops that run at their own pace.
@@ -254,6 +275,17 @@ class BufferedPort(MessagePort):
             on_connection=on_connection,
         )
         super().__init__(hub, spin)
+
+    def read_strictly(self, strict: bool = True) -> None:
+        """From now on every message comes, in order; or the newest only. What has come is kept.
+
+        To be called before anybody reads. Does nothing for a port with a callback.
+        """
+        if isinstance(self._mailbox, Fifo if strict else Latest | Callback):
+            return
+        if not isinstance(self._mailbox, Callback):
+            self._reader.exchange(Fifo() if strict else Latest())
+            self._mailbox = self._hub.mailbox
 
     def _send_all(
         self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool, timeout: float | None

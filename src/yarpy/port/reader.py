@@ -8,7 +8,7 @@ from yarpy.errors import Timeout
 from yarpy.link.inbound import Inbound
 from yarpy.link.turn import SILENCE
 from yarpy.port.hub import Hub
-from yarpy.port.mailbox import Latest
+from yarpy.port.mailbox import Latest, Mailbox
 from yarpy.wire.message import Message
 
 # A reader that comes back within this many seconds may read the socket itself.
@@ -28,9 +28,21 @@ class Reader:
         self._sole: Inbound | None = None  # the link that may be read directly
         self._left = 0.0  # when a message was last taken from the mailbox
         self._flows = False  # whether it came soon after the reader: else no lease is worth it
-        self._newest = isinstance(hub.mailbox, Latest)
-        self._quick = _NEWEST_QUICK if self._newest else _QUICK
+        self._judge()
         hub.on_inputs = self._look_again
+
+    def _judge(self) -> None:
+        self._newest = isinstance(self._mailbox, Latest)
+        self._quick = _NEWEST_QUICK if self._newest else _QUICK
+
+    def exchange(self, mailbox: Mailbox) -> None:
+        """Read through another mailbox from now on, while nobody reads."""
+        older = self._mailbox
+        self._mailbox = mailbox
+        self._judge()
+        self._hub.exchange(mailbox)
+        for link, message in older.surrender():
+            mailbox.put(link, message)
 
     def poll(self) -> Message | None:
         """A message that is already there, or None."""

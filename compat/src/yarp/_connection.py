@@ -1,0 +1,218 @@
+"""ConnectionReader and ConnectionWriter: how a message is read and answered piece by piece.
+
+Rules: what is expected and is not there is 0 or "", and from then on `isError` is true. A writer
+collects; what it holds is sent when the method that it was given to returns.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+import yarpy
+
+
+class ConnectionWriter:
+    """Takes an object, or numbers and strings one after the other."""
+
+    def __init__(self) -> None:
+        self._object: Any = None
+        self._bytes = bytearray()
+
+    def _put(self, writer: Any) -> None:
+        self._object = writer._outgoing()
+
+    def _outgoing(self) -> Any:
+        return _Raw(bytes(self._bytes)) if self._object is None else self._object
+
+    @property
+    def _empty(self) -> bool:
+        return self._object is None and not self._bytes
+
+    def appendInt8(self, data: int) -> None:
+        self._bytes += struct.pack("<b", data)
+
+    def appendInt16(self, data: int) -> None:
+        self._bytes += struct.pack("<h", data)
+
+    def appendInt32(self, data: int) -> None:
+        self._bytes += struct.pack("<i", data)
+
+    def appendInt64(self, data: int) -> None:
+        self._bytes += struct.pack("<q", data)
+
+    def appendFloat32(self, data: float) -> None:
+        self._bytes += struct.pack("<f", data)
+
+    def appendFloat64(self, data: float) -> None:
+        self._bytes += struct.pack("<d", data)
+
+    def appendString(self, str: str, terminate: str = "\n") -> None:
+        """A length and the text."""
+        data = str.encode("utf-8", "surrogateescape")
+        self.appendInt32(len(data))
+        self._bytes += data
+
+    def appendText(self, str: str, terminate: str = "\n") -> None:
+        """The text and its end."""
+        self._bytes += (str + terminate).encode("utf-8", "surrogateescape")
+
+    def appendRawString(self, str: str) -> None:
+        self._bytes += str.encode("utf-8", "surrogateescape")
+
+    def appendBlock(self, data: bytes | str, len: int | None = None) -> None:
+        raw = data.encode("utf-8", "surrogateescape") if isinstance(data, str) else bytes(data)
+        self._bytes += raw[:len]
+
+    appendInt = appendInt32
+    appendDouble = appendFloat64
+    appendExternalBlock = appendBlock
+
+    def convertTextMode(self) -> bool:
+        return True
+
+    def isTextMode(self) -> bool:
+        return False
+
+    def isBareMode(self) -> bool:
+        return False
+
+    def isValid(self) -> bool:
+        return True
+
+    def isActive(self) -> bool:
+        return True
+
+    def isError(self) -> bool:
+        return False
+
+    def isNull(self) -> bool:
+        return False
+
+
+class _Raw:
+    """Bytes that are a message already."""
+
+    def __init__(self, data: bytes) -> None:
+        self._data = data
+
+    def to_wire(self) -> tuple[bytes, ...]:
+        return (self._data,)
+
+
+class ConnectionReader:
+    """A message that has come."""
+
+    def __init__(self, message: yarpy.Message) -> None:
+        self._message = message
+        self._at = 0
+        self._error = False
+        self._writer: ConnectionWriter | None = None
+
+    def _fill(self, reader: Any) -> bool:
+        try:
+            reader._take(self._message)
+        except (yarpy.DecodeError, struct.error):
+            self._error = True
+            return False
+        return True
+
+    def _read(self, kind: str) -> Any:
+        data = memoryview(self._message.to_bytes())
+        size = struct.calcsize(kind)
+        if self._at + size > len(data):
+            self._error = True
+            return 0
+        value = struct.unpack_from(kind, data, self._at)[0]
+        self._at += size
+        return value
+
+    def _block(self, size: int) -> bytes:
+        data = memoryview(self._message.to_bytes())
+        if size < 0 or self._at + size > len(data):
+            self._error = True
+            return b""
+        found = bytes(data[self._at : self._at + size])
+        self._at += size
+        return found
+
+    def expectInt8(self) -> int:
+        return int(self._read("<b"))
+
+    def expectInt16(self) -> int:
+        return int(self._read("<h"))
+
+    def expectInt32(self) -> int:
+        return int(self._read("<i"))
+
+    def expectInt64(self) -> int:
+        return int(self._read("<q"))
+
+    def expectFloat32(self) -> float:
+        return float(self._read("<f"))
+
+    def expectFloat64(self) -> float:
+        return float(self._read("<d"))
+
+    def expectString(self) -> str:
+        """A length and the text."""
+        return self._block(self.expectInt32()).decode("utf-8", "surrogateescape")
+
+    def expectText(self, terminatingChar: str = "\n") -> str:
+        """The text up to its end."""
+        data = bytes(self._message.to_bytes())[self._at :]
+        line, found, _ = data.partition(terminatingChar.encode())
+        self._at += len(line) + len(found)
+        return line.decode("utf-8", "surrogateescape")
+
+    expectInt = expectInt32
+    expectDouble = expectFloat64
+
+    def getWriter(self) -> ConnectionWriter | None:
+        """Where an answer goes, if the sender wants one."""
+        if self._writer is None and self._message.wants_reply:
+            self._writer = ConnectionWriter()
+        return self._writer
+
+    def flushWriter(self) -> None:
+        """Send the answer."""
+        writer, self._writer = self._writer, None
+        if writer is not None and not writer._empty and self._message.wants_reply:
+            try:
+                self._message.reply(writer._outgoing())
+            except yarpy.YarpError:
+                self._error = True
+
+    def getSize(self) -> int:
+        """The bytes that were not read yet."""
+        return len(self._message.to_bytes()) - self._at
+
+    def getRemoteContact(self) -> Any:
+        """Who sent it."""
+        from yarp._contact import Contact
+
+        return Contact(self._message.source)
+
+    def readEnvelope(self) -> str:
+        return self._message.envelope
+
+    def convertTextMode(self) -> bool:
+        return True
+
+    def isTextMode(self) -> bool:
+        return self._message.spelling == "text"
+
+    def isBareMode(self) -> bool:
+        return False
+
+    def isValid(self) -> bool:
+        return not self._error
+
+    def isActive(self) -> bool:
+        return True
+
+    def isError(self) -> bool:
+        return self._error
+
+    def requestDrop(self) -> None:
+        """The sender ends the connection itself."""

@@ -1,0 +1,75 @@
+"""Portable: what ports write and read; ConnectionReader and ConnectionWriter hand it over.
+
+Rules: a subclass says what it sends in `_outgoing`, an object that yarpy ports take, and fills itself
+in `_take`; that may raise DecodeError, which means that something else came.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import TYPE_CHECKING, Any
+
+import yarpy
+
+if TYPE_CHECKING:
+    from yarp._connection import ConnectionReader, ConnectionWriter
+
+
+class PortWriter:
+    """What can be written."""
+
+    def _outgoing(self) -> Any:
+        """What is sent. For subclasses written by users, what their `write` appends."""
+        from yarp._connection import ConnectionWriter
+
+        writer = ConnectionWriter()
+        self.write(writer)
+        return writer._outgoing()
+
+    def write(self, writer: ConnectionWriter) -> bool:
+        """Write to a connection."""
+        writer._put(self)
+        return True
+
+    def onCommencement(self) -> None:
+        """Called before a message leaves in the background."""
+
+    def onCompletion(self) -> None:
+        """Called when it has left."""
+
+
+class PortReader:
+    """What can be read. Subclasses define `read`."""
+
+    def _take(self, message: yarpy.Message) -> None:
+        from yarp._connection import ConnectionReader
+
+        self.read(ConnectionReader(message))
+
+    def read(self, reader: ConnectionReader) -> bool:
+        """Read from a connection."""
+        return reader._fill(self)
+
+
+class Portable(PortReader, PortWriter):
+    """What can be written and read."""
+
+    @staticmethod
+    def copyPortable(writer: PortWriter, reader: PortReader) -> bool:
+        """Fill `reader` with what `writer` writes."""
+        try:
+            reader._take(message_of(writer))
+        except (yarpy.DecodeError, struct.error):
+            return False
+        return True
+
+
+def message_of(writer: PortWriter) -> yarpy.Message:
+    """A message that holds what `writer` writes, with memory of its own."""
+    from yarp._memory import encoded
+
+    return yarpy.Message("D", encoded(writer._outgoing()))
+
+
+# Parts of other languages' interfaces, for programs that name them.
+PortReaderCreator = PortReader
