@@ -13,8 +13,9 @@ $(VENV)/.base: pyproject.toml
 	$(BIN)/python -m pip install --disable-pip-version-check -e .
 	@touch $@
 
-$(VENV)/.ready: $(VENV)/.base
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
+# The tests also use `import yarp` and the classical commands; neither comes with yarpy itself.
+$(VENV)/.ready: $(VENV)/.base compat/pyproject.toml
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]' -e ./compat
 	@touch $@
 
 # This computer alone reaches it; make demo DEMO=--lan lets others of the network see and move it.

@@ -6,9 +6,10 @@ name server configured. Writers are plain Ports (they send in the caller), reade
 
 import os
 
-import yarp
 from peer import main, ready
 from workload import IMAGE_SIDE, KILOBYTE_TEXT, NUMBER, READERS
+
+import yarp
 
 PREFIX = f"/bench{os.getpid()}"
 

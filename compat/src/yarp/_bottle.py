@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 import yarpy
 from yarp._portable import Portable, message_of
 from yarp._searchable import Searchable
-from yarp._value import MISSING, Value, code_of, copied, int32, number, text, vocab, whole
-from yarpy.data.text import plain_text
+from yarp._value import MISSING, Value, copied, int32, number, text, vocab, whole
 
 if TYPE_CHECKING:
     from yarp._property import Property
@@ -73,15 +72,6 @@ class Bottle(Portable, Searchable):
 
     def _group(self, key: str) -> yarpy.Bottle | None:
         return self._native.group(key)
-
-    def findGroup(self, key: str, comment: str = "") -> Bottle:
-        """The list `(key ...)`, or the key and what stands beside it."""
-        group = self._native.group(key)
-        if group is None:
-            for index, item in enumerate(self._native[:-1]):
-                if not isinstance(item, list | dict) and plain_text(item) == key:
-                    return Bottle._of([item, self._native[index + 1]])
-        return Bottle._of(group or yarpy.Bottle(), is_null=group is None)
 
     # -- adding -------------------------------------------------------------------------------
 
@@ -180,8 +170,8 @@ class Bottle(Portable, Searchable):
         """Nothing to do here."""
 
     def getSpecialization(self) -> int:
-        """The tag of all elements, 0 if they differ."""
-        return code_of(self._native) & 0xFF
+        """0: elements say themselves what they are."""
+        return 0
 
     def write(self, writer: Any, textMode: bool = False) -> bool:
         """Write to a connection, or into something that reads."""

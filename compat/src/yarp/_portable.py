@@ -1,7 +1,7 @@
 """Portable: what ports write and read; ConnectionReader and ConnectionWriter hand it over.
 
-Rules: a subclass says what it sends in `_outgoing`, an object that yarpy ports take, and fills itself
-in `_take`; that may raise DecodeError, which means that something else came.
+Rules: a subclass says what it sends in `_outgoing`, an object that yarpy ports take, and fills
+itself in `_take`; that may raise DecodeError, which means that something else came.
 """
 
 from __future__ import annotations

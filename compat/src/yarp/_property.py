@@ -22,15 +22,16 @@ class Property(Portable, Searchable):
     """Named values. `Property("(device grabber) (width 320)")` reads text."""
 
     _values: yarpy.Property
+    _groups: dict[str, Property]
 
-    def __init__(self, str: str | Property | int = "") -> None:
-        self._groups: dict[str, Property] = {}
-        if isinstance(str, Property):
-            self._values = copied(str._native)
+    def __init__(self, txt: str | Property | int = "") -> None:
+        self._groups = {}
+        if isinstance(txt, Property):
+            self._values = copied(txt._native)
         else:
             self._values = yarpy.Property()
-            if str and not isinstance(str, int):
-                self.fromString(text(str))
+            if txt and not isinstance(txt, int):
+                self.fromString(txt)
 
     @classmethod
     def _of(cls, native: Any) -> Self:

@@ -7,10 +7,10 @@ Bottle that they came from.
 
 from __future__ import annotations
 
-import struct
 from typing import Any, Final
 
 import yarpy
+from yarp._portable import Portable
 from yarpy.data.text import plain_text
 
 TAG_LIST: Final = 256
@@ -67,7 +67,7 @@ def native_int(value: int) -> int:
     return int(value)
 
 
-class Value:
+class Value(Portable):
     """One value. `Value(3)`, `Value(2.5)`, `Value("text")`, `Value("set", True)` for a vocab."""
 
     _native: Any
@@ -141,11 +141,20 @@ class Value:
     isDouble = isFloat64
     isVocab = isVocab32
 
+    def _outgoing(self) -> Any:
+        return yarpy.Bottle() if self._native is None else yarpy.Bottle([self._native])
+
+    def _take(self, message: yarpy.Message) -> None:
+        words = message.as_(yarpy.Bottle)
+        self._native = words[0] if len(words) == 1 else words
+
     # -- what it is ---------------------------------------------------------------------------
 
     def asBool(self) -> bool:
-        """True for integers and vocabs other than 0."""
+        """True for integers and vocabs other than 0 alone."""
         value = self._native
+        if isinstance(value, float):
+            return False
         return value.code != 0 if isinstance(value, yarpy.Vocab) else self._whole(64) != 0
 
     def asInt8(self) -> int:

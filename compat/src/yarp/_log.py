@@ -1,0 +1,82 @@
+"""Log: lines for people, with their level in front, on standard output or, from warnings on, error.
+
+Rules: control characters that a terminal would obey are escaped.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from yarpy.log import readable
+
+
+def say(level: str, text: str) -> None:
+    """Print a line of that level."""
+    stream = sys.stderr if level in ("WARNING", "ERROR", "FATAL") else sys.stdout
+    stream.write(f"[{level}] {readable(text)}\n")
+    stream.flush()
+
+
+class Log:
+    """`Log().info("text")`, or `Log.info("text")`."""
+
+    LogTypeUnknown = 0
+    TraceType = 1
+    DebugType = 2
+    InfoType = 3
+    WarningType = 4
+    ErrorType = 5
+    FatalType = 6
+
+    def __init__(self, file: str = "", line: int = 0, func: str = "") -> None:
+        """The place in the program is not printed."""
+
+    @staticmethod
+    def trace(msg: str = "") -> None:
+        say("TRACE", msg)
+
+    @staticmethod
+    def debug(msg: str = "") -> None:
+        say("DEBUG", msg)
+
+    @staticmethod
+    def info(msg: str = "") -> None:
+        say("INFO", msg)
+
+    @staticmethod
+    def warning(msg: str = "") -> None:
+        say("WARNING", msg)
+
+    @staticmethod
+    def error(msg: str = "") -> None:
+        say("ERROR", msg)
+
+    @staticmethod
+    def fatal(msg: str = "") -> None:
+        """Print, and end the program, as C++ does."""
+        say("FATAL", msg)
+        raise SystemExit(255)
+
+    @staticmethod
+    def nolog(msg: str = "") -> None:
+        """Print nothing."""
+
+
+def yTrace(msg: str) -> None:
+    Log.trace(msg)
+
+
+def yDebug(msg: str) -> None:
+    Log.debug(msg)
+
+
+def yInfo(msg: str) -> None:
+    Log.info(msg)
+
+
+def yWarning(msg: str) -> None:
+    Log.warning(msg)
+
+
+def yError(msg: str) -> None:
+    Log.error(msg)

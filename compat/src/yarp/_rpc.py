@@ -1,0 +1,73 @@
+"""RpcServer and RpcClient."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yarpy
+from yarp._contactable import Contactable
+from yarp._log import say
+from yarp._port import Port
+
+
+class RpcServer(Port):
+    """Reads questions and answers them."""
+
+    def read(self, reader: Any, willReply: bool = True) -> bool:
+        """Wait for a question; `reply` has to follow."""
+        if not willReply:
+            say(
+                "ERROR",
+                f"|yarp.os.RpcServer| {self._name} must reply, please use a regular Port if you "
+                "do not want to",
+            )
+            return False
+        return super().read(reader, True)
+
+    def write(self, writer: Any, reader: Any = None, callback: Any = None) -> bool:
+        """A server does not write."""
+        say("ERROR", f"|yarp.os.RpcServer| {self._name} can only answer")
+        return False
+
+
+class RpcClient(Contactable):
+    """Asks the port that it is connected to."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._timeout: float | None = None
+
+    def _make(self, name: str, tcp_port: int) -> Any:
+        return yarpy.RpcClient(name=name, tcp_port=tcp_port, names=self._names())
+
+    def write(self, data1: Any, data2: Any = None) -> bool:
+        """Ask, and read the answer into the second argument; False if there is none."""
+        if self._port is None:
+            return False
+        try:
+            answer = self._port.ask(data1._outgoing(), self._timeout)
+            if answer is None:
+                return False
+            if data2 is not None:
+                data2._take(answer)
+        except yarpy.YarpError:
+            return False
+        return True
+
+    def read(self, reader: Any, willReply: bool = False) -> bool:
+        """A client is not asked."""
+        return False
+
+    def reply(self, writer: Any) -> bool:
+        return False
+
+    def replyAndDrop(self, writer: Any) -> bool:
+        return False
+
+    def setTimeout(self, timeout: float) -> bool:
+        """How long answers are waited for."""
+        self._timeout = timeout if timeout > 0 else None
+        return True
+
+    def asPort(self) -> RpcClient:
+        return self

@@ -1,0 +1,55 @@
+"""Which module of this package has which name."""
+
+from __future__ import annotations
+
+_MODULES = {
+    "_value": "Value",
+    "_bottle": "Bottle",
+    "_property": "Property",
+    "_searchable": "Searchable",
+    "_portable": "Portable PortReader PortWriter PortReaderCreator",
+    "_connection": "ConnectionReader ConnectionWriter",
+    "_contact": "Contact ContactStyle",
+    "_contactable": "Contactable PortReport PortInfo",
+    "_stamp": "Stamp",
+    "_time": "Time delay now yield_c turboBoost isValid useSystemClock isSystemClock "
+    "isNetworkClock isCustomClock isClockInitialized getClockType YARP_CLOCK_UNINITIALIZED "
+    "YARP_CLOCK_DEFAULT YARP_CLOCK_SYSTEM YARP_CLOCK_NETWORK YARP_CLOCK_CUSTOM",
+    "_log": "Log yTrace yDebug yInfo yWarning yError",
+    "_network": "Network NetworkBase",
+    "_port": "Port",
+    "_rpc": "RpcServer RpcClient",
+    "_buffered_port": "BufferedPort BufferedPortBottle BufferedPortProperty BufferedPortVector "
+    "BufferedPortVectorInt BufferedPortMatrix BufferedPortSound BufferedPortImageRgb "
+    "BufferedPortImageRgba BufferedPortImageMono BufferedPortImageMono16 BufferedPortImageInt "
+    "BufferedPortImageFloat BufferedPortImageRgbFloat BottleCallback PropertyCallback "
+    "VectorCallback VectorIntCallback MatrixCallback SoundCallback ImageRgbCallback "
+    "ImageRgbaCallback ImageMonoCallback ImageMono16Callback ImageIntCallback ImageFloatCallback "
+    "ImageRgbFloatCallback TypedReaderCallbackVector TypedReaderCallbackVectorInt "
+    "TypedReaderCallbackSound TypedReaderCallbackImageRgb TypedReaderCallbackImageRgba "
+    "TypedReaderCallbackImageMono TypedReaderCallbackImageMono16 TypedReaderCallbackImageInt "
+    "TypedReaderCallbackImageFloat TypedReaderCallbackImageRgbFloat",
+    "_numbers": "DVector IVector BVector SVector ShortVector",
+    "_vector": "Vector VectorInt VectorBase",
+    "_matrix": "Matrix",
+    "_sound": "Sound",
+    "_pixel": "PixelRgb PixelRgba PixelRgbFloat",
+    "_image": "Image ImageRgb ImageRgba ImageRgbFloat ImageMono ImageMono16 ImageInt ImageFloat "
+    "FlexImage",
+    "_file": "read write",
+    "_vocab": "encode decode createVocab createVocab32 VOCAB VOCAB1 VOCAB2 VOCAB3 VOCAB4",
+    "_resource_finder": "ResourceFinder",
+    "_rf_module": "RFModule",
+    "_thread": "Thread PeriodicThread RateThread Semaphore",
+    "_random": "Random",
+}
+WHERE = {name: module for module, names in _MODULES.items() for name in names.split()}
+
+#: Whose static methods are also functions: `Network_connect`.
+CLASSES = frozenset(name for name in WHERE if name[0].isupper() and not name.isupper())
+
+#: What the bindings of C++ have and this does not, and why.
+NOT_HERE: dict[str, str] = {
+    "useNetworkClock": "time is that of the system here",
+    "useCustomClock": "time is that of the system here",
+}

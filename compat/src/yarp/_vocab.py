@@ -1,0 +1,36 @@
+"""Vocabs as numbers: `encode("set")`, `decode(7628147)`, `createVocab32("s", "e", "t")`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yarpy
+from yarp._value import int32, text
+
+
+def createVocab32(a: Any, *more: Any) -> int:
+    """The number of a word, or of its letters one by one."""
+    return yarpy.Vocab("".join(map(text, (a, *more)))).code
+
+
+def createVocab(a: Any, *more: Any) -> int:
+    """The number of a word, or of its letters one by one."""
+    return createVocab32(a, *more)
+
+
+def VOCAB(a: Any, *more: Any) -> int:
+    """The number of a word, or of its letters one by one."""
+    return createVocab32(a, *more)
+
+
+VOCAB1 = VOCAB2 = VOCAB3 = VOCAB4 = VOCAB
+
+
+def encode(str: str) -> int:
+    """The number of a word."""
+    return createVocab32(str)
+
+
+def decode(code: int) -> str:
+    """The word of a number."""
+    return str(yarpy.Vocab.from_code(int32(code)))

@@ -1,0 +1,53 @@
+"""Properties: put, find, check, groups, text, configuration files and command lines."""
+
+import os
+import tempfile
+
+import yarp
+
+p = yarp.Property()
+p.put("a", 1)
+p.put("b", 2.5)
+p.put("c", "text here")
+p.put("d", yarp.Value(True))
+p.put("e", True)
+print(p.toString())
+print(p.find("a").asInt32(), p.find("a").isInt32(), p.find("b").asFloat64(), p.find("e").toString())
+print(p.check("zz"), p.find("zz").isNull(), repr(p.find("zz").asString()), p.check("zz", "comment"))
+print(p.check("a", yarp.Value(5)).asInt32(), p.check("zz", yarp.Value(5)).asInt32())
+print(p.findGroup("a").toString(), p.findGroup("zz").isNull())
+p.unput("a")
+print(p.toString())
+p.fromString("(x 1) (y (1 2)) (z 1 2 3) (flag)")
+print(p.toString())
+print(p.findGroup("z").toString(), p.find("y").asList().get(1).asInt32(), p.find("z").asInt32())
+print(p.check("flag"), repr(p.find("flag").toString()), p.findGroup("flag").toString())
+g = p.addGroup("g")
+g.put("h", 1)
+print(p.toString())
+p.fromConfig("a 1\n[s]\nb 2\n// comment\n[t]\nc (1 2)\n")
+print(p.toString(), p.findGroup("s").find("b").asInt32())
+p.fromArguments('--x 1 --y "a b"')
+print(p.toString())
+p.fromCommand(["prog", "--a", "1", "--list", "(1 2)", "--flag"])
+print(p.toString(), p.find("list").asList().size(), p.check("flag"))
+p.put("k", 2**40)
+p.put("q", 1.0)
+print(p.find("k").toString(), p.find("q").toString(), p.find("q").isFloat64())
+print(yarp.Property("(a 1) (b (c d))").toString())
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "robot.ini")
+    with open(path, "w") as file:
+        file.write("robot tiny\n[arm]\njoints 3\nlimits (-10 10)\n[camera]\nsize 320 240\n")
+    print(p.fromConfigFile(path), p.toString())
+    print(p.findGroup("arm").find("limits").asList().get(0).asInt32())
+    p.put("more", 1)
+    print(p.fromConfigFile(path, False), p.check("more"))
+print(p.fromConfigFile("/no/such/file.ini"))
+p.fromString("(again 1)", False)
+print(p.check("again"), p.check("robot"))
+p.clear()
+print(repr(p.toString()), p.isNull())
+copied = yarp.Property(yarp.Property("(a 1)"))
+copied.put("b", 2)
+print(copied.toString())

@@ -1,0 +1,52 @@
+"""Scripts that print the same text, line by line, under compat and under the C++ binding.
+
+What C++ YARP prints is kept in `expected/`, so that compat is tested without it, too; where it is
+installed, it has to print that. `python tests/compat/record.py` writes `expected/` anew.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from support.cpp import CppYarp, MissingPeer
+from support.patience import patience
+from support.process import Process
+
+HERE = Path(__file__).parent
+SCRIPTS = sorted((HERE / "scripts").glob("*.py"))
+RUNNER = HERE / "runner.py"
+
+
+def expected(script: Path) -> list[str]:
+    return (HERE / "expected" / f"{script.stem}.txt").read_text().splitlines()
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_compat_prints_what_cpp_prints(script: Path, environment: Mapping[str, str]) -> None:
+    with Process([sys.executable, RUNNER, script], env=environment) as process:
+        code = process.wait(patience(20.0))
+    assert process.stdout.splitlines() == expected(script), process.stderr
+    assert code == 0, process.stderr
+
+
+@pytest.fixture(scope="module")
+def cpp(tmp_path_factory: pytest.TempPathFactory) -> CppYarp:
+    try:
+        return CppYarp.prepare(tmp_path_factory.mktemp("cpp"))
+    except MissingPeer as missing:
+        pytest.skip(str(missing))
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_cpp_prints_it(script: Path, cpp: CppYarp) -> None:
+    with Process([cpp.interpreter, RUNNER, script], env=cpp.environment) as process:
+        process.wait(patience(20.0))
+    assert process.stdout.splitlines() == expected(script), process.stderr
+
+
+def test_every_expectation_has_its_script() -> None:
+    kept = {path.stem for path in (HERE / "expected").glob("*.txt")}
+    assert kept == {path.stem for path in SCRIPTS}

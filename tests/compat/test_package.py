@@ -1,0 +1,125 @@
+"""compat as a package: what it imports, when, and what it says about names that it has not."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from support.patience import patience
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "compat" / "src" / "yarp"
+FILES = sorted(SOURCE.glob("*.py"))
+
+# What compat may know of yarpy: what any program may.
+ALLOWED = {
+    "yarpy",
+    "yarpy.cli.main",
+    "yarpy.config.command_line",
+    "yarpy.config.configuration",
+    "yarpy.config.ini",
+    "yarpy.config.resource",
+    "yarpy.contact",
+    "yarpy.data.pixel",
+    "yarpy.data.text",
+    "yarpy.devices",
+    "yarpy.log",
+    "yarpy.names.default",
+    "yarpy.network.connection",
+}
+
+
+def run(code: str, environment: Mapping[str, str]) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        timeout=patience(20.0),
+        env=environment,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_only_the_public_side_of_yarpy_is_used(path: Path) -> None:
+    tree = ast.parse(path.read_text())
+    assert ast.get_docstring(tree)
+    for node in ast.walk(tree):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom):
+            names = [node.module or ""]
+        for name in names:
+            assert not name.startswith("yarpy") or name in ALLOWED, f"{node.lineno}: {name}"
+
+
+def test_import_loads_nothing_heavy(environment: Mapping[str, str]) -> None:
+    heavy = ("numpy", "click", "rich", "socket", "yarpy.port")
+    code = f"import sys, yarp; print(sorted(set({heavy!r}) & sys.modules.keys()))"
+    assert run(code, environment).strip() == "[]"
+
+
+def test_import_starts_no_thread_and_a_fork_works(environment: Mapping[str, str]) -> None:
+    code = """
+import os, threading, yarp
+yarp.Network.init()
+assert threading.active_count() == 1
+yarp.Network.setLocalMode(True)
+child = os.fork()
+a, b = yarp.Port(), yarp.BufferedPortBottle()
+assert a.open("/a") and b.open("/b") and yarp.Network.connect("/a", "/b")
+a.write(yarp.Bottle("hello"))
+assert b.read().toString() == "hello"
+a.close(), b.close()
+if child:
+    print(os.waitpid(child, 0)[1])
+"""
+    assert run(code, environment).strip() == "0"
+
+
+def test_program_that_leaves_its_ports_open_ends(environment: Mapping[str, str]) -> None:
+    code = """
+import yarp
+yarp.Network.setLocalMode(True)
+ports = [yarp.Port(), yarp.BufferedPortBottle(), yarp.RpcServer(), yarp.RpcClient()]
+for index, port in enumerate(ports):
+    assert port.open("/p%d" % index)
+class Heard(yarp.BottleCallback):
+    pass
+ports[1].useCallback(Heard())
+ports[3].addOutput("/p2")
+print("end")
+"""
+    assert run(code, environment).strip() == "end"
+
+
+def test_every_name_of_the_table_is_there() -> None:
+    import yarp
+
+    for name in dir(yarp):
+        assert getattr(yarp, name) is not None or name.startswith("_"), name
+
+
+def test_static_methods_are_functions_too() -> None:
+    import yarp
+
+    assert yarp.Network_connect is yarp.Network.connect
+    assert yarp.NetworkBase_exists is yarp.NetworkBase.exists
+    assert yarp.Value_makeInt32(3).asInt32() == 3
+    assert yarp.Time_now() <= yarp.now()
+
+
+def test_missing_name_says_what_there_is() -> None:
+    import yarp
+
+    with pytest.raises(AttributeError, match=r"did you mean BufferedPortBottle.*README"):
+        yarp.BufferedPortBotle
+    with pytest.raises(AttributeError, match="time is that of the system here"):
+        yarp.useNetworkClock
+    with pytest.raises(AttributeError, match="no attribute 'Network_nothing'"):
+        yarp.Network_nothing
+    assert not hasattr(yarp, "__path_hook__")
