@@ -1,5 +1,7 @@
 """Images: their sizes, pixels, foreign memory, copies, over ports."""
 
+import threading
+
 import yarp
 
 rgb = yarp.ImageRgb()
@@ -42,15 +44,22 @@ yarp.Network.setLocalMode(True)
 out, inp = yarp.Port(), yarp.Port()
 inp.open("/in")
 out.open("/out")
-out.enableBackgroundWrite(True)
 yarp.Network.connect("/out", "/in")
-print(out.write(own))
+
+
+def passed(written, read):
+    writer = threading.Thread(target=out.write, args=(written,))
+    writer.start()
+    done = inp.read(read)
+    writer.join()
+    return done
+
+
 got = yarp.ImageRgb()
-print(inp.read(got), got.width(), got.height(), got.pixel(1, 1).g, got.pixel(2, 2).b)
-print(out.write(own))
+print(passed(own, got), got.width(), got.height(), got.pixel(1, 1).g, got.pixel(2, 2).b)
 grey = yarp.ImageMono()
-print(inp.read(grey), grey.width(), grey.getPixelSize())
+print(passed(own, grey), grey.width(), grey.getPixelSize())
 mono.copy(own)
-print(out.write(mono), inp.read(got), got.pixel(2, 2).r, got.pixel(2, 2).b)
+print(passed(mono, got), got.pixel(2, 2).r, got.pixel(2, 2).b)
 out.close()
 inp.close()
