@@ -250,9 +250,11 @@ def test_a_port_is_made_to_receive_only_by_a_writer(
     rule = '[[allow]]\nwho = "loopback"\nmay = "{}"\nports = "/view"\n'
     write(tmp_path, monkeypatch, other + rule.format("read"))
     with yarpy.Port("/cam", names=names), yarpy.Port("/view", names=names) as view:
+        for spelled in ("mjpeg", ["mjpeg"], "mjpeg+quality.5"):
+            answer = yarpy.admin("/view", "add", "/cam", spelled, names=names)
+            assert "may not write to /view" in answer[1]
         for carrier in ("mjpeg", "mjpeg+recv.priority"):
             with pytest.raises(yarpy.AccessRefused, match=r"may not (write to|attach monitors to)"):
-                yarpy.admin("/view", "add", "/cam", carrier, names=names)
                 yarpy.connect("/cam", "/view", carrier, names=names)
         assert not view.inputs
     write(tmp_path, monkeypatch, other + rule.format("write"))

@@ -302,6 +302,25 @@ def test_closing_waits_once_for_a_name_service_that_does_not_answer() -> None:
         names.frozen = False
 
 
+def test_one_computer_does_not_take_all_inputs_over_datagrams(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(hub_module, "MAX_DATAGRAM_INPUTS", 8)
+    monkeypatch.setattr(
+        "yarpy.link.admission.same_computer", lambda remote, local: remote == "127.0.0.1"
+    )
+    greeting = framing.number(framing.BASE) + framing.encode_name("")
+    with Port("/in", names=names) as port, Port("/out", names=names) as out:
+        for _ in range(4):
+            where = "127.0.0.1", port.contact.port
+            with socket.create_connection(where, 5, ("127.0.0.2", 0)) as sock:
+                sock.sendall(greeting)
+                assert sock.recv(1)
+        wait_until(lambda: caplog.text.count("too many inputs over datagrams already") == 2)
+        out.connect("/in", "udp")
+        wait_until(lambda: len(port.inputs) == 3)
+
+
 def test_closed_port_cannot_be_resumed(names: LocalNames) -> None:
     """Its readers would wait for ever."""
     port = Port("/here", names=names)
@@ -324,7 +343,7 @@ def test_greetings_over_datagrams_do_not_pile_up(
             with socket.create_connection(("127.0.0.1", port.contact.port)) as sock:
                 sock.sendall(first + (bytes((224, 1, 200, 9, 40, 0)) if number % 2 else b""))
                 wait_until(lambda: len(port.inputs) == min(number + 1, 5))  # noqa: B023
-        wait_until(lambda: caplog.text.count("5 inputs over datagrams already") == 3)
+        wait_until(lambda: caplog.text.count("too many inputs over datagrams already, of 5") == 3)
         assert len(port.inputs) == 5
         out.connect("/in")  # other carriers are as welcome as ever
         port._hub.inputs[0].close()

@@ -104,6 +104,42 @@ def test_empty_datagram_is_not_an_end() -> None:
     far.close()
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="127.0.0.2 is an address of this computer")
+def test_what_another_computer_sends_is_nobodys() -> None:
+    """Who may write was decided about the one that has greeted."""
+    near, far = pair()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
+        stranger.bind(("127.0.0.2", 0))
+        for _ in range(3):
+            stranger.sendto(b"forged", ("127.0.0.1", far.port))
+        room = memoryview(bytearray(100))
+        assert far.try_recv_into(room) == -1
+        stranger.sendto(b"forged", ("127.0.0.1", far.port))
+        near.send([b"true"])
+        assert receive(far) == b"true"
+        stranger.sendto(b"forged", ("127.0.0.1", far.port))
+        near.send([b"last"])
+        far.interrupt()
+        assert receive(far) == b"last"
+        assert receive(far) == b""
+    near.close()
+    far.close()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="127.0.0.2 is an address of this computer")
+def test_what_another_computer_sends_to_a_group_is_nobodys() -> None:
+    number = free_port()
+    member = open_mcast(True, HOME, HOME, GROUP, number)
+    stranger = open_mcast(False, ("127.0.0.2", 0), HOME, GROUP, number)
+    sender = open_mcast(False, HOME, HOME, GROUP, number)
+    for end, said in ((stranger, b"forged"), (sender, b"true"), (stranger, b"forged")):
+        end.send([said])
+    assert receive(member) == b"true"
+    assert member.try_recv_into(memoryview(bytearray(100))) == -1
+    for end in (member, stranger, sender):
+        end.close()
+
+
 def test_trying_does_not_wait() -> None:
     near, far = pair()
     room = memoryview(bytearray(10))
@@ -169,8 +205,8 @@ GROUP = "224.1.200.7"
 
 def test_group_reaches_every_member_and_the_port_stays_shared() -> None:
     number = free_port()
-    members = [open_mcast(True, HOME, GROUP, number) for _ in range(2)]
-    sender = open_mcast(False, HOME, GROUP, number)
+    members = [open_mcast(True, HOME, HOME, GROUP, number) for _ in range(2)]
+    sender = open_mcast(False, HOME, HOME, GROUP, number)
     sender.send([b"to all"])
     for member in members:
         found: list[bytes] = []
@@ -184,7 +220,7 @@ def test_group_reaches_every_member_and_the_port_stays_shared() -> None:
 
 def test_member_leaves_without_troubling_the_group() -> None:
     number = free_port()
-    leaving, staying = (open_mcast(True, HOME, GROUP, number) for _ in range(2))
+    leaving, staying = (open_mcast(True, HOME, HOME, GROUP, number) for _ in range(2))
     assert woken(leaving, leaving.interrupt) < 1
     room = memoryview(bytearray(10))
     assert staying.try_recv_into(room) == -1
@@ -219,8 +255,8 @@ def test_sender_who_goes_on_after_the_end_is_not_followed_for_ever() -> None:
 
 def test_what_a_group_had_sent_before_the_end_is_counted() -> None:
     number = free_port()
-    member = open_mcast(True, HOME, GROUP, number)
-    sender = open_mcast(False, HOME, GROUP, number)
+    member = open_mcast(True, HOME, HOME, GROUP, number)
+    sender = open_mcast(False, HOME, HOME, GROUP, number)
     sender.send([b"one", b"two"])
     member.interrupt()
     assert receive(member) == b""

@@ -317,7 +317,7 @@ class Driver:
             if effect.kind == "udp":
                 return open_udp(effect.listen, local, remote, effect.port)
             if effect.kind == "mcast":
-                return open_mcast(effect.listen, local, effect.group, effect.port)
+                return open_mcast(effect.listen, local, remote, effect.group, effect.port)
             if effect.kind == "unix":
                 return open_unix(effect.listen, local, remote)
             if effect.kind == "inproc":

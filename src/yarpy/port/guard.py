@@ -227,9 +227,10 @@ def _remote(link: Inbound | Outbound) -> str:
 
 
 def _words(request: Bottle) -> list[str]:
-    """The first three words of a request; "" for what is none."""
-    words = [plain_text(word) if isinstance(word, str) else "" for word in request[:3]]
-    return [*words, "", "", ""][:3]
+    """The first three words of a request, as `port/admin.py` reads them: the first is a word, or ""
+    if it is none, the others are whatever their text says."""
+    first = plain_text(request[0]) if request and isinstance(request[0], str) else ""
+    return [first, *map(plain_text, request[1:3]), "", ""][:3]
 
 
 def _verb(message: Message) -> str:

@@ -46,8 +46,9 @@ from yarpy.wire.stream import DEFAULT_LIMIT
 
 log = logger("yarpy.port")
 
-# Most inputs over datagrams of a port: each costs us a thread and a socket, but costs its sender
-# nothing, since no connection is left that would end with the sender's program.
+# Most inputs over datagrams of a port, a quarter of them from one other computer: each costs us a
+# thread and a socket, but costs its sender nothing, since no connection is left that would end with
+# the sender's program.
 MAX_DATAGRAM_INPUTS: Final = 256
 SILENT: Final = "this port sends nothing by itself, it answers what it is asked"
 
@@ -220,17 +221,15 @@ class Hub:
             older = tuple(item for item in self.inputs if rooted and item.route.source == source)
             others = tuple(item for item in self.inputs if item not in older)
             late = self.closing
-            full = link.carrier.connectionless and (
-                sum(item.carrier.connectionless for item in (*others, *self.leaving))
-                >= MAX_DATAGRAM_INPUTS
-            )
+            full = link.carrier.connectionless and self._has_datagrams(link, others)
             if not (late or full):
                 self.inputs = (*others, link)
                 self.leaving = (*self.leaving, *older)
         if full:
             self._turn_away(link)
             raise RemoteProtocolError(
-                f"there are {MAX_DATAGRAM_INPUTS} inputs over datagrams already; use tcp"
+                "there are too many inputs over datagrams already, of "
+                f"{MAX_DATAGRAM_INPUTS} and a quarter of them from one computer; use tcp"
             )
         if late:
             with contextlib.suppress(NoNameServer):
@@ -241,6 +240,19 @@ class Hub:
             old.close()
             if old.thread is not threading.current_thread():
                 old.served.wait(2.0)  # what it still brings comes before what the new one brings
+
+    def _has_datagrams(self, link: Inbound, others: tuple[Inbound, ...]) -> bool:
+        """Whether there are as many inputs over datagrams as there may be."""
+        found = [
+            item.driver.admission.peer
+            for item in (*others, *self.leaving)
+            if item.carrier.connectionless
+        ]
+        peer = link.driver.admission.peer
+        share = MAX_DATAGRAM_INPUTS // (1 if peer.here else 4)
+        return len(found) >= MAX_DATAGRAM_INPUTS or (
+            sum(one.address == peer.address for one in found) >= share
+        )
 
     def _turn_away(self, link: Inbound) -> None:
         link.driver.transport.close()

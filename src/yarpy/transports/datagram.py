@@ -3,7 +3,8 @@
 Rules: receive buffers are asked for generously, since what the kernel drops is lost; it
 counts that (SO_RXQ_OVFL on Linux), `dropped` has the sum. Sending is paced, since receivers of
 other programs have less room. A UDP sender is connected, so that it learns when its target's port
-is no longer open.
+is no longer open. What comes from another computer than the one that has greeted is nobody's: who
+may write was decided about that one.
 """
 
 from __future__ import annotations
@@ -19,15 +20,19 @@ from yarpy.transports.pace import Pace
 from yarpy.wire.stream import Buffer
 
 RECEIVE_BUFFER = 1 << 23
+_LEAST = 64  # bytes that even an empty datagram counts for
 _SO_RXQ_OVFL = 40 if sys.platform.startswith("linux") else 0
 
 
 class DatagramTransport(SocketTransport):
-    """A UDP socket, connected or not."""
+    """A UDP socket, connected or not. `source`: only what comes from this address is received."""
 
-    def __init__(self, sock: socket.socket, target: Address | None = None) -> None:
+    def __init__(
+        self, sock: socket.socket, target: Address | None = None, source: str = ""
+    ) -> None:
         super().__init__(sock)
         self._target = target
+        self._source = source
         self._connected = False
         self._woken = False
         self._pace = Pace()
@@ -60,25 +65,36 @@ class DatagramTransport(SocketTransport):
 
     def _rest(self, view: memoryview) -> int:
         """What had come before the wake-up: it was sent before the end. 0 when that is all."""
-        try:
-            count = self._recv_into(view, 0, MSG_DONTWAIT) if MSG_DONTWAIT else 0
-        except OSError:
-            return 0
-        self._room -= count
-        return count if self._room > 0 else 0  # a sender that goes on is not read for ever
+        while MSG_DONTWAIT and self._room > 0:  # a sender that goes on is not read for ever
+            try:
+                count = self._recv_datagram(view, MSG_DONTWAIT)
+            except OSError:
+                break
+            self._room -= max(count, _LEAST)
+            if count:
+                return count
+        return 0
 
-    def _recv_datagram(self, view: memoryview) -> int:
-        if not _SO_RXQ_OVFL:
-            return self._recv_into(view)
-        count, ancillary, _, _ = self.sock.recvmsg_into([view], 64)
-        for level, kind, data in ancillary:
-            if level == socket.SOL_SOCKET and kind == _SO_RXQ_OVFL:
-                (self.dropped,) = struct.unpack("=I", data)
-        return count
+    def _recv_datagram(self, view: memoryview, flags: int = 0) -> int:
+        """The size of the next datagram, 0 if it is empty or not for us."""
+        if _SO_RXQ_OVFL:
+            count, ancillary, _, sender = self.sock.recvmsg_into([view], 64, flags)
+            for level, kind, data in ancillary:
+                if level == socket.SOL_SOCKET and kind == _SO_RXQ_OVFL:
+                    (self.dropped,) = struct.unpack("=I", data)
+        else:
+            count, sender = self.sock.recvfrom_into(view, 0, flags)
+        # (a connected socket is told no sender)
+        return count if not (self._source and sender) or sender[0] == self._source else 0
 
     def try_recv_into(self, view: memoryview) -> int:
         while True:
-            count = super().try_recv_into(view)
+            if not MSG_DONTWAIT and not self._readable():
+                return -1
+            try:
+                count = self._recv_datagram(view, MSG_DONTWAIT)
+            except BlockingIOError:
+                return -1
             if count or self._woken:
                 return count
 
@@ -129,7 +145,7 @@ def open_udp(listen: bool, local: Address, remote: Address, port: int) -> Datagr
     try:
         if listen:
             sock.bind((listening_host(), 0))
-            return DatagramTransport(sock)
+            return DatagramTransport(sock, source=remote[0])
         try:
             sock.bind(("", local[1]))
         except OSError:
@@ -144,8 +160,11 @@ def open_udp(listen: bool, local: Address, remote: Address, port: int) -> Datagr
         raise
 
 
-def open_mcast(listen: bool, local: Address, group: str, port: int) -> DatagramTransport:
-    """Join a multicast group, or send to it, on the interface that has the address `local`."""
+def open_mcast(
+    listen: bool, local: Address, remote: Address, group: str, port: int
+) -> DatagramTransport:
+    """Join a multicast group, or send to it, on the interface that has the address `local`; the
+    peer has greeted from `remote`."""
     sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         interface = socket.inet_aton(local[0])
@@ -161,7 +180,7 @@ def open_mcast(listen: bool, local: Address, group: str, port: int) -> DatagramT
         sock.bind((group if sys.platform != "win32" else "", port))
         membership = socket.inet_aton(group) + interface
         sock.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
-        return McastReceiver(sock, group)
+        return McastReceiver(sock, group, remote[0])
     except OSError:
         sock.close()
         raise
@@ -170,8 +189,8 @@ def open_mcast(listen: bool, local: Address, group: str, port: int) -> DatagramT
 class McastReceiver(DatagramTransport):
     """A member of a group; leaving it wakes the receiver with a short receive timeout."""
 
-    def __init__(self, sock: socket.socket, group: str) -> None:
-        super().__init__(sock)
+    def __init__(self, sock: socket.socket, group: str, source: str = "") -> None:
+        super().__init__(sock, source=source)
         self._group = group
         super().limit_waiting(0.25)  # a datagram to wake us would go to the whole group
 
