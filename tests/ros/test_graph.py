@@ -1,5 +1,6 @@
 """Nodes of this process, and masters that come late, restart, or shut us down."""
 
+import logging
 import os
 import signal
 import subprocess
@@ -60,8 +61,15 @@ def test_a_restarted_master_is_told_again_and_data_flows(graph: RosGraph) -> Non
         wait_until(lambda: late.inputs, patience(5), "a late joiner is connected")
 
 
-def test_a_node_may_come_before_its_master(graph: RosGraph) -> None:
+def test_a_node_may_come_before_its_master(
+    graph: RosGraph, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level(logging.INFO, "yarpy.ros")
     graph.core.kill()
+    with Node("/unheard") as node:
+        node.publisher("/unheard_words", "std_msgs/String")
+        node.publisher("/other_words", "std_msgs/String")
+    assert len([each for each in caplog.records if each.name == "yarpy.ros"]) == 1, caplog.text
     with Node("/early") as node:
         node.publisher("/early_words", "std_msgs/String")
         graph.start()

@@ -106,7 +106,9 @@ class GraphNode:
             self._wake.set()
             return
         except NoNameServer as error:
-            log.warning("%s joins the graph once the master is there: %s", self.name, error)
+            if str(error) != self._told:  # once for all members
+                self._told = str(error)
+                log.warning("%s joins the graph once the master is there: %s", self.name, error)
         except YarpError as error:
             log.warning("%s: %s", self.name, error)
         self._unknown.add(member)
@@ -116,11 +118,13 @@ class GraphNode:
         """The port closes."""
         with self._lock:
             self.members = tuple(item for item in self.members if item is not member)
+        known = member not in self._unknown
         self._unknown.discard(member)
         try:
             member.unregister()
         except YarpError as error:
-            log.info("%s: %s stays registered: %s", self.name, member.topic, error)
+            if known:
+                log.info("%s: %s stays registered: %s", self.name, member.topic, error)
 
     def shut_down(self, reason: str) -> None:
         """Close all ports of the node, in a thread of its own: whoever says so waits."""
