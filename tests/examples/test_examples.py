@@ -55,6 +55,8 @@ TOGETHER = {
     "rpc_client.py",
     "rpc_server.py",
     "talker.py",
+    "thrift_client.py",
+    "thrift_server.py",
 }
 FILES = sorted(path for path in EXAMPLES.iterdir() if path.suffix in (".py", ".sh"))
 
@@ -186,3 +188,23 @@ def test_page_is_quoted_as_it_is():
     page = (EXAMPLES / "websocket.html").read_text()
     assert len(page.splitlines()) <= 40
     assert f"```html\n{page}```" in (ROOT / "docs" / "web.md").read_text()
+
+
+def test_thrift(server: yarpy.NameServer):
+    with start("thrift_server.py", **server.environment) as serving:
+        serving.wait_line(r"^/arm/rpc listens at http://")
+        with start("thrift_client.py", **server.environment) as client:
+            assert client.wait(30) == 0, client.stderr
+            lines = client.stdout.splitlines()
+        assert lines[0] == "True False 5"
+        assert lines[1].startswith("Status(mode=<Mode.TORQUE: 5>, pose=Pose(x=0.0, y=0.0, frame=")
+        assert lines[1].endswith("angles=[0.0, 30.0, 0.0, 0.0], counts={})")
+        assert lines[2].count("Pose(") == 3
+        assert lines[3:] == [
+            "[2. 5.] {'e': 1, 'h': 1, 'l': 2, 'o': 1} {1, 3}",
+            "hello hello b'cba' Vector([3.0])",
+            "move.joint: expected an integer, got 'one'",
+            "the server refuses path: a path has at least two steps",
+        ]
+        serving.wait_line("^stopped$")
+        interrupt(serving)

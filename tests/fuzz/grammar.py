@@ -33,6 +33,8 @@ from yarpy.errors import (
 )
 from yarpy.idl.rosmsg.catalogue import Catalogue
 from yarpy.idl.rosmsg.source import Standard
+from yarpy.idl.thrift.interface import text_interface
+from yarpy.idl.thrift.module import python
 from yarpy.monitors.constraint import Constraint
 from yarpy.names.discovery import respond
 from yarpy.names.registration_line import parse_registration, plain
@@ -156,7 +158,43 @@ _TEXT_PIECES = (
 
 _SEPARATOR = b"\n" + b"=" * 80 + b"\nMSG: "
 
+
+def _thrift(data: bytes) -> object:
+    return python(text_interface(data.decode("utf-8", "replace"), "f"))
+
+
 GRAMMARS = {
+    "thrift": Grammar(
+        _thrift,
+        (
+            *(
+                (b"", piece, b"")
+                for piece in (b"/", b"*", b"#", b"//a\n", b"/**/", b"/**a*/", b"\n")
+            ),
+            *((b"struct A { ", piece, b" }") for piece in (b"1", b"i32 a, ", b"/** */", b"a.")),
+            (b"typedef ", b"list<", b"i32"),
+            (b"typedef list<", b"map<i32,", b"i32"),
+            (b"const i32 A = ", b"1", b""),
+            (b"const i32 A = ", b"[", b""),
+            (b"const string A = '", b"\\n", b"'"),
+            (b"const string A = '", b"a", b""),
+            (b"service S { void ", b"a_", b"() }"),
+            (b"service S { void f(", b"1: i32 a ", b") }"),
+            (b"enum A { ", b"B, ", b"}"),
+            (b"struct A { 1: i32 a (", b"a = 'b', ", b") }"),
+            (b"", b"struct A {} ", b""),
+            (b"/**", b" * a\n", b"*/ struct A {}"),
+            (b"", b"/** a */ const i32 A = 1\n", b""),
+            (b"typedef B A ", b"typedef A B ", b""),
+        ),
+        (
+            *(b"struct A { ", b"} ", b"1: i32 a = 3, ", b"list<", b"A> ", b"b, ", b"service S { "),
+            *(b"void f(", b") ", b"oneway ", b"enum E { X } ", b"typedef E ", b"const E C = E.X "),
+            *(b"{ 'a': 1 } ", b"[1, 2] ", b"/** a */ ", b"# b\n", b"(yarp.nested = 'true') "),
+            *(b"(yarp.type = 'uint8_t') ", b"(yarp.name = 'a::B') ", b"i8 ", b"double ", b"map<"),
+            *(b"string s = 'x' ", b", i32> ", b"set<", b"extends S ", b"_", b"\xff", b'"', b"\\"),
+        ),
+    ),
     "ros definition": Grammar(
         _definition,
         (

@@ -21,6 +21,8 @@ from monitors.test_shipped import CASES
 from support.capture import CAPTURES, load_capture
 from support.ros_link import AddTwoInts, String
 from support.ros_value import filled
+from support.thrift import CALLS, GOLDEN
+from support.thrift import rows as thrift_rows
 from support.vectors import rows
 
 import yarpy
@@ -36,6 +38,8 @@ from yarpy.idl.rosmsg.library import Library
 from yarpy.idl.rosmsg.native import to_value
 from yarpy.idl.rosmsg.sniff import sniff
 from yarpy.idl.rosmsg.source import Standard
+from yarpy.idl.thrift.client import is_failure, version
+from yarpy.idl.thrift.library import load as load_thrift
 from yarpy.link.handshake import recognise
 from yarpy.monitors.base import Place
 from yarpy.monitors.chain import Chain
@@ -46,7 +50,7 @@ from yarpy.route import UNDECLARED, Declared, Route
 from yarpy.testing import End
 from yarpy.testing.drive import Stalled
 from yarpy.wire.datagram import Assembler
-from yarpy.wire.message import DATA, Message, Packet
+from yarpy.wire.message import DATA, Answer, Message, Packet
 from yarpy.wire.stream import DatagramStream
 
 try:
@@ -255,6 +259,60 @@ def _ros(name: str) -> Target:
     return Target(read, (*seeds, *(b"".join(message.to_wire()) for message in full)))
 
 
+def _served(data: bytes) -> None:
+    """What a service is asked; it answers whatever comes, and what it answers can be sent."""
+    for spelling in ("binary", "text"):
+        message = Message("d", data, spelling=spelling)
+        message.answer = Answer(lambda value: None)
+        b"".join(codec.encode(_SERVER(message)))
+
+
+def _answered(data: bytes) -> None:
+    """What clients are answered, and structs that come from anywhere."""
+    for method in _THRIFT.Capt._methods.values():
+        for read in (method.read_answer, lambda view, m=method: is_failure(view, m, False)):
+            with suppress(YarpError):
+                read(data)
+        if method.ending is not None:
+            extent, size = method.ending(LIMIT), 0
+            with suppress(YarpError):
+                while not extent.done and size <= len(data):
+                    size = max(extent.advance(data[:size]), size + 1)
+    version(data)
+    for name in ("Nest", "Deep", "Prims", "Lists", "Maps", "Sets", "Anno"):
+        cls = getattr(_THRIFT, name)
+        with suppress(YarpError):
+            made = cls.from_wire(data)
+            b"".join(made.to_wire())
+            repr(made), made.to_dict(), made.to_bottle()
+
+
+_THRIFT = load_thrift(GOLDEN / "capt.thrift")
+
+
+class _Server(_THRIFT.Capt):
+    def _failed(self, error: Exception, message: Any, person: bool) -> Any:
+        if not isinstance(error, YarpError):
+            raise error
+        return super()._failed(error, message, person)
+
+
+_RESULTS = {"tail_defaults": "x", "check_defaults": True, "const_method": True}
+for _name in _THRIFT.Capt._methods:
+    _result = _RESULTS.get(_name, 5)
+    setattr(
+        _Server,
+        _name,
+        lambda self, *values, name=_name, result=_result: (
+            values[0] if name.startswith("r_") else result
+        ),
+    )
+_SERVER = _Server()
+_THRIFT_SAID = tuple(
+    bytes.fromhex(row[part]) for row in CALLS.values() for part in ("request", "reply") if row[part]
+)
+_THRIFT_STRUCTS = tuple(bytes.fromhex(row["hex"]) for row in thrift_rows("structs"))
+
 _ROS = Library([Standard()])
 _PIXELS = np.arange(24 * 32 * 3, dtype="u1").reshape(24, 32, 3)
 _MESSAGES = tuple(
@@ -295,6 +353,8 @@ TARGETS = {
         for name in ("JointState", "PointCloud2", "Image")
     },
     "sniff": Target(_sniffed, _MESSAGES),
+    "thrift requests": Target(_served, (*_THRIFT_SAID, b"help add", b"r_nest 1 2 () () () ()")),
+    "thrift answers": Target(_answered, (*_THRIFT_SAID, *_THRIFT_STRUCTS)),
     "walker": Target(_walk, _MESSAGES),
     "jpeg": Target(
         _picture, (jpeg.encode(Image(_PIXELS)), jpeg.encode(Image(_PIXELS[..., 0].copy())))

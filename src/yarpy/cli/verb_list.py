@@ -86,7 +86,9 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
         "check": Verb("try whether ports can be opened, found and connected here", "check"),
         "cert": Verb("make a certificate for TLS", "cert robot.lab 192.168.1.7"),
         "resource": Verb("find configuration files", "resource --from robot.ini"),
-        "idl": Verb("show types of ROS, or write Python for them", "idl rosmsg sensor_msgs/Image"),
+        "idl": Verb(
+            "show types of ROS, or write Python for them and for Thrift", "idl thrift camera.thrift"
+        ),
         "plugin": Verb(
             "list carriers, types, monitors and commands that are installed", "plugin tcp"
         ),

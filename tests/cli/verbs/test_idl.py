@@ -1,5 +1,7 @@
-"""`yarpy idl rosmsg`: types shown, and Python written for them."""
+"""`yarpy idl`: types of ROS and Thrift shown, and Python written for them."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -100,3 +102,43 @@ def test_types_or_a_port_are_named(here):
     said = here("idl", "rosmsg")
     assert said.code == 1
     assert "which types?" in said.err
+
+
+def test_thrift_is_written(here, tmp_path, monkeypatch):
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib" / "shape.thrift").write_text("struct Point { 1: i32 x }")
+    arm = tmp_path / "arm.thrift"
+    arm.write_text(
+        'include "shape.thrift"\nenum E { A }\nservice Arm { shape.Point get(), void stop() }'
+    )
+    arguments = ("idl", "thrift", str(arm), "--folder", str(tmp_path / "lib"))
+    said = here(*arguments, "--check")
+    assert (said.code, said.err) == (0, "")
+    assert said.out.splitlines()[1] == f"{arm}: 1 enum, 2 methods in Arm"
+    assert said.out.splitlines()[0].endswith("shape.thrift: 1 struct")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["arm.thrift", "lib"]
+    out = tmp_path / "out"
+    said = here(*arguments, "--out", str(out))
+    assert said.out == f"{out}/shape.py, {out}/shape.pyi\n{out}/arm.py, {out}/arm.pyi\n"
+    monkeypatch.syspath_prepend(str(out))
+    done = subprocess.run(
+        [sys.executable, "-c", "import arm, sys; print(arm.shape.Point(3), 'lark' in sys.modules)"],
+        cwd=out, capture_output=True, text=True, check=True, timeout=50,
+    )  # fmt: skip
+    assert done.stdout == "Point(x=3) False\n"
+
+
+def test_wrong_thrift_files_are_named_with_the_line(here, tmp_path):
+    good, bad = tmp_path / "good.thrift", tmp_path / "bad.thrift"
+    good.write_text("struct A {}")
+    bad.write_text("struct A {\n  1: i32 x = 'y'\n}")
+    out = tmp_path / "out"
+    said = here("idl", "thrift", str(good), str(bad), "--out", str(out))
+    assert said.code == 1 and f"{bad}:2: expected a value for i32, found 'y'" in said.err
+    assert not out.exists()
+    said = here("idl", "thrift", str(tmp_path / "none.thrift"))
+    assert said.code == 1 and "none.thrift" in said.err
+    odd = tmp_path / "my-arm.thrift"
+    odd.write_text("struct A {}")
+    said = here("idl", "thrift", str(odd))
+    assert said.code == 1 and "no module is called my-arm: rename it" in said.err

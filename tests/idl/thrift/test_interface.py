@@ -102,6 +102,15 @@ def test_many_values_are_refused_in_time() -> None:
         text_interface("\n".join(lines))
 
 
+def test_names_and_depths_have_limits() -> None:
+    with pytest.raises(DecodeError, match="is longer than 200 characters"):
+        text_interface(f"service S {{ void {'a_' * 1000}b() }}")
+    lines = ["struct S0 { 1: i32 a }"]
+    lines += [f"struct S{at} {{ 1: S{at - 1} a }}" for at in range(1, 1000)]
+    with pytest.raises(DecodeError, match="structs are nested more than 100 deep"):
+        text_interface("\n".join(reversed(lines)))
+
+
 def test_included_files(tmp_path: Path) -> None:
     (tmp_path / "lib").mkdir()
     (tmp_path / "lib" / "geometry.thrift").write_text("struct Point { 1: i32 x }")

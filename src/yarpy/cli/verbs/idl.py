@@ -1,5 +1,7 @@
-"""`yarpy idl rosmsg NAME...`: messages and services of ROS.
+"""`yarpy idl`: types of other systems - messages and services of ROS, interfaces of Thrift.
 
+    idl thrift FILE...              a Python module and its stubs for each .thrift file
+    idl thrift --check FILE...      whether they are right, and what is in them
     idl rosmsg NAME...              show them, as `rosmsg show` does
     idl rosmsg --raw NAME...        the text of their files, with the comments
     idl rosmsg --md5 NAME...        their checksums
@@ -12,12 +14,17 @@ A NAME is package/Type, or the path of a .msg or .srv file. Names are looked for
 --folder, in folders `msgs` where `yarpy resource` looks for files of the --context, in the packages
 of ROS, and among those that rosbags and yarpy bring.
 
-Differs from C++ (yarpidl_rosmsg): no C++ is written, and nothing is fetched from the web.
+Files that a .thrift file includes are looked for beside it, then in the folders of --folder; they
+are written, too.
+
+Differs from C++ (yarpidl_rosmsg, yarpidl_thrift): Python is written, not C++, and nothing is
+fetched from the web.
 Exit codes: 0 done; 1 not found, or wrong.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -97,6 +104,44 @@ def _serve(name: str, library: Library) -> int:
         threading.Event().wait()
     except signals.Interrupted:
         pass
+    return 0
+
+
+@command.command(short_help="Write Python for .thrift files, or check them.")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option("--check", is_flag=True, help="Write nothing, only say what is in them.")
+@click.option("--out", default=".", metavar="DIR", help="Where to write (here).")
+@click.option(
+    "--folder",
+    "folders",
+    multiple=True,
+    metavar="DIR",
+    type=click.Path(exists=True, file_okay=False),
+    help="A folder of files to include.",
+)
+def thrift(files: tuple[str, ...], check: bool, out: str, folders: tuple[str, ...]) -> int:
+    """Write a Python module and its stubs for .thrift files, or check them."""
+    from yarpy.idl.thrift.interface import Interface, read_interface
+    from yarpy.idl.thrift.module import python, stubs, summary
+
+    places = [Path(folder) for folder in folders]
+    found: dict[Path | None, Interface] = {}
+    for file in files:
+        for each in read_interface(Path(file), places).all():
+            found.setdefault(each.path, each)
+    texts = {}
+    for each in found.values():
+        texts[each.module_name] = python(each), stubs(each)  # all are right before one is written
+    if check:
+        for each in found.values():
+            print_line(f"{each.document.file}: {summary(each)}")
+        return 0
+    folder = Path(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, (module, stub) in texts.items():
+        (folder / f"{name}.py").write_text(module)
+        (folder / f"{name}.pyi").write_text(stub)
+        print_line(f"{folder / name}.py, {folder / name}.pyi")
     return 0
 
 

@@ -29,6 +29,7 @@ from yarpy.idl.thrift.document import (
 )
 from yarpy.idl.thrift.kind import BINARY, BOOL, DOUBLE, TEXT, External, Scalar
 from yarpy.idl.thrift.parse import parse
+from yarpy.idl.thrift.word import PYTHON
 
 BASE: Final = {
     "bool": BOOL, "byte": kinds.I8, "i8": kinds.I8, "i16": kinds.I16, "i32": kinds.I32,
@@ -50,6 +51,8 @@ NATIVE: Final = {
 #: all declarations of a file and those that it includes; each becomes code
 MAX_DECLARATIONS: Final = 5000
 _MAX_INCLUDES: Final = 200
+_MAX_NESTED: Final = 100  # structs in structs
+_COMPARED: Final = 300  # names, in search of the nearest
 
 Read = Callable[[Path], str]
 Resolved: TypeAlias = TypeText | StructText | EnumText | Scalar
@@ -69,6 +72,20 @@ class Interface:
         """The name of the file without its suffix, by which others mention it."""
         return Path(self.document.file).stem
 
+    @property
+    def module_name(self) -> str:
+        """What a Python module of it is called. DecodeError if none can be."""
+        if not self.name.isidentifier() or self.name in PYTHON:
+            raise DecodeError(f"{self.document.file}: no module is called {self.name}: rename it")
+        return self.name
+
+    def all(self) -> list[Interface]:
+        """Those that it includes, and it."""
+        found: dict[int, Interface] = {}
+        for other in self.includes.values():
+            found |= {id(each): each for each in other.all()}
+        return [*found.values(), self]
+
     def wrong(self, line: int, why: str) -> DecodeError:
         return DecodeError(f"{self.document.file}:{line}: {why}")
 
@@ -83,7 +100,7 @@ class Interface:
             return inside, inside.names[rest]
         inner = (f"{p}.{n}" for p, other in self.includes.items() for n in other.names)
         known = [*self.names, *inner, *(BASE if what == "type" else ())]
-        near = get_close_matches(name, known, n=1)
+        near = get_close_matches(name[:100], known[:_COMPARED], n=1)
         hint = f': did you mean "{near[0]}"?' if near else ""
         raise self.wrong(line, f'no {what} "{name}"{hint}')
 
@@ -358,6 +375,8 @@ def _check_size(
         return known[key]
     if key in chain:
         raise interface.wrong(struct.line, f'"{struct.name}" contains itself: put it into a list')
+    if len(chain) > _MAX_NESTED:
+        raise interface.wrong(struct.line, f"structs are nested more than {_MAX_NESTED} deep")
     size = 0
     for each in struct.fields:
         where, found = interface.resolve(each.type)

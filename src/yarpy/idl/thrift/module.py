@@ -48,6 +48,26 @@ def stubs(interface: Interface) -> str:
     return _Module(interface, stubs=True).text()
 
 
+def summary(interface: Interface) -> str:
+    """What is in a file: "1 enum, 3 structs, 20 methods in Arm"."""
+    found = []
+    declarations = interface.document.declarations
+    for kind, name in (
+        (ConstText, "constant"),
+        (TypedefText, "typedef"),
+        (EnumText, "enum"),
+        (StructText, "struct"),
+    ):
+        count = sum(isinstance(each, kind) for each in declarations)
+        if count:
+            found.append(f"{count} {name}{'s' if count > 1 else ''}")
+    for each in declarations:
+        if isinstance(each, ServiceText):
+            count = len(each.methods)
+            found.append(f"{count} method{'s' if count != 1 else ''} in {each.name}")
+    return ", ".join(found) or "nothing"
+
+
 class _Module:
     def __init__(self, interface: Interface, stubs: bool) -> None:
         self.interface = interface
@@ -183,6 +203,7 @@ class _Module:
     def method(self, method: MethodText) -> list[str]:
         mark = "oneway" if method.oneway else "method"
         arguments = ["self"]
+        optional = False
         for argument in method.arguments:
             name = attribute(argument.name)
             kind = self.annotation(argument.type, nested=_nested(argument))
@@ -191,10 +212,8 @@ class _Module:
             text = f"{name}: {kind}"
             if argument.default is not None:
                 text += " = ..." if self.stubs else f" = {self.default(argument)}"
-            elif any(
-                later.default is not None
-                for later in method.arguments[: method.arguments.index(argument)]
-            ):
+                optional = True
+            elif optional:
                 raise self.interface.wrong(
                     argument.line, f'"{argument.name}" needs a default, as those before it have one'
                 )

@@ -34,8 +34,9 @@ from yarpy.idl.thrift.document import (
 )
 
 #: characters of a file, and how deep types and values may be nested
-MAX_TEXT: Final = 1 << 20
+MAX_TEXT: Final = 1 << 18
 MAX_DEPTH: Final = 20
+_LONGEST: Final = 200  # characters of a name
 
 GRAMMAR: Final = r"""
 document: (include | namespace)* (const | typedef | enum | struct | service)*
@@ -142,7 +143,7 @@ def _parser(lark: Any) -> Any:
 
 
 def _expected(names: Any) -> str:
-    words = sorted({_WORDS.get(name, f'"{name.lower()}"') for name in names} - {""})
+    words = sorted({_WORDS.get(name, f'"{name.lower()}"') for name in names} - {""}) or ['","']
     if len(words) > 8:
         words = [*words[:7], "..."]
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
@@ -203,6 +204,8 @@ class _Reading:
 
     def simple(self, token: Any) -> str:
         """A name without dots."""
+        if len(token) > _LONGEST:
+            raise self.wrong(token.line, f'"{token!s:.20}..." is longer than {_LONGEST} characters')
         if "." in token:
             raise self.wrong(token.line, f'"{token}" is no name: it has a dot in it', token.column)
         return str(token)

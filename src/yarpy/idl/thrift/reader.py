@@ -37,12 +37,14 @@ from yarpy.data.value import (
     UNIT_MASK,
     VOCAB32,
     Buffer,
+    Float32,
     Vocab,
 )
 from yarpy.errors import DecodeError, Truncated
 from yarpy.idl.thrift.kind import (
     BINARY,
     BOOL,
+    FLOAT,
     SIZE,
     TEXT,
     VOCAB,
@@ -256,7 +258,8 @@ def scalar(kind: Scalar, tag: int, cursor: Cursor, path: str) -> Any:
         raise _other("a word", tag, cursor, path)
     if kind.letter in "fd":
         if tag in _INTEGERS or tag in (FLOAT32, FLOAT64):
-            return float(_fixed(tag, cursor, path))
+            number = float(_fixed(tag, cursor, path))
+            return float(Float32(number)) if kind is FLOAT and tag != FLOAT32 else number
         raise _other("a number", tag, cursor, path)
     if tag in _INTEGERS or (tag == VOCAB32 and kind.code == INT32 and kind is not SIZE):
         return _fitting(kind, _fixed(tag, cursor, path), path)

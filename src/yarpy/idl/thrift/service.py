@@ -11,8 +11,8 @@
 Rules: every request is answered, a failed one with `[fail]`: alone for programs, as in C++, since
 they cannot read more; with the reason for people and whoever spells names as people do. A method
 may be a coroutine function where `yarpy.aio.RpcServer` serves it. What a method raises is logged,
-and is the reason. Inherited methods are called as own ones. A oneway call is answered before it is
-done, where somebody wants an answer.
+and is the reason; with a YarpError it only refuses. Inherited methods are called as own ones. A
+oneway call is answered before it is done, where somebody wants an answer.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from typing import Any, ClassVar, Final, Self
 from yarpy import registry
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import LIST, STRING, VOCAB32, Int16, Vocab
-from yarpy.errors import DecodeError, LocalProtocolError
+from yarpy.errors import DecodeError, LocalProtocolError, YarpError
 from yarpy.idl.thrift import reader
 from yarpy.idl.thrift.kind import namespace_of
 from yarpy.idl.thrift.method import Method, first_word
@@ -155,7 +155,7 @@ class Service:
         raise DecodeError(f'no method "{name}": there are {known}; send help for all')
 
     def _failed(self, error: Exception, message: Any, person: bool) -> Any:
-        if isinstance(error, DecodeError):
+        if isinstance(error, YarpError):
             reason = str(error)
             log.warning("%s: request of %s: %s", type(self).__name__, message.source, reason)
         elif isinstance(error, NotImplementedError):
