@@ -114,3 +114,21 @@ def test_own_name_is_prayed_to(names: LocalNames, monkeypatch: pytest.MonkeyPatc
         assert lines[:2] == ["You begin praying to robot.", "You finish your prayer."]
         monkeypatch.setenv("YARP_ROBOT_NAME", "icub")
         assert network.admin("/robot/arm", "pray", names=names)[0] == "You begin praying to icub."
+
+
+def test_strangers_cannot_store_without_end(names: LocalNames) -> None:
+    with Port("/p", names=names) as port:
+
+        def prop(*words: object) -> Bottle:
+            message = Message("a", Bottle(["prop", *words]).to_bytes())
+            return admin.answer(port._hub, message)
+
+        assert prop("set", "big", "x" * (admin.MAX_PROPERTIES - 1000)) == [Vocab("ok")]
+        refusal = [Vocab("fail"), "the properties of a port take at most 1048576 bytes"]
+        assert prop("set", "more", bytes(2000)) == refusal
+        assert prop("set", "y" * 2000) == refusal
+        assert prop("get", "more") == []
+        assert prop("set", "small", 5) == [Vocab("ok")]
+        assert prop("set", "big", "less") == [Vocab("ok")]  # it takes the place of the other
+        assert prop("set", "more", bytes(2000)) == [Vocab("ok")]
+        assert prop("get", "small") == [5]

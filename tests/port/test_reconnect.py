@@ -370,6 +370,28 @@ def lost(names: yarpy.LocalNames, port: yarpy.Port) -> reconnect._Lost:
     return reconnect._Lost(port._hub, Route(port.name, "/in", "tcp", peer="/in"), incoming=False)
 
 
+def test_senders_that_are_waited_for_are_limited(
+    names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A stranger may connect under a new name again and again, and vanish."""
+    monkeypatch.setattr(reconnect, "MOST_SENDERS", 5)
+    monkeypatch.setattr(reconnect.Reconnector, "_dial", lambda self, lost: None)
+
+    def waited(port: yarpy.Port) -> list[str]:
+        lost = reconnect.RECONNECTOR._lost
+        return [item.route.source for item in lost if item.hub is port._hub]
+
+    with yarpy.Port("/in", names=names) as port, yarpy.Port("/other", names=names) as other:
+        reconnect.input_lost(port._hub, Route("/camera", "/in", "mjpeg", peer="/camera"))
+        reconnect.input_lost(other._hub, Route("/first", "/other"))
+        for number in range(20):
+            reconnect.input_lost(port._hub, Route(f"/fake{number}", "/in"))
+        for _ in range(3):
+            reconnect.input_lost(port._hub, Route("/fake17", "/in"))
+        assert waited(port) == ["/camera", *(f"/fake{n}" for n in (15, 16, 18, 19, 17))]
+        assert waited(other) == ["/first"]
+
+
 def test_pauses_grow(names: yarpy.LocalNames) -> None:
     """A dead port is dialled at once at first, and then ever more rarely, by chance."""
     with yarpy.Port("/out", names=names) as out:

@@ -10,8 +10,9 @@ from __future__ import annotations
 import os
 import random
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
+from yarpy.data import codec
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -24,6 +25,8 @@ from yarpy.port.report import report, report_one
 from yarpy.wire.message import Message
 
 log = logger("yarpy.port")
+
+MAX_PROPERTIES: Final = 1 << 20  # bytes of all together
 
 _OK = Vocab("ok")
 _FAIL = Vocab("fail")
@@ -212,8 +215,8 @@ def _prop(hub: Hub, request: Bottle) -> Bottle:
         return Bottle() if value is None else Bottle([value])
     if action != "set":
         return failure("property action not known")
-    if key:
-        hub.properties[key] = request[3] if len(request) > 3 else None
+    if key and not _keep(hub, key, request[3] if len(request) > 3 else None):
+        return failure(f"the properties of a port take at most {MAX_PROPERTIES} bytes")
     if not key.startswith("/"):
         return Bottle([_OK])
     try:
@@ -224,6 +227,17 @@ def _prop(hub: Hub, request: Bottle) -> Bottle:
     except YarpError as error:
         return failure(str(error))
     return Bottle([_OK]) if done else failure()
+
+
+def _keep(hub: Hub, key: str, value: Any) -> bool:
+    """Set a property, which stays for as long as the port does; False if it is too large."""
+    size = len(b"".join(codec.encode([key, value] if value is not None else [key])))
+    sizes = hub.property_sizes
+    if sum(sizes.values()) - sizes.get(key, 0) + size > MAX_PROPERTIES:
+        return False
+    hub.properties[key] = value
+    sizes[key] = size
+    return True
 
 
 def _sorted(hub: Hub) -> list[tuple[str, Any]]:

@@ -115,6 +115,7 @@ class Hub:
         self.budget = port_budget(input_limit)
         self.callbacks = Callbacks(registration)
         self.properties = Property()
+        self.property_sizes: dict[str, int] = {}  # bytes of each
         self.inputs: tuple[Inbound, ...] = ()  # one at most from each rooted name
         self.leaving: tuple[Inbound, ...] = ()  # were inputs; their threads have not ended yet
         self.outputs: tuple[Outbound, ...] = ()

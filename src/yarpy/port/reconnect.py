@@ -42,6 +42,7 @@ SILENCE: Final = (
 )
 SLOWER: Final = 1.3  # so much longer is each pause than the one before, and up to so much by chance
 INPUT_PATIENCE: Final = 60.0  # seconds for a sender that vanished to come back
+MOST_SENDERS: Final = 200  # of one port that are waited for
 
 
 @dataclass(slots=True, eq=False)
@@ -127,8 +128,24 @@ class Reconnector:
         with self._lock:
             if hub.closing:
                 return  # `forget` may have been here already
-            self._lost.append(_Lost(hub, route, incoming, seen_gone=gone))
+            added = _Lost(hub, route, incoming, seen_gone=gone)
+            if incoming and not _is_pulled(route):
+                self._make_room(added)
+            self._lost.append(added)
         self._wake.set()
+
+    def _make_room(self, added: _Lost) -> None:
+        """Forget the same input from before, and the oldest where there are too many: whoever
+        connects under new names again and again must not keep us busy."""
+        inputs = [
+            item
+            for item in self._lost
+            if item.incoming and item.hub is added.hub and not _is_pulled(item.route)
+        ]
+        over = {item for item in inputs if _peer(item) == _peer(added)}
+        if not over and len(inputs) >= MOST_SENDERS:
+            over = {inputs[0]}
+        self._lost = [item for item in self._lost if item not in over]
 
     def give_up(self, hub: Hub, name: str, incoming: bool | None = None) -> bool:
         """Somebody takes the connection to or from `name` in hand, or the one of these that
