@@ -36,6 +36,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "tcpros": "yarpy.carriers.tcpros:TcpRos",
         "websocket": "yarpy.carriers.websocket:WebSocket",
         "xmlrpc": "yarpy.carriers.xmlrpc:XmlRpc",
+        "zmq": "yarpy.carriers.zmq:Zmq",
     },
     "monitors": {
         "bayer": f"{_STOCK}.bayer:Bayer",

@@ -260,7 +260,7 @@ def messages_written(capture: Capture) -> list[Message]:
     """What the reader of a reversed connection reads and acknowledges."""
     end = End()
     accepting, _ = messages_of(capture)
-    carrier = find_carrier(accepting.name)(accepting.route)
+    carrier = find_carrier(parse_carrier(accepting.name))(accepting.route)
     found: list[Message] = []
     end.begin(read(end, carrier, 4, found))
     written = b"".join(s.data for s in capture.steps[3:] if s.sender == "b")
@@ -352,7 +352,7 @@ def test_datagrams_are_written(name: str) -> None:
 def initiator_of_datagrams(kind: str) -> Any:
     from yarpy.route import Route
 
-    return find_carrier(kind)(Route("/cap/out", "/cap/in", kind))
+    return find_carrier(parse_carrier(kind))(Route("/cap/out", "/cap/in", kind))
 
 
 # ---------------------------------------------------------------------------------- name server

@@ -27,7 +27,10 @@ from support.vectors import rows
 
 import yarpy
 from yarpy import registry
+from yarpy.carriers import zmtp
+from yarpy.carriers.payload import message_of, payload_of
 from yarpy.carriers.ros_header import LENGTH, encode_header
+from yarpy.carriers.zmq import ROLES, Pub
 from yarpy.data import codec, jpeg
 from yarpy.data.image import Image
 from yarpy.devices.control_board.state import State
@@ -40,13 +43,13 @@ from yarpy.idl.rosmsg.sniff import sniff
 from yarpy.idl.rosmsg.source import Standard
 from yarpy.idl.thrift.client import is_failure, version
 from yarpy.idl.thrift.library import load as load_thrift
-from yarpy.link.handshake import recognise
+from yarpy.link.handshake import find_carrier, recognise
 from yarpy.monitors.base import Place
 from yarpy.monitors.chain import Chain
 from yarpy.monitors.stock import png
 from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.names.discovery import respond
-from yarpy.route import UNDECLARED, Declared, Route
+from yarpy.route import UNDECLARED, Declared, Route, parse_carrier
 from yarpy.testing import End
 from yarpy.testing.drive import Stalled
 from yarpy.wire.datagram import Assembler
@@ -163,7 +166,7 @@ def _serve(end: End, declared: Declared) -> Any:
 
 def _dial(name: str) -> Callable[[bytes], None]:
     """Whoever is dialled: greet, send a message, read what comes for an answer."""
-    kind = registry.carriers.load(name)
+    kind = find_carrier(parse_carrier(name))
 
     def read(data: bytes) -> None:
         carrier = kind(Route("/w", "/r", name, 10002, "127.0.0.1"))
@@ -195,6 +198,31 @@ def _dial(name: str) -> Callable[[bytes], None]:
 
 def _encoded(value: object) -> bytes:
     return b"".join(codec.encode(value))
+
+
+def _zmq(kind: bytes, content: bytes = b"") -> bytes:
+    """What a socket of ZeroMQ says."""
+    return zmtp.GREETING + zmtp.ready({"Socket-Type": kind}) + content
+
+
+def _hear(data: bytes) -> None:
+    """A subscriber of ZeroMQ, while it is written to."""
+    end, carrier = End(piece=1 + len(data) % 97, limit=LIMIT), Pub(Route("/w", "/r", "zmq+pub"))
+    steps = carrier.listen(end.stream)
+    assert steps is not None
+    end.begin(steps)
+    end.feed(data)
+
+
+def _payload(data: bytes) -> None:
+    """A payload of programs that know nothing of YARP."""
+    message = message_of(DATA, [data])
+    for kind in (object, *TYPES):
+        try:
+            message.as_(kind)
+        except YarpError:
+            continue
+    payload_of(message.value)
 
 
 def _said(sender: str) -> tuple[bytes, ...]:
@@ -327,6 +355,17 @@ _ANSWERS = (
     b"HTTP/1.1 101 x\r\nSec-WebSocket-Accept: x\r\n\r\n\x82\x08\x00\x01\x00\x00\x00\x00\x00\x00",
     b"Welcome /r\r\n(1 two)\r\n<ACK>\r\n",
 )
+_COMMANDS = zmtp.command(b"SUBSCRIBE", b"cam") + zmtp.command(b"PING", b"\0\1x") + b"\4\7\6CANCEL"
+_SOCKETS = (
+    _zmq(b"SUB", _COMMANDS),
+    _zmq(b"PUB", b"\1\3cam\0\3[1]\1\4raw:\2" + (8).to_bytes(8, "big") + bytes(8)),
+    _zmq(b"PUSH", b"\0\5hello" + zmtp.command(b"PING", b"\0\1x") + b"\0\3[1]"),
+    _zmq(b"PULL"),
+    _zmq(b"REQ", b"\1\0\0\3[1]" * 3),
+    _zmq(b"DEALER", b"\1\2id\1\0\0\3[1]"),
+    _zmq(b"REP", b"\1\0\0\3[1]" * 3),
+    zmtp.GREETING + zmtp.error("no"),
+)
 
 _TYPED = {"callerid": "/a", "md5sum": "*", "type": "*"}
 _SUBSCRIBER = encode_header(_TYPED | {"topic": "/topic", "message_definition": "string data\n"})
@@ -366,7 +405,9 @@ TARGETS = {
         lambda data: respond(data, str), (b"NAME_SERVER query /root", *_MESSAGES[:9])
     ),
     "datagrams": Target(_datagrams, _said("a")[:40]),
-    "accepting": Target(_accept(), (*_said("a"), _SUBSCRIBER), refusals=(YarpError, Stalled)),
+    "accepting": Target(
+        _accept(), (*_said("a"), _SUBSCRIBER, *_SOCKETS), refusals=(YarpError, Stalled)
+    ),
     "accepting tcpros": Target(
         _accept(Declared("/node", "/topic", "std_msgs/String", String)),
         (_SUBSCRIBER,),
@@ -383,6 +424,16 @@ TARGETS = {
         for spelled, _, value, _ in CASES
         if (name := spelled.partition("+")[0]) not in _PASSIVE
         and not (name.endswith("png") and cv2 is None)
+    },
+    "subscriptions": Target(_hear, (_COMMANDS, b"\0\4\1cam\0\4\0cam")),
+    "payload": Target(
+        _payload, (b'[1, "two", {"a": [3.5]}]', b"\xff\0", jpeg.encode(Image(_PIXELS)))
+    ),
+    **{
+        f"dialling zmq+{role}": Target(
+            _dial(f"zmq+{role}"), _SOCKETS, refusals=(YarpError, Stalled)
+        )
+        for role in ROLES
     },
     **{
         f"dialling {name}": Target(

@@ -25,7 +25,7 @@ from yarpy.errors import (
 )
 from yarpy.link import handshake
 from yarpy.link.handshake import UNKNOWN_PROTOCOL, find_carrier, greet, recognise, welcome
-from yarpy.route import Route
+from yarpy.route import Route, parse_carrier
 from yarpy.transports.tcp import TcpTransport
 
 
@@ -163,10 +163,10 @@ def test_wrong_carrier_name_is_found_before_dialling() -> None:
 
 
 def test_carriers_by_name() -> None:
-    assert find_carrier("tcp") is Tcp
-    assert find_carrier("text") is Text
+    assert find_carrier(parse_carrier("tcp")) is Tcp
+    assert find_carrier(parse_carrier("text")) is Text
     with pytest.raises(UnknownPlugin, match=r"yarpy\.carriers"):
-        find_carrier("nosuch")
+        find_carrier(parse_carrier("nosuch"))
 
 
 def test_plugin_that_is_no_carrier() -> None:
@@ -175,7 +175,7 @@ def test_plugin_that_is_no_carrier() -> None:
     registry.carriers.add("odd", object())
     try:
         with pytest.raises(UnknownPlugin, match="not a Carrier class"):
-            find_carrier("odd")
+            find_carrier(parse_carrier("odd"))
     finally:
         registry.carriers.remove("odd")
 

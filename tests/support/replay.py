@@ -131,7 +131,7 @@ def initiator_of(capture: Capture) -> Carrier:
     """A carrier that dials as the one in the capture did."""
     accepting, _ = messages_of(capture)
     route = accepting.route
-    return find_carrier(route.spec.base)(Route(route.source, route.target, route.spec))
+    return find_carrier(route.spec)(Route(route.source, route.target, route.spec))
 
 
 def answers_of(capture: Capture) -> list[Any]:

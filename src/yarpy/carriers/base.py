@@ -21,7 +21,7 @@ from typing import ClassVar
 
 from yarpy.data import codec
 from yarpy.errors import AccessRefused
-from yarpy.route import Route
+from yarpy.route import CarrierSpec, Route
 from yarpy.wire import framing
 from yarpy.wire.effects import May
 from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
@@ -39,13 +39,15 @@ class Delivery:
 
     lossy: a slow consumer misses messages; its writer never waits. backlog: messages that may
     be queued for such a reader. interval: minimum seconds between its messages. coalesces: small
-    messages of a burst may share one send.
+    messages of a burst may share one send. at_once: of a lossy connection, what does not leave in
+    its writer's thread without waiting is dropped.
     """
 
     lossy: bool = False
     backlog: int = 0
     interval: float = 0.0
     coalesces: bool = True
+    at_once: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +69,8 @@ class Carrier:
 
     `route` says who talks to whom: `route.source` and `route.target` are port names,
     `route.spec` the parsed carrier string. The acceptor fills in the source. `lost` counts messages
-    that the protocol itself had to drop; the link adds it to its drops.
+    that the protocol itself had to drop; the link adds it to its drops. `unwanted` counts those
+    that the reader had not asked for, and that were not sent.
     """
 
     name: ClassVar[str] = ""
@@ -77,6 +80,8 @@ class Carrier:
     replies: ClassVar[bool] = True
     spelling: Spelling = "binary"  # what `encode` uses of a packet
     foreign: ClassVar[bool] = False  # the peer we dial need not know YARP, nor its keys
+    nameless: ClassVar[bool] = False  # whoever speaks it where we dialled is the peer again
+    attentive: ClassVar[bool] = False  # what a reader says to `listen` is to be heard at once
     introduces: ClassVar[bool] = True  # the initiator gives its name and modifiers
     connectionless: ClassVar[bool] = False  # the peer must be told of the end in some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
@@ -86,6 +91,13 @@ class Carrier:
     def __init__(self, route: Route) -> None:
         self.route = route
         self.lost = 0
+        self.unwanted = 0
+
+    @classmethod
+    def of(cls, spec: CarrierSpec) -> type[Carrier]:
+        """The class for a carrier string, where what it is depends on more than the protocol.
+        Raises LocalProtocolError for one that does not say enough."""
+        return cls
 
     @classmethod
     def recognises(cls, first: bytes) -> int:
@@ -135,6 +147,11 @@ class Carrier:
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         """Write one message."""
         stream.write(*framing.encode(packet))
+
+    def gathers(self, packet: Packet) -> bool:
+        """Whether what `encode` has just written may wait for others of a burst: it is small, and
+        in memory that the writer cannot change."""
+        return packet.small
 
     def parse(self, stream: ByteStream) -> Message | None:
         """A message that is already complete in the stream's buffer, or None; never waits.

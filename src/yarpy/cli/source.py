@@ -46,7 +46,7 @@ class Source:
         self._tell = tell
         self._contact = parse_contact(name)
         if self._contact.carrier != "topic":
-            find_carrier(parse_carrier(carrier or self._contact.carrier or "tcp").base)
+            find_carrier(parse_carrier(carrier or self._contact.carrier or "tcp"))
         self._wanted = True
         self._look()
         threading.Thread(

@@ -72,7 +72,7 @@ def _wire(group: Property) -> Wire:
     if "from" not in group or "to" not in group:
         raise LocalProtocolError("a connection needs from and to")
     source, target, carrier = (_text(group, key) for key in ("from", "to", "carrier"))
-    find_carrier(parse_carrier(carrier or "").base)
+    find_carrier(parse_carrier(carrier or ""))
     return Wire(source, target, carrier or "tcp", _qos(group, "sender"), _qos(group, "receiver"))
 
 

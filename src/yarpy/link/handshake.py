@@ -27,7 +27,7 @@ from yarpy.errors import (
 )
 from yarpy.link.admission import Gate, peer_of
 from yarpy.link.driver import Driver
-from yarpy.route import UNDECLARED, Declared, Route
+from yarpy.route import UNDECLARED, CarrierSpec, Declared, Route
 from yarpy.transports.peer_timeout import PARAMETER, asked_timeout
 from yarpy.transports.tcp import TcpTransport, dial
 from yarpy.transports.tls_setting import FIRST_BYTE, WORD, has_certificate, required
@@ -65,8 +65,10 @@ def recognise(
     return best
 
 
-def find_carrier(base: str) -> type[Carrier]:
-    """The class of the carrier `base`. Raises UnknownPlugin with the nearest match."""
+def find_carrier(spec: CarrierSpec) -> type[Carrier]:
+    """The class of a carrier. Raises UnknownPlugin with the nearest match, LocalProtocolError for a
+    carrier string that lacks something."""
+    base = spec.base
     try:
         carrier: type[Carrier] = registry.carriers.load(base)
     except UnknownPlugin:
@@ -78,7 +80,7 @@ def find_carrier(base: str) -> type[Carrier]:
         ) from None
     if not (isinstance(carrier, type) and issubclass(carrier, Carrier)):
         raise UnknownPlugin(f'"{base}" is installed, but is not a Carrier class')
-    return carrier
+    return carrier.of(spec)
 
 
 def greet(
@@ -96,7 +98,7 @@ def greet(
     LocalProtocolError.
     """
     route.host, route.port = contact.host, contact.port
-    kind = find_carrier(route.spec.base)
+    kind = find_carrier(route.spec)
     deadline = time.monotonic() + timeout
     secure = required() or route.spec.in_tls
     if secure and not route.spec.in_tls:

@@ -10,12 +10,14 @@ import threading
 import time
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from yarpy.errors import LocalProtocolError, Timeout, YarpError
+from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.background import Background
 from yarpy.link.intake import Intake
 from yarpy.link.sender import Sender, interrupts, seconds
 from yarpy.link.write_timeout import ALL, NOTHING, PART, STRANGERS
+from yarpy.log import logger
 from yarpy.qos import Sched, schedule
+from yarpy.transports.base import SocketTransport
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import CALL, Message, Packet
 
@@ -27,8 +29,12 @@ if TYPE_CHECKING:
     from yarpy.route import Route
     from yarpy.wire.steps import Steps
 
+log = logger("yarpy.link")
+
 UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may buffer
 LISTEN_MOST: Final = 64  # reads at a time of what a reader says
+MOMENT: Final = 0.02  # seconds that a message to be sent at once may take
+ATTENTION: Final = 0.5  # seconds of each wait for a reader to say something
 LISTEN_PATIENCE: Final = 0.1  # seconds for an answer to what a reader says while we send
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
@@ -89,6 +95,8 @@ class Outbound:
         if self.carrier.delivery.lossy:
             if self.sender.broken:
                 raise self.sender.gone()
+            if self.carrier.delivery.at_once:
+                return self._send_at_once(packet)
             return self.try_send(packet)
         if self.chain is not None and not passed:
             seen = self._pass(self.chain, packet)
@@ -162,6 +170,21 @@ class Outbound:
             self.counter.drops += 1
             return False
         return queue.put(packet, delivery.backlog)
+
+    def _send_at_once(self, packet: Packet) -> bool:
+        """Send what leaves without waiting. What has begun follows by itself, and nothing else
+        before it has."""
+        if self.chain is not None:
+            passed = self._pass(self.chain, packet)
+            if passed is None:
+                return False
+            packet = passed
+        # Another thread may have the lock for a moment. A reader that is too slow costs this once.
+        until = 0.0 if self.sender.halfway else time.monotonic() + MOMENT
+        if self.sender.send(packet, until, copies=True) is NOTHING:
+            self.counter.drops += 1
+            return False
+        return True
 
     def _pass(self, chain: Chain, packet: Packet) -> Packet | None:
         """What the monitors make of a packet; None, and counted, if one drops it."""
@@ -321,13 +344,28 @@ class Outbound:
                 self.sender.give_up()
         return self.broken
 
-    def _listen(self, steps: Steps[None]) -> None:
-        """Let the protocol deal with what the reader said meanwhile."""
-        if not self.sender.lock.acquire(blocking=False):
+    def attend(self) -> None:
+        """Hear what the reader says as soon as it does, in this thread, until the end."""
+        transport = self.driver.transport
+        steps = self._listening
+        if steps is None or not isinstance(transport, SocketTransport):
+            return
+        self._listen(steps, ATTENTION)  # some of it may have come with the greeting
+        while not self.broken:
+            before = self.driver.bytes_in
+            if transport.wait_readable(ATTENTION):
+                self._listen(steps, ATTENTION)
+                if self.driver.bytes_in == before and not self.broken:
+                    time.sleep(LISTEN_PATIENCE)  # somebody is sending to a peer that takes nothing
+
+    def _listen(self, steps: Steps[None], timeout: float = 0.0) -> None:
+        """Let the protocol deal with what the reader said meanwhile, unless others are sending for
+        longer than that."""
+        if not self.sender.lock.acquire(timeout=timeout):
             return  # next time
         try:
-            if self.broken:
-                return
+            if self.broken or self.sender.window.open:
+                return  # what comes then may be an acknowledgement
             driver = self.driver
             next(steps)
             for _ in range(LISTEN_MOST):
@@ -337,7 +375,10 @@ class Outbound:
             driver.transport.limit_waiting(LISTEN_PATIENCE)
             driver.flush()
             driver.transport.limit_waiting(None)
-        except (StopIteration, YarpError):
+        except (StopIteration, YarpError) as end:
+            if isinstance(end, RemoteProtocolError):
+                self.sender.reason = str(end)
+                log.warning("%s: %s is disconnected: %s", self.route.source, self.route.target, end)
             self._say_last_words()
             self.sender.give_up()
         finally:
@@ -392,7 +433,8 @@ class Outbound:
         """Counters as plain numbers."""
         found, sender = self.counter.as_dict(), self.sender
         found["unacknowledged"] = sender.window.open
-        found["messages"] -= self.carrier.lost  # what was no message of its protocol
+        # What was no message of its protocol, and what nobody wanted.
+        found["messages"] -= self.carrier.lost + self.carrier.unwanted
         found["drops"] += self.carrier.lost
         if not (self.carrier.acks or self.broken):
             fate = sender.fate

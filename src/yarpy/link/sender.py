@@ -34,6 +34,7 @@ log = logger("yarpy.link")
 RUSH: Final = 3.0
 BURST: Final = 16
 GATHER: Final = 64  # messages
+AT_A_TIME: Final = 0.1  # seconds of each wait until a reader takes more
 
 
 class Sender:
@@ -147,7 +148,7 @@ class Sender:
                 elif self._rush < BURST:
                     self._rush += 1
                     self._flush_at_once(now, until)
-                elif carrier.delivery.coalesces and packet.small:
+                elif carrier.delivery.coalesces and carrier.gathers(packet):
                     self._gather(now, until)
                 else:
                     self.flush(until)
@@ -260,7 +261,12 @@ class Sender:
 
     def _sweep_up(self) -> bool:
         """Sweep for the sweeper: whether the burst may still go on."""
-        self.sweep()
+        if self.carrier.delivery.at_once:  # no writer shall wait for the lock meanwhile
+            while (self.halfway or self.gathered) and not self.broken:
+                self.driver.transport.wait_writable(AT_A_TIME)
+                self.sweep(0.0)
+        else:
+            self.sweep()
         return not self.broken and time.perf_counter() - self._left < 100 * GATHER_SECONDS
 
     # -- what comes back --------------------------------------------------------------------------
@@ -355,6 +361,8 @@ class Sender:
         self.broken = True
         if self._sweeper is not None:
             self._sweeper.stop()
+        if self.carrier.attentive:
+            self.driver.transport.interrupt()  # wakes the thread that listens
         self.driver.transport.close()
 
 

@@ -29,7 +29,7 @@ from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
 from yarpy.port import identity, probe, refusal
 from yarpy.port.connecting import unknown
-from yarpy.route import masked, parse_carrier
+from yarpy.route import CarrierSpec, masked, parse_carrier
 
 _CONFIRMING = 2.0  # seconds for a port to say its name
 _POLL = 0.05  # seconds between looks while waiting
@@ -110,8 +110,8 @@ class Pairing:
             fixed = parse_carrier(constraint)
             if self.spec.base != fixed.base:
                 raise LocalProtocolError(f"conflict between {self.spec} and {fixed}")
-            self.spec = fixed.plus(*self.spec.tokens)
-        self.pull = _pulls(self.spec.base)
+            self.spec = fixed.plus(*(one for one in self.spec.tokens if one not in fixed.tokens))
+        self.pull = _pulls(self.spec)
         self.here, self.there = here, there
         asked = there if self.pull else here
         if not _competent(asked):
@@ -220,17 +220,17 @@ def _competent(contact: Contact) -> bool:
     return parse_carrier(contact.carrier).base not in _FOREIGN
 
 
-def _pulls(base: str) -> bool:
+def _pulls(spec: CarrierSpec) -> bool:
     """Whether the receiver is the one that dials. For a carrier that is installed only at the ends,
     the name is all that is known here."""
     try:
-        return not find_carrier(base).push
+        return not find_carrier(spec).push
     except UnknownPlugin:
-        return base in _PULLED
+        return spec.base in _PULLED
 
 
 _PULLED = frozenset({"h264"})
-_FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http"})
+_FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http", "zmq"})
 
 
 def join(
@@ -272,7 +272,7 @@ def _join(
     error = refusal.error(text, way)
     if isinstance(error, LinkClosed):
         try:
-            find_carrier(pairing.spec.base)
+            find_carrier(pairing.spec)
         except UnknownPlugin as unheard:  # so it may be a typing error
             raise UnknownPlugin(f"{error}; {unheard}") from error
     raise error

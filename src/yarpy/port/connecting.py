@@ -53,7 +53,7 @@ def connect(
     wanted = parse_contact(target)
     if not wanted.carrier or ":/" not in target:  # what is written in front of a target counts
         wanted = replace(wanted, carrier=carrier)
-    find_carrier(parse_carrier(wanted.carrier).base)  # no time makes that one come
+    find_carrier(parse_carrier(wanted.carrier))  # no time makes that one come
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
         try:
@@ -119,7 +119,7 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
         if found is None:
             raise unknown(source, names)
         contact = found
-    if not find_carrier(parse_carrier(carrier).base).push:
+    if not find_carrier(parse_carrier(carrier)).push:
         connect(hub, source, carrier, None)
         return
     identity.confirm(contact, identity.properties_of(hub.service()), hub.key)
@@ -153,7 +153,7 @@ def dial(hub: Hub, wanted: Contact, lost: Route | None = None, own: bool = False
         )
     if probe.is_of_ros(contact) and spec.base == "tcp":
         spec = replace(parse_carrier(contact.carrier), own=own)  # it speaks nothing else
-    kind = find_carrier(spec.base)
+    kind = find_carrier(spec)
     if kind.name == "http" and contact.name and not probe.is_ours(contact, secret_=hub.key):
         raise NotAllowed(refusal.NO_HTTP.format(contact.name))
     if kind.name == "local" and not probe.is_ours(contact, secret_=hub.key):
@@ -163,7 +163,7 @@ def dial(hub: Hub, wanted: Contact, lost: Route | None = None, own: bool = False
         )
     target = wanted.label
     with hub.dialling.alone(target):
-        if contact.name:
+        if contact.name or kind.nameless:
             for old in hub.outputs:
                 if old.route.target == target:
                     close_output(hub, old)
@@ -222,7 +222,7 @@ def open_output(
                 raise
             driver, speaker = _greet(hub, other, route, lost, timeout)
             contact = other
-        if not route.peer and not identity.is_camera(route):
+        if not route.peer and not identity.is_nameless(route):
             identity.learn(contact, route, hub.key)
         if not speaker.push:
             # With a pull carrier the side that dials receives.

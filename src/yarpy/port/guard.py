@@ -174,7 +174,7 @@ class GuardedInbound(Inbound):
         spec = parse_carrier(wanted.carrier)
         admission = self.driver.admission
         try:
-            receives = not find_carrier(spec.base).push  # such a connection brings messages to us
+            receives = not find_carrier(spec).push  # such a connection brings messages to us
         except YarpError:
             receives = False
         if (spec.recv if receives else spec.send) and not admission.allows("attach"):

@@ -329,6 +329,8 @@ class Hub:
         self.callbacks.report(output, created=True)
         if self.seat is not None:
             self.seat.welcome(output)
+        if carrier.attentive:
+            output.attend()
 
     def input_ended(self, link: Inbound, reason: str, quit_: bool) -> None:
         if not self._forget_input(link):
@@ -363,6 +365,9 @@ class Hub:
         self.callbacks.report(link, created=True)
         if link.carrier.connectionless:
             self.crew.reconnect.wake()
+        if link.carrier.attentive:
+            name = f"yarpy hear {link.route}"
+            threading.Thread(target=link.attend, name=name, daemon=True).start()
 
     def drop_output(self, link: Outbound, reason: str = "", lost: bool = False) -> bool:
         """Forget an output. With `lost`, keep trying to connect it again."""

@@ -59,14 +59,15 @@ def confirm_again(contact: Contact, route: Route, key: bytes, timeout: float | N
 
 def has_proof(route: Route) -> bool:
     """Whether a broken connection may be dialled again by itself: its peer can be asked for its
-    name, or it is a camera, which has none and is sent nothing."""
-    return bool(route.peer) or is_camera(route)
+    name, or has none."""
+    return bool(route.peer) or is_nameless(route)
 
 
-def is_camera(route: Route) -> bool:
-    """Whether what comes over such a connection may come from something that is no port."""
-    kind = find_carrier(route.spec.base)
-    return kind.foreign and not kind.push
+def is_nameless(route: Route) -> bool:
+    """Whether what is at the other end of such a connection may be no port: a camera, which is sent
+    nothing, or what has said by its protocol that it is of the right kind."""
+    kind = find_carrier(route.spec)
+    return kind.nameless or (kind.foreign and not kind.push)
 
 
 def learn(contact: Contact, route: Route, key: bytes) -> None:

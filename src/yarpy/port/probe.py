@@ -256,7 +256,7 @@ class Caller:
     ) -> None:
         if is_of_ros(contact) and not (admin and contact.carrier == "xmlrpc"):
             carrier = contact.carrier  # nodes of YARP are administered as any port
-        if not find_carrier(parse_carrier(carrier).base).replies:
+        if not find_carrier(parse_carrier(carrier)).replies:
             raise LocalProtocolError(f'"{carrier}" carries no replies; call over tcp')
         route = Route(name, contact.name or f"/{contact.address}", carrier, contact.port)
         driver, speaker = greet(contact, route, key=secret(), timeout=timeout)

@@ -299,7 +299,7 @@ def _is_there(item: _Lost) -> bool:
 
 def _is_pulled(route: Route) -> bool:
     """Whether the receiver of such a connection is the one that dials."""
-    return not find_carrier(route.spec.base).push
+    return not find_carrier(route.spec).push
 
 
 RECONNECTOR: Final = Reconnector()

@@ -157,6 +157,7 @@ class Dialogue:
         self.accepting: Carrier | None = None
         self.traffic: list[tuple[str, Any]] = []
         self._welcome: Steps[None] | None = None
+        self._heard: Steps[None] | None = None
 
     @property
     def sender(self) -> tuple[End, Carrier]:
@@ -185,8 +186,16 @@ class Dialogue:
     def send(self, value: object, envelope: str = "", key: str = DATA) -> Message:
         """Encode `value` on one side; returns the message that the other side decodes."""
         end, carrier = self.sender
+        self._hear(end, carrier)
         carrier.encode(end.stream, Packet(value, envelope.encode(), key))
         return self._received()
+
+    def _hear(self, end: End, carrier: Carrier) -> None:
+        """Let a sender that was dialled hear what its reader has said."""
+        if self._heard is None and not self.kind.push:
+            self._heard = carrier.listen(end.stream)
+        if self._heard is not None:
+            next(self._heard)
 
     def quit(self) -> Message | None:
         """Say goodbye as the carrier does; None if it has no goodbye."""

@@ -152,6 +152,17 @@ class SocketTransport:
         poll.register(number, select.POLLOUT)
         return bool(poll.poll(max(0.0, seconds) * 1000))
 
+    def wait_readable(self, seconds: float) -> bool:
+        """Wait until something can be read, or the end; False if time is over."""
+        number = self.sock.fileno()
+        if number < 0:
+            return True  # closed, as reading tells
+        if not hasattr(select, "poll"):  # Windows
+            return bool(select.select([number], [], [], seconds)[0])
+        poll = select.poll()
+        poll.register(number, select.POLLIN)
+        return bool(poll.poll(seconds * 1000))
+
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         value = timeval(seconds)
         try:

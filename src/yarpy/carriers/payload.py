@@ -1,0 +1,133 @@
+"""Payloads for programs that know nothing of YARP, as those of ZeroMQ and MQTT.
+
+    what a port writes               what they get
+    a picture of 8 bits a channel    a JPEG file
+    bytes, or a list of one blob     these bytes
+    everything else                  its JSON (yarpy.data.json)
+
+    what they send                   what a port reads
+    a JPEG file                      an Image
+    JSON                             its value
+    other text in UTF-8              a string
+    anything else                    bytes
+
+Rules: pure. A payload is decoded when somebody looks at the message, in their thread. The envelope
+of a picture is the comment in the JPEG file, as with mjpeg.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from yarpy.data import codec, jpeg
+from yarpy.data.image import Image, is_image
+from yarpy.data.json import from_json, to_json
+from yarpy.data.value import Buffer
+from yarpy.errors import DecodeError
+from yarpy.wire.message import Encoded, Message, Packet
+
+JPEG: Final = b"\xff\xd8\xff"
+#: pixels that a JPEG file holds as they are, but for what compression loses
+COLOURS: Final = frozenset(("mono", "rgb", "bgr", "rgba", "bgra"))
+_PLAIN: Final = (str, int, float, list, tuple, bytes, bytearray, Mapping, Image)
+_KEY: Final = "payload"
+
+
+def to_payload(packet: Packet) -> Buffer:
+    """What a packet is to others, made once for all of them. Raises TypeError, ValueError or
+    OverflowError for what cannot be sent."""
+    found = packet.forms.get(_KEY)
+    if found is None:
+        found = packet.forms[_KEY] = (payload_of(packet.value, packet.envelope),)
+    return found[0]
+
+
+def payload_of(value: Any, envelope: bytes = b"") -> Buffer:
+    """What a value is to others."""
+    if isinstance(value, Encoded) or not isinstance(value, _PLAIN):
+        blocks = codec.encode(value)
+        if blocks and is_image(blocks[0]):
+            value = Image.from_wire(blocks[0] if len(blocks) == 1 else b"".join(blocks))
+        elif isinstance(value, Encoded):
+            value = codec.decode(value.data)
+    if isinstance(value, (list, tuple)) and len(value) == 1:
+        value = value[0] if isinstance(value[0], (bytes, bytearray, memoryview)) else value
+    if isinstance(value, (bytes, bytearray, memoryview)):
+        return bytes(value)
+    if isinstance(value, Image) and str(value.code) in COLOURS and value.width and value.height:
+        try:
+            data = jpeg.encode(value)
+        except ValueError:  # larger than a JPEG file can be
+            return to_json(value).encode()
+        return jpeg.commented(data, envelope) if envelope else data
+    return to_json(value).encode()
+
+
+def value_of(data: Buffer) -> Any:
+    """What a payload of others is to us."""
+    if data[:3] == JPEG:
+        try:
+            return Image.from_wire(jpeg.decode(data))
+        except DecodeError:
+            return bytes(data)
+    try:
+        return from_json(data)
+    except DecodeError:
+        pass
+    try:
+        return str(data, "utf-8")
+    except UnicodeDecodeError:
+        return bytes(data)
+
+
+class PayloadMessage(Message):
+    """A message of several frames or one, mostly one, in the bytes of others."""
+
+    __slots__ = ("_decoded",)
+
+    def __init__(self, key: str, payload: tuple[Buffer, ...], envelope: str = "") -> None:
+        super().__init__(key, payload, envelope, "foreign")
+
+    @property
+    def value(self) -> Any:
+        """The value of the payload; of several frames, a list of theirs."""
+        try:
+            return self._decoded
+        except AttributeError:
+            pass
+        if len(self.payload) == 1:
+            found = value_of(self.payload[0])
+        else:
+            found = [value_of(part) for part in self.payload]
+            found = codec.decode(b"".join(codec.encode(found)))
+        self._decoded: Any = found
+        return found
+
+    def to_bytes(self) -> Buffer:
+        return b"".join(codec.encode(self.value))
+
+    def as_(self, type_: Any) -> Any:
+        if type_ is bytes and len(self.payload) == 1:
+            return bytes(self.payload[0])
+        value = self.value
+        if isinstance(type_, type) and type(value) is type_:
+            return value
+        return codec.decode_as(b"".join(codec.encode(value)), type_)
+
+    def __reduce__(self) -> tuple[Callable[..., Message], tuple[str, Buffer, str, str]]:
+        return _copied, (self.key, self.to_bytes(), self.envelope, self.source)
+
+
+def _copied(key: str, data: Buffer, envelope: str, source: str) -> Message:
+    message = Message(key, data, envelope)
+    message.source = source
+    return message
+
+
+def message_of(key: str, frames: list[Buffer]) -> Message:
+    """What came."""
+    envelope = ""
+    if len(frames) == 1 and frames[0][:3] == JPEG:
+        envelope = jpeg.comment(frames[0])
+    return PayloadMessage(key, tuple(frames), envelope)

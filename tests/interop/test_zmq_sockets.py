@@ -1,0 +1,385 @@
+"""Ports and the sockets of pyzmq (libzmq): each dials the other, in every pair of types."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from support.access import allow
+from support.patience import patience
+from support.wait import wait_until
+
+import yarpy
+from yarpy.data import jpeg
+
+zmq = pytest.importorskip("zmq", reason="needs pyzmq (pip install pyzmq)")
+from zmq.utils.monitor import recv_monitor_message  # noqa: E402
+
+WAIT = patience(5.0)
+
+
+class Sockets:
+    """Sockets that wait for `WAIT` at most, and are closed with the test."""
+
+    def __init__(self, context: Any) -> None:
+        self.context = context
+        self.all: list[Any] = []
+
+    def make(self, kind: int, **options: Any) -> Any:
+        socket = self.context.socket(kind)
+        self.all.append(socket)
+        socket.linger = 0
+        socket.rcvtimeo = socket.sndtimeo = int(1000 * WAIT)
+        for name, value in options.items():
+            socket.setsockopt(getattr(zmq, name), value)
+        return socket
+
+    def connected(self, kind: int, port: Any, **options: Any) -> Any:
+        """A socket that has dialled a port."""
+        socket = self.make(kind, **options)
+        socket.connect(f"tcp://127.0.0.1:{port.contact.port}")
+        return socket
+
+    def bound(self, kind: int, **options: Any) -> tuple[Any, str]:
+        """A socket that a port can dial, and where."""
+        socket = self.make(kind, **options)
+        number = socket.bind_to_random_port("tcp://127.0.0.1")
+        return socket, f"127.0.0.1:{number}"
+
+    def is_turned_away(self, kind: int, port: Any) -> bool:
+        """Whether a port hangs up on such a socket before it is connected."""
+        socket = self.make(kind)
+        failed = zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL | zmq.EVENT_DISCONNECTED
+        events = socket.get_monitor_socket(failed | zmq.EVENT_HANDSHAKE_SUCCEEDED)
+        socket.connect(f"tcp://127.0.0.1:{port.contact.port}")
+        event = recv_monitor_message(events) if events.poll(1000 * WAIT) else {"event": 0}
+        socket.disable_monitor()
+        socket.close()
+        events.close()
+        return bool(event["event"] & failed)
+
+    def subscriber(self, port: Any, *topics: bytes, **options: Any) -> Any:
+        """A SUB of a port, once the port knows what it wants."""
+        before = len(port.outputs)
+        socket = self.connected(zmq.SUB, port, **options)
+        for topic in topics:
+            socket.subscribe(topic)
+        wait_until(lambda: len(port.outputs) > before)
+        link = port._hub.outputs[-1]
+        wait_until(lambda: len(link.carrier._wanted) == len(topics))
+        return socket
+
+
+@pytest.fixture
+def sockets() -> Iterator[Sockets]:
+    context = zmq.Context()
+    made = Sockets(context)
+    yield made
+    for socket in made.all:
+        socket.close(linger=0)
+    context.destroy(linger=0)
+
+
+@pytest.fixture
+def names() -> yarpy.LocalNames:
+    return yarpy.LocalNames()
+
+
+@pytest.fixture
+def out(names: yarpy.LocalNames) -> Iterator[yarpy.Port]:
+    with yarpy.Port("/out", names=names) as port:
+        yield port
+
+
+@pytest.fixture
+def reader(names: yarpy.LocalNames) -> Iterator[yarpy.BufferedPort]:
+    with yarpy.BufferedPort("/in", strict=True, names=names) as port:
+        yield port
+
+
+# --------------------------------------------------------------------------- sockets that dial us
+
+
+def test_a_sub_gets_what_a_port_writes(out: yarpy.Port, sockets: Sockets) -> None:
+    every, some, other = (sockets.subscriber(out, topic) for topic in (b"", b"/ou", b"/elsewhere"))
+    for number in range(100):
+        out.write([number, "text"])
+    for socket in (every, some):
+        found = [socket.recv_multipart() for _ in range(100)]
+        assert found == [[b"/out", b'[%d, "text"]' % number] for number in range(100)]
+    assert not other.poll(50)
+    assert [link.stats["messages"] for link in out.outputs] == [100, 100, 0]
+    every.unsubscribe(b"")
+    link = out._hub.outputs[0]
+    wait_until(lambda: not link.carrier._wanted)
+    out.write("unheard")
+    assert some.recv_multipart() == [b"/out", b'"unheard"']
+    assert not every.poll(50)
+
+
+def test_a_sub_may_want_the_spelling_of_yarp(out: yarpy.Port, sockets: Sockets) -> None:
+    raw = sockets.subscriber(out, b"raw:")
+    value = yarpy.Bottle([1, yarpy.Vocab("set"), b"\0"])
+    out.write(value)
+    topic, data = raw.recv_multipart()
+    assert topic == b"raw:/out"
+    assert yarpy.Bottle.from_bytes(data) == value
+
+
+def test_a_sub_gets_pictures(out: yarpy.Port, sockets: Sockets) -> None:
+    viewer = sockets.subscriber(out, b"")
+    out.write(np.full((48, 64, 3), 100, "u1"))
+    _, data = viewer.recv_multipart()
+    picture = yarpy.Image.from_wire(jpeg.decode(data))
+    assert (picture.width, picture.height) == (64, 48)
+
+
+def test_a_pull_gets_every_message_in_order(out: yarpy.Port, sockets: Sockets) -> None:
+    count = 10_000
+    sink = sockets.connected(zmq.PULL, out)
+    assert out.wait_for_outputs(timeout=WAIT)
+    writer = threading.Thread(target=lambda: [out.write(number) for number in range(count)])
+    writer.start()
+    assert [int(sink.recv()) for _ in range(count)] == list(range(count))
+    writer.join()
+
+
+def test_push_and_pub_write_into_a_port(reader: yarpy.BufferedPort, sockets: Sockets) -> None:
+    push = sockets.connected(zmq.PUSH, reader)
+    push.send_json({"speed": 1.5, "on": True})
+    assert reader.read(timeout=WAIT).as_(dict) == {"speed": 1.5, "on": True}
+    for payload, value in (("12", 12), ("go ahead", "go ahead"), ("[1, 2]", yarpy.Bottle([1, 2]))):
+        push.send_string(payload)
+        assert reader.read(timeout=WAIT).value == value
+    push.send_multipart([b"1", b"x"])
+    assert reader.read(timeout=WAIT).value == yarpy.Bottle([1, "x"])
+    big = np.random.default_rng(1).bytes(3_000_000)
+    push.send(big)
+    assert reader.read(timeout=WAIT).as_(bytes) == big
+    pub = sockets.connected(zmq.XPUB, reader)
+    assert pub.recv() == b"\1"  # we want everything
+    pub.send_multipart([b"topic", b"[7]"])
+    message = reader.read(timeout=WAIT)
+    assert message.value == yarpy.Bottle([7])
+    assert message.source == "zmq"
+
+
+def test_req_and_dealer_ask(names: yarpy.LocalNames, sockets: Sockets) -> None:
+    with yarpy.RpcServer("/adder", lambda message: sum(message.value), names=names) as server:
+        req = sockets.connected(zmq.REQ, server)
+        for number in range(20):
+            req.send_json([number, 1])
+            assert req.recv_json() == number + 1
+        dealer = sockets.connected(zmq.DEALER, server)
+        for number in range(20):  # all at once: each is answered, in order
+            dealer.send_multipart([b"", b"[%d, 2]" % number])
+        for number in range(20):
+            assert dealer.recv_multipart() == [b"", b"%d" % (number + 2)]
+
+
+def test_a_worker_that_dials_us_is_asked(names: yarpy.LocalNames, sockets: Sockets) -> None:
+    with yarpy.RpcClient(name="/asker", names=names) as client:
+        worker = sockets.connected(zmq.REP, client)
+        wait_until(lambda: client.outputs)
+        threading.Thread(target=lambda: worker.send(b"[" + worker.recv() + b"]")).start()
+        assert client.ask("hm", timeout=WAIT).value == yarpy.Bottle(["hm"])
+
+
+# ------------------------------------------------------------------------------ sockets we dial
+
+
+def test_a_port_dials_sub_and_pull(out: yarpy.Port, sockets: Sockets) -> None:
+    sub, at = sockets.bound(zmq.SUB)
+    sub.subscribe(b"cam")
+    out.connect(f"zmq+pub.camera://{at}")
+    sub.poll(50)  # a bound SUB says what it wants only when its program looks
+    wait_until(lambda: out._hub.outputs[0].carrier._wanted)
+    pull, at = sockets.bound(zmq.PULL)
+    out.connect(f"zmq+push://{at}")
+    out.write([1])
+    assert sub.recv_multipart() == [b"camera", b"[1]"]
+    assert pull.recv_json() == [1]
+    out.connect(f"zmq+push://{at}")  # in place of the one that there is
+    out.write([2])
+    assert pull.recv_json() == [2]
+    assert not pull.poll(50)
+
+
+def test_a_port_dials_pub_and_push(reader: yarpy.BufferedPort, sockets: Sockets) -> None:
+    pub, at = sockets.bound(zmq.XPUB)
+    reader.connect(f"zmq+sub.cam://{at}")
+    assert pub.recv() == b"\1cam"
+    pub.send_multipart([b"dog", b"1"])
+    pub.send_multipart([b"camera", b"2"])
+    assert reader.read(timeout=WAIT).value == 2
+    push, at = sockets.bound(zmq.PUSH)
+    reader.connect(f"zmq+pull://{at}")
+    push.send(b"3")
+    assert reader.read(timeout=WAIT).value == 3
+
+
+def test_a_port_dials_rep_and_req(names: yarpy.LocalNames, sockets: Sockets) -> None:
+    rep, at = sockets.bound(zmq.REP)
+    with yarpy.RpcClient(name="/asker", names=names) as client:
+        client.connect(f"zmq+req://{at}")
+
+        def serve() -> None:
+            for _ in range(3):
+                rep.send_json(["so", rep.recv_json()])
+
+        thread = threading.Thread(target=serve)
+        thread.start()
+        for number in range(3):
+            answer = client.ask([number], timeout=WAIT)
+            assert answer.value == yarpy.Bottle(["so", yarpy.Bottle([number])])
+        thread.join()
+    req, at = sockets.bound(zmq.REQ)
+    with yarpy.RpcServer("/double", lambda message: [2 * message.value], names=names) as server:
+        server.connect(f"zmq+rep://{at}")
+        req.send(b"21")
+        assert req.recv_json() == [42]
+
+
+def test_a_rep_that_dies_in_the_middle_of_a_call_ends_it(
+    names: yarpy.LocalNames, sockets: Sockets
+) -> None:
+    rep, at = sockets.bound(zmq.REP)
+    with yarpy.RpcClient(name="/asker", names=names) as client:
+        client.connect(f"zmq+req://{at}")
+        thread = threading.Thread(target=lambda: (rep.recv(), rep.close()))
+        thread.start()
+        with pytest.raises(yarpy.LinkClosed):
+            client.ask("are you there", timeout=WAIT)
+        thread.join()
+
+
+def test_wrong_targets_are_explained(out: yarpy.Port, sockets: Sockets) -> None:
+    _, at = sockets.bound(zmq.REP)
+    for target, why in (
+        (f"zmq+pub://{at}", r"the peer is REP.*take zmq\+req"),
+        (f"zmq://{at}", r"zmq\+push"),
+        ("zmq+push://127.0.0.1:1", "nobody answers"),
+    ):
+        with pytest.raises(yarpy.YarpError, match=why):
+            out.connect(target)
+    assert not out.outputs
+
+
+# --------------------------------------------------------------------------------- what goes wrong
+
+
+def test_heartbeats_keep_a_silent_subscriber(out: yarpy.Port, sockets: Sockets) -> None:
+    options = {"HEARTBEAT_IVL": 100, "HEARTBEAT_TIMEOUT": int(1000 * WAIT)}
+    socket = sockets.make(zmq.SUB, **options)
+    events = socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)
+    socket.subscribe(b"")
+    socket.connect(f"tcp://127.0.0.1:{out.contact.port}")
+    assert out.wait_for_outputs(timeout=WAIT)
+    link = out._hub.outputs[0]
+    start = link.driver.bytes_in
+    wait_until(lambda: link.driver.bytes_out > 200)  # a dozen PONGs
+    assert link.driver.bytes_in > start
+    assert not events.poll(0)
+    assert len(out.outputs) == 1
+    socket.disable_monitor()
+    events.close()
+
+
+def test_a_subscriber_that_takes_nothing_keeps_nobody_waiting(
+    out: yarpy.Port, names: yarpy.LocalNames, sockets: Sockets
+) -> None:
+    slow = sockets.subscriber(out, b"", RCVHWM=1, RCVBUF=4096)
+    with yarpy.BufferedPort("/near", strict=True, names=names) as near:
+        out.connect("/near")
+        started = time.monotonic()
+        for number in range(60):
+            out.write([number, bytes(200_000)])
+        assert [near.read(timeout=WAIT).value[0] for _ in range(60)] == list(range(60))
+    link = next(link for link in out.outputs if link.carrier == "zmq+sub")
+    stats = link.stats
+    assert stats["drops"] > 0
+    assert stats["drops"] + stats["messages"] == 60
+    assert time.monotonic() - started < 10 * WAIT
+    numbers = []
+    while slow.poll(300):
+        numbers.append(yarpy.data.json.from_json(slow.recv_multipart()[1])[0])
+    assert numbers == sorted(numbers)
+    assert 0 < len(numbers) <= stats["messages"]
+
+
+def test_a_pull_that_was_restarted_is_dialled_again(out: yarpy.Port, sockets: Sockets) -> None:
+    pull, at = sockets.bound(zmq.PULL)
+    out.connect(f"zmq+push://{at}")
+    out.write([1])
+    assert pull.recv_json() == [1]
+    pull.close()
+    wait_until(lambda: not out.outputs)
+    again = sockets.make(zmq.PULL)
+    again.bind(f"tcp://{at}")
+    assert out.wait_for_outputs(timeout=WAIT)
+    out.write([2])
+    assert again.recv_json() == [2]
+
+
+def test_a_subscriber_finds_a_port_that_was_restarted(
+    names: yarpy.LocalNames, sockets: Sockets
+) -> None:
+    with yarpy.Port("/out", names=names) as out:
+        number = out.contact.port
+        socket = sockets.subscriber(out, b"", RECONNECT_IVL=20)
+    with yarpy.Port("/out", tcp_port=number, names=names) as out:
+        assert out.wait_for_outputs(timeout=WAIT)
+        link = out._hub.outputs[0]
+        # A SUB says again what it wants when its program looks.
+        wait_until(lambda: socket.poll(1) or link.carrier._wanted)
+        out.write("back")
+        assert socket.recv_multipart() == [b"/out", b'"back"']
+
+
+def test_a_socket_with_security_is_told_no(
+    out: yarpy.Port, sockets: Sockets, caplog: pytest.LogCaptureFixture
+) -> None:
+    if not zmq.has("curve"):
+        pytest.skip("this libzmq has no CURVE")
+    server, _ = zmq.curve_keypair()
+    public, secret = zmq.curve_keypair()
+    keys = {"CURVE_SERVERKEY": server, "CURVE_PUBLICKEY": public, "CURVE_SECRETKEY": secret}
+    sockets.connected(zmq.SUB, out, **keys)
+    wait_until(lambda: "(CURVE, PLAIN)" in caplog.text)
+    assert not out.outputs
+
+
+def test_a_pair_is_told_no(
+    out: yarpy.Port, sockets: Sockets, caplog: pytest.LogCaptureFixture
+) -> None:
+    sockets.connected(zmq.PAIR, out)
+    wait_until(lambda: "does not speak with a PAIR" in caplog.text)
+    assert not out.outputs
+
+
+def test_rules_of_access_hold(
+    names: yarpy.LocalNames,
+    sockets: Sockets,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    allow(tmp_path, monkeypatch, "read")
+    with yarpy.Port("/readable", names=names) as port:
+        socket = sockets.subscriber(port, b"")
+        port.write([1])
+        assert socket.recv_multipart()[1] == b"[1]"
+        for kind in (zmq.PUSH, zmq.PUB, zmq.REQ):
+            assert sockets.is_turned_away(kind, port)
+        assert not port.inputs
+    allow(tmp_path, monkeypatch, "write")
+    with yarpy.BufferedPort("/writable", names=names) as port:
+        push = sockets.connected(zmq.PUSH, port)
+        push.send(b"[1]")
+        assert port.read(timeout=WAIT).value == yarpy.Bottle([1])
+        assert sockets.is_turned_away(zmq.SUB, port)
+        assert not port.outputs
