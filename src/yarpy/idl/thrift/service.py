@@ -25,12 +25,12 @@ from typing import Any, ClassVar, Final, Self
 
 from yarpy import registry
 from yarpy.data.bottle import Bottle
-from yarpy.data.value import LIST, STRING, VOCAB32, Int16, Vocab
+from yarpy.data.value import LIST, STRING, Int16, Vocab
 from yarpy.errors import DecodeError, LocalProtocolError, YarpError
 from yarpy.idl.thrift import reader
 from yarpy.idl.thrift.kind import namespace_of
 from yarpy.idl.thrift.method import Method, first_word
-from yarpy.idl.thrift.payload import FAILURE, VERSION, Payload
+from yarpy.idl.thrift.payload import FAILURE, VERSION, Payload, many
 from yarpy.log import logger
 
 log = logger("yarpy.idl")
@@ -42,7 +42,6 @@ _DIRECT: Final = "__direct__"
 #: clients whose last failure is remembered
 _REMEMBERED: Final = 100
 _FAILED: Final = Packing("<iii").pack(LIST + 9, 1, 0x6C696166)
-_MANY: Final = 0x796E616D
 _DONE: Final = Packing("<iiii").pack(LIST, 1, 9, 0x656E6F64)
 
 
@@ -143,7 +142,7 @@ class Service:
         """What every service answers beside its methods."""
         if name == "help":
             asked = first_word(data, at)[0] if at < len(data) else ""
-            return Payload(_many(self.help(asked)))
+            return Payload(many(self.help(asked)))
         if at == len(data) and name == VERSION:
             numbers = (self._version, *YARP_VERSION)
             if message.spelling == "text":
@@ -234,12 +233,3 @@ class Service:
 
     def __exit__(self, *error: object) -> None:
         self.close()
-
-
-def _many(lines: list[str]) -> bytes:
-    """`[many]` and a list of strings, each with its tag, as C++ writes them."""
-    pieces = [Packing("<iiiiii").pack(LIST, 2, VOCAB32, _MANY, LIST, len(lines))]
-    for line in lines:
-        data = line.encode("utf-8", "surrogateescape")
-        pieces += (Packing("<ii").pack(STRING, len(data)), data)
-    return b"".join(pieces)

@@ -24,6 +24,7 @@ from yarpy.data.value import Blocks, Buffer, Vocab
 from yarpy.errors import DecodeError
 from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.thrift import fast, reader
+from yarpy.idl.thrift.editor import Editor, editor_of
 from yarpy.idl.thrift.kind import (
     BINARY,
     BOOL,
@@ -72,6 +73,13 @@ class Spec:
     default: Callable[[], Any]
 
 
+class _EditorOf:
+    """`Settings.Editor`: the editor of each class, made when it is first asked for."""
+
+    def __get__(self, struct: object, owner: type[Struct]) -> type[Editor]:
+        return editor_of(owner)
+
+
 @dataclass_transform(eq_default=True, field_specifiers=(new,))
 class Struct:
     """The base of all structs."""
@@ -80,6 +88,8 @@ class Struct:
     _attributes: ClassVar[tuple[str, ...]] = ()
     _defaults: ClassVar[dict[str, Any]] = {}
     _namespace: ClassVar[Mapping[str, Any] | None] = None
+    #: lets others set the fields of an object
+    Editor: ClassVar[_EditorOf] = _EditorOf()
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
