@@ -216,6 +216,17 @@ def test_objects_of_the_type_are_sent_and_of_others_not() -> None:
     assert carrier.lost == 1
 
 
+def test_small_objects_of_the_type_are_whole_messages() -> None:
+    end, carrier = accept(encode_header(PUBLISHED), Declared("/me", "/chatter", "", String))
+    end.take()
+    carrier.encode(end.stream, Packet(String("ab")))
+    assert carrier.whole(String("ab")) == end.take() == b"\6\0\0\0\2\0\0\0ab"
+    for other in (Int32(1), "ab", String(7), String("x" * (1 << 20)), None):
+        assert carrier.whole(other) is None
+    _, untyped = accept(header(callerid="/a", md5sum="*", topic="/t"), UNDECLARED)
+    assert untyped.whole(None) is untyped.whole(String("ab")) is None
+
+
 def test_a_service_cannot_be_subscribed_to() -> None:
     with pytest.raises(RemoteProtocolError, match="is a service"):
         accept(encode_header(PUBLISHED), Declared("/me", "", "", AddTwoInts))

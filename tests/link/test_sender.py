@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import select
 import sys
+import threading
 import time
 
 import pytest
@@ -205,3 +206,53 @@ def test_interrupted_send_ends_the_connection_and_is_counted() -> None:
             link.send(Packet([1]))
         assert link.broken
         assert (link.counter.messages, link.counter.drops) == (0, 1)
+
+
+def test_encoded_messages_leave_at_once() -> None:
+    link, transport = open_link(FastTcp)
+    assert link.send_at_once(b"hello") and link.send_at_once(b"there")
+    assert transport.said == b"hellothere"
+    assert (link.counter.messages, link.counter.bytes) == (2, 10)
+    with link.sender.lock:
+        assert not link.send_at_once(b"in the way")
+    link.driver.stream.write(b"first")
+    assert not link.send_at_once(b"second")
+    assert transport.said == b"hellothere"
+    waiting, transport = open_link(Tcp)
+    assert not waiting.send_at_once(b"who waits for acknowledgements?")
+    assert transport.said == b""
+
+
+def test_the_rest_of_an_encoded_message_follows() -> None:
+    """Nothing is begun where the reader takes nothing; the rest of what has begun is waited for."""
+    data = bytes(range(256)) * 256
+    with connected(FastTcp) as (link, far):
+        sent = 0
+        while link.driver.transport.try_send([data]) == []:
+            sent += len(data)
+        wait_until(lambda: not link.send_at_once(data))
+        assert not link.sender.halfway
+    with connected(FastTcp) as (link, far):
+        taken = bytearray()
+
+        def take() -> None:
+            while part := far.recv(1 << 14):
+                taken.extend(part)
+
+        reader = threading.Thread(target=take)
+        reader.start()
+        count = 0
+        while count < 200:
+            count += link.send_at_once(data)
+        assert (link.counter.messages, link.counter.bytes) == (200, 200 * len(data))
+        link.close(quit_=False)
+        reader.join()
+        assert bytes(taken) == data * 200
+
+
+def test_at_once_to_one_that_has_gone() -> None:
+    with connected(FastTcp) as (link, far):
+        far.close()
+        wait_until(lambda: not link.send_at_once(b"x" * 1000))
+        with pytest.raises(LinkClosed):
+            link.send(Packet([1]))

@@ -297,6 +297,32 @@ def test_a_port_of_yarp_is_a_topic_too(graph: RosGraph) -> None:
             assert "/others" not in graph.tool("rosnode", "list").split()
 
 
+def test_small_objects_reach_all_and_are_counted(
+    graph: RosGraph, caplog: pytest.LogCaptureFixture
+) -> None:
+    text = yarpy.idl.load("std_msgs/String")
+    with Node("/small") as node, yarpy.Port("/small-@/plain~std_msgs/String") as plain:
+        out = node.publisher("/small", text)
+        assert out.write(text("nobody")) == 0
+        one = node.subscriber("/small", text)
+        wait_until(lambda: len(out.outputs) == 2, patience(10), "both are connected")
+        for number in range(100):
+            assert out.write(text(f"number {number}")) == 2
+        assert [one.take(patience(10)).data for _ in range(100)] == [
+            f"number {number}" for number in range(100)
+        ]
+        for _ in range(100):
+            plain.read(patience(10))
+        for link in out.outputs:
+            assert (link.stats["messages"], link.stats["drops"]) == (100, 0)
+        out.write(text(7))  # type: ignore[arg-type]
+        assert "a message is not sent" in caplog.text
+        assert out.write(text("x" * 2_000_000)) == 2
+        assert len(one.take(patience(10)).data) == 2_000_000
+    with pytest.raises(yarpy.PortClosed):
+        out.write(text("late"))
+
+
 @pytest.mark.parametrize("readers", [1, 2])
 @pytest.mark.parametrize("face", ["publisher", "port"])
 def test_a_picture_is_published_without_a_copy(graph: RosGraph, readers: int, face: str) -> None:

@@ -149,6 +149,18 @@ class TcpRos(Carrier):
         route.introduce(fields["callerid"].replace(" ", "_"))
         stream.write(encode_header(answer_header(route, fields, self.kind)))
 
+    def whole(self, value: object) -> bytes | None:
+        """A small message of the type as it goes over the wire; None for what takes more."""
+        if type(value) is not self.kind or self.kind is None:
+            return None
+        try:
+            body = value.to_ros()
+        except UNSENDABLE:
+            return None  # `encode` says so
+        if len(body) > 1 or len(body[0]) >= LARGE:
+            return None
+        return LENGTH.pack(len(body[0])) + body[0]
+
     def prepare(self, packet: Packet) -> bool:
         try:
             body = encode_body(packet, self.kind, self.route.declared.clock)

@@ -117,6 +117,12 @@ class Outbound:
             return False
         return True
 
+    def send_at_once(self, data: bytes) -> bool:
+        """Send a message that is encoded already; False, and nothing is done, where `send` has more
+        to do than that. Raises LinkClosed."""
+        simple = self.chain is None and self._queue is None and not self.carrier.acks
+        return simple and self.sender.send_at_once(data)
+
     def begin(self, rest: Rest, copies: bool = False) -> bool | Rest:
         """As `send`, without waiting: what is left to do, if that takes waiting.
 

@@ -90,6 +90,38 @@ class Sender:
             raise self.cut()
         return sent
 
+    def send_at_once(self, data: bytes) -> bool:
+        """Send a message that is encoded already, over a connection without acknowledgements.
+
+        False, and nothing has left, where something is in its way: another message, a reader that
+        takes nothing just now, an error. Then `send` says what, or waits. Raises LinkClosed.
+        """
+        if not self.lock.acquire(blocking=False):
+            return False
+        try:
+            driver = self.driver
+            if self.broken or self.halfway or driver.stream.pending:
+                return False
+            try:
+                left = driver.transport.try_send([data])
+            except OSError:
+                return False
+            unsent = sum(map(len, left))
+            if unsent == len(data):
+                return False
+            driver.bytes_out += len(data) - unsent
+            counter = self.counter
+            counter.count(time.perf_counter())
+            counter.bytes = driver.bytes_out
+            self.confirmation.ends.append(driver.bytes_out + unsent)
+            if not unsent:
+                return True
+            driver.stream.put_back(left)
+            self.halfway, self.gathered = True, 1
+        finally:
+            self.lock.release()
+        return self.finish()
+
     def finish(self, deadline: float | None = None) -> bool:
         """Send the rest of a message by `deadline`; whether it has left. Raises LinkClosed."""
         until = self.write_timeout.until(deadline)
