@@ -42,6 +42,13 @@ _MODULES = {
     "_rf_module": "RFModule",
     "_thread": "Thread PeriodicThread RateThread Semaphore",
     "_random": "Random",
+    "_poly_driver": "PolyDriver",
+    "_motion_view": "IPositionControl IPositionDirect IVelocityControl ITorqueControl "
+    "ICurrentControl IPWMControl IImpedanceControl",
+    "_measuring_view": "IEncoders IEncodersTimed IMotorEncoders IMotor IAmplifierControl IAxisInfo "
+    "IRemoteVariables",
+    "_control_view": "IControlMode IInteractionMode IControlLimits IPidControl Pid PidVector",
+    "_camera_view": "IFrameGrabberImage IFrameGrabberRgb IFrameGrabberControls CameraDescriptor",
 }
 WHERE = {name: module for module, names in _MODULES.items() for name in names.split()}
 
@@ -52,4 +59,6 @@ CLASSES = frozenset(name for name in WHERE if name[0].isupper() and not name.isu
 NOT_HERE: dict[str, str] = {
     "useNetworkClock": "time is that of the system here",
     "useCustomClock": "time is that of the system here",
+    "ICartesianControl": "it moves an iCub's hand through a solver of its own, in C++",
+    "IGazeControl": "it moves an iCub's eyes through a controller of its own, in C++",
 }

@@ -1,0 +1,296 @@
+"""Views that say how joints are controlled: IControlMode, IInteractionMode, IControlLimits,
+IPidControl."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import yarpy
+from yarp._numbers import StdVector, store
+from yarp._view import View
+from yarpy.devices import Gains
+
+
+def _word(code: Any) -> str:
+    """The word of a mode, given as a number or as a word."""
+    return str(code) if isinstance(code, str) else str(yarpy.Vocab.from_code(int(code)))
+
+
+def _codes(words: Any) -> list[int]:
+    return [yarpy.Vocab(str(word)).code for word in words]
+
+
+class _Modes(View):
+    """Modes of joints are numbers here, and words there."""
+
+    _member = ""
+    _method = ""
+
+    def _get_modes(self, arguments: tuple[Any, ...]) -> bool:
+        return self._tell(lambda: self._fill(_codes(self._values(self._member)), arguments, None))
+
+    def _set_modes(self, arguments: tuple[Any, ...]) -> bool:
+        def act() -> None:
+            joints, modes = self._split(arguments)
+            getattr(self._board, self._method)(joints, [_word(mode) for mode in modes])
+
+        return self._tell(act)
+
+    def _mode(self, joint: int) -> int:
+        found = [0]
+        self._get_modes((joint, found))
+        return found[0]
+
+
+class IControlMode(_Modes):
+    """`VOCAB_CM_POSITION` ... of each joint."""
+
+    _member = "control_modes"
+    _method = "switch_control_modes"
+
+    def getControlMode(self, j: int, mode: Any = None) -> int:
+        """The mode of a joint; with a second argument, whether it was stored there."""
+        return self._mode(j) if mode is None else self._get_modes((j, mode))
+
+    def getControlModes(self, *modes: Any) -> bool:
+        return self._get_modes(modes)
+
+    def setControlMode(self, j: int, mode: int) -> bool:
+        return self._set_modes((j, mode))
+
+    def setControlModes(self, *modes: Any) -> bool:
+        return self._set_modes(modes)
+
+
+class IInteractionMode(_Modes):
+    """`VOCAB_IM_STIFF` ... of each joint."""
+
+    _member = "interaction_modes"
+    _method = "switch_interaction_modes"
+
+    def getInteractionMode(self, axis: int, mode: Any = None) -> int:
+        return self._mode(axis) if mode is None else self._get_modes((axis, mode))
+
+    def getInteractionModes(self, *modes: Any) -> bool:
+        return self._get_modes(modes)
+
+    def setInteractionMode(self, axis: int, mode: int) -> bool:
+        return self._set_modes((axis, mode))
+
+    def setInteractionModes(self, *modes: Any) -> bool:
+        return self._set_modes(modes)
+
+
+class IControlLimits(View):
+    """How far and how fast joints may move."""
+
+    def getLimits(self, axis: int, min: Any, max: Any) -> bool:
+        return self._get("position_limits", (axis, min), 0) and self._get(
+            "position_limits", (axis, max), 1
+        )
+
+    def setLimits(self, axis: int, min: float, max: float) -> bool:
+        return self._change("position_limits", (axis, (min, max)))
+
+    def getVelLimits(self, axis: int, min: Any, max: Any) -> bool:
+        return self._get("velocity_limits", (axis, min), 0) and self._get(
+            "velocity_limits", (axis, max), 1
+        )
+
+    def setVelLimits(self, axis: int, min: float, max: float) -> bool:
+        return self._change("velocity_limits", (axis, (min, max)))
+
+    getPosLimits = getLimits
+    setPosLimits = setLimits
+
+
+class Pid:
+    """The numbers of a controller."""
+
+    def __init__(
+        self,
+        kp: float = 0.0,
+        kd: float = 0.0,
+        ki: float = 0.0,
+        int_max: float = 0.0,
+        scale: float = 0.0,
+        out_max: float = 0.0,
+        st_up: float = 0.0,
+        st_down: float = 0.0,
+        kff: float = 0.0,
+    ) -> None:
+        self.kp, self.kd, self.ki, self.kff = kp, kd, ki, kff
+        self.max_int, self.scale, self.max_output, self.offset = int_max, scale, out_max, 0.0
+        self.stiction_up_val, self.stiction_down_val = st_up, st_down
+
+    def setMaxInt(self, m: float) -> None:
+        self.max_int = m
+
+    def setMaxOut(self, m: float) -> None:
+        self.max_output = m
+
+    def setStictionValues(self, up_value: float, down_value: float) -> None:
+        self.stiction_up_val, self.stiction_down_val = up_value, down_value
+
+    def setKp(self, p: float) -> None:
+        self.kp = p
+
+    def setKi(self, i: float) -> None:
+        self.ki = i
+
+    def setKd(self, d: float) -> None:
+        self.kd = d
+
+    def setKff(self, Kff: float) -> None:
+        self.kff = Kff
+
+    def setScale(self, sc: float) -> None:
+        self.scale = sc
+
+    def setOffset(self, o: float) -> None:
+        self.offset = o
+
+    def clear(self) -> None:
+        self._become(Gains())
+
+    def isEqual(self, p: Pid) -> bool:
+        return self.__dict__ == p.__dict__
+
+    def _gains(self) -> Gains:
+        return Gains(
+            self.kp,
+            self.kd,
+            self.ki,
+            self.max_int,
+            self.max_output,
+            self.offset,
+            self.scale,
+            self.stiction_up_val,
+            self.stiction_down_val,
+            self.kff,
+        )
+
+    def _become(self, found: Any) -> None:
+        gains = Gains(*found)
+        self.kp, self.kd, self.ki, self.kff = gains.kp, gains.kd, gains.ki, gains.feed_forward
+        self.max_int, self.max_output = gains.max_integral, gains.max_output
+        self.offset, self.scale = gains.offset, gains.scale
+        self.stiction_up_val, self.stiction_down_val = gains.stiction_up, gains.stiction_down
+
+
+def _pid(value: Any) -> Pid:
+    if not isinstance(value, Pid):
+        raise TypeError(f"a Pid is needed, not {value!r}")
+    return value
+
+
+class PidVector(StdVector[Pid]):
+    _kind = staticmethod(_pid)
+
+    def __init__(self, size: Any = 0) -> None:
+        super().__init__([Pid() for _ in range(size)] if isinstance(size, int) else size)
+
+    _zero = None
+
+
+class IPidControl(View):
+    """Controllers of each joint, of the kind in the first argument: `VOCAB_PIDTYPE_POSITION`."""
+
+    def _kind(self, pidtype: Any) -> View:
+        """A view of the controllers of one kind."""
+        inner = View(_Kind(self._board.pids[_word(pidtype)], self.getAxes()))
+        return inner
+
+    def getPid(self, pidtype: int, j: int, pid: Any) -> bool:
+        def read() -> None:
+            gains = self._board.pids[_word(pidtype)].gains[j]
+            if isinstance(pid, Pid):
+                pid._become(gains)
+            else:
+                found = Pid()
+                found._become(gains)
+                store(pid, [found])
+
+        return self._tell(read)
+
+    def getPids(self, pidtype: int, pids: Any) -> bool:
+        def read() -> None:
+            found = []
+            for gains in self._board.pids[_word(pidtype)].gains:
+                found.append(Pid())
+                found[-1]._become(gains)
+            store(pids, found)
+
+        return self._tell(read)
+
+    def setPid(self, pidtype: int, j: int, pid: Pid) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._change("gains", (j, pid._gains())))
+
+    def setPids(self, pidtype: int, pids: Any) -> bool:
+        gains = [pid._gains() for pid in pids]
+        return self._tell(lambda: self._kind(pidtype)._change("gains", (gains,)))
+
+    def resetPid(self, pidtype: int, j: int) -> bool:
+        return self._tell(lambda: self._board.pids[_word(pidtype)].reset([j]))
+
+    def enablePid(self, pidtype: int, j: int) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._change("enabled", (j, True)))
+
+    def disablePid(self, pidtype: int, j: int) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._change("enabled", (j, False)))
+
+    def isPidEnabled(self, pidtype: int, j: int, enabled: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._get("enabled", (j, enabled)))
+
+    def getPidReference(self, pidtype: int, j: int, ref: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._get("targets", (j, ref)))
+
+    def getPidReferences(self, pidtype: int, refs: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._get("targets", (refs,)))
+
+    def setPidReference(self, pidtype: int, j: int, ref: float) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._change("targets", (j, ref)))
+
+    def setPidReferences(self, pidtype: int, refs: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._change("targets", (refs,)))
+
+    def getPidError(self, pidtype: int, j: int, err: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._get("errors", (j, err)))
+
+    def getPidErrors(self, pidtype: int, errs: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._get("errors", (errs,)))
+
+    def getPidOutput(self, pidtype: int, j: int, out: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._get("outputs", (j, out)))
+
+    def getPidOutputs(self, pidtype: int, outs: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._get("outputs", (outs,)))
+
+    def getPidErrorLimit(self, pidtype: int, j: int, limit: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._get("error_limits", (j, limit)))
+
+    def getPidErrorLimits(self, pidtype: int, limits: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._get("error_limits", (limits,)))
+
+    def setPidErrorLimit(self, pidtype: int, j: int, limit: float) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._change("error_limits", (j, limit)))
+
+    def setPidErrorLimits(self, pidtype: int, limits: Any) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._change("error_limits", (limits,)))
+
+    def setPidOffset(self, pidtype: int, j: int, v: float) -> bool:
+        return self._tell(lambda: self._kind(pidtype)._change("offsets", (j, v)))
+
+
+class _Kind:
+    """Controllers of one kind as a board of so many joints."""
+
+    def __init__(self, pids: Any, count: int) -> None:
+        object.__setattr__(self, "_pids", pids)
+        object.__setattr__(self, "axis_names", [""] * count)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._pids, name)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        setattr(self._pids, name, value)

@@ -1,0 +1,256 @@
+"""PolyDriver: opens a device by its name, and shows it through interfaces.
+
+Rules: the clients and servers are those of `yarpy.devices`; `_DEVICES` lists their names. A Python
+object with the members that `yarpy.devices.control_board.interface` describes is a device as well:
+`attach` serves it.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import yarpy
+from yarp import _names
+from yarp._camera_view import IFrameGrabberControls, IFrameGrabberImage, IFrameGrabberRgb
+from yarp._control_view import IControlLimits, IControlMode, IInteractionMode, IPidControl
+from yarp._log import say
+from yarp._measuring_view import (
+    IAmplifierControl,
+    IAxisInfo,
+    IEncoders,
+    IEncodersTimed,
+    IMotor,
+    IMotorEncoders,
+    IRemoteVariables,
+)
+from yarp._motion_view import (
+    ICurrentControl,
+    IImpedanceControl,
+    IPositionControl,
+    IPositionDirect,
+    IPWMControl,
+    ITorqueControl,
+    IVelocityControl,
+)
+from yarp._property import Property
+from yarp._searchable import Searchable
+from yarp._value import Value
+from yarp._view import FAILURES, View
+from yarpy import devices
+
+V = TypeVar("V", bound=View)
+
+
+class PolyDriver:
+    """`PolyDriver(options)` or `open(options)`, `device` being one of them; then `viewI...`."""
+
+    def __init__(self, config: Searchable | str | None = None) -> None:
+        self._device: Any = None
+        self._options = Property()
+        self._waiting: dict[str, Any] | None = None  # a server that has nothing to serve yet
+        if config is not None:
+            self.open(config)
+
+    def open(self, config: Searchable | str) -> bool:
+        """Open the device that the options name; False if that fails."""
+        self.close()
+        if isinstance(config, str):
+            self._options = Property(config if config.startswith("(") else f"(device {config})")
+        else:
+            self._options = Property(config.toString())
+        name = self._options.find("device").asString()
+        make = _DEVICES.get(name)
+        if make is None:
+            say("ERROR", f"|yarp.dev.PolyDriver| Could not find device <{name}>: {_known()}")
+            return False
+        try:
+            make(self)
+        except (*FAILURES, ValueError) as error:
+            say("ERROR", f"|yarp.dev.PolyDriver| Could not open device <{name}>: {error}")
+            self.close()
+            return False
+        return True
+
+    open_str = open
+
+    def close(self) -> bool:
+        """Close the device."""
+        device, self._device, self._waiting = self._device, None, None
+        if device is not None and hasattr(device, "close"):
+            device.close()
+        return True
+
+    def isValid(self) -> bool:
+        """Whether a device is open."""
+        return self._device is not None or self._waiting is not None
+
+    def attach(self, device: Any) -> bool:
+        """Let a server that was opened serve a device: a PolyDriver, or an object of Python."""
+        if self._waiting is None:
+            say("ERROR", "|yarp.dev.PolyDriver| nothing can be attached to this device")
+            return False
+        inner = device._device if isinstance(device, PolyDriver) else device
+        try:
+            self._device = devices.ControlBoardServer(device=inner, **self._waiting)
+        except (*FAILURES, ValueError) as error:
+            say("ERROR", f"|yarp.dev.PolyDriver| {error}")
+            return False
+        self._waiting = None
+        return True
+
+    def link(self, alt: PolyDriver) -> bool:
+        """Be the same device as another."""
+        self._device, self._options = alt._device, alt._options
+        return self.isValid()
+
+    def give(self, dd: Any, own: bool = True) -> bool:
+        """Be this device, an object of Python."""
+        self._device = dd
+        return dd is not None
+
+    def take(self) -> Any:
+        """Give the device up, and return it."""
+        device, self._device = self._device, None
+        return device
+
+    def getImplementation(self) -> Any:
+        """The device itself, of `yarpy.devices` or yours."""
+        return self._device
+
+    def getOptions(self) -> Any:
+        """What it was opened with."""
+        from yarp._bottle import Bottle
+
+        return Bottle(self._options.toString())
+
+    def getValue(self, option: str) -> Value:
+        return self._options.find(option)
+
+    def getDefaultValue(self, option: str) -> Value:
+        return Value.getNullValue()
+
+    def getComment(self, option: str) -> str:
+        return ""
+
+    def _view(self, kind: type[V], member: str) -> V | None:
+        """A view, if the device has a member of that interface."""
+        device = self._device
+        found = device is not None and (hasattr(type(device), member) or hasattr(device, member))
+        return kind(device) if found else None
+
+    # What an interface of a device is told by.
+
+    def viewIPositionControl(self) -> IPositionControl | None:
+        return self._view(IPositionControl, "position_move")
+
+    def viewIPositionDirect(self) -> IPositionDirect | None:
+        return self._view(IPositionDirect, "position_direct")
+
+    def viewIVelocityControl(self) -> IVelocityControl | None:
+        return self._view(IVelocityControl, "velocity_move")
+
+    def viewITorqueControl(self) -> ITorqueControl | None:
+        return self._view(ITorqueControl, "torques")
+
+    def viewICurrentControl(self) -> ICurrentControl | None:
+        return self._view(ICurrentControl, "currents")
+
+    def viewIPWMControl(self) -> IPWMControl | None:
+        return self._view(IPWMControl, "duty_cycles")
+
+    def viewIImpedanceControl(self) -> IImpedanceControl | None:
+        return self._view(IImpedanceControl, "impedances")
+
+    def viewIEncoders(self) -> IEncoders | None:
+        return self._view(IEncoders, "encoders")
+
+    def viewIEncodersTimed(self) -> IEncodersTimed | None:
+        return self._view(IEncodersTimed, "encoders")
+
+    def viewIMotorEncoders(self) -> IMotorEncoders | None:
+        return self._view(IMotorEncoders, "motor_encoders")
+
+    def viewIMotor(self) -> IMotor | None:
+        return self._view(IMotor, "motor_temperatures")
+
+    def viewIAmplifierControl(self) -> IAmplifierControl | None:
+        return self._view(IAmplifierControl, "amplifier_status")
+
+    def viewIAxisInfo(self) -> IAxisInfo | None:
+        return self._view(IAxisInfo, "axis_names")
+
+    def viewIRemoteVariables(self) -> IRemoteVariables | None:
+        return self._view(IRemoteVariables, "variables")
+
+    def viewIControlMode(self) -> IControlMode | None:
+        return self._view(IControlMode, "control_modes")
+
+    viewIControlMode2 = viewIControlMode
+
+    def viewIInteractionMode(self) -> IInteractionMode | None:
+        return self._view(IInteractionMode, "interaction_modes")
+
+    def viewIControlLimits(self) -> IControlLimits | None:
+        return self._view(IControlLimits, "position_limits")
+
+    def viewIPidControl(self) -> IPidControl | None:
+        return self._view(IPidControl, "pids")
+
+    def viewIFrameGrabberImage(self) -> IFrameGrabberImage | None:
+        return self._view(IFrameGrabberImage, "image")
+
+    def viewIFrameGrabber(self) -> IFrameGrabberRgb | None:
+        return self._view(IFrameGrabberRgb, "image")
+
+    def viewIFrameGrabberControls(self) -> IFrameGrabberControls | None:
+        return self._view(IFrameGrabberControls, "features")
+
+    viewIFrameGrabberControls2 = viewIFrameGrabberControls
+
+    # -- devices ------------------------------------------------------------------------------
+
+    def _text(self, key: str, default: str = "") -> str:
+        return self._options.find(key).asString() or default
+
+    def _open_board(self) -> None:
+        self._device = devices.ControlBoard(
+            self._text("remote"),
+            self._text("local"),
+            carrier=self._text("carrier", "tcp"),
+            names=_names.names(),
+        )
+
+    def _open_camera(self) -> None:
+        self._device = devices.FrameGrabber(
+            self._text("remote"),
+            self._text("local"),
+            carrier=self._text("carrier", "tcp"),
+            names=_names.names(),
+        )
+
+    def _open_server(self) -> None:
+        period = self._options.find("period").asFloat64()
+        self._waiting = {
+            "name": self._text("name"),
+            # In files of robots it is in milliseconds.
+            "period": (period / 1000 if period >= 1 else period) or 0.02,
+            "names": _names.names(),
+        }
+        if not self._waiting["name"]:
+            raise yarpy.AddressError('the option "name" says what its ports are called')
+
+
+_DEVICES = {
+    "remote_controlboard": PolyDriver._open_board,
+    "controlBoard_nwc_yarp": PolyDriver._open_board,
+    "clientcontrolboard": PolyDriver._open_board,
+    "frameGrabber_nwc_yarp": PolyDriver._open_camera,
+    "remote_grabber": PolyDriver._open_camera,
+    "RemoteFrameGrabber": PolyDriver._open_camera,
+    "controlBoard_nws_yarp": PolyDriver._open_server,
+    "controlboardwrapper2": PolyDriver._open_server,
+}
+
+
+def _known() -> str:
+    return f"yarpy-compat has {', '.join(sorted(_DEVICES))}"
