@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yarpy.errors import AddressError
+from yarpy.nameserver import topology as module
 from yarpy.nameserver.topology import (
     Action,
     Subscription,
@@ -253,3 +254,21 @@ def test_any_events(events: list[tuple[str, ...]]) -> None:
     for rule in topology.subscriptions():
         topology.unsubscribe(rule.source_text, rule.destination_text)
     assert not topology._rules and not topology._out and not topology._in
+
+
+def test_descriptions_have_a_limit_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "TOTAL_STRUCTURES", 100)
+    topology = Topology(Clock())
+    topology.restore([], {"/old": "x" * 40}, {}, {"t": "x" * 20})
+    topology.describe("u", "x" * 40)
+    for _ in range(2):
+        with pytest.raises(AddressError, match="at most 100 characters of descriptions"):
+            topology.declare("/new", "x")
+        assert "/new" not in topology.topics
+    topology.declare("/new")
+    topology.describe("u", "x" * 39)
+    topology.declare("/new", "x")
+    topology.undeclare("/old")
+    topology.describe("v", "x" * 40)
+    with pytest.raises(AddressError, match="at most 100"):
+        topology.describe("v", "x" * 41)

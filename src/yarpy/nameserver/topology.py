@@ -20,6 +20,7 @@ from yarpy.errors import AddressError
 GRACE = 30.0  # seconds a name must have been live before a complaint removes it
 LONGEST_NAME = 1000  # characters of a name, decorations included
 LONGEST_STRUCTURE = 65_536  # characters that describe a topic or a type
+TOTAL_STRUCTURES = 16 << 20  # characters of all together
 
 
 def undecorate(text: str) -> tuple[str, str]:
@@ -102,6 +103,7 @@ class Topology:
         self.live: dict[str, float] = {}
         self.topics: dict[str, str] = {}  # name -> structure
         self.structures: dict[str, str] = {}  # type name -> its yarp description
+        self._described = 0  # characters of both
         self.on_change: Callable[[str, str], None] | None = None
         self._rules: dict[tuple[str, str], Subscription] = {}
         self._out: dict[str, dict[str, Subscription]] = {}  # source -> destination -> rule
@@ -187,6 +189,7 @@ class Topology:
         if topic not in self.topics and len(self.topics) >= self.limit:
             raise AddressError(f"this server keeps at most {self.limit} topics")
         new = topic not in self.topics
+        self._take(self.topics.get(topic, ""), structure)
         self.topics[topic] = structure
         self._changed("topic", topic)
         if not new:
@@ -195,7 +198,9 @@ class Topology:
 
     def undeclare(self, topic: str) -> None:
         """`topic` is no longer one; rules that mention it stay."""
-        if self.topics.pop(topic, None) is not None:
+        structure = self.topics.pop(topic, None)
+        if structure is not None:
+            self._take(structure, "")
             self._changed("topic", topic)
 
     def describe(self, type_: str, structure: str) -> None:
@@ -203,8 +208,18 @@ class Topology:
         _check(type_, structure)
         if type_ not in self.structures and len(self.structures) >= self.limit:
             raise AddressError(f"this server keeps at most {self.limit} types")
+        self._take(self.structures.get(type_, ""), structure)
         self.structures[type_] = structure
         self._changed("structure", type_)
+
+    def _take(self, old: str, new: str) -> None:
+        """A description takes the place of another. Raises AddressError if there is no room."""
+        size = self._described + len(new) - len(old)
+        if size > max(TOTAL_STRUCTURES, self._described):
+            raise AddressError(
+                f"this server keeps at most {TOTAL_STRUCTURES} characters of descriptions"
+            )
+        self._described = size
 
     def collect(self, known: Callable[[str], bool]) -> None:
         """Drop live marks of names that are not registered."""
@@ -239,6 +254,7 @@ class Topology:
         self.topics.update(topics)
         self.live.update(live)
         self.structures.update(structures)
+        self._described = sum(map(len, (*self.topics.values(), *self.structures.values())))
 
     # --- inside
 
