@@ -68,6 +68,8 @@ def test_the_master_has_a_name(server: yarpy.NameServer, graph: RosGraph) -> Non
     found = server.client.query("/ros")
     assert found is not None
     assert (found.carrier, found.host, found.port) == ("xmlrpc", "127.0.0.1", graph.port)
+    server.client.unregister("/ros")
+    wait_until(lambda: server.client.query("/ros"), patience(4 * LOOK), "it has its name again")
 
 
 def test_topics_of_others_are_registered_once_their_node_is_there(

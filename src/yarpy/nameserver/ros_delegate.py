@@ -16,6 +16,7 @@ from queue import Empty, SimpleQueue
 from typing import Final
 
 from yarpy.contact import Contact
+from yarpy.data.bottle import Bottle
 from yarpy.errors import AddressError, NoNameServer, YarpError
 from yarpy.log import logger
 from yarpy.names.address import is_local
@@ -30,7 +31,7 @@ from yarpy.names.node_name import (
     parse_node_name,
 )
 from yarpy.names.ros import RosNames
-from yarpy.names.ros_master import RosMaster, advertised_host, uri_of
+from yarpy.names.ros_master import RosMaster, advertised_host, parse_uri, uri_of
 from yarpy.nameserver.command import NameService
 from yarpy.port import probe
 
@@ -69,6 +70,7 @@ class RosDelegate:
         self._told: dict[str, _Told] = {}
         self._away = 0.0  # until when no names are asked for
         self._work: SimpleQueue[tuple[str, str] | None] = SimpleQueue()
+        self._name_master()
         self._thread = threading.Thread(target=self._run, name="yarpy server ros", daemon=True)
         self._thread.start()
 
@@ -98,6 +100,12 @@ class RosDelegate:
         """Unregister what was registered, and end."""
         self._work.put(None)
         self._thread.join(2 * PATIENCE)
+
+    def _name_master(self) -> None:
+        """Let it be found under its name, also after somebody cleaned up while it was away."""
+        if self._find(NAME) is None:
+            where = parse_uri(self.master.uri)
+            self._service.answer(Bottle(["register", NAME, "xmlrpc", where.host, where.port]))
 
     # -- the thread -------------------------------------------------------------------------------
 
@@ -204,6 +212,7 @@ class RosDelegate:
 
     def _look(self) -> None:
         """Tell a master that was restarted what it does not know."""
+        self._name_master()
         lost: dict[str, bool] = {}
         for name, told in [*self._told.items()]:
             node = told.name.node

@@ -24,7 +24,7 @@ from yarpy.link.inbound import Inbound
 from yarpy.log import logger
 from yarpy.names.address import is_loopback, local_addresses
 from yarpy.names.default import DEFAULT, client_of, secret
-from yarpy.names.ros_master import RosMaster, parse_uri
+from yarpy.names.ros_master import RosMaster
 from yarpy.nameserver.collector import Collector
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.folder import Folder
@@ -274,12 +274,9 @@ class NameServer:
         answer(Bottle(["set", self.name, "nameserver", "true"]))
 
     def _join_ros(self, uri: str) -> None:
-        from yarpy.nameserver.ros_delegate import NAME, RosDelegate
+        from yarpy.nameserver.ros_delegate import RosDelegate
 
-        master = RosMaster(uri)
-        where = parse_uri(uri)
-        self.service.answer(Bottle(["register", NAME, "xmlrpc", where.host, where.port]))
-        self._ros = RosDelegate(master, self.service)
+        self._ros = RosDelegate(RosMaster(uri), self.service)
         self.service.elsewhere = self._ros.query
 
     def _open_database(
