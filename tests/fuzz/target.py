@@ -7,12 +7,15 @@ from what C++ YARP was recorded to say (tests/golden). Whoever adds a decoder ad
 
 from __future__ import annotations
 
+import itertools
 import random
 import struct
+import tempfile
 import zlib
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -49,6 +52,8 @@ from yarpy.monitors.chain import Chain
 from yarpy.monitors.stock import png
 from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.names.discovery import respond
+from yarpy.ros.bag_reader import BagReader
+from yarpy.ros.bag_writer import BagWriter
 from yarpy.route import UNDECLARED, Declared, Route, parse_carrier
 from yarpy.testing import End
 from yarpy.testing.drive import Stalled
@@ -259,6 +264,31 @@ def _devices(data: bytes) -> None:
     State.from_bottle(message)
 
 
+def _bag(data: bytes) -> None:
+    """A file of rosbag."""
+    with tempfile.NamedTemporaryFile(suffix=".bag") as file:
+        file.write(data)
+        file.flush()
+        with BagReader(file.name) as bag:
+            _ = bag.topics
+            for _ in itertools.islice(bag, 1000):
+                pass
+
+
+def _bags() -> tuple[bytes, ...]:
+    """Small ones, of each compression."""
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        for compression in ("none", "bz2", "lz4"):
+            path = Path(folder) / compression
+            with BagWriter(path, compression) as bag:  # type: ignore[arg-type]
+                for number in range(4):
+                    bag.write("/a", f"text {number}", float(number), "std_msgs/String")
+                    bag.write("/b", number, float(number), "std_msgs/Int32")
+            found.append(path.read_bytes())
+    return tuple(found)
+
+
 def _sniffed(data: bytes) -> None:
     """A type for the bytes of a port, and the bytes read by it."""
     _ROS.message_of("p/Sniffed", sniff(data)).from_ros(data)
@@ -448,3 +478,9 @@ TARGETS = {
 }
 if cv2 is not None:
     TARGETS["png"] = Target(_png, (png.encode(cv2, Image(_PIXELS)),))
+try:
+    import rosbags.rosbag1  # noqa: F401
+except ImportError:
+    pass
+else:
+    TARGETS["bag"] = Target(_bag, _bags())
