@@ -1,6 +1,6 @@
 """PolyDriver: opens a device by its name, and shows it through interfaces.
 
-Rules: the clients and servers are those of `yarpy.devices`; `_DEVICES` lists their names. A Python
+Rules: the clients and servers are those of `yarpy.devices`; `DEVICES` lists their names. A Python
 object with the members that `yarpy.devices.control_board.interface` describes is a device as well:
 `attach` serves it.
 """
@@ -59,7 +59,7 @@ class PolyDriver:
         else:
             self._options = Property(config.toString())
         name = self._options.find("device").asString()
-        make = _DEVICES.get(name)
+        make = DEVICES.get(name)
         if make is None:
             say("ERROR", f"|yarp.dev.PolyDriver| Could not find device <{name}>: {_known()}")
             return False
@@ -240,7 +240,7 @@ class PolyDriver:
             raise yarpy.AddressError('the option "name" says what its ports are called')
 
 
-_DEVICES = {
+DEVICES = {
     "remote_controlboard": PolyDriver._open_board,
     "controlBoard_nwc_yarp": PolyDriver._open_board,
     "clientcontrolboard": PolyDriver._open_board,
@@ -253,4 +253,4 @@ _DEVICES = {
 
 
 def _known() -> str:
-    return f"yarpy-compat has {', '.join(sorted(_DEVICES))}"
+    return f"yarpy-compat has {', '.join(sorted(DEVICES))}"

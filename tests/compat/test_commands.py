@@ -1,0 +1,163 @@
+"""The classical commands: how their arguments are translated, and that they run."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from support.patience import patience
+from support.port import free_block
+from support.process import Process
+
+import yarpy
+from yarpy.sim.robot import Robot, icub_head
+
+TRANSLATED = [
+    ("yarp", "connect /a /b fast_tcp", "connect /a /b fast_tcp"),
+    ("yarp", "verbose quiet name list", "name list"),
+    ("server", "--write --portdb p.db", "server --write --portdb p.db"),
+    ("view", "/view", "view /view"),
+    ("view", "", "view /yarpview/img:i"),
+    ("view", "--name /v --x 10 --y 20 --w 300 --h 200 --compact", "view /v"),
+    ("view", "--PortName /v --OutPortName /click", "view /v --out /click"),
+    ("view", "--name /v --remote /cam --carrier udp", "view /v --connect /cam --carrier udp"),
+    ("scope", "--remote /p", "scope /p --name /yarpscope"),
+    ("scope", "--remote /p --index (0 2) --min -1 --max 1 --size 201", None),
+    ("hear", "--remote /mic --nodevice", "hear /mic --name /yarphear"),
+    ("hear", "--name /ears", "hear --name /ears"),
+    ("thrift", "--gen yarp:no_doc -o out cam.thrift", "idl thrift --out out cam.thrift"),
+    ("thrift", "-gen py -I include -v a.thrift b.thrift", None),
+    ("rosmsg", "--name /typ@/yarpros", "idl rosmsg --name /typ@/yarpros"),
+    ("rosmsg", "--no-ros true --out . std_msgs/String", None),
+    ("rosmsg", "std_msgs/String --out .", "idl rosmsg --python std_msgs/String"),
+]
+
+
+@pytest.mark.parametrize(("name", "given", "wanted"), TRANSLATED)
+def test_translation(name: str, given: str, wanted: str | None) -> None:
+    from yarp import _commands
+
+    words = given.split()
+    if "(0" in words:  # one argument of the shell
+        place = words.index("(0")
+        words[place : place + 2] = ["(0 2)"]
+        wanted = "scope /p --index 0,2 --name /yarpscope --min -1 --max 1"
+    if "-I" in words:
+        wanted = "idl thrift --folder include a.thrift b.thrift"
+    translate = getattr(_commands, f"translate_{name}")
+    if wanted is None:
+        with pytest.raises(_commands.Wrong):
+            translate(words)
+        return
+    assert translate(words) == wanted.split()
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "why"),
+    [
+        ("thrift", "--gen cpp a.thrift", "this one writes Python"),
+        ("thrift", "--gen py", "give a .thrift file"),
+        ("thrift", "--nonsense a.thrift", "no option"),
+        ("rosmsg", "", "give a type"),
+        ("view", "--nonsense 1", "no option"),
+        ("yarp", "config", "yarp-config"),
+    ],
+)
+def test_wrong_arguments(name: str, given: str, why: str) -> None:
+    from yarp import _commands
+
+    with pytest.raises(_commands.Wrong, match=why):
+        getattr(_commands, f"translate_{name}")(given.split())
+
+
+def test_config(tmp_path: Path) -> None:
+    from yarp._commands import Wrong, config_lines
+
+    environment = {"YARP_CONFIG_HOME": str(tmp_path), "YARP_DATA_HOME": str(tmp_path / "data")}
+    (tmp_path / "data/contexts/lab").mkdir(parents=True)
+    assert config_lines(["--nameserver"], environment) == [str(tmp_path / "yarp.conf")]
+    assert config_lines(["--namespace"], environment) == [str(tmp_path / "yarp_namespace.conf")]
+    assert config_lines(["--version"], environment) == [yarpy.__version__]
+    assert config_lines(["context", "--list"], environment)[1] == "lab"
+    assert config_lines(["context", "--where", "lab"], environment) == [
+        str(tmp_path / "data/contexts/lab")
+    ]
+    assert config_lines(["robot", "--current"], environment) == ["default"]
+    for wrong in ([], ["context", "--where", "none"], ["nonsense"]):
+        with pytest.raises(Wrong):
+            config_lines(wrong, environment)
+
+
+def start(program: str, *arguments: str, environment: Mapping[str, str]) -> Process:
+    module = "_yarpdev" if program == "main" else "_commands"
+    code = f"from yarp.{module} import {program}; {program}()"
+    return Process([sys.executable, "-c", code, *arguments], env=environment)
+
+
+def test_yarpserver_and_yarp(environment: Mapping[str, str]) -> None:
+    number = str(free_block(200))
+    with start("yarpserver", "--socket", number, "--local", environment=environment) as server:
+        there = {**environment, "YARPY_SERVER": f"127.0.0.1:{number}"}
+        for _ in range(100):
+            with start("yarp", "name", "list", environment=there) as client:
+                if client.wait(patience(20.0)) == 0:
+                    break
+        assert "/root" in client.stdout
+        with start("yarp", "exists", "/none", environment=there) as client:
+            assert client.wait(patience(20.0)) == 1
+        server.signal(signal.SIGTERM)
+        server.wait(patience(10.0))
+
+
+def test_yarpidl_thrift(environment: Mapping[str, str], tmp_path: Path) -> None:
+    pytest.importorskip("lark")
+    source = tmp_path / "camera.thrift"
+    source.write_text("service Camera {\n  bool set_speed(1: double speed);\n}\n")
+    arguments = ("--gen", "py", "-o", str(tmp_path), str(source))
+    with start("yarpidl_thrift", *arguments, environment=environment) as process:
+        assert process.wait(patience(30.0)) == 0, process.stderr
+    assert "set_speed" in (tmp_path / "camera.py").read_text()
+
+
+def test_wrong_arguments_are_told(environment: Mapping[str, str]) -> None:
+    with start("yarpview", "--nonsense", "1", environment=environment) as process:
+        assert process.wait(patience(20.0)) == 1
+    assert process.stderr.strip() == 'error: yarpview: no option "--nonsense"'
+    with start("yarp_config", environment=environment) as process:
+        assert process.wait(patience(20.0)) == 1
+    assert process.stderr.startswith("usage: yarp-config")
+
+
+def test_yarpdev_serves_a_device_until_it_is_asked_to_end(environment: Mapping[str, str]) -> None:
+    with (
+        yarpy.NameServer(free_block(200)) as server,
+        Robot("/icubSim", icub_head((160, 120))),
+    ):
+        arguments = (
+            *("--device", "controlBoard_nws_yarp", "--subdevice", "remote_controlboard"),
+            *("--remote", "/icubSim/head", "--local", "/between", "--name", "/again"),
+        )
+        variables = {**environment, **server.environment}
+        with start("main", *arguments, environment=variables) as process:
+            process.wait_line("device active in background", timeout=patience(20.0))
+            with yarpy.devices.ControlBoard("/again", timeout=patience(5.0)) as board:
+                assert board.axes > 3
+            with yarpy.RpcClient("/again/quit") as client:
+                assert client.call("quit") == ["ok"]
+            assert process.wait(patience(20.0)) == 0, process.stderr
+            assert "yarpdev is finished." in process.stdout
+
+
+def test_yarpdev_without_a_device(environment: Mapping[str, str]) -> None:
+    with start("main", environment=environment) as process:
+        assert process.wait(patience(20.0)) == 0
+    assert "--device option not specified" in process.stderr
+    with start("main", "--list", environment=environment) as process:
+        assert process.wait(patience(20.0)) == 0
+    assert "remote_controlboard" in process.stdout.splitlines()
+    with start("main", "--device", "nonsense", environment=environment) as process:
+        assert process.wait(patience(20.0)) == 1
+    assert "device not available; there are" in process.stderr
