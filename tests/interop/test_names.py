@@ -6,6 +6,7 @@ import socket
 import sqlite3
 import time
 from collections.abc import Iterator
+from contextlib import closing
 
 from support.cpp import CppYarp
 from support.name_line import new_service, serve_names
@@ -100,13 +101,13 @@ def test_our_server_goes_on_with_a_cpp_database(cpp: CppYarp) -> None:
         answers(names, COMMANDS)
         expected = answers(names, QUESTIONS)
         with (
-            sqlite3.connect(server.home / "port.db") as source,
-            sqlite3.connect(server.home / "ours.db") as copy,
+            closing(sqlite3.connect(server.home / "port.db")) as source,
+            closing(sqlite3.connect(server.home / "ours.db")) as copy,
         ):
             source.backup(copy)
         with (
-            sqlite3.connect(server.home / "subscription.db") as source,
-            sqlite3.connect(server.home / "our_subs.db") as copy,
+            closing(sqlite3.connect(server.home / "subscription.db")) as source,
+            closing(sqlite3.connect(server.home / "our_subs.db")) as copy,
         ):
             source.backup(copy)
         database = Database(server.home / "ours.db", server.home / "our_subs.db")

@@ -58,7 +58,7 @@ def test_what_is_no_database(tmp_path: Path) -> None:
     with pytest.raises(AddressError, match="out of the way"):
         Database(path)
     with pytest.raises(AddressError, match="failed to open"):
-        Database("", tmp_path / "missing" / "subs.db")
+        Database(tmp_path / "good.db", tmp_path / "missing" / "subs.db")
 
 
 def test_in_memory(tmp_path: Path) -> None:

@@ -6,11 +6,12 @@ Restarts and the moment of writing are tested with `database`; here is what stan
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 from support.name_database import EVERYTHING, Files, say
-from support.name_line import new_service
 
 from yarpy.contact import Contact
 from yarpy.errors import AddressError
@@ -99,7 +100,7 @@ def test_raw_bytes_and_odd_text_survive(files: Files) -> None:
 
 
 def test_old_files_get_their_columns(files: Files) -> None:
-    with sqlite3.connect(files.rules) as connection:
+    with closing(sqlite3.connect(files.rules)) as connection, connection:
         connection.executescript(
             """
             CREATE TABLE subscriptions (id INTEGER PRIMARY KEY, src TEXT, dest TEXT,
@@ -125,7 +126,7 @@ def test_old_files_get_their_columns(files: Files) -> None:
 def test_strange_rows_are_passed_over(files: Files) -> None:
     _, database = files.open()
     database.close()
-    with sqlite3.connect(files.ports) as connection:
+    with closing(sqlite3.connect(files.ports)) as connection, connection:
         connection.executescript(
             """
             INSERT INTO tags VALUES (1, NULL, NULL, 'port', '/a');
@@ -154,14 +155,22 @@ def test_what_is_no_database(tmp_path: Path) -> None:
         with pytest.raises(AddressError, match="failed to open"):
             kind(tmp_path / "missing" / "subs.db")
     other = tmp_path / "other.db"
-    with sqlite3.connect(other) as connection:
+    with closing(sqlite3.connect(other)) as connection, connection:
         connection.execute("CREATE TABLE tags (something TEXT)")
-    with pytest.raises(AddressError, match=r"cannot be read|failed to open"):
-        PortTable(other).load(new_service().store)
+    with pytest.raises(AddressError, match="failed to open"):
+        PortTable(other)
 
 
-def test_a_write_that_fails_leaves_nothing_and_can_be_repeated(files: Files) -> None:
-    table = PortTable(files.ports)
+@pytest.fixture
+def table(files: Files) -> Iterator[PortTable]:
+    found = PortTable(files.ports)
+    with closing(found.connection):
+        yield found
+
+
+def test_a_write_that_fails_leaves_nothing_and_can_be_repeated(
+    files: Files, table: PortTable
+) -> None:
     table.connection.execute("CREATE UNIQUE INDEX one ON tags(name) WHERE name = 'once'")
     changes = PortChanges({"/a": {"once": ["1", "2"]}}, {"regid": (7, [("7", True, "/a")])})
     with pytest.raises(AddressError, match="cannot be written"):
@@ -177,8 +186,9 @@ def test_a_write_that_fails_leaves_nothing_and_can_be_repeated(files: Files) -> 
         assert len(files.tags()) == 5
 
 
-def test_somebody_who_reads_the_file_holds_only_one_write_up(files: Files) -> None:
-    table = PortTable(files.ports)
+def test_somebody_who_reads_the_file_holds_only_one_write_up(
+    files: Files, table: PortTable
+) -> None:
     table.connection.execute("PRAGMA busy_timeout = 10")
     table.save(PortChanges({"/a": {}, "/b": {}}))
     reader = sqlite3.connect(files.ports, isolation_level=None)
@@ -207,3 +217,4 @@ def test_rules_are_replaced_by_their_ends(files: Files) -> None:
     assert files.table("SELECT src, destFull, mode FROM subscriptions") == [("/a", "udp://b", "to")]
     tables.save(RuleChanges({("/a", "/b"): None}))
     assert files.table("SELECT * FROM subscriptions") == []
+    tables.connection.close()

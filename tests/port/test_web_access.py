@@ -47,7 +47,7 @@ def arm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[yarpy.RpcSe
 
 
 def asked(
-    port: yarpy.RpcServer | yarpy.Port,
+    port: yarpy.RpcServer | yarpy.Port | yarpy.BufferedPort,
     target: str,
     headers: dict[str, str] | None = None,
     method: str = "GET",
@@ -92,9 +92,13 @@ def test_tokens_have_their_rights(arm: yarpy.RpcServer) -> None:
     assert asked(arm, "/?cmd=/b", bearer(SECRET))[0].status == 403
     assert asked(arm, "/?admin=1&req=[add]+/b", bearer(SECRET))[0].status == 403
     assert asked(arm, "/?admin=1&req=[ver]", bearer(LOOKER))[0].status == 200
-    assert json.loads(asked(arm, "/*/may", bearer(LOOKER))[1]) == ["read"]
-    assert json.loads(asked(arm, "/*/may")[1]) == []
-    assert json.loads(asked(arm, "/*/may", far="127.0.0.1")[1])[:2] == ["read", "write"]
+    # An RpcServer sends nothing by itself: nobody can read there.
+    assert json.loads(asked(arm, "/*/may", bearer(LOOKER))[1]) == []
+    assert json.loads(asked(arm, "/*/may", far="127.0.0.1")[1])[:2] == ["write", "administer"]
+    with yarpy.BufferedPort("/camera", names=yarpy.LocalNames()) as camera:
+        assert json.loads(asked(camera, "/*/may", bearer(LOOKER))[1]) == ["read"]
+        assert json.loads(asked(camera, "/*/may")[1]) == []
+        assert json.loads(asked(camera, "/*/may", far="127.0.0.1")[1])[:2] == ["read", "write"]
 
 
 def test_an_unknown_token_is_told(arm: yarpy.RpcServer) -> None:
@@ -194,7 +198,10 @@ def test_xmlrpc(arm: yarpy.RpcServer) -> None:
         ("&admin", "", 403),
     ],
 )
-def test_websockets(arm: yarpy.RpcServer, wishes: str, token: str, status: int) -> None:
+def test_websockets(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wishes: str, token: str, status: int
+) -> None:
+    write(tmp_path, monkeypatch, RULES)
     shown = f"&token={token}" if token else ""
     headers = {
         "Upgrade": "websocket",
@@ -202,11 +209,12 @@ def test_websockets(arm: yarpy.RpcServer, wishes: str, token: str, status: int) 
         "Sec-WebSocket-Key": generate_nonce().decode(),
         "Sec-WebSocket-Version": "13",
     }
-    where = arm.contact.host, arm.contact.port
-    connection = HTTPConnection(*where, timeout=patience(10.0), source_address=(FAR, 0))
-    connection.request("GET", f"/?ws{wishes}{shown}", headers=headers)
-    assert connection.getresponse().status == status
-    connection.close()
+    with yarpy.BufferedPort("/arm", names=yarpy.LocalNames()) as arm:
+        where = arm.contact.host, arm.contact.port
+        connection = HTTPConnection(*where, timeout=patience(10.0), source_address=(FAR, 0))
+        connection.request("GET", f"/?ws{wishes}{shown}", headers=headers)
+        assert connection.getresponse().status == status
+        connection.close()
 
 
 def test_a_hundred_refusals_are_one_line(

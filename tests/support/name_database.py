@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 from support.name_line import new_service
@@ -25,13 +26,13 @@ class Files:
         return service, database
 
     def tags(self) -> list[tuple[object, ...]]:
-        with sqlite3.connect(self.ports) as connection:
+        with closing(sqlite3.connect(self.ports)) as connection, connection:
             return connection.execute(
                 "SELECT id, rid, ns, name, value FROM tags ORDER BY id"
             ).fetchall()
 
     def table(self, query: str) -> list[tuple[object, ...]]:
-        with sqlite3.connect(self.rules) as connection:
+        with closing(sqlite3.connect(self.rules)) as connection, connection:
             return connection.execute(query).fetchall()
 
 

@@ -35,10 +35,14 @@ class Database:
     ) -> None:
         """Open or create the files. Raises AddressError for a file that is no such database, or
         that another server keeps."""
-        self._ports = PortTable(ports, cautious) if _lasts(ports) else None
-        self._rules = RuleTables(rules, cautious) if _lasts(rules) else None
+        self._ports: PortTable | None = None
+        self._rules: RuleTables | None = None
         self._held: list[int] = []
         try:
+            if _lasts(ports):
+                self._ports = PortTable(ports, cautious)
+            if _lasts(rules):
+                self._rules = RuleTables(rules, cautious)
             for path in dict.fromkeys(str(path) for path in (ports, rules) if _lasts(path)):
                 self._held += _held(path)
         except AddressError:
