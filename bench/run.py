@@ -68,6 +68,13 @@ PEERS = (
         ("--carrier", "tls"),
         ("stream", "rpc", "large", "flood"),
     ),
+    Peer(
+        "yarpy-zmq",
+        "peer_yarpy.py",
+        "yarpy",
+        ("--carrier", "zmq+push"),
+        ("stream", "flood"),
+    ),
     Peer("yarpy-spin", "peer_yarpy.py", "yarpy", ("--spin",), ("stream",), needs_core=True),
 )
 

@@ -91,4 +91,6 @@ GOALS = (
     Goal("large", "yarpy-tls", "yarpy-tcp", 2.0),
     Goal("flood", "yarpy-tcp", "cpp-tcp", 5.0),
     Goal("flood", "yarpy-tcp", "cpp-fast_tcp", 1.5),
+    Goal("stream", "yarpy-zmq", "zmq", 1.3),
+    Goal("flood", "yarpy-zmq", "zmq", 0.3),
 )

@@ -8,6 +8,7 @@ from contextlib import suppress
 
 import pytest
 from support.outbound import connected, link_on, open_link, read_messages, total
+from support.patience import patience
 from support.transport import scripted
 from support.wait import wait_until
 
@@ -19,8 +20,11 @@ from yarpy.data.bottle import Bottle
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.link import outbound as module
 from yarpy.link.budget import Budget
+from yarpy.route import Route
 from yarpy.wire import framing
 from yarpy.wire.message import CALL, Packet
+from yarpy.wire.steps import Steps
+from yarpy.wire.stream import ByteStream
 
 ACK = framing.ACK
 
@@ -388,6 +392,62 @@ def test_reader_of_a_lossy_carrier_gets_a_short_burst_whole() -> None:
         found = read_messages(far, 5, ack=False)
         assert found == [b"".join(framing.encode(Packet([n]))) for n in range(5)]  # type: ignore[arg-type]
         assert link.counter.drops == 2
+
+
+class AtOnce(FastTcp):
+    delivery = Delivery(lossy=True, at_once=True)
+    attentive = True
+
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        self.heard = b""
+
+    def listen(self, stream: ByteStream) -> Steps[None]:
+        while True:
+            self.heard += yield from stream.read_exact(1)
+            if self.heard.endswith(b"?"):
+                stream.write(b"!")
+            if self.heard.endswith(b"x"):
+                raise RemoteProtocolError("nobody says x")
+
+
+def test_what_does_not_leave_at_once_is_dropped() -> None:
+    with connected(AtOnce) as (link, far):
+        large = Packet([bytes(1_000_000)])
+        left = [link.send(large) for _ in range(100)]
+        assert left[0]
+        assert not left[-1]
+        messages, drops = left.count(True), left.count(False)
+        assert (link.counter.messages, link.counter.drops) == (messages, drops)
+        size = messages * len(b"".join(bytes(block) for block in framing.encode(large)))
+        while size:  # those that have begun come whole, and the last by itself
+            size -= len(far.recv(size))
+        wait_until(lambda: not link.sender.halfway)
+        assert link.send(Packet([1]))
+
+
+def test_what_a_reader_says_is_heard_at_once() -> None:
+    with connected(AtOnce) as (link, far):
+        thread = threading.Thread(target=link.attend)
+        far.sendall(b"with the greeting?")
+        thread.start()
+        assert far.recv(10) == b"!"
+        far.sendall(b"later?")
+        assert far.recv(10) == b"!"
+        far.sendall(b"x")
+        thread.join(patience(5.0))
+        assert not thread.is_alive()
+        assert link.broken
+        assert link.reason == "nobody says x"
+
+
+def test_a_link_that_is_closed_is_listened_to_no_more() -> None:
+    with connected(AtOnce) as (link, _):
+        thread = threading.Thread(target=link.attend)
+        thread.start()
+        link.close(quit_=False)
+        thread.join(patience(5.0))
+        assert not thread.is_alive()
 
 
 def interrupted(deadline: float | None = None) -> None:

@@ -191,3 +191,15 @@ def test_end_is_told_to_who_waits_for_room(pair: Pair) -> None:
     assert left.wait_writable(20.0)
     with pytest.raises(OSError, match="descriptor"):
         left.try_send([b"more"])
+
+
+def test_waiting_for_something_to_read(pair: Pair) -> None:
+    left, right = pair
+    assert not left.wait_readable(0.01)
+    right.send([b"x"])
+    assert left.wait_readable(5.0)
+    assert left.recv_into(memoryview(bytearray(1))) == 1
+    threading.Timer(0.1, left.interrupt).start()
+    assert left.wait_readable(20.0)
+    left.close()
+    assert left.wait_readable(20.0)

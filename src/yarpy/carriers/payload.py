@@ -30,8 +30,10 @@ from yarpy.wire.message import Encoded, Message, Packet
 JPEG: Final = b"\xff\xd8\xff"
 #: pixels that a JPEG file holds as they are, but for what compression loses
 COLOURS: Final = frozenset(("mono", "rgb", "bgr", "rgba", "bgra"))
-_PLAIN: Final = (str, int, float, list, tuple, bytes, bytearray, Mapping, Image)
+_BYTES: Final = (bytes, bytearray, memoryview)
+_PLAIN: Final = (str, int, float, Mapping, Image)
 _KEY: Final = "payload"
+_UNSET: Final = object()
 
 
 def to_payload(packet: Packet) -> Buffer:
@@ -45,20 +47,22 @@ def to_payload(packet: Packet) -> Buffer:
 
 def payload_of(value: Any, envelope: bytes = b"") -> Buffer:
     """What a value is to others."""
-    if isinstance(value, Encoded) or not isinstance(value, _PLAIN):
+    if isinstance(value, (list, tuple)):
+        if len(value) == 1 and isinstance(value[0], _BYTES):
+            return bytes(value[0])
+        return to_json(value).encode()
+    if isinstance(value, _BYTES):
+        return bytes(value)
+    if not isinstance(value, _PLAIN):
         blocks = codec.encode(value)
         if blocks and is_image(blocks[0]):
             value = Image.from_wire(blocks[0] if len(blocks) == 1 else b"".join(blocks))
         elif isinstance(value, Encoded):
-            value = codec.decode(value.data)
-    if isinstance(value, (list, tuple)) and len(value) == 1:
-        value = value[0] if isinstance(value[0], (bytes, bytearray, memoryview)) else value
-    if isinstance(value, (bytes, bytearray, memoryview)):
-        return bytes(value)
-    if isinstance(value, Image) and str(value.code) in COLOURS and value.width and value.height:
+            return payload_of(codec.decode(value.data), envelope)
+    if isinstance(value, Image) and str(value.code) in COLOURS:
         try:
             data = jpeg.encode(value)
-        except ValueError:  # larger than a JPEG file can be
+        except ValueError:  # none, or more pixels than a JPEG file can have
             return to_json(value).encode()
         return jpeg.commented(data, envelope) if envelope else data
     return to_json(value).encode()
@@ -88,21 +92,18 @@ class PayloadMessage(Message):
 
     def __init__(self, key: str, payload: tuple[Buffer, ...], envelope: str = "") -> None:
         super().__init__(key, payload, envelope, "foreign")
+        self._decoded: Any = _UNSET
 
     @property
     def value(self) -> Any:
         """The value of the payload; of several frames, a list of theirs."""
-        try:
-            return self._decoded
-        except AttributeError:
-            pass
-        if len(self.payload) == 1:
-            found = value_of(self.payload[0])
-        else:
-            found = [value_of(part) for part in self.payload]
-            found = codec.decode(b"".join(codec.encode(found)))
-        self._decoded: Any = found
-        return found
+        if self._decoded is _UNSET:
+            if len(self.payload) == 1:
+                self._decoded = value_of(self.payload[0])
+            else:
+                parts = [value_of(part) for part in self.payload]
+                self._decoded = codec.decode(b"".join(codec.encode(parts)))
+        return self._decoded
 
     def to_bytes(self) -> Buffer:
         return b"".join(codec.encode(self.value))

@@ -223,8 +223,13 @@ class Push(Zmq):
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         if self.raw:
             self.write(stream, [RAW + self.topic, self.raw_of(packet)])
+            return
+        body = to_payload(packet)
+        if len(body) < 256:  # as mostly
+            self._small = True
+            stream.write(bytes((0, len(body))) + body)
         else:
-            self.write(stream, [to_payload(packet)])
+            self.write(stream, [body])
 
     def raw_of(self, packet: Packet) -> Buffer:
         """The payload in YARP's own spelling."""

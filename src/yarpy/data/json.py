@@ -17,7 +17,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any, Final, Literal, TypeAlias
+from functools import cache
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.limit import limits
@@ -25,9 +26,14 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import MAX_DEPTH, Vocab, fits
 from yarpy.errors import DecodeError
 
+if TYPE_CHECKING:
+    from json import JSONDecoder, JSONEncoder
+
 Outer: TypeAlias = Literal["auto", "list", "dict"]
 
 _TYPE: Final = "type"
+_SMALL: Final = 1 << 62
+_FREE: Final = 1 << 10  # characters that are too few to count their elements
 _C1 = re.compile(r"[\x80-\x9f]")  # control characters, which a terminal obeys
 
 
@@ -37,10 +43,7 @@ def to_json(value: object, outer: Outer = "auto", *, pixels: bool = True) -> str
     outer: whether the outermost list becomes an array or an object; `auto`: what it looks like.
     pixels: whether an image comes with its pixels, or only with its size and kind.
     """
-    import json
-
-    plain = _plain_top(value, outer, pixels)
-    text = json.dumps(plain, ensure_ascii=False, allow_nan=False)
+    text = _writer().encode(_plain_top(value, outer, pixels))
     if text.isascii():
         return text
     text = _C1.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
@@ -52,14 +55,11 @@ def from_json(text: str | bytes | bytearray | memoryview) -> Any:
 
     DecodeError if it is no JSON, or holds what no message can.
     """
-    import json
-
     try:
         data = text if isinstance(text, str) else bytes(text).decode("utf-8")
-        most = limits().elements
-        if len(data) > most and sum(map(data.count, ",[{")) > most:
+        if len(data) > _FREE and sum(map(data.count, ",[{")) > (most := limits().elements):
             raise DecodeError(f"JSON of more than {most} elements (YARPY_MAX_ELEMENTS)")
-        found = json.loads(data, parse_constant=_no_constant)
+        found = _reader().decode(data)
     except RecursionError:
         raise DecodeError(f"JSON nested more than {MAX_DEPTH} deep") from None
     except DecodeError:
@@ -67,6 +67,20 @@ def from_json(text: str | bytes | bytearray | memoryview) -> Any:
     except ValueError as error:
         raise DecodeError(f"this is not JSON: {error}") from None
     return _message(found, 0)
+
+
+@cache
+def _writer() -> JSONEncoder:
+    from json import JSONEncoder
+
+    return JSONEncoder(ensure_ascii=False, allow_nan=False)
+
+
+@cache
+def _reader() -> JSONDecoder:
+    from json import JSONDecoder
+
+    return JSONDecoder(parse_constant=_no_constant)
 
 
 # ---------------------------------------------------------------------------------- to JSON
@@ -243,13 +257,13 @@ def _message(value: Any, depth: int) -> Any:
     if value is None:
         return Vocab("null")
     if isinstance(value, int):
-        if not fits(value, 64):
+        if not (-_SMALL < value < _SMALL or fits(value, 64)):
             raise DecodeError(f"a number of {value.bit_length()} bits; a message has room for 64")
         return value
     if depth > MAX_DEPTH:
         raise DecodeError(f"JSON nested more than {MAX_DEPTH} deep")
     if isinstance(value, list):
-        return Bottle(_message(item, depth + 1) for item in value)
+        return Bottle([_message(item, depth + 1) for item in value])
     return _pairs(value, depth)
 
 

@@ -330,6 +330,7 @@ class Hub:
         if self.seat is not None:
             self.seat.welcome(output)
         if carrier.attentive:
+            threading.current_thread().name = f"yarpy hear {route}"
             output.attend()
 
     def input_ended(self, link: Inbound, reason: str, quit_: bool) -> None:
