@@ -22,13 +22,18 @@ from yarpy.ros.node import Node
 
 RECORD, PLAY = Path("/usr/lib/rosbag/record"), Path("/usr/lib/rosbag/play")
 RELAY, MUX = Path("/usr/lib/topic_tools/relay"), Path("/usr/lib/topic_tools/mux")
+SAVER = Path("/usr/lib/image_view/image_saver")
+PACKAGES = {
+    "rosbag": "python3-rosbag",
+    "topic_tools": "topic-tools",
+    "image_view": "ros-image-view",
+}
 
 
 def start(graph: RosGraph, program: Path, *words: str) -> Process:
     """A program of roscpp, which ends with its `with` block."""
     if not program.exists():
-        package = "python3-rosbag" if "rosbag" in str(program) else "topic-tools"
-        pytest.skip(f"missing of ROS 1: apt-get install {package}")
+        pytest.skip(f"missing of ROS 1: apt-get install {PACKAGES[program.parent.name]}")
     return Process([str(program), *words], env=graph.environment, cwd=graph.home)
 
 
@@ -56,6 +61,30 @@ def test_a_relay_hears_and_is_heard(graph: RosGraph, node: Node) -> None:
         assert message.header.stamp == (12, 500_000_000)
         assert "relay" in into.inputs[0].source
     wait_until(lambda: not (out.outputs or into.inputs), patience(20), "its end is noticed")
+
+
+@pytest.mark.parametrize("code", ["rgb", "mono"])
+def test_image_view_shows_our_pictures(
+    graph: RosGraph, node: Node, tmp_path: Path, code: str
+) -> None:
+    """Its saver takes the same way as its window, and needs no screen."""
+    cv2 = pytest.importorskip("cv2")
+    shape = (48, 63, 3) if code == "rgb" else (48, 63)  # rows that YARP pads
+    pixels = np.arange(np.prod(shape), dtype="u4").reshape(shape).astype("u1")
+    camera = node.publisher("/icubSim/cam/left", "sensor_msgs/Image")
+    target = tmp_path / "saved.png"
+    words = ("image:=/icubSim/cam/left", f"_filename_format:={target}", f"__name:=saver_{code}")
+    with start(graph, SAVER, *words):
+        assert camera.wait_for_outputs(timeout=patience(20))
+
+        def saved() -> bool:
+            camera.write(yarpy.Image(pixels))
+            return target.exists() and cv2.imread(str(target)) is not None
+
+        wait_until(saved, patience(20), "it is saved")
+    found = cv2.imread(str(target), cv2.IMREAD_COLOR)
+    wanted = pixels[..., ::-1] if code == "rgb" else np.repeat(pixels[..., None], 3, 2)
+    assert (found == wanted).all()
 
 
 def test_rosbag_records_us_and_plays_to_us(graph: RosGraph, node: Node, tmp_path: Path) -> None:
