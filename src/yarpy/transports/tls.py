@@ -12,7 +12,7 @@ import socket
 import ssl
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
@@ -96,8 +96,10 @@ class TlsTransport(TcpTransport):
     def recv_into(self, view: memoryview) -> int:
         with self._reading:
             due = 0.0
-            while (count := self._decrypted(view)) < 0:
-                if not self._take(super().recv_into(self._raw)):
+            fresh = 0
+            while (count := self._decrypted(view, fresh)) < 0:
+                fresh = self._recv_into(self._raw)
+                if not fresh:
                     return 0
                 if self._patience is not None:  # a record may come byte by byte
                     now = time.monotonic()
@@ -108,12 +110,11 @@ class TlsTransport(TcpTransport):
 
     def try_recv_into(self, view: memoryview) -> int:
         with self._reading:
-            while (count := self._decrypted(view)) < 0:
-                got = super().try_recv_into(self._raw)
-                if got < 0:
-                    return -1
-                if not self._take(got):
-                    return 0
+            fresh = 0
+            while (count := self._decrypted(view, fresh)) < 0:
+                fresh = super().try_recv_into(self._raw)
+                if fresh <= 0:
+                    return fresh
             return count
 
     def send(self, buffers: Sequence[Buffer]) -> None:
@@ -122,12 +123,12 @@ class TlsTransport(TcpTransport):
                 super().send(self._unsent)
                 self._unsent = []
             for piece in _pieces(buffers):
-                super().send([self._encrypted(piece)])
+                self.sock.sendall(self._encrypted(piece))
 
     def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
         with self._sending:
             self._unsent = super().try_send(self._unsent)
-            pieces = _pieces(buffers)
+            pieces = iter(_pieces(buffers))
             while not self._unsent and (piece := next(pieces, None)) is not None:
                 self._unsent = super().try_send([self._encrypted(piece)])
             return [b"", *pieces] if self._unsent else []
@@ -144,15 +145,14 @@ class TlsTransport(TcpTransport):
             if self._ahead:
                 return False
             store = memoryview(bytearray(1 << 14))
-            while (count := self._decrypted(store)) < 0:
+            fresh = 0
+            while (count := self._decrypted(store, fresh)) < 0:
                 try:
-                    got = super().try_recv_into(self._raw)
+                    fresh = super().try_recv_into(self._raw)
                 except OSError:
                     return True
-                if got < 0:
-                    return False
-                if not self._take(got):
-                    return True
+                if fresh <= 0:
+                    return not fresh
             self._ahead = store[:count]
             return not count
         finally:
@@ -192,19 +192,22 @@ class TlsTransport(TcpTransport):
         if records:
             self.sock.sendall(records)
 
-    def _decrypted(self, view: memoryview) -> int:
-        """Bytes that have come; 0 at the end, -1: more must come first."""
+    def _decrypted(self, view: memoryview, fresh: int = 0) -> int:
+        """Bytes that have come, of which `fresh` ones of the socket have not been looked at; 0 at
+        the end, -1: more must come first."""
         if self._ahead:
             count = min(len(view), len(self._ahead))
             view[:count] = self._ahead[:count]
             self._ahead = self._ahead[count:]
             return count
-        total = 0
+        total, size = 0, len(view)
         with self._lock:
+            if fresh:
+                self._incoming.write(self._raw[:fresh])
             # Looking is cheaper than the exception of a read that finds nothing.
-            while total < len(view) and (self._incoming.pending or self._tls.pending()):
+            while total < size and (self._incoming.pending or self._tls.pending()):
                 try:
-                    got: Any = self._tls.read(len(view) - total, view[total:])
+                    got: Any = self._tls.read(size - total, view[total:] if total else view)
                 except ssl.SSLWantReadError:
                     break
                 except ssl.SSLZeroReturnError:
@@ -214,13 +217,15 @@ class TlsTransport(TcpTransport):
             return total or self._over - 1
 
 
-def _pieces(buffers: Sequence[Buffer]) -> Iterator[Buffer]:
+def _pieces(buffers: Sequence[Buffer]) -> Iterable[Buffer]:
     """The same bytes in pieces of a good size: none empty, the small ones in one."""
-    if sum(map(len, buffers)) <= _PIECE:
-        joined = b"".join(buffers)
-        if joined:
-            yield joined
-        return
+    if sum(map(len, buffers)) > _PIECE:
+        return _cut(buffers)
+    joined = b"".join(buffers)
+    return (joined,) if joined else ()
+
+
+def _cut(buffers: Sequence[Buffer]) -> Iterator[Buffer]:
     for buffer in buffers:
         view = memoryview(buffer).cast("B")
         for start in range(0, len(view), _PIECE):
