@@ -42,7 +42,8 @@ class Peer:
     name: str
     script: str
     needs: str = ""
-    """Module without which it cannot run; "cpp" for the C++ peer."""
+    """Module without which it cannot run; "cpp" for the C++ peer. `yarp` is compat's, and uses the
+    same name server as that peer."""
     options: tuple[str, ...] = ()
     functions: Sequence[str] = EVERYTHING
     needs_core: bool = False
@@ -58,6 +59,9 @@ PEERS = (
     Peer("zenoh", "peer_zenoh.py", "zenoh"),
     Peer("cpp-tcp", "peer_cpp.py", "cpp", ("--carrier", "tcp")),
     Peer("cpp-fast_tcp", "peer_cpp.py", "cpp", ("--carrier", "fast_tcp")),
+    # The same program as for C++, with yarpy-compat as its `yarp`.
+    Peer("compat-tcp", "peer_cpp.py", "yarp", ("--carrier", "tcp")),
+    Peer("compat-fast_tcp", "peer_cpp.py", "yarp", ("--carrier", "fast_tcp")),
     Peer("cpp-latency-test", "peer_latency_test.py", "cpp", (), ("stream", "rpc")),
     Peer("yarpy-tcp", "peer_yarpy.py", "yarpy", ("--carrier", "tcp")),
     Peer("yarpy-fast_tcp", "peer_yarpy.py", "yarpy", ("--carrier", "fast_tcp")),
@@ -106,6 +110,9 @@ class Bench:
             environment = {**self.cpp.environment, "YARP_PROGRAM": str(self.cpp.program())}
             environment["YARP_QUIET"] = "1"
             python = str(self.cpp.interpreter)
+        elif peer.needs == "yarp":
+            assert self.cpp is not None
+            environment["YARP_CONFIG_HOME"] = self.cpp.environment["YARP_CONFIG_HOME"]
         command = [python, str(HERE / peer.script), side, workload.function, *peer.options, *more]
         if self.cores:
             command += ["--core", str(self.cores[core if workload.cores == 2 else 0])]
@@ -130,7 +137,7 @@ def choose(wanted: Sequence[str], bench: Bench) -> Iterator[Peer]:
     for peer in PEERS:
         if wanted and not any(peer.name.startswith(one) for one in wanted):
             continue
-        if peer.needs == "cpp" and bench.cpp is None:
+        if peer.needs in ("cpp", "yarp") and bench.cpp is None:
             continue
         if peer.needs not in ("", "cpp"):
             try:
@@ -231,7 +238,7 @@ def main() -> int:
             folder = stack.enter_context(tempfile.TemporaryDirectory())
             make(Path(folder), ["127.0.0.1", "localhost"])
             os.environ["YARPY_TLS_DIR"] = folder
-        if not options.peers or any("cpp".startswith(one[:3]) for one in options.peers):
+        if not options.peers or any(one[:3] in ("cpp", "com") for one in options.peers):
             try:
                 home = stack.enter_context(tempfile.TemporaryDirectory())
                 bench.cpp = stack.enter_context(CppYarp.prepare(Path(home)).server())

@@ -93,4 +93,9 @@ GOALS = (
     Goal("flood", "yarpy-tcp", "cpp-fast_tcp", 1.5),
     Goal("stream", "yarpy-zmq", "zmq", 1.3),
     Goal("flood", "yarpy-zmq", "zmq", 0.3),
+    Goal("stream", "compat-tcp", "cpp-tcp", 0.6),
+    Goal("stream", "compat-fast_tcp", "cpp-fast_tcp", 0.6),
+    Goal("rpc", "compat-tcp", "cpp-tcp", 0.6),
+    Goal("flood", "compat-tcp", "cpp-tcp", 2.0),
+    Goal("flood", "compat-fast_tcp", "cpp-fast_tcp", 2.0),
 )

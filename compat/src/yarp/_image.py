@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import yarpy
 from yarp._pixel import Pixel, PixelRgb, PixelRgba, PixelRgbFloat
 from yarp._portable import Portable
+from yarp._vector import VectorBase
 from yarpy.data.pixel import pixel as pixel_kind
 
 OWN_QUANTUM = 8
@@ -104,11 +105,12 @@ class Image(Portable):
     # -- its memory ---------------------------------------------------------------------------
 
     def setExternal(self, mem: Any, w: int, h: int) -> None:
-        """Use the memory of `mem`: bytes, a numpy array, a memoryview; rows without padding.
+        """Use the memory of `mem`: bytes, a numpy array, a memoryview; rows without padding. Of a
+        Vector it is a copy.
 
         Raises TypeError for what is not contiguous memory, ValueError if there is too little.
         """
-        view = memoryview(mem)
+        view = memoryview(mem._memory() if isinstance(mem, VectorBase) else mem)
         if not view.c_contiguous:
             raise TypeError("an image needs contiguous memory: numpy.ascontiguousarray makes it so")
         raw = view.cast("B") if view.nbytes else view

@@ -41,6 +41,12 @@ class VectorBase(Portable):
         found = message.as_(yarpy.Vector)
         self._items = [self._kind(item) for item in found]
 
+    def _memory(self) -> bytes:
+        """The numbers as they lie in memory."""
+        return b"".join(bytes(block) for block in yarpy.Vector(self._items, self._dtype).to_wire())[
+            8:
+        ]
+
     def _store(self, values: Iterable[Any]) -> None:
         found = [self._kind(value) for value in values]
         self._items[: len(found)] = found
