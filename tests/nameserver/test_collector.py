@@ -8,6 +8,7 @@ import sys
 import time
 
 import pytest
+from support.patience import patience
 from support.port import free_port
 
 import yarpy
@@ -115,6 +116,35 @@ def test_a_complaint_has_the_name_looked_at(server, monkeypatch):
             with pytest.raises(yarpy.LinkClosed):
                 asker.connect("/lost")
         assert gone("/lost")
+
+
+def test_silent_ports_of_a_host_delay_no_other(server, monkeypatch):
+    """Anybody may give thousands of names to a host that does not answer."""
+    tried = []
+    really = socket.create_connection
+
+    def connect(address, *more):
+        if not address[0].startswith("192.0.2."):
+            return really(address, *more)
+        tried.append(address[1])
+        if address[1] < 1000:
+            time.sleep(0.25)
+            raise TimeoutError
+        raise ConnectionRefusedError
+
+    monkeypatch.setattr(collector.socket, "create_connection", connect)
+    client = server.client
+    for number in range(1, 31):
+        client.register(f"/a/silent{number}", "tcp", "192.0.2.7", number)
+        client.set(f"/a/silent{number}", "process", 1)
+    client.register("/z/dead", "tcp", "192.0.2.7", 1001)
+    client.set("/z/dead", "process", 1)
+    client.register("/z/elsewhere", "tcp", "192.0.2.8", 1002)
+    client.set("/z/elsewhere", "process", 1)
+    assert gone("/z/elsewhere", patience(10.0))
+    assert gone("/z/dead", patience(30.0))  # of the same host: those that were silent come later
+    assert len(set(tried)) > 10
+    assert len(client.list("/a")) == 30
 
 
 def test_a_host_name_that_cannot_be_one_is_no_proof():

@@ -3,8 +3,10 @@
 Rules: a name goes only if its address actively refuses connections, seen `STRIKES` times in a row;
 a silent host may come back, and what never was a YARP port (no `process` property: a camera, a
 robot of another make) is not ours to judge. Ports of this host are left alone while their process
-lives; others are probed a few at a time. A number that we handed out and that nobody listens on
-comes back after `LEASE`, unless somebody ever did.
+lives; others are probed a few at a time. Of a host that is silent a few ports are tried in a round,
+those first that were not silent before, so that thousands of names that somebody gave it delay
+nobody's. A number that we handed out and that nobody listens on comes back after `LEASE`, unless
+somebody ever did.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import os
 import socket
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable
 from math import inf
 from typing import Final
@@ -26,6 +29,7 @@ INTERVAL: Final = 2.0  # seconds between rounds
 STRIKES: Final = 2
 PER_SECOND: Final = 25  # connections tried to ports elsewhere
 TIMEOUT: Final = 0.5  # seconds for one try
+MOST_SILENT: Final = 3  # tries in vain of one host in a round
 LEASE: Final = 300.0  # seconds in which a port has to listen on the number that it asked for
 
 
@@ -47,6 +51,7 @@ class Collector:
         self._lease = lease
         self._lent: dict[Contact, float] = {}  # when it is due; inf: it was taken up
         self._strikes: dict[str, int] = {}
+        self._silences: dict[str, int] = {}  # how often each name's port was silent in a row
         self._suspects: set[str] = set()  # reported as unreachable
         self._wake = threading.Event()
         self._closed = False
@@ -75,16 +80,27 @@ class Collector:
         """One round over all names."""
         suspects, self._suspects = self._suspects, set()
         here = set(local_addresses())
-        for contact, process in self._ports():
+        ports, before = self._ports(), self._silences
+        self._silences = {one.name: before[one.name] for one, _ in ports if one.name in before}
+        silent: Counter[str] = Counter()
+        for contact, process in sorted(ports, key=lambda port: before.get(port[0].name, 0)):
             if self._closed:
                 return
             local = contact.host in here
+            if silent[contact.host] >= MOST_SILENT:
+                continue
             if contact.name not in suspects:
                 if local and process and _lives(process):
                     continue
                 if not local:
                     time.sleep(1 / PER_SECOND)
-            self._judge(contact)
+            refuses = _refuses(contact)
+            if refuses is None:
+                silent[contact.host] += 1
+                self._silences[contact.name] = self._silences.get(contact.name, 0) + 1
+            else:
+                self._silences.pop(contact.name, None)
+            self._judge(contact, bool(refuses))
         self._end_leases()
 
     def _end_leases(self) -> None:
@@ -125,8 +141,8 @@ class Collector:
                     found.append((contact, int(process[0]) if process[0].isdigit() else 0))
         return found
 
-    def _judge(self, contact: Contact) -> None:
-        if not _refuses(contact):
+    def _judge(self, contact: Contact, refuses: bool) -> None:
+        if not refuses:
             self._strikes.pop(contact.name, None)
             return
         strikes = self._strikes.get(contact.name, 0) + 1
@@ -167,12 +183,13 @@ def _listens(contact: Contact, silent: set[str]) -> bool:
     return True
 
 
-def _refuses(contact: Contact) -> bool:
-    """Whether the host itself says that nothing listens there. Silence proves nothing."""
+def _refuses(contact: Contact) -> bool | None:
+    """Whether the host itself says that nothing listens there. None: it is silent, which proves
+    nothing."""
     try:
         socket.create_connection((contact.host, contact.port), TIMEOUT).close()
     except ConnectionRefusedError:
         return True
     except (OSError, UnicodeError):  # UnicodeError: no host can have such a name
-        return False
+        return None
     return False
