@@ -21,6 +21,23 @@ def test_words_up_to_four_letters_are_vocabs(capt: ModuleType) -> None:
     assert Bottle.from_bytes(capt.Capt._methods["noargs"].ask()) == ["noargs"]
 
 
+def test_a_vocab_behind_a_name_is_no_word_of_it() -> None:
+    made = loads(
+        "struct B { 1: bool b }\nservice S { void set_on(1: bool on), void set_it(1: B b), "
+        'void put_it(1: B b (yarp.nested = "true")), void set_long(1: i32 n, 2: bool on) }',
+        "s",
+    )
+    methods = made.S._methods
+    ask = {
+        "set_on": methods["set_on"].ask(True),
+        "set_it": methods["set_it"].ask(made.B()),
+        "put_it": methods["put_it"].ask(made.B()),
+        "set_long": methods["set_long"].ask(1, True),
+    }
+    last = {name: type(Bottle.from_bytes(data)[1]).__name__ for name, data in ask.items()}
+    assert last == {"set_on": "str", "set_it": "str", "put_it": "Vocab", "set_long": "Vocab"}
+
+
 def test_structs_are_spliced_in_unless_nested() -> None:
     made = loads(
         "struct P { 1: i32 x, 2: i32 y }\nservice S {"

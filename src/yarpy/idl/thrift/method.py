@@ -4,6 +4,7 @@
     answer     256 n, the result, a struct spliced in; nothing for void
 
     get_long_method_name    the words [get] [long] method [name]: vocabs up to four letters
+    set_on([ok])            [set] on [ok]: the last is a string before an argument that is a vocab
 
 Rules: pure functions of bytes, made on first use. Only trailing arguments that have a default may
 be missing. A result that is External is the whole answer.
@@ -23,7 +24,7 @@ from yarpy.errors import DecodeError
 from yarpy.idl.thrift import fast, reader
 from yarpy.idl.thrift.extent import Ending, ending_of
 from yarpy.idl.thrift.fast import Part
-from yarpy.idl.thrift.kind import External, Kind, flat, kind_of, name_of
+from yarpy.idl.thrift.kind import External, Kind, Scalar, flat, is_enum, kind_of, name_of
 from yarpy.idl.thrift.structure import _New
 from yarpy.idl.thrift.word import SERVICE, original
 
@@ -99,9 +100,10 @@ class Method:
     def head(self) -> bytes:
         """The name as it is sent: the count of the list counts arguments, too."""
         pieces = []
-        for word in self.words:
+        for at, word in enumerate(self.words):
             data = word.encode()
-            if len(data) <= 4:
+            last = at == len(self.words) - 1
+            if len(data) <= 4 and not (last and self.parts and _begins_with_vocab(self.parts[0])):
                 pieces.append(_PAIR(VOCAB32, vocab_code(data)))
             else:
                 pieces.append(_PAIR(STRING, len(data)) + data)
@@ -188,6 +190,20 @@ def shown(value: Any) -> str:
     if hasattr(value, "__array_interface__"):
         return repr(value.tolist())
     return repr(value)
+
+
+def _begins_with_vocab(part: Part) -> bool:
+    """Whether an argument begins with a vocab, which C++ before 3.7 takes for one more word of a
+    name that ends in a vocab."""
+    kind = part.kind
+    while isinstance(kind, type) and not is_enum(kind) and not part.nested:
+        fields = kind._specs()
+        if not fields or fields[0].nested:
+            return False
+        kind = fields[0].kind
+    if isinstance(kind, type) and is_enum(kind):
+        return bool(kind._base.code == VOCAB32)
+    return isinstance(kind, Scalar) and kind.code == VOCAB32
 
 
 def _maker(default: Any) -> Callable[[], Any]:
