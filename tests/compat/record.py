@@ -12,6 +12,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))
 
 from support.cpp import CppYarp  # noqa: E402
+from support.port import free_block  # noqa: E402
 
 with tempfile.TemporaryDirectory() as home:
     cpp = CppYarp.prepare(Path(home))
@@ -20,7 +21,7 @@ with tempfile.TemporaryDirectory() as home:
             continue
         done = subprocess.run(
             [cpp.interpreter, HERE / "runner.py", script],
-            env=cpp.environment,
+            env={**cpp.environment, "YARP_PORT_RANGE": str(free_block(200))},
             capture_output=True,
             text=True,
             timeout=30,

@@ -6,6 +6,7 @@ installed, it has to print that. `python tests/compat/record.py` writes `expecte
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,11 +14,13 @@ from pathlib import Path
 import pytest
 from support.cpp import CppYarp, MissingPeer
 from support.patience import patience
+from support.port import free_block
 from support.process import Process
 
 HERE = Path(__file__).parent
 SCRIPTS = sorted((HERE / "scripts").glob("*.py"))
 RUNNER = HERE / "runner.py"
+RANKED = HERE.parents[1] / "compat" / "ranked.txt"
 
 
 def expected(script: Path) -> list[str]:
@@ -42,7 +45,9 @@ def cpp(tmp_path_factory: pytest.TempPathFactory) -> CppYarp:
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_cpp_prints_it(script: Path, cpp: CppYarp) -> None:
-    with Process([cpp.interpreter, RUNNER, script], env=cpp.environment) as process:
+    # Without a name server C++ numbers its ports from here on.
+    environment = {**cpp.environment, "YARP_PORT_RANGE": str(free_block(200))}
+    with Process([cpp.interpreter, RUNNER, script], env=environment) as process:
         process.wait(patience(20.0))
     assert process.stdout.splitlines() == expected(script), process.stderr
 
@@ -50,3 +55,13 @@ def test_cpp_prints_it(script: Path, cpp: CppYarp) -> None:
 def test_every_expectation_has_its_script() -> None:
     kept = {path.stem for path in (HERE / "expected").glob("*.txt")}
     assert kept == {path.stem for path in SCRIPTS}
+
+
+def test_the_names_that_are_used_most_are_among_them() -> None:
+    """Each of the first eighty. What needs a robot is in `programs`, and run against one."""
+    rows = [line.split() for line in RANKED.read_text().splitlines() if line[:1].isalpha()]
+    rows.sort(key=lambda row: -int(row[1]))
+    texts = [path.read_text() for path in (*SCRIPTS, *(HERE / "programs").glob("*.py"))]
+    for name, _ in rows[:80]:
+        word = re.compile(rf"\b{name.rpartition('.')[2]}\b")
+        assert any(word.search(text) for text in texts), f"no script uses {name}"
