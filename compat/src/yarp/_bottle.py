@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from yarp._property import Property
 
 
+NativeBottle = yarpy.Bottle
+
+
 class Bottle(Portable, Searchable):
     """A list of numbers, strings, vocabs and further lists. `Bottle("set pos 3")` reads text."""
 
@@ -28,7 +31,7 @@ class Bottle(Portable, Searchable):
         if isinstance(text, Bottle):
             self._native = copied(text._native)
         elif isinstance(text, str):
-            self._native = yarpy.Bottle.from_text(text) if text else yarpy.Bottle()
+            self._native = NativeBottle.from_text(text) if text else NativeBottle()
         else:
             raise TypeError(f"a Bottle is made of text or of another Bottle, not of {text!r}")
 
@@ -43,7 +46,13 @@ class Bottle(Portable, Searchable):
         return self._native
 
     def _take(self, message: yarpy.Message) -> None:
-        self._native[:] = message.as_(yarpy.Bottle)
+        self._native[:] = message.as_(NativeBottle)
+
+    @classmethod
+    def _from(cls, message: yarpy.Message) -> Self:
+        self = cls.__new__(cls)
+        self._native = message.as_(NativeBottle)
+        return self
 
     # -- what is in it ------------------------------------------------------------------------
 
@@ -86,7 +95,8 @@ class Bottle(Portable, Searchable):
         self._native.append(yarpy.Int16(whole(x, 16)))
 
     def addInt32(self, x: int) -> None:
-        self._native.append(int32(x))
+        plain = type(x) is int and -0x80000000 <= x <= 0x7FFFFFFF  # the quick way for most
+        self._native.append(x if plain else int32(x))
 
     def addInt64(self, x: int) -> None:
         self._native.append(yarpy.Int64(whole(x, 64)))
@@ -95,7 +105,7 @@ class Bottle(Portable, Searchable):
         self._native.append(yarpy.Float32(number(x)))
 
     def addFloat64(self, x: float) -> None:
-        self._native.append(number(x))
+        self._native.append(x if type(x) is float else number(x))
 
     def addString(self, str: str) -> None:
         self._native.append(text(str))

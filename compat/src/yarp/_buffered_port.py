@@ -66,9 +66,8 @@ class BufferedPort(Contactable, Generic[T]):
                 return found
 
     def _decoded(self, message: yarpy.Message) -> T | None:
-        found: T = self.datum()
         try:
-            found._take(message)
+            found: T = self.datum._from(message)
         except yarpy.DecodeError:  # something else, which is not for this port
             return None
         return found
@@ -97,7 +96,7 @@ class BufferedPort(Contactable, Generic[T]):
     def write(self, forceStrict: bool = False) -> None:
         """Send what was prepared; a reader that is still busy with the one before misses it, unless
         `forceStrict`."""
-        port, envelope = self._port, self._next_envelope()
+        port, envelope, self._envelope = self._port, self._envelope, None
         if port is None:
             return
         port.strict = forceStrict

@@ -166,10 +166,6 @@ class Contactable:
             return False
         return True
 
-    def _next_envelope(self) -> str | None:
-        envelope, self._envelope = self._envelope, None
-        return envelope
-
     # -- readers ------------------------------------------------------------------------------
 
     def setReader(self, reader: Any) -> None:

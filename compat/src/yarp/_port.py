@@ -7,7 +7,7 @@ from typing import Any
 import yarpy
 from yarp._contact import Contact
 from yarp._contactable import Contactable
-from yarp._portable import PortReader
+from yarp._portable import PortReader, PortWriter
 
 
 class Port(Contactable):
@@ -24,11 +24,11 @@ class Port(Contactable):
 
     def write(self, writer: Any, reader: Any = None, callback: Any = None) -> bool:
         """Send; with a reader as the second argument, ask and read the answer into it."""
-        if not hasattr(writer, "_outgoing"):
+        if not isinstance(writer, PortWriter):
             raise TypeError(f"a port writes a Bottle, an image and the like, not {writer!r}")
         if reader is not None and isinstance(reader, PortReader):
             return self._ask(writer, reader)
-        port, envelope = self._port, self._next_envelope()
+        port, envelope, self._envelope = self._port, self._envelope, None
         if port is not None:
             try:
                 port.write(writer._outgoing(), envelope)

@@ -7,7 +7,7 @@ itself in `_take`; that may raise DecodeError, which means that something else c
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import yarpy
 
@@ -45,6 +45,13 @@ class PortReader:
         from yarp._connection import ConnectionReader
 
         self.read(ConnectionReader(message))
+
+    @classmethod
+    def _from(cls, message: yarpy.Message) -> Self:
+        """A new one, filled by a message."""
+        self = cls()
+        self._take(message)
+        return self
 
     def read(self, reader: ConnectionReader) -> bool:
         """Read from a connection."""

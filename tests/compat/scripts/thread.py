@@ -4,25 +4,27 @@ import time
 
 import yarp
 
+notes = []
+
 
 class Worker(yarp.Thread):
     def threadInit(self):
-        print("init")
+        notes.append("init")
         return True
 
     def run(self):
-        print("run")
+        notes.append("run")
         while not self.isStopping():
             time.sleep(0.01)
 
     def threadRelease(self):
-        print("release")
+        notes.append("release")
 
 
 worker = Worker()
 print(worker.isRunning(), worker.start(), worker.isRunning())
 time.sleep(0.2)
-print(worker.stop(), worker.isRunning())
+print(worker.stop(), worker.isRunning(), notes)
 
 
 class Never(yarp.Thread):
