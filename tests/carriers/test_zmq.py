@@ -202,6 +202,15 @@ def test_subscriptions_are_limited() -> None:
             end.stream.feed(zmtp.command(b"SUBSCRIBE", b"%d" % number))
             next(steps)
     end, carrier = accepted(b"SUB")
+    for _ in range(3):  # what is given up makes room
+        for number in range(40):
+            hear(end, carrier, zmtp.command(b"SUBSCRIBE", b"%d" % number + bytes(1000)))
+        for number in range(40):
+            hear(end, carrier, zmtp.command(b"CANCEL", b"%d" % number + bytes(1000)))
+    with pytest.raises(RemoteProtocolError, match="65536 bytes"):
+        for number in range(80):
+            hear(end, carrier, zmtp.command(b"SUBSCRIBE", b"%d" % number + bytes(1000)))
+    end, carrier = accepted(b"SUB")
     with pytest.raises(RemoteProtocolError, match="limit"):
         hear(end, carrier, b"\2" + (5000).to_bytes(8, "big"))
 

@@ -12,6 +12,7 @@ from support.patience import patience
 from support.wait import wait_until
 
 from yarpy import network
+from yarpy.carriers import zmtp
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
@@ -81,6 +82,9 @@ def test_who_wants_to_read_is_told_that_there_is_nothing(
             driver.run(driver.stream.more(1000), time.monotonic() + patience(5.0))
         driver.transport.close()
         wait_until(lambda: "/me over tcp closed: it wants to read: this port" in caplog.text)
+        with socket.create_connection(where, patience(5.0)) as sock, sock.makefile("rb") as said:
+            sock.sendall(zmtp.GREETING + zmtp.ready({"Socket-Type": b"SUB"}))
+            assert b"ERROR" in (told := said.read()) and b"sends nothing by itself" in told
         assert not server.outputs
 
 

@@ -22,7 +22,7 @@ from yarpy.carriers.payload import message_of, payload_of, to_payload
 from yarpy.errors import AccessRefused, LinkClosed, LocalProtocolError, RemoteProtocolError
 from yarpy.log import readable
 from yarpy.route import CarrierSpec, Route
-from yarpy.wire.effects import May
+from yarpy.wire.effects import HEAR, May
 from yarpy.wire.message import CALL, DATA, SMALL, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
@@ -32,6 +32,7 @@ PORT: Final = "X-Yarp-Port"  # the property by which a port says its name and mo
 NOBODY: Final = "zmq"  # what a peer without a name is called
 MAX_PREFIX: Final = 1 << 12  # bytes of a subscription
 MAX_SUBSCRIPTIONS: Final = 1024  # of one peer
+MAX_HELD: Final = 1 << 16  # bytes of its subscriptions
 
 
 class Zmq(Carrier):
@@ -129,7 +130,7 @@ class Zmq(Carrier):
 
     def _admit(self, stream: ByteStream) -> Steps[None]:
         """Raise AccessRefused for a peer that lacks a right, which is told."""
-        rights = ["write", *to_write(self.route)] if self.push else ["read"]
+        rights = ["write", *to_write(self.route)] if self.push else [HEAR]
         for right in dict.fromkeys(rights):
             why = yield May(right)
             if why:
@@ -253,6 +254,7 @@ class Pub(Push):
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self._wanted: dict[bytes, int] = {}  # prefixes, and how often each was subscribed to
+        self._held = 0  # bytes of them
         self._topic = b""
         self._takes = self._takes_raw = False
 
@@ -280,13 +282,18 @@ class Pub(Push):
         if len(prefix) > MAX_PREFIX:
             raise RemoteProtocolError(f"a subscription of more than {MAX_PREFIX} bytes")
         if on:
+            if prefix not in wanted:
+                self._held += len(prefix)
             wanted[prefix] = wanted.get(prefix, 0) + 1
-            if len(wanted) > MAX_SUBSCRIPTIONS:
-                raise RemoteProtocolError(f"more than {MAX_SUBSCRIPTIONS} subscriptions")
+            if len(wanted) > MAX_SUBSCRIPTIONS or self._held > MAX_HELD:
+                raise RemoteProtocolError(
+                    f"more than {MAX_SUBSCRIPTIONS} subscriptions, or {MAX_HELD} bytes of them"
+                )
         elif prefix in wanted:
             wanted[prefix] -= 1
             if not wanted[prefix]:
                 del wanted[prefix]
+                self._held -= len(prefix)
         if self.raw:
             self._takes, self._takes_raw = False, self._is_wanted(RAW + self._topic, False)
         else:
