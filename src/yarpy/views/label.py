@@ -65,6 +65,8 @@ _SENSORS: Final[dict[str, tuple[str, Sequence[str], Sequence[str]]]] = {
     "encoder_arrays": ("encoder", (), ()),
     "skin_patches": ("skin", (), ()),
     "position_sensors": ("position", _XYZ, ["m"] * 3),
+    "linear_velocities": ("velocity", _XYZ, ["m/s"] * 3),
+    "angular_accelerations": ("angular acceleration", _XYZ, ["°/s²"] * 3),
 }
 
 
@@ -130,7 +132,7 @@ def _sensor_labels(value: Any, sensors: list[list[tuple[str, str]]]) -> list[Lab
         return []
     return [
         label
-        for kind, row, named in zip(KINDS, value, sensors, strict=True)
+        for kind, row, named in zip(KINDS, value, sensors, strict=False)
         for (values, _), (name, _) in zip(row, named, strict=True)
         for label in (*_measured(kind, name, len(values)), _NONE)  # and the time
     ]

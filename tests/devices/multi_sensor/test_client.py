@@ -76,6 +76,22 @@ def test_values_by_name(client, imu):
     assert "2 gyroscopes, 1 orientations" in repr(client)
 
 
+def test_twelve_kinds_of_newer_programs(names):
+    imu = Imu()
+    imu.linear_velocities = lambda: {"legs": (0.1, 0.2, 0.3)}
+    with (
+        MultiSensorServer("/imu", imu, 0.005, names=names),
+        MultiSensor("/imu", timeout=PATIENCE, names=names) as client,
+        MultiSensorServer("/relay", client, 0.005, names=names),
+        MultiSensor("/relay", timeout=PATIENCE, names=names) as relayed,
+    ):
+        assert client.linear_velocities() == {"legs": (0.1, 0.2, 0.3)}
+        assert relayed.linear_velocities() == client.linear_velocities()
+        assert relayed.angular_accelerations() == {}
+        assert relayed.gyroscopes()["right"] == (4.0, 5.0, 6.0)
+        assert repr(client).endswith("1 orientations, 1 linear_velocities>")
+
+
 def test_silence(names):
     reply = Bottle.from_text('((a b "")) () () () () () () () () ()')
     with (

@@ -82,6 +82,17 @@ def test_names(server, names):
             assert client.call(Bottle.from_text(question), timeout=PATIENCE) == ["fail"]
 
 
+def test_twelve_kinds_for_newer_programs(names):
+    with (
+        MultiSensorServer("/new", Imu(), 0.005, newer=True, names=names),
+        yarpy.RpcClient("/new/rpc:o", names=names) as client,
+        yarpy.BufferedPort("/me", names=names) as port,
+    ):
+        assert len(client.call(["getMetadata"], timeout=PATIENCE)) == 12
+        port.listen_to("/new/measures:o")
+        assert len(port.read(PATIENCE).value) == 12
+
+
 def test_a_sensor_that_fails_keeps_its_last_values(names, caplog):
     imu = Imu()
     times = iter(range(1, 1000000))

@@ -17,7 +17,7 @@ from typing import Any, Final
 from yarpy.data.bottle import Bottle
 from yarpy.devices.closeable import Closeable, local_prefix, prefix
 from yarpy.devices.latest_message import LatestMessage
-from yarpy.devices.multi_sensor.interface import KINDS
+from yarpy.devices.multi_sensor.interface import KINDS, NEWER, OLDER
 from yarpy.errors import DecodeError, RemoteProtocolError
 from yarpy.names.base import NameClient
 from yarpy.port.rpc import RpcClient
@@ -37,8 +37,8 @@ def read_names(reply: Any) -> list[list[tuple[str, str]]]:
     Raises TypeError, ValueError.
     """
     lists = reply[0] if isinstance(reply, list) and len(reply) == 1 else reply
-    if len(lists) != len(KINDS):
-        raise ValueError(f"{len(lists)} kinds of sensors, not {len(KINDS)}")
+    if len(lists) not in (OLDER, NEWER):
+        raise ValueError(f"{len(lists)} kinds of sensors, not {OLDER} or {NEWER}")
     return [[(str(name), str(frame)) for name, frame, *_ in sensors] for sensors in lists]
 
 
@@ -83,7 +83,7 @@ class MultiSensor(Closeable):
             self._resources = resources.pop_all()
 
     def __repr__(self) -> str:
-        pairs = zip(KINDS, self._sensors, strict=True)
+        pairs = zip(KINDS, self._sensors, strict=False)
         listed = ", ".join(f"{len(names)} {kind}" for kind, names in pairs if names)
         return f"<MultiSensor {self.remote}, {listed}>"
 
@@ -136,11 +136,19 @@ class MultiSensor(Closeable):
         """Positions x, y, z, m."""
         return self._values("position_sensors")
 
+    def linear_velocities(self) -> dict[str, tuple[float, ...]]:
+        """Linear velocities along x, y, z, m/s; of YARP 3.11 and later."""
+        return self._values("linear_velocities")
+
+    def angular_accelerations(self) -> dict[str, tuple[float, ...]]:
+        """Angular accelerations around x, y, z, deg/s^2; of YARP 3.11 and later."""
+        return self._values("angular_accelerations")
+
     # -- within -------------------------------------------------------------------------------
 
     def _values(self, kind: str) -> dict[str, tuple[float, ...]]:
         index = [*KINDS].index(kind)
-        if not self._sensors[index]:
+        if index >= len(self._sensors) or not self._sensors[index]:
             return {}
         row = self._latest.value()[index]
         return {name: values for name, (values, _) in zip(self._sensors[index], row, strict=True)}

@@ -26,6 +26,7 @@ from typing import Protocol, TypeAlias
 Readings: TypeAlias = Mapping[str, Sequence[float] | float]
 
 #: The kinds of sensors in the order of the protocol, and how many values one has (0: any number).
+#: The last two are in YARP 3.11 and later, where all programs must have them.
 KINDS = {
     "gyroscopes": 3,
     "accelerometers": 3,
@@ -37,7 +38,11 @@ KINDS = {
     "encoder_arrays": 0,
     "skin_patches": 0,
     "position_sensors": 3,
+    "linear_velocities": 3,
+    "angular_accelerations": 3,
 }
+#: how many kinds programs before 3.11 have, and those since
+OLDER, NEWER = 10, 12
 
 
 class MultiSensorLike(Protocol):
@@ -80,3 +85,9 @@ class MultiSensorLike(Protocol):
 
     def position_sensors(self) -> Readings:
         """Positions x, y, z, m."""
+
+    def linear_velocities(self) -> Readings:
+        """Linear velocities along x, y, z, m/s."""
+
+    def angular_accelerations(self) -> Readings:
+        """Angular accelerations around x, y, z, deg/s^2."""

@@ -3,7 +3,8 @@
     <name>/measures:o   all values of all sensors, every period, with count and time
     <name>/rpc:o        the names of the sensors, for clients that ask `getMetadata`
 
-Both list the ten kinds of `KINDS` in that order; kinds without sensors are empty lists.
+Both list the first ten of `KINDS` in that order, or all twelve; kinds without sensors are empty
+lists. C++ YARP before 3.11 refuses twelve, later versions refuse ten.
 
 Rules: nothing is read while nobody listens. Names and numbers of values are fixed when the server
 starts. A value list is never empty, and all numbers are float64: C++ drops anything else.
@@ -24,7 +25,7 @@ from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.devices.access import Access
 from yarpy.devices.closeable import Closeable, prefix
-from yarpy.devices.multi_sensor.interface import KINDS
+from yarpy.devices.multi_sensor.interface import KINDS, NEWER, OLDER
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError
@@ -44,6 +45,8 @@ class MultiSensorServer(Closeable):
 
     name: prefix of the ports, for example `/robot/imu`.
     period: seconds between messages (C++ uses milliseconds).
+    newer: list twelve kinds, for clients of YARP 3.11 and later, even if the device has none of the
+    last two.
     names: a name client, None for the default.
     Raises AddressError (a name is in use), NoNameServer; ValueError if the device has no sensors.
     """
@@ -54,6 +57,7 @@ class MultiSensorServer(Closeable):
         device: object,
         period: float = 0.01,
         *,
+        newer: bool = False,
         names: NameClient | None = None,
     ) -> None:
         self.name = name = prefix(name)
@@ -61,6 +65,8 @@ class MultiSensorServer(Closeable):
         self._sensors = Access(device, 0, Complaints(name), threading.Lock())
         self._last: dict[str, dict[str, _Measurement]] = {}
         self._read_first()
+        newer = newer or any(self._last.get(kind) for kind in [*KINDS][OLDER:])
+        self._kinds = [*KINDS][: NEWER if newer else OLDER]
         self._metadata = self._describe()
         self._stamp = Stamp()
         with ExitStack() as resources:
@@ -105,7 +111,7 @@ class MultiSensorServer(Closeable):
         if self._sensors.has("frames"):
             frames = self._sensors.ask("frames")
         listed = Bottle()
-        for kind in KINDS:
+        for kind in self._kinds:
             names = [*self._last.get(kind, ())]
             usual = {name: "" if kind in _FRAMELESS else name for name in names}
             listed.append(
@@ -149,7 +155,7 @@ class MultiSensorServer(Closeable):
             return
         self._read()
         message = Bottle()
-        for kind in KINDS:
+        for kind in self._kinds:
             sensors = self._last.get(kind, {}).values()
             message.append(Bottle(Bottle([Bottle(values), at]) for values, at in sensors))
         self._stamp = self._stamp.next(time.time())

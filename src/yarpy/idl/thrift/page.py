@@ -104,11 +104,11 @@ class _Fields:
 
     def input(self, name: str, kind: Kind, value: str, hint: str = "") -> str:
         label = escape(name)
-        what = hint or f"{name}: {name_of(kind)}"
+        what = hint or name_of(kind)
         needed = " required" if isinstance(kind, Scalar) and kind is not TEXT else ""
         self.inputs.append(
-            f'<input name="a{len(self.inputs)}" placeholder="{escape(what)}" title="{label}" '
-            f'aria-label="{label}" size="12" value="{escape(value)}"{needed}>'
+            f'<label>{label} <input name="a{len(self.inputs)}" placeholder="{escape(what)}" '
+            f'aria-label="{label}" size="12" value="{escape(value)}"{needed}></label>'
         )
         return f"$a{len(self.inputs) - 1}"
 
