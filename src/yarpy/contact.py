@@ -12,14 +12,24 @@ Rules: pure, no sockets. The text forms are those of C++ YARP (spec core-3 secti
     Contact(carrier='tcp', name='', host='10.0.0.1', port=10002)
     >>> parse_contact("mjpeg+path.a/b.c?x=1://cam").carrier
     'mjpeg+path.a/b.c?x=1'
+
+Brokers of MQTT have topics, which are no ports, and a usual number:
+
+    >>> parse_contact("mqtt://broker/robot/arm")
+    Contact(carrier='mqtt', name='/robot/arm', host='broker', port=1883)
+    >>> parse_contact("mqtt+tls://broker/robot/arm").label
+    '/mqtt://broker:8883/robot/arm'
 """
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import Final
 
 from yarpy.errors import AddressError
+
+BROKER: Final = "mqtt"
 
 _HOST_PORT = re.compile(r"^[^:/]+:\d+$")
 _IPV6_PORT = re.compile(r"^\[[0-9A-Fa-f:.%]+\]:\d+$")
@@ -48,6 +58,8 @@ class Contact:
     @property
     def label(self) -> str:
         """What ports call a connection that was dialled this way: the name, or `/host:port/`."""
+        if self.name and self.reachable and is_broker(self.carrier):
+            return f"/{BROKER}://{self.address}{self.name}"
         return self.name or f"/{self.address}/"
 
     def __str__(self) -> str:
@@ -79,12 +91,19 @@ def parse_contact(text: str) -> Contact:
         where = _host_port(head)
         if where is not None:
             return Contact(carrier or "tcp", slash + tail if tail else "", *where)
+        if head and tail and is_broker(carrier):
+            return Contact(carrier, slash + tail, head, 8883 if "+tls" in carrier else 1883)
     elif base < 0:
         # Not a form of C++ (there `host:port` is an unusable name): here it does what it says.
         where = _host_port(rest)
         if where is not None:
             return Contact("tcp", "", *where)
     return Contact(carrier, rest, "", 0)
+
+
+def is_broker(carrier: str) -> bool:
+    """Whether what is connected over a carrier is a topic of a broker."""
+    return carrier.partition("+")[0] == BROKER
 
 
 def _host_port(text: str) -> tuple[str, int] | None:

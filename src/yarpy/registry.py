@@ -32,6 +32,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "name_ser": "yarpy.carriers.name_ser:NameSer",
         "http": "yarpy.carriers.http.carrier:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
+        "mqtt": "yarpy.carriers.mqtt:Mqtt",
         "rossrv": "yarpy.carriers.rossrv:RosSrv",
         "tcpros": "yarpy.carriers.tcpros:TcpRos",
         "websocket": "yarpy.carriers.websocket:WebSocket",

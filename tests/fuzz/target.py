@@ -31,6 +31,8 @@ from support.vectors import rows
 import yarpy
 from yarpy import registry
 from yarpy.carriers import zmtp
+from yarpy.carriers.base import Carrier
+from yarpy.carriers.mqtt import Mqtt, Reader
 from yarpy.carriers.payload import message_of, payload_of
 from yarpy.carriers.ros_header import LENGTH, encode_header
 from yarpy.carriers.zmq import ROLES, Pub
@@ -210,13 +212,17 @@ def _zmq(kind: bytes, content: bytes = b"") -> bytes:
     return zmtp.GREETING + zmtp.ready({"Socket-Type": kind}) + content
 
 
-def _hear(data: bytes) -> None:
-    """A subscriber of ZeroMQ, while it is written to."""
-    end, carrier = End(piece=1 + len(data) % 97, limit=LIMIT), Pub(Route("/w", "/r", "zmq+pub"))
-    steps = carrier.listen(end.stream)
-    assert steps is not None
-    end.begin(steps)
-    end.feed(data)
+def _hear(made: Callable[[], Carrier]) -> Callable[[bytes], None]:
+    """What a subscriber says while it is written to."""
+
+    def read(data: bytes) -> None:
+        end = End(piece=1 + len(data) % 97, limit=LIMIT)
+        steps = made().listen(end.stream)
+        assert steps is not None
+        end.begin(steps)
+        end.feed(data)
+
+    return read
 
 
 def _payload(data: bytes) -> None:
@@ -386,6 +392,22 @@ _ANSWERS = (
     b"Welcome /r\r\n(1 two)\r\n<ACK>\r\n",
 )
 _COMMANDS = zmtp.command(b"SUBSCRIBE", b"cam") + zmtp.command(b"PING", b"\0\1x") + b"\4\7\6CANCEL"
+_CLIENTS = tuple(
+    bytes.fromhex(text)
+    for text in (
+        "100e00044d5154540402003c00026d65 820a0001000561726d2f2301 320a000361726d00015b315d e000",
+        "101200044d5154540502003c0321001400026d65 820b000100000561726d2f2300 c000",
+        "101200044d5154540502003c0321000100026d65 3010000171090900026331080001615b315d",
+        "101400044d51545404c2003c00026d65000175000170 a20700020003612f23",
+    )
+)
+_BROKERS = tuple(
+    bytes.fromhex(text)
+    for text in (
+        "20020000 9003000100 320a000361726d00015b315d 30060001615b315d",
+        "20020000 40020001",
+    )
+)
 _SOCKETS = (
     _zmq(b"SUB", _COMMANDS),
     _zmq(b"PUB", b"\1\3cam\0\3[1]\1\4raw:\2" + (8).to_bytes(8, "big") + bytes(8)),
@@ -436,7 +458,7 @@ TARGETS = {
     ),
     "datagrams": Target(_datagrams, _said("a")[:40]),
     "accepting": Target(
-        _accept(), (*_said("a"), _SUBSCRIBER, *_SOCKETS), refusals=(YarpError, Stalled)
+        _accept(), (*_said("a"), _SUBSCRIBER, *_SOCKETS, *_CLIENTS), refusals=(YarpError, Stalled)
     ),
     "accepting tcpros": Target(
         _accept(Declared("/node", "/topic", "std_msgs/String", String)),
@@ -455,7 +477,10 @@ TARGETS = {
         if (name := spelled.partition("+")[0]) not in _PASSIVE
         and not (name.endswith("png") and cv2 is None)
     },
-    "subscriptions": Target(_hear, (_COMMANDS, b"\0\4\1cam\0\4\0cam")),
+    "subscriptions mqtt": Target(_hear(lambda: Reader(Mqtt(Route("/w", "/r", "mqtt")))), _CLIENTS),
+    "subscriptions zmq": Target(
+        _hear(lambda: Pub(Route("/w", "/r", "zmq+pub"))), (_COMMANDS, b"\0\4\1cam\0\4\0cam")
+    ),
     "payload": Target(
         _payload, (b'[1, "two", {"a": [3.5]}]', b"\xff\0", jpeg.encode(Image(_PIXELS)))
     ),
@@ -464,6 +489,10 @@ TARGETS = {
             _dial(f"zmq+{role}"), _SOCKETS, refusals=(YarpError, Stalled)
         )
         for role in ROLES
+    },
+    **{
+        f"dialling {name}": Target(_dial(name), _BROKERS, refusals=(YarpError, Stalled))
+        for name in ("mqtt", "mqtt+qos.1", "mqtt+sub", "mqtt+sub+raw")
     },
     **{
         f"dialling {name}": Target(

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from yarpy.contact import Contact, check_name, parse_contact
+from yarpy.contact import Contact, check_name, is_broker, parse_contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -111,6 +111,8 @@ class Pairing:
             if self.spec.base != fixed.base:
                 raise LocalProtocolError(f"conflict between {self.spec} and {fixed}")
             self.spec = fixed.plus(*(one for one in self.spec.tokens if one not in fixed.tokens))
+        if is_broker(from_.carrier) and "sub" not in self.spec.tokens:
+            self.spec = self.spec.plus("sub")
         self.pull = _pulls(self.spec)
         self.here, self.there = here, there
         asked = there if self.pull else here
@@ -230,7 +232,7 @@ def _pulls(spec: CarrierSpec) -> bool:
 
 
 _PULLED = frozenset({"h264"})
-_FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http", "zmq"})
+_FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http", "zmq", "mqtt"})
 
 
 def join(

@@ -1,0 +1,297 @@
+"""Ports, mosquitto's broker and its clients, and paho: a port is a client, and is dialled."""
+
+from __future__ import annotations
+
+import shutil
+import socket
+import subprocess
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support import tls
+from support.access import allow
+from support.patience import patience
+from support.port import free_port
+from support.process import Process
+from support.wait import wait_until
+
+import yarpy
+
+WAIT = patience(5.0)
+for _program in ("mosquitto", "mosquitto_sub"):
+    if not (shutil.which(_program) or Path(f"/usr/sbin/{_program}").exists()):
+        pytest.skip("needs mosquitto and mosquitto-clients", allow_module_level=True)
+
+
+class Broker:
+    """A broker of mosquitto, to be stopped and started."""
+
+    def __init__(self, folder: Path, *settings: str) -> None:
+        self.port = free_port()
+        self._config = folder / "mosquitto.conf"
+        lines = (f"listener {self.port} 127.0.0.1", "allow_anonymous true", *settings)
+        self._config.write_text("\n".join(lines) + "\n")
+        self.process: Any = None
+        self.start()
+
+    def start(self) -> None:
+        program = shutil.which("mosquitto") or "/usr/sbin/mosquitto"
+        self.process = Process([program, "-c", str(self._config)])
+        self.process.__enter__()
+        wait_until(self.answers)
+
+    def stop(self) -> None:
+        self.process.__exit__(None, None, None)
+
+    def answers(self) -> bool:
+        try:
+            socket.create_connection(("127.0.0.1", self.port), 1.0).close()
+        except OSError:
+            return False
+        return True
+
+    def topic(self, name: str, added: str = "") -> str:
+        return f"mqtt{added}://127.0.0.1:{self.port}/{name}"
+
+
+@pytest.fixture
+def broker(tmp_path: Path) -> Iterator[Broker]:
+    found = Broker(tmp_path)
+    yield found
+    found.stop()
+
+
+@pytest.fixture
+def names() -> yarpy.LocalNames:
+    return yarpy.LocalNames()
+
+
+@pytest.fixture
+def out(names: yarpy.LocalNames) -> Iterator[yarpy.Port]:
+    with yarpy.Port("/arm/state", names=names) as port:
+        yield port
+
+
+@pytest.fixture
+def reader(names: yarpy.LocalNames) -> Iterator[yarpy.BufferedPort]:
+    with yarpy.BufferedPort("/in", strict=True, names=names) as port:
+        yield port
+
+
+def run(program: str, port: int, *words: str) -> subprocess.CompletedProcess[str]:
+    """A client of mosquitto, to its end."""
+    command = [program, "-h", "127.0.0.1", "-p", str(port), *words]
+    return subprocess.run(command, capture_output=True, text=True, timeout=2 * WAIT)
+
+
+# ----------------------------------------------------------------------------------- with a broker
+
+
+def test_ports_meet_at_a_broker(
+    broker: Broker, out: yarpy.Port, reader: yarpy.BufferedPort
+) -> None:
+    reader.connect(broker.topic("robot/#", "+sub"))
+    out.connect(broker.topic("robot/arm"))
+    for number in range(100):
+        out.write([number, "text"])
+    found = [reader.read(timeout=WAIT).value for _ in range(100)]
+    assert found == [yarpy.Bottle([number, "text"]) for number in range(100)]
+    assert out.disconnect(broker.topic("robot/arm"))
+    assert reader.disconnect(broker.topic("robot/#", "+sub"))
+    wait_until(lambda: not reader.inputs)
+
+
+def test_clients_of_the_broker_see_a_port(
+    broker: Broker, out: yarpy.Port, reader: yarpy.BufferedPort
+) -> None:
+    out.connect(broker.topic("state", "+qos.1+retain"))
+    out.write({"angle": 45.0})
+    assert out.flush(timeout=WAIT)  # the broker has it
+    said = run("mosquitto_sub", broker.port, "-t", "state", "-C", "1", "-v")
+    assert said.stdout == 'state {"angle": 45.0}\n'
+    reader.connect(broker.topic("goal", "+sub+qos.1"))
+    run("mosquitto_pub", broker.port, "-t", "goal", "-q", "1", "-m", "[1, 2]")
+    run("mosquitto_pub", broker.port, "-t", "goal", "-q", "0", "-m", "stop")
+    assert reader.read(timeout=WAIT).value == yarpy.Bottle([1, 2])
+    assert reader.read(timeout=WAIT).value == "stop"
+
+
+def test_yarps_own_spelling_goes_through_a_broker(
+    broker: Broker, out: yarpy.Port, reader: yarpy.BufferedPort
+) -> None:
+    reader.connect(broker.topic("raw", "+sub+raw"))
+    out.connect(broker.topic("raw", "+raw"))
+    value = yarpy.Bottle([1, yarpy.Vocab("set"), b"\0", bytes(100_000)])
+    out.write(value)
+    assert reader.read(timeout=WAIT).value == value
+
+
+def test_a_broker_that_vanishes_is_dialled_again(
+    broker: Broker, out: yarpy.Port, reader: yarpy.BufferedPort
+) -> None:
+    reader.connect(broker.topic("x", "+sub"))
+    out.connect(broker.topic("x", "+qos.1"))
+    out.write([1])
+    assert reader.read(timeout=WAIT).value == yarpy.Bottle([1])
+    broker.stop()
+    wait_until(lambda: not out.outputs and not reader.inputs)
+    out.write("nobody hears this")
+    broker.start()
+    wait_until(lambda: out.outputs and reader.inputs, patience(10.0))
+    out.write([2])
+    assert reader.read(timeout=WAIT).value == yarpy.Bottle([2])
+
+
+def test_a_broker_in_tls_with_passwords(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    out: yarpy.Port,
+    reader: yarpy.BufferedPort,
+) -> None:
+    folder = tls.prepare(tmp_path, monkeypatch)
+    for file in folder.iterdir():
+        file.chmod(0o644)  # mosquitto leaves root's rights behind
+    words = folder / "words"
+    subprocess.run(["mosquitto_passwd", "-b", "-c", words, "me", "a+b"], check=True)
+    broker = Broker(
+        folder,
+        "user root",
+        "allow_anonymous false",
+        f"password_file {words}",
+        f"cafile {folder / 'ca.pem'}",
+        f"certfile {folder / 'cert.pem'}",
+        f"keyfile {folder / 'key.pem'}",
+    )
+    try:
+        for login in ("", "+user.me+password.wrong"):
+            with pytest.raises(yarpy.YarpError, match=r"\+user"):
+                out.connect(broker.topic("x", f"+tls{login}"))
+        with pytest.raises(yarpy.YarpError):
+            out.connect(broker.topic("x", "+user.me+password.a%2Bb"))  # without TLS
+        reader.connect(broker.topic("x", "+sub+tls+user.me+password.a%2Bb"))
+        link = out.connect(broker.topic("x", "+tls+user.me+password.a%2Bb"))
+        assert "a%2Bb" not in repr(link)
+        out.write([1])
+        assert reader.read(timeout=WAIT).value == yarpy.Bottle([1])
+    finally:
+        broker.stop()
+
+
+def test_targets_that_lead_nowhere_are_explained(broker: Broker, out: yarpy.Port) -> None:
+    for target, why in (
+        (f"mqtt://127.0.0.1:{broker.port}", "mqtt://HOST/TOPIC"),
+        (broker.topic("a/#"), "one topic"),
+        (broker.topic("a", "+qos.2"), "QoS 0 and 1"),
+        ("mqtt://127.0.0.1:1/a", "nobody answers"),
+    ):
+        with pytest.raises(yarpy.YarpError, match=why):
+            out.connect(target)
+    assert not out.outputs
+
+
+def test_programs_of_others_connect_them(broker: Broker) -> None:
+    with yarpy.NameServer(free_port()) as server:
+        names = server.client
+        with (
+            yarpy.Port("/out", names=names) as out,
+            yarpy.BufferedPort("/in", strict=True, names=names) as inlet,
+        ):
+            yarpy.connect(broker.topic("way"), "/in", names=names)
+            yarpy.connect("/out", broker.topic("way"), names=names)
+            out.write([3])
+            assert inlet.read(timeout=WAIT).value == yarpy.Bottle([3])
+            assert yarpy.disconnect("/out", broker.topic("way"), names=names)
+            assert not out.outputs
+            assert yarpy.disconnect(broker.topic("way"), "/in", names=names)
+            wait_until(lambda: not inlet.inputs)
+
+
+# -------------------------------------------------------------------------------- without a broker
+
+
+@pytest.mark.parametrize("version", ["mqttv311", "mqttv5"])
+def test_mosquitto_sub_reads_a_port(out: yarpy.Port, version: str) -> None:
+    words = ["-V", version, "-t", "arm/#", "-C", "3", "-v"]
+    command = ["mosquitto_sub", "-h", "127.0.0.1", "-p", str(out.contact.port), *words]
+    with Process(command) as client:
+        assert out.wait_for_outputs(timeout=WAIT)
+        for number in range(3):
+            out.write([number])
+        client.wait_line(r"arm/state \[2\]", timeout=WAIT, stream="out")
+    wait_until(lambda: not out.outputs)
+
+
+@pytest.mark.parametrize("version", ["mqttv311", "mqttv5"])
+@pytest.mark.parametrize("qos", ["0", "1"])
+def test_mosquitto_pub_writes_into_a_port(
+    reader: yarpy.BufferedPort, version: str, qos: str
+) -> None:
+    found: list[Any] = []
+    thread = threading.Thread(target=lambda: found.append(reader.read(timeout=2 * WAIT)))
+    thread.start()
+    words = ["-V", version, "-q", qos, "-t", "anything", "-m", '{"speed": 2}']
+    said = run("mosquitto_pub", reader.contact.port, *words)
+    thread.join()
+    assert (said.returncode, said.stderr) == (0, "")
+    assert found[0].as_(dict) == {"speed": 2}
+    assert found[0].source == "mqtt"
+
+
+def test_mosquitto_rr_asks_a_port(names: yarpy.LocalNames) -> None:
+    with yarpy.RpcServer("/double", lambda message: [2 * message.value], names=names) as server:
+        said = run("mosquitto_rr", server.contact.port, "-t", "q", "-e", "answers", "-m", "21")
+    assert said.stdout == "[42]\n"
+
+
+def test_qos_2_is_refused(reader: yarpy.BufferedPort, caplog: pytest.LogCaptureFixture) -> None:
+    said = run(
+        "mosquitto_pub", reader.contact.port, "-V", "mqttv311", "-q", "2", "-t", "x", "-m", "1"
+    )
+    assert said.returncode
+    wait_until(lambda: "QoS 2" in caplog.text)
+
+
+def test_rules_of_access_hold(
+    names: yarpy.LocalNames, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    allow(tmp_path, monkeypatch, "read")
+    with yarpy.BufferedPort("/readable", strict=True, names=names) as port:
+        said = run("mosquitto_pub", port.contact.port, "-q", "1", "-t", "x", "-m", "1")
+        assert said.returncode
+        with pytest.raises(yarpy.Timeout):
+            port.read(timeout=0.1)
+    allow(tmp_path, monkeypatch, "write")
+    with yarpy.Port("/writable", names=names) as port:
+        said = run("mosquitto_sub", port.contact.port, "-t", "#", "-W", str(int(WAIT)))
+        assert "denied" in said.stderr
+        assert not port.outputs
+
+
+def test_paho_reads_and_writes(out: yarpy.Port, reader: yarpy.BufferedPort) -> None:
+    paho = pytest.importorskip("paho.mqtt.client", reason="needs paho-mqtt")
+    heard: list[bytes] = []
+    clients = []
+    for port in (out, reader):
+        client = paho.Client(paho.CallbackAPIVersion.VERSION2, protocol=paho.MQTTv5)
+        client.on_message = lambda client, data, message: heard.append(message.payload)
+        client.connect("127.0.0.1", port.contact.port, keepalive=1)
+        client.loop_start()
+        clients.append(client)
+    try:
+        clients[0].subscribe("arm/state")
+        assert out.wait_for_outputs(timeout=WAIT)
+        out.write([1])
+        wait_until(lambda: heard == [b"[1]"])
+        clients[1].publish("x", "[2]", qos=1)
+        assert reader.read(timeout=WAIT).value == yarpy.Bottle([2])
+        link = out._hub.outputs[0]
+        before = link.driver.bytes_in
+        wait_until(lambda: link.driver.bytes_in >= before + 4)  # two pings, which are answered
+        assert clients[0].is_connected()
+    finally:
+        for client in clients:
+            client.disconnect()
+            client.loop_stop()
