@@ -17,6 +17,7 @@ from unittest import SkipTest
 from yarpy import registry
 from yarpy.carriers.base import MAGIC_SIZE, Carrier, Delivery, Limits
 from yarpy.errors import YarpError
+from yarpy.route import parse_carrier
 from yarpy.testing.conformance_case import ENVELOPE, ConformanceCase
 from yarpy.testing.drive import Dialogue, End, Stalled
 from yarpy.wire.message import CALL, DATA, Message, Packet
@@ -283,6 +284,7 @@ def _opening(carrier: type[Carrier]) -> bytes:
     first bytes depend on a message that it does not carry."""
     talk = Dialogue(carrier)
     try:
+        talk = Dialogue(carrier.of(parse_carrier(carrier.name)))
         talk.greet()
         if not talk.traffic:
             talk.send([1])
