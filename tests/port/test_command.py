@@ -65,8 +65,9 @@ def test_description_lists_every_connection(names: LocalNames) -> None:
         assert command.describe(out._hub)[1] == (
             "There is an output connection from /out to /in using udp"
         )
-        assert command.describe(in_._hub)[2] == (
-            "There is an input connection from /out to /in using udp"
+        # Its sender may be asking at this moment how much came, over a connection of its own.
+        assert "There is an input connection from /out to /in using udp" in command.describe(
+            in_._hub
         )
 
 
