@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections.abc import Iterator
@@ -116,3 +117,24 @@ def test_directory_is_where_cpp_has_it(
         monkeypatch.setenv(name, value)
     monkeypatch.setattr(unix.tempfile, "gettempdir", lambda: "/tmp")
     assert str(runtime_directory()) == wanted
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="it takes root to make a directory of somebody else")
+@pytest.mark.parametrize("whose", ["runtime-me", "runtime-me/yarp"])
+def test_a_directory_of_somebody_else_is_not_used(
+    whose: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Below /tmp anybody may make it first, and put sockets of their own there."""
+    monkeypatch.delenv("YARP_RUNTIME_DIR")
+    monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setenv("USER", "me")
+    (tmp_path / whose).mkdir(parents=True)
+    os.chown(tmp_path / whose, 12345, -1)
+    with pytest.raises(LocalProtocolError, match="set XDG_RUNTIME_DIR"):
+        open_unix(True, ACCEPTOR, INITIATOR)
+    os.chown(tmp_path / whose, os.getuid(), -1)
+    (tmp_path / whose).chmod(0o777)  # as some umasks have it
+    open_unix(True, ACCEPTOR, INITIATOR).close()
+    for path in ("runtime-me", "runtime-me/yarp"):
+        assert not (tmp_path / path).stat().st_mode & 0o022

@@ -1,7 +1,8 @@
 """Unix sockets for two ports of one host that met over TCP.
 
 Rules: the path is made of the two TCP port numbers and lies in YARP's runtime directory, which both
-processes compute alike. The accepting side binds, waits for one peer, and removes the path.
+processes compute alike. The accepting side binds, waits for one peer, and removes the path. Below
+/tmp anybody may have made that directory before us, to stand between the two: it must be ours.
 """
 
 from __future__ import annotations
@@ -32,6 +33,23 @@ def runtime_directory() -> Path:
     return Path(os.environ.get("TMPDIR") or tempfile.gettempdir()) / f"runtime-{user}" / "yarp"
 
 
+def _made(directory: Path) -> Path:
+    """The runtime directory. Raises LocalProtocolError if others could change what is in it."""
+    directory.mkdir(parents=True, exist_ok=True, mode=0o700)
+    if os.environ.get("YARP_RUNTIME_DIR") or os.environ.get("XDG_RUNTIME_DIR"):
+        return directory  # where its owner wants it
+    for path in (directory.parent, directory):
+        found = path.lstat()
+        if found.st_uid != os.getuid():
+            raise LocalProtocolError(
+                f"another user of this computer made {path}, and could read what goes through "
+                "sockets in it: set XDG_RUNTIME_DIR, or take the carrier tcp"
+            )
+        if found.st_mode & 0o022:  # by the umask of who made it
+            path.chmod(found.st_mode & 0o755)
+    return directory
+
+
 def open_unix(listen: bool, local: Address, remote: Address) -> UnixTransport:
     """The Unix side of a connection that greeted over TCP from `local` to `remote`."""
     if not hasattr(socket, "AF_UNIX"):
@@ -41,8 +59,7 @@ def open_unix(listen: bool, local: Address, remote: Address) -> UnixTransport:
             f"unix_stream joins ports of one host, not {local[0]} and {remote[0]}; use tcp"
         )
     first, second = (local, remote) if listen else (remote, local)
-    directory = runtime_directory()
-    directory.mkdir(parents=True, exist_ok=True, mode=0o700)
+    directory = _made(runtime_directory())
     return UnixTransport(str(directory / f"{first[1]}_{second[1]}.sock"), listen)
 
 
