@@ -22,17 +22,19 @@ from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
-from yarpy.data.value import Vocab
 from yarpy.devices.access import Access
 from yarpy.devices.closeable import Closeable, prefix
 from yarpy.devices.multi_sensor.interface import KINDS, NEWER, OLDER
+from yarpy.devices.multi_sensor.metadata import (
+    MultipleAnalogSensorsMetadata,
+    SensorMetadata,
+    metadata,
+)
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
-from yarpy.errors import DecodeError
 from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcServer
-from yarpy.wire.message import Message
 
 #: Kinds without a frame in C++.
 _FRAMELESS: Final = frozenset(("contact_loads", "encoder_arrays", "skin_patches"))
@@ -67,11 +69,10 @@ class MultiSensorServer(Closeable):
         self._read_first()
         newer = newer or any(self._last.get(kind) for kind in [*KINDS][OLDER:])
         self._kinds = [*KINDS][: NEWER if newer else OLDER]
-        self._metadata = self._describe()
         self._stamp = Stamp()
         with ExitStack() as resources:
             self._rpc = resources.enter_context(
-                RpcServer(f"{name}/rpc:o", self._answer, names=names)
+                RpcServer(f"{name}/rpc:o", self._describe(), names=names)
             )
             self._measures = resources.enter_context(
                 BufferedPort(f"{name}/measures:o", names=names)
@@ -106,18 +107,18 @@ class MultiSensorServer(Closeable):
         if not any(self._last.values()):
             raise ValueError(f"{self.name}: the device needs one of {', '.join(KINDS)}")
 
-    def _describe(self) -> Bottle:
+    def _describe(self) -> MultipleAnalogSensorsMetadata:
         frames: Mapping[str, str] = {}
         if self._sensors.has("frames"):
             frames = self._sensors.ask("frames")
-        listed = Bottle()
+        listed = {}
         for kind in self._kinds:
             names = [*self._last.get(kind, ())]
             usual = {name: "" if kind in _FRAMELESS else name for name in names}
-            listed.append(
-                Bottle(Bottle([name, str(frames.get(name, usual[name])), ""]) for name in names)
-            )
-        return listed
+            listed[kind] = [
+                SensorMetadata(name, str(frames.get(name, usual[name]))) for name in names
+            ]
+        return metadata(listed, len(self._kinds) == NEWER)
 
     def _times(self) -> Mapping[str, float]:
         """When sensors were read, for those of which the device says so."""
@@ -160,17 +161,6 @@ class MultiSensorServer(Closeable):
             message.append(Bottle(Bottle([Bottle(values), at]) for values, at in sensors))
         self._stamp = self._stamp.next(time.time())
         self._measures.write(message, self._stamp)
-
-    def _answer(self, message: Message) -> object:
-        try:
-            request = message.as_(Bottle)
-        except DecodeError:
-            return Bottle([Vocab("fail")])
-        if request == ["getMetadata"]:
-            return self._metadata
-        if request[:1] == ["help"]:
-            return Bottle([Vocab("many"), Bottle(["getMetadata", "help"])])
-        return Bottle([Vocab("fail")])
 
 
 def _readings(kind: str, found: Any) -> dict[str, list[float]]:
