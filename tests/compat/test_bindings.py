@@ -111,6 +111,46 @@ def test_matrices() -> None:
     assert diagonal[1, 1] == 2 and diagonal.isEqual(yarp.Matrix(diagonal))
 
 
+def test_what_nobody_can_read_or_send() -> None:
+    assert yarp.Bottle("(" * 5000).size() == 0
+    assert yarp.Property("(" * 5000).toString() == ""
+    port, buffered = yarp.Port(), yarp.BufferedPortBottle()
+    reader = yarp.BufferedPortBottle()
+    assert port.open("/p") and buffered.open("/b") and reader.open("/r")
+    assert yarp.Network.connect("/p", "/r") and yarp.Network.connect("/b", "/r")
+    deep = inner = yarp.Bottle()
+    for _ in range(200):
+        inner = inner.addList()
+    assert not port.write(deep)
+    buffered.prepare().copy(deep)
+    buffered.write()
+    assert port.write(yarp.Bottle("fine")) and reader.read().toString() == "fine"
+    for one in (port, buffered, reader):
+        one.close()
+
+
+def test_reader_that_fails_goes_on() -> None:
+    class Failing(yarp.PortReader):
+        def read(self, connection: yarp.ConnectionReader) -> bool:
+            seen.append(connection.getSize())
+            raise ValueError("a mistake in the program")
+
+    seen: list[int] = []
+    reader, inp, out = Failing(), yarp.Port(), yarp.Port()
+    inp.setReader(reader)
+    assert inp.open("/in") and out.open("/out") and yarp.Network.connect("/out", "/in")
+    assert out.write(yarp.Bottle("1")) and out.write(yarp.Bottle("2"))
+    wait_until(lambda: len(seen) == 2)
+    out.close()
+    inp.close()
+
+
+def test_texts_for_people() -> None:
+    assert repr(yarp.Bottle("1 (2)")) == "<yarp.Bottle 1 (2)>"
+    assert repr(yarp.Value(3)) == "<yarp.Value 3>"
+    assert repr(yarp.Property("(a 1)")) == "<yarp.Property (a 1)>"
+
+
 def test_old_names() -> None:
     bottle = yarp.Bottle()
     bottle.addInt(1)

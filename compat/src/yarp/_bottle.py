@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 import yarpy
 from yarp._portable import Portable, message_of
 from yarp._searchable import Searchable
-from yarp._value import MISSING, Value, copied, int32, number, text, vocab, whole
+from yarp._value import MISSING, Value, copied, int32, number, parsed, text, vocab, whole
 
 if TYPE_CHECKING:
     from yarp._property import Property
@@ -31,7 +31,7 @@ class Bottle(Portable, Searchable):
         if isinstance(text, Bottle):
             self._native = copied(text._native)
         elif isinstance(text, str):
-            self._native = NativeBottle.from_text(text) if text else NativeBottle()
+            self._native = parsed(text) if text else NativeBottle()
         else:
             raise TypeError(f"a Bottle is made of text or of another Bottle, not of {text!r}")
 
@@ -150,7 +150,7 @@ class Bottle(Portable, Searchable):
 
     def fromString(self, text: str) -> None:
         """Become what the text says."""
-        self._native[:] = yarpy.Bottle.from_text(text)
+        self._native[:] = parsed(text)
 
     def fromBinary(self, buf: bytes | str, len: int | None = None) -> None:
         """Become what these bytes say; nothing, if they are not a Bottle."""
@@ -169,6 +169,9 @@ class Bottle(Portable, Searchable):
         return self._native.to_text()
 
     toString_c = toString
+
+    def __repr__(self) -> str:
+        return f"<yarp.Bottle {self.toString()}>"
 
     def isEqual(self, alt: Bottle) -> bool:
         return self.toString() == alt.toString()

@@ -22,6 +22,7 @@ from yarp._image import (
     ImageRgba,
     ImageRgbFloat,
 )
+from yarp._log import say
 from yarp._matrix import Matrix
 from yarp._property import Property
 from yarp._sound import Sound
@@ -104,6 +105,8 @@ class BufferedPort(Contactable, Generic[T]):
             port.write(self.prepare()._outgoing(), envelope)
         except yarpy.PortClosed:
             pass
+        except (ValueError, OverflowError) as error:  # too deep, too large
+            say("ERROR", f"|yarp.os.BufferedPort| {self._name}: {error}")
 
     def writeStrict(self) -> None:
         """Send what was prepared; nobody misses it."""

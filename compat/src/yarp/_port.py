@@ -7,6 +7,7 @@ from typing import Any
 import yarpy
 from yarp._contact import Contact
 from yarp._contactable import Contactable
+from yarp._log import say
 from yarp._portable import PortReader, PortWriter
 
 
@@ -33,6 +34,9 @@ class Port(Contactable):
             try:
                 port.write(writer._outgoing(), envelope)
             except yarpy.PortClosed:
+                return False
+            except (ValueError, OverflowError) as error:  # too deep, too large
+                say("ERROR", f"|yarp.os.Port| {self._name}: {error}")
                 return False
             if reader is not None and hasattr(reader, "onCompletion"):
                 reader.onCompletion()

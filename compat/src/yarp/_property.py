@@ -12,7 +12,7 @@ from typing import Any, Self
 import yarpy
 from yarp._portable import Portable
 from yarp._searchable import Searchable
-from yarp._value import MISSING, Value, copied, number, text
+from yarp._value import MISSING, Value, copied, number, parsed, text
 from yarpy.config.command_line import parse_options
 from yarpy.config.ini import parse_ini, read_ini
 from yarpy.data.text import plain_text
@@ -99,9 +99,12 @@ class Property(Portable, Searchable):
         """YARP's notation, sorted by key."""
         return self._native.to_text()
 
+    def __repr__(self) -> str:
+        return f"<yarp.Property {self.toString()}>"
+
     def fromString(self, txt: str, wipe: bool = True) -> None:
         """Read `(key value) (key value)`."""
-        self._become(yarpy.Property.from_text(text(txt)), wipe)
+        self._become(yarpy.Property.from_bottle(parsed(txt)), wipe)
 
     def fromCommand(self, argc: Sequence[str], skipFirst: bool = True, wipe: bool = True) -> None:
         """Read a command line, such as `sys.argv`."""

@@ -67,6 +67,14 @@ def native_int(value: int) -> int:
     return int(value)
 
 
+def parsed(words: str) -> yarpy.Bottle:
+    """What a text says in YARP's notation; nothing, if its lists are too deep for anybody."""
+    try:
+        return yarpy.Bottle.from_text(text(words))
+    except yarpy.DecodeError:
+        return yarpy.Bottle()
+
+
 class Value(Portable):
     """One value. `Value(3)`, `Value(2.5)`, `Value("text")`, `Value("set", True)` for a vocab."""
 
@@ -245,6 +253,9 @@ class Value(Portable):
 
     toString_c = toString
 
+    def __repr__(self) -> str:
+        return f"<yarp.Value {self.toString()}>"
+
     def fromString(self, str: str) -> None:
         """Read one value of YARP's notation."""
         self._native = Value.makeValue(str)._native
@@ -328,12 +339,12 @@ class Value(Portable):
 
     @staticmethod
     def makeList(txt: str = "") -> Value:
-        return Value._of(yarpy.Bottle.from_text(txt))
+        return Value._of(parsed(txt))
 
     @staticmethod
     def makeValue(txt: str) -> Value:
         """The value that `txt` spells; several make a list."""
-        words = yarpy.Bottle.from_text(txt)
+        words = parsed(txt)
         return Value._of(words[0] if len(words) == 1 else words)
 
     makeInt = makeInt32
