@@ -8,10 +8,11 @@ import pytest
 
 from yarpy.carriers import mqtt_packet as mqtt
 from yarpy.carriers.base import Carrier
-from yarpy.carriers.mqtt import Mqtt, Publisher, Reader, Subscriber
+from yarpy.carriers.mqtt import Asker, Mqtt, Publisher, Reader, Subscriber
 from yarpy.carriers.payload import payload_of, value_of
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
+from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
 from yarpy.route import Route, parse_carrier
 from yarpy.testing import CarrierConformance, End
@@ -47,6 +48,11 @@ class TestPublisher(_Mqtt):
 
 class TestPublisherWithAcknowledgements(_Mqtt):
     modifiers = "+qos.1"
+
+
+class TestAsker(_Mqtt):
+    carrier = Asker
+    modifiers = "+rpc"
 
 
 def accepted(hello: bytes, target: str = "/arm/left", piece: int = 0) -> tuple[End, Mqtt]:
@@ -223,6 +229,54 @@ def test_a_port_subscribes() -> None:
     assert read(end, carrier, PUBLISH3).value == Bottle([1])
     carrier.encode_ack(end.stream, 1)
     assert end.take() == bytes.fromhex("40020001")
+
+
+def asking() -> tuple[End, Mqtt, bytes]:
+    """A port that asks at a broker, and the topic of the answers."""
+    end, carrier = dialled("mqtt+rpc", "/mqtt://broker:1883/q")
+    end.begin(carrier.greet(end.stream))
+    assert end.take()[8] == mqtt.V5
+    end.feed(bytes.fromhex("2003000000"))
+    said = mqtt.Body(end.take()[5:])
+    answers = said.string()
+    assert answers.startswith(b"yarpy/answers/")
+    assert end.done
+    return end, carrier, answers
+
+
+def test_a_port_asks_at_a_broker() -> None:
+    end, carrier, answers = asking()
+    carrier.encode(end.stream, Packet([1], key=CALL))
+    properties = b"\x08" + mqtt.string(answers) + b"\x09\0\2\0\1"
+    head = b"\0\1q\0\1" + mqtt.varint(len(properties)) + properties
+    assert end.take() == mqtt.packet(0x32, head + b"[1]")
+    end.begin(carrier.expect_reply(end.stream))
+    answer = mqtt.string(answers) + b"\0\7\5\x09\0\2\0%c[2]"
+    end.feed(bytes.fromhex("900400010001"))
+    end.feed(b"\x40\2\0\1" + mqtt.packet(0x32, answer % 0))  # to an older question
+    assert end.take() == b"\x40\2\0\7"
+    assert not end.done
+    end.feed(mqtt.packet(0x32, answer % 1))
+    assert end.result.value == Bottle([2])
+    carrier.encode(end.stream, Packet([3]))  # wants no answer
+    end.collect()
+    assert end.take().endswith(b"\x30\7\0\1q\0[3]")
+
+
+def test_a_broker_says_that_nobody_is_there() -> None:
+    end, carrier, _ = asking()
+    carrier.encode(end.stream, Packet([1], key=CALL))
+    end.begin(carrier.expect_reply(end.stream))
+    end.feed(b"\x40\4\0\1\x10\0")
+    assert end.result.value == Bottle([Vocab("fail"), "nobody has subscribed to q at the broker"])
+
+
+def test_a_broker_does_not_let_answers_through() -> None:
+    end, carrier, _ = asking()
+    carrier.encode(end.stream, Packet([1], key=CALL))
+    end.begin(carrier.expect_reply(end.stream))
+    with pytest.raises(RemoteProtocolError, match="refuses the subscription to yarpy/answers"):
+        end.feed(bytes.fromhex("900400010087"))
 
 
 def test_a_login_is_said() -> None:

@@ -492,7 +492,7 @@ TARGETS = {
     },
     **{
         f"dialling {name}": Target(_dial(name), _BROKERS, refusals=(YarpError, Stalled))
-        for name in ("mqtt", "mqtt+qos.1", "mqtt+sub", "mqtt+sub+raw")
+        for name in ("mqtt", "mqtt+qos.1", "mqtt+rpc", "mqtt+sub", "mqtt+sub+raw")
     },
     **{
         f"dialling {name}": Target(

@@ -129,6 +129,21 @@ def test_yarps_own_spelling_goes_through_a_broker(
     assert reader.read(timeout=WAIT).value == value
 
 
+def test_questions_go_through_a_broker(broker: Broker, names: yarpy.LocalNames) -> None:
+    with yarpy.RpcClient(name="/asker", names=names) as client:
+        client.connect(broker.topic("ask", "+rpc"))
+        refusal = client.ask([1], timeout=WAIT).value
+        assert refusal == yarpy.Bottle(
+            [yarpy.Vocab("fail"), "nobody has subscribed to ask at the broker"]
+        )
+        with yarpy.RpcServer("/adder", lambda message: sum(message.value), names=names) as server:
+            server.connect(broker.topic("ask", "+sub+rpc"))
+            for number in range(5):
+                assert client.ask([number, 1], timeout=WAIT).value == number + 1
+            said = run("mosquitto_rr", broker.port, "-t", "ask", "-e", "mine", "-m", "[20, 1]")
+            assert said.stdout == "21\n"
+
+
 def test_a_broker_that_vanishes_is_dialled_again(
     broker: Broker, out: yarpy.Port, reader: yarpy.BufferedPort
 ) -> None:

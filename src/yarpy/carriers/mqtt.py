@@ -2,6 +2,7 @@
 ports without a broker.
 
     mqtt://BROKER/robot/arm         mqtt+sub://BROKER/robot/#     a port is a client (3.1.1)
+    mqtt+rpc://BROKER/ask           mqtt+sub+rpc://BROKER/ask     it asks, it answers (5)
     mosquitto_sub -p PORT -t '#'    mosquitto_pub -p PORT -t x    a port is dialled (3.1.1 or 5)
 
 Rules: `payload.py` says what a payload holds; `+raw` is YARP's own spelling. To a broker `+qos.1`
@@ -21,6 +22,8 @@ from typing import ClassVar, Final
 from yarpy.carriers import mqtt_packet as mqtt
 from yarpy.carriers.base import Carrier, Delivery
 from yarpy.carriers.payload import message_of, payload_of, to_payload
+from yarpy.data import codec
+from yarpy.data.value import Vocab
 from yarpy.errors import AccessRefused, LocalProtocolError, LoginRefused, RemoteProtocolError
 from yarpy.log import readable
 from yarpy.route import CarrierSpec, Route
@@ -30,6 +33,7 @@ from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
 NOBODY: Final = "mqtt"  # what a client is called
+RPC: Final = "rpc"
 CLEAN: Final = 0x02
 MAX_HEARD: Final = 1 << 14  # bytes of a packet of somebody who reads
 MAX_CONNECT: Final = 1 << 16  # bytes of the packet that begins a connection
@@ -41,7 +45,11 @@ _REFUSALS: Final = {
     3: "it is not ready",
     4: "the name or the password is wrong: say +user.NAME+password.WORD",
     5: "it does not admit us: say +user.NAME+password.WORD",
+    0x84: "it does not speak version 5, which +rpc needs",
+    0x86: "the name or the password is wrong: say +user.NAME+password.WORD",
+    0x87: "it does not admit us: say +user.NAME+password.WORD",
 }
+_LOGIN: Final = frozenset((4, 5, 0x86, 0x87))
 
 
 class Mqtt(Carrier):
@@ -55,19 +63,21 @@ class Mqtt(Carrier):
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
-        self.version = mqtt.V3
+        self.version = mqtt.V5 if RPC in route.spec.tokens else mqtt.V3
         self.raw = "raw" in route.spec.tokens
         self._owed: deque[int] = deque()  # for each message its number, 0 for QoS 0
         self._asked: tuple[bytes, bytes | None] | None = None  # where the answer goes
 
     @classmethod
     def of(cls, spec: CarrierSpec) -> type[Carrier]:
-        return Subscriber if "sub" in spec.tokens else Publisher
+        if "sub" in spec.tokens:
+            return Subscriber
+        return Asker if RPC in spec.tokens else Publisher
 
     @classmethod
     def recognises(cls, first: bytes) -> int:
-        if first[:1] != b"\x10":
-            return 0
+        if cls.role or first[:1] != b"\x10":
+            return 0  # who dials in is always served by this class
         size = 1 if len(first) > 1 and first[1] < 128 else 2
         return 8 if first[1 + size : 8] == b"\0\4MQTT"[: 7 - size] else 0
 
@@ -175,9 +185,8 @@ class Mqtt(Carrier):
                 asked = properties[mqtt.RESPONSE_TOPIC], properties.get(mqtt.CORRELATION)
         self._asked = asked
         payload = said.rest()
-        if self.raw:
-            return Message(DATA, payload)
-        return message_of(CALL if asked else DATA, [payload])
+        key = CALL if asked else DATA
+        return Message(key, payload) if self.raw else message_of(key, [payload])
 
     acks = True
 
@@ -195,7 +204,8 @@ class Mqtt(Carrier):
         if correlation is not None:
             properties = bytes((mqtt.CORRELATION,)) + mqtt.string(correlation)
         head = mqtt.string(topic) + self._properties(properties)
-        stream.write(*mqtt.publish(head, payload_of(value)))
+        payload = b"".join(codec.encode(value)) if self.raw else payload_of(value)
+        stream.write(*mqtt.publish(head, payload))
 
     # -- a port dials -----------------------------------------------------------------------------
 
@@ -208,8 +218,30 @@ class Mqtt(Carrier):
         reason = bytes(body)[1]
         if reason:
             why = _REFUSALS.get(reason, f"for reason {reason}")
-            kind = LoginRefused if reason in (4, 5) else RemoteProtocolError
+            kind = LoginRefused if reason in _LOGIN else RemoteProtocolError
             raise kind(f"the broker refuses: {why}")
+
+    def _subscribe(self, stream: ByteStream, topic: bytes, qos: int) -> None:
+        """Subscribe, at a broker."""
+        body = b"\0\1" + self._properties() + mqtt.string(topic) + bytes((qos,))
+        stream.write(mqtt.packet(mqtt.SUBSCRIBE | 2, body))
+
+    def _subscribed(self, topic: bytes, first: int, body: Buffer) -> None:
+        """See whether the broker agrees."""
+        if first != mqtt.SUBACK or len(body) < 3:
+            raise RemoteProtocolError("the broker does not answer a subscription")
+        if bytes(body)[-1] > 2:
+            shown = readable(topic[:80].decode("utf-8", "replace"))
+            raise RemoteProtocolError(f"the broker refuses the subscription to {shown}")
+
+    def _one_topic(self) -> bytes:
+        """The topic, where it has to be a single one."""
+        topic = self.topic
+        if not topic or b"#" in topic or b"+" in topic or len(topic) > MAX_TOPIC:
+            raise LocalProtocolError(
+                "a port writes to one topic, which stands behind the broker: mqtt://HOST/TOPIC"
+            )
+        return topic
 
     def _hello(self) -> bytes:
         from urllib.parse import unquote_to_bytes
@@ -224,7 +256,7 @@ class Mqtt(Carrier):
         if password is not None and user is None:
             raise LocalProtocolError("a password for a broker needs a name: say +user.NAME")
         flags = CLEAN | (0x80 if user is not None else 0) | (0x40 if password is not None else 0)
-        body = mqtt.string(b"MQTT") + bytes((mqtt.V3, flags, 0, 0))
+        body = mqtt.string(b"MQTT") + bytes((self.version, flags, 0, 0)) + self._properties()
         for part in (client.encode("utf-8", "replace")[:1000], user, password):
             if part is not None:
                 body += mqtt.string(part)
@@ -259,13 +291,8 @@ class Publisher(Mqtt):
         self.acks = False
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        topic = self.topic
-        if not topic or b"#" in topic or b"+" in topic or len(topic) > MAX_TOPIC:
-            raise LocalProtocolError(
-                "a port writes to one topic, which stands behind the broker: mqtt://HOST/TOPIC"
-            )
         self.acks = bool(self.qos)
-        self._head = mqtt.string(topic)
+        self._head = mqtt.string(self._one_topic())
         retain = mqtt.RETAIN if "retain" in self.route.spec.tokens else 0
         self._first = mqtt.PUBLISH | (self.qos << 1) | retain
         yield from self._connect(stream)
@@ -310,7 +337,6 @@ class Subscriber(Mqtt):
 
     role = "sub"
     push = False
-    replies = False
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         topic = self.topic
@@ -318,13 +344,73 @@ class Subscriber(Mqtt):
             raise LocalProtocolError("the topic stands behind the broker: mqtt+sub://HOST/TOPIC")
         qos = self.qos
         yield from self._connect(stream)
-        stream.write(mqtt.packet(mqtt.SUBSCRIBE | 2, b"\0\1" + mqtt.string(topic) + bytes((qos,))))
+        self._subscribe(stream, topic, qos)
         first, body = yield from mqtt.read_packet(stream, MAX_HEARD)
-        if first != mqtt.SUBACK or len(body) != 3:
-            raise RemoteProtocolError("the broker does not answer a subscription")
-        if bytes(body)[2] > 2:
-            shown = readable(topic[:80].decode("utf-8", "replace"))
-            raise RemoteProtocolError(f"the broker refuses the subscription to {shown}")
+        self._subscribed(topic, first, body)
+
+
+class Asker(Mqtt):
+    """A port that asks whoever has subscribed to a broker's topic (version 5)."""
+
+    role = RPC
+    acks = False
+
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        self._topic = b""
+        self._answers = b"yarpy/answers/" + os.urandom(8).hex().encode()
+        self._number = 0  # of the last question
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        self._topic = self._one_topic()
+        yield from self._connect(stream)
+        self._subscribe(stream, self._answers, 1)  # answered before any question is
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        payload = b"".join(packet.blocks) if self.raw else to_payload(packet)
+        properties = b""
+        if packet.key == CALL:
+            self._number = self._number % 65535 + 1
+            properties = bytes((mqtt.RESPONSE_TOPIC,)) + mqtt.string(self._answers)
+            properties += bytes((mqtt.CORRELATION,)) + mqtt.string(self._correlation)
+        head = mqtt.string(self._topic)
+        if packet.key == CALL:  # its acknowledgement tells whether there is anybody
+            head += self._correlation
+        head += self._properties(properties)
+        first = mqtt.PUBLISH | (2 if packet.key == CALL else 0)
+        stream.write(*mqtt.publish(head, payload, first))
+
+    @property
+    def _correlation(self) -> bytes:
+        return self._number.to_bytes(2, "big")
+
+    def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
+        while True:
+            first, body = yield from mqtt.read_packet(stream, stream.limit)
+            kind = first & 0xF0
+            if kind == mqtt.PUBLISH:
+                answer = self._answer(stream, first, body)
+                if answer is not None:
+                    return answer
+            elif kind == mqtt.SUBACK:
+                self._subscribed(self._answers, first, body)
+            elif kind != mqtt.PUBACK:
+                self.obey(stream, first, body)
+            elif bytes(body[:3]) == self._correlation + bytes((mqtt.NOT_HEARD,)):
+                topic = readable(self._topic.decode("utf-8", "replace"))
+                why = f"nobody has subscribed to {topic} at the broker"
+                return Message(CALL, b"".join(codec.encode([Vocab("fail"), why])))
+
+    def _answer(self, stream: ByteStream, first: int, body: Buffer) -> Message | None:
+        """The answer to our last question; None for one that came too late."""
+        said = mqtt.Body(body)
+        said.string()
+        if first & mqtt.QOS:
+            stream.write(mqtt.packet(mqtt.PUBACK, said.take(2)))
+        if said.properties().get(mqtt.CORRELATION) != self._correlation:
+            return None
+        payload = said.rest()
+        return Message(CALL, payload) if self.raw else message_of(CALL, [payload])
 
 
 class Reader(Mqtt):

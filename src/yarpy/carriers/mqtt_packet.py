@@ -33,6 +33,8 @@ DISCONNECT: Final = 0xE0
 RETAIN: Final = 0x01
 QOS: Final = 0x06
 
+NOT_HEARD: Final = 0x10  # the reason in a PUBACK: nobody has subscribed
+
 RESPONSE_TOPIC: Final = 0x08
 CORRELATION: Final = 0x09
 REASON: Final = 0x1F

@@ -79,9 +79,13 @@ class ConformanceCase:
         assert same, f"{value!r} arrived as {got!r}, not as {wanted!r}"
 
     def _acknowledge(self, talk: Dialogue) -> None:
-        _, carrier = talk.receiver
-        if carrier is not None and carrier.acks:
+        if self._acknowledges(talk):
             talk.acknowledge()
+
+    def _acknowledges(self, talk: Dialogue) -> bool:
+        """Whether messages are acknowledged, and that is waited for."""
+        (_, sending), (_, receiving) = talk.sender, talk.receiver
+        return receiving is not None and receiving.acks and sending.acks
 
 
 def _joined(value: Any) -> bytes:
