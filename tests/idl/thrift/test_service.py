@@ -40,6 +40,17 @@ def test_programs_are_not_told_more_than_they_can_read(server: Any, capt: Module
     assert reply(server, Bottle(["help_failure"]).to_bytes()).endswith(b"it takes nothing")
 
 
+def test_a_short_argument_is_no_sign_of_a_person(server: Any) -> None:
+    """C++ calls a method that is not here with a string: it could not read a reason."""
+    for request in (["unknown", "x"], ["unknown", "x", "y"], [Vocab("nope"), "x"]):
+        assert reply(server, Bottle([*request, 1]).to_bytes()) == FAILED
+    assert reply(server, Bottle(["add", 1]).to_bytes()) != FAILED
+
+
+def test_errors_are_short(server: Any) -> None:
+    assert len(reply(server, "x" * 100_000 + " 1")) < 300
+
+
 def test_sets_are_read_as_cpp_writes_them_and_written_as_bottles(server: Any) -> None:
     request = bytes.fromhex(CALLS["tcp_r_set"]["request"])
     assert Bottle.from_bytes(reply(server, request)) == [[1, 2, 3]]

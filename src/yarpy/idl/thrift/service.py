@@ -116,7 +116,7 @@ class Service:
             word, at, tag = first_word(data, at)
         methods = self._methods
         begin, begin_at, name = word, at, word
-        by_hand = tag == STRING and (len(word) <= 4 or "_" in word)
+        first_by_hand = by_hand = tag == STRING and (len(word) <= 4 or "_" in word)
         for _ in range(self._longest()):
             if name in methods:
                 return name, at, by_hand
@@ -128,7 +128,7 @@ class Service:
                 break
             by_hand = by_hand or (tag == STRING and len(word) <= 4)
             name = f"{name}_{word}"
-        return begin, begin_at, by_hand
+        return begin, begin_at, first_by_hand  # the other words are arguments, perhaps
 
     def _longest(self) -> int:
         """The words of the longest name."""
@@ -151,7 +151,7 @@ class Service:
         if at == len(data) and name == FAILURE:
             return Bottle([self._remembered().get(message.source, "")])
         known = ", ".join([*self._methods][:8]) + (" ..." if len(self._methods) > 8 else "")
-        raise DecodeError(f'no method "{name}": there are {known}; send help for all')
+        raise DecodeError(f'no method "{name[:60]}": there are {known}; send help for all')
 
     def _failed(self, error: Exception, message: Any, person: bool) -> Any:
         if isinstance(error, YarpError):
