@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from support.wait import wait_until
 import yarpy
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
+from yarpy.idl.thrift.library import load
 from yarpy.network.rpc_monitor import RpcMonitor
 
 
@@ -159,3 +162,49 @@ def test_nothing_is_left_when_the_connection_ends(
         wait_until(lambda: monitor.inputs)
         assert client.disconnect("/srv")
         wait_until(lambda: not monitor.inputs)
+
+
+def test_calls_of_thrift(
+    names: yarpy.LocalNames, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "camera.thrift").write_text(
+        "service Camera { bool set_speed(1: double speed), void stop() } (yarp.monitor = 'true')"
+    )
+    monkeypatch.chdir(tmp_path)
+    camera = load(tmp_path / "camera.thrift")
+
+    class Camera(camera.Camera):  # type: ignore[misc, name-defined]
+        def set_speed(self, speed: float) -> bool:
+            return speed < 100
+
+    with (
+        yarpy.BufferedPort("/monitor", strict=True, names=names) as monitor,
+        yarpy.RpcServer("/cam", Camera(), names=names),
+        camera.connect("", name="/client", names=names) as client,
+    ):
+        client._port.connect("/cam", "tcp+send.rpc_monitor+interface.camera")
+        assert client.set_speed(1.5) is True
+        heard = [monitor.read(timeout=5) for _ in range(2)]
+        assert [message and message.value[3:] for message in heard] == [
+            ["command", "client", "Camera", ["set_speed"], [1.5], []],
+            ["reply", "rpc client", "Camera", ["set_speed"], [], ["ok"]],
+        ]
+        client._port.call("something", "else")
+        heard = [monitor.read(timeout=5) for _ in range(2)]
+        assert heard[0] is not None and heard[0].value[5:] == [
+            "RpcMonitor",
+            ["[unknown]"],
+            ["something", "else"],
+            [],
+        ]
+
+
+def test_interfaces_that_cannot_be_had(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.thrift").write_text("struct {}")
+    for name, error in (("none", 'no file "none.thrift"'), ("bad", "bad.thrift:1:8: expected")):
+        with pytest.raises(yarpy.LocalProtocolError, match=error):
+            RpcMonitor(place(f"interface.{name}", sending=True))
+    foreign = replace(place("interface.bad", sending=True), foreign=True)
+    with pytest.raises(yarpy.LocalProtocolError, match="is for the program that owns the port"):
+        RpcMonitor(foreign)

@@ -6,6 +6,12 @@ Attach it at the caller's end (`tcp+send.rpc_monitor`); parameter `monitor`: the
     time CLIENT SERVER command client       RpcMonitor (word) (whole question) ()
     time CLIENT SERVER reply   "rpc client" RpcMonitor ()     ()               (reply)
 
+With the parameter `interface`, a file `camera` or `camera.thrift` that the program itself names, it
+tells what the monitors of such an interface tell in C++ YARP (`yarp.monitor`):
+
+    time CLIENT SERVER command client       Camera (set_speed) (1.5) ()
+    time CLIENT SERVER reply   "rpc client" Camera (set_speed) ()    (ok)
+
 Rules: a monitor that owns a port, so it lives in this layer. A separate thread sends the copies;
 when the observer is 1000 behind, further ones are dropped and counted, and the client never waits.
 `get` says how many.
@@ -20,6 +26,7 @@ import time
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.errors import DecodeError, LocalProtocolError, YarpError
+from yarpy.idl.thrift.observed import Interface
 from yarpy.monitors.base import Place
 from yarpy.port.assembly import open_hub
 from yarpy.port.mailbox import Latest
@@ -36,6 +43,8 @@ class RpcMonitor:
         if not place.sending:
             raise LocalProtocolError('"rpc_monitor" works at the caller\'s end: +send.rpc_monitor')
         self._place = place
+        self._interface = _interface(place)
+        self._last = "RpcMonitor", ""  # the service and the method of the last question
         self._sent = self._drops = 0
         self._copies: queue.Queue[Bottle | None] = queue.Queue(_BEHIND)
         hub = open_hub(f"{place.source}/monitor", Latest(), place.names, register=False)
@@ -50,17 +59,23 @@ class RpcMonitor:
 
     def update(self, message: Message) -> None:
         question = _bottle(message)
-        word = plain_text(question[0]) if question else ""
-        self._tell("command", "client", [word], question, [])
+        if self._interface is None:
+            word = plain_text(question[0]) if question else ""
+            self._tell("command", "client", "RpcMonitor", [word], question, [])
+            return
+        found = self._interface.request(message.to_bytes())
+        service, method, arguments = found or ("RpcMonitor", "[unknown]", question)
+        self._last = service, method
+        self._tell("command", "client", service, [method], arguments, [])
 
     def update_reply(self, message: Message) -> None:
-        self._tell("reply", "rpc client", [], [], _bottle(message))
+        service, method = self._last
+        self._tell("reply", "rpc client", service, [method] if method else [], [], _bottle(message))
 
     def _tell(self, *said: object) -> None:
-        kind, side, *lists = said
         ends = self._place.source, self._place.target
         try:
-            self._copies.put_nowait(Bottle([time.time(), *ends, kind, side, "RpcMonitor", *lists]))
+            self._copies.put_nowait(Bottle([time.time(), *ends, *said]))
         except queue.Full:
             self._drops += 1
 
@@ -84,6 +99,26 @@ class RpcMonitor:
             pass
         self._thread.join(1.0)
         self._port.close()
+
+
+def _interface(place: Place) -> Interface | None:
+    """The interface that the parameters name. LocalProtocolError if there is none, or if it was
+    requested over the network: then the file could be any."""
+    name = place.text("interface")
+    if not name:
+        return None
+    if place.foreign:
+        raise LocalProtocolError('"interface" of rpc_monitor is for the program that owns the port')
+    from yarpy.idl.thrift.library import load
+
+    file = name if name.endswith(".thrift") else f"{name}.thrift"
+    found = next((path for path in place.look(file, []) if path.is_file()), None)
+    if found is None:
+        raise LocalProtocolError(f'rpc_monitor: no file "{file}"')
+    try:
+        return Interface(load(found))
+    except DecodeError as error:
+        raise LocalProtocolError(f"rpc_monitor: {error}") from None
 
 
 def _bottle(message: Message) -> Bottle:
