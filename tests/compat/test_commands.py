@@ -151,6 +151,20 @@ def test_yarpdev_serves_a_device_until_it_is_asked_to_end(environment: Mapping[s
             assert "yarpdev is finished." in process.stdout
 
 
+def test_yarpdev_serves_a_camera_without_hardware(environment: Mapping[str, str]) -> None:
+    with yarpy.NameServer(free_block(200)) as server:
+        variables = {**environment, **server.environment}
+        arguments = ("--device", "fakeFrameGrabber", "--name", "/eye", "--width", "64")
+        with start("main", *arguments, environment=variables) as process:
+            process.wait_line("device active in background", timeout=patience(20.0))
+            with yarpy.devices.FrameGrabber("/eye") as camera:
+                assert camera.image(patience(10.0)).array.shape == (240, 64, 3)
+            with yarpy.RpcClient("/eye/quit") as client:
+                assert client.call("sing") == ["huh?"]
+                assert client.call("quit") == ["ok"]
+            assert process.wait(patience(20.0)) == 0, process.stderr
+
+
 def test_yarpdev_without_a_device(environment: Mapping[str, str]) -> None:
     with start("main", environment=environment) as process:
         assert process.wait(patience(20.0)) == 0

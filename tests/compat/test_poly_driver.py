@@ -236,6 +236,25 @@ def test_python_device_behind_the_wrapper() -> None:
     assert not client.isValid() and not wrapper.isValid()
 
 
+def test_motors_without_hardware() -> None:
+    import yarp
+
+    driver = yarp.PolyDriver("fakeMotionControl")
+    pos, encoders = driver.viewIPositionControl(), driver.viewIEncoders()
+    assert pos.getAxes() == 4
+    assert pos.positionMove(1, 500.0) and encoders.getEncoder(1) == 180.0
+    assert pos.checkMotionDone()
+    modes = driver.viewIControlMode()
+    assert modes.setControlMode(0, yarp.VOCAB_CM_FORCE_IDLE)
+    assert modes.getControlMode(0) == yarp.VOCAB_CM_IDLE
+    assert driver.viewIPositionDirect().setPosition(2, 3.0) and encoders.getEncoder(2) == 3.0
+    assert driver.viewIInteractionMode().setInteractionMode(0, yarp.VOCAB_IM_COMPLIANT)
+    assert driver.viewIInteractionMode().getInteractionMode(0) == yarp.VOCAB_IM_COMPLIANT
+    image = yarp.ImageRgb()
+    assert yarp.PolyDriver("(device fakeFrameGrabber)").viewIFrameGrabberImage().getImage(image)
+    assert (image.width(), image.height()) == (320, 240)
+
+
 def test_what_cannot_be_opened(capfd: pytest.CaptureFixture[str]) -> None:
     import yarp
 

@@ -34,7 +34,11 @@ class IFrameGrabberImage(View):
 
     def getImage(self, image: Any) -> bool:
         """Wait for the next picture."""
-        return self._tell(lambda: image._fill(self._board.image()))
+        return self._tell(lambda: image._fill(self._picture()))
+
+    def _picture(self) -> yarpy.Image:
+        found = self._board.image()
+        return found if isinstance(found, yarpy.Image) else yarpy.Image(found)
 
     def getImageCrop(self, cropType: int, vertices: Any, image: Any) -> bool:
         """A rectangle of the next picture; `vertices` are two pairs of x and y."""
@@ -49,7 +53,7 @@ class IFrameGrabberRgb(IFrameGrabberImage):
         """The next picture's bytes, row by row, into a bytearray or an array."""
 
         def read() -> None:
-            memoryview(buffer).cast("B")[:] = self._board.image().converted("rgb").array.tobytes()
+            memoryview(buffer).cast("B")[:] = self._picture().converted("rgb").array.tobytes()
 
         return self._tell(read)
 

@@ -13,6 +13,7 @@ import yarpy
 from yarp import _names
 from yarp._camera_view import IFrameGrabberControls, IFrameGrabberImage, IFrameGrabberRgb
 from yarp._control_view import IControlLimits, IControlMode, IInteractionMode, IPidControl
+from yarp._fake_device import FakeFrameGrabber, FakeMotionControl
 from yarp._log import say
 from yarp._measuring_view import (
     IAmplifierControl,
@@ -91,7 +92,10 @@ class PolyDriver:
             return False
         inner = device._device if isinstance(device, PolyDriver) else device
         try:
-            self._device = devices.ControlBoardServer(device=inner, **self._waiting)
+            server = (
+                devices.FrameGrabberServer if self._serves_camera else devices.ControlBoardServer
+            )
+            self._device = server(device=inner, **self._waiting)
         except (*FAILURES, ValueError) as error:
             say("ERROR", f"|yarp.dev.PolyDriver| {error}")
             return False
@@ -230,17 +234,40 @@ class PolyDriver:
 
     def _open_server(self) -> None:
         period = self._options.find("period").asFloat64()
+        default = "/grabber" if self._serves_camera else ""
         self._waiting = {
-            "name": self._text("name"),
+            "name": self._text("name", default),
             # In files of robots it is in milliseconds.
-            "period": (period / 1000 if period >= 1 else period) or 0.02,
+            "period": (period / 1000 if period >= 1 else period) or 0.03,
             "names": _names.names(),
         }
         if not self._waiting["name"]:
             raise yarpy.AddressError('the option "name" says what its ports are called')
 
+    @property
+    def _serves_camera(self) -> bool:
+        return self._text("device") in ("frameGrabber_nws_yarp", "grabberDual")
 
+    def _open_fake_camera(self) -> None:
+        width, height = (self._options.find(key).asInt32() for key in ("width", "height"))
+        self._device = FakeFrameGrabber(width or 320, height or 240)
+
+    def _open_fake_motors(self) -> None:
+        joints = self._options.findGroup("GENERAL").find("Joints").asInt32()
+        self._device = FakeMotionControl(joints or 4)
+
+
+#: Devices that somebody has to serve, and who does unless the options say.
+WRAPPERS = {
+    "fakeFrameGrabber": "frameGrabber_nws_yarp",
+    "test_grabber": "frameGrabber_nws_yarp",
+    "fakeMotionControl": "controlBoard_nws_yarp",
+}
 DEVICES = {
+    "fakeFrameGrabber": PolyDriver._open_fake_camera,
+    "test_grabber": PolyDriver._open_fake_camera,
+    "fakeMotionControl": PolyDriver._open_fake_motors,
+    "frameGrabber_nws_yarp": PolyDriver._open_server,
     "remote_controlboard": PolyDriver._open_board,
     "controlBoard_nwc_yarp": PolyDriver._open_board,
     "clientcontrolboard": PolyDriver._open_board,

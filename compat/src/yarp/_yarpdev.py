@@ -3,10 +3,12 @@
     yarpdev --device remote_controlboard --remote /robot/head --local /me
     yarpdev --device controlBoard_nws_yarp --name /cpp/head --subdevice remote_controlboard
             --remote /robot/head --local /me
+    yarpdev --device fakeFrameGrabber --name /grabber
     yarpdev --from file.ini            options in a file; yarpdev --list shows the devices
 
-Rules: `NAME/quit` ends it, and so do SIGINT and SIGTERM. It says every three seconds that it is
-there. A `subdevice` is opened with the same options and handed to the device.
+Rules: a device that is not served by itself gets its usual server. `NAME/quit` ends it, and so do
+SIGINT and SIGTERM. It says every three seconds that it is there. A `subdevice` is opened with the
+same options and handed to the device.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ import sys
 from typing import NoReturn
 
 import yarpy
-from yarp._poly_driver import DEVICES, PolyDriver
+from yarp._poly_driver import DEVICES, WRAPPERS, PolyDriver
 from yarp._property import Property
 
 EXIT_USAGE = 1
@@ -32,7 +34,13 @@ class Yarpdev(yarpy.Module):
 
     def configure(self, resources: yarpy.ResourceFinder) -> bool:
         options = Property(resources.values.to_text())
+        device = options.find("device").asString()
         inner = options.find("subdevice").asString()
+        if not inner and device in WRAPPERS:
+            inner = device
+            options.put("device", WRAPPERS[device])
+            if not options.check("name"):
+                options.put("name", "/grabber" if "rabber" in device else f"/{device}")
         if inner:
             below = Property(options)
             below.put("device", inner)
@@ -42,12 +50,21 @@ class Yarpdev(yarpy.Module):
             self.inner.close()
             self.driver.close()
             return False
+        # The devices have ports called NAME/rpc of their own.
+        name, self.name = options.find("name").asString() or f"/{device}", ""
+        self.ending = yarpy.RpcServer(f"{name}/quit", self._end)
         return True
+
+    def _end(self, message: yarpy.Message) -> list[yarpy.Vocab]:
+        if self.answer(message.as_(yarpy.Bottle)) != ["bye"]:
+            return [yarpy.Vocab("huh?")]
+        return [yarpy.Vocab("ok")]
 
     def update(self) -> None:
         print("[INFO] device active in background...", flush=True)
 
     def close(self) -> None:
+        self.ending.close()
         self.driver.close()
         self.inner.close()
         print("yarpdev is finished.", flush=True)
@@ -65,10 +82,7 @@ def main() -> NoReturn:
             print(__doc__)
             print("[WARNING] --device option not specified. Closing.", file=sys.stderr)
             sys.exit(0)
-        module = Yarpdev()
-        if finder.find("name") is None:
-            finder.values["name"] = f"/{name}"
-        code = module.run(finder)
+        code = Yarpdev().run(finder)
     except (yarpy.YarpError, OSError) as error:
         print(f"error: yarpdev: {error}", file=sys.stderr)
         code = EXIT_USAGE
