@@ -55,7 +55,8 @@ def test_who_needs_it(capt: ModuleType) -> None:
 @settings(max_examples=200)
 @given(st.lists(st.lists(st.lists(st.text(max_size=3), max_size=3), max_size=3), max_size=3))
 def test_any_depth(items: Any) -> None:
-    from yarpy.idl.thrift.fast import Part, dump
+    from yarpy.idl.thrift.fast_writer import dump
+    from yarpy.idl.thrift.kind import Part
 
     kind = ListOf(ListOf(ListOf(kinds.TEXT)))
     data = dump("v", [Part("", kind)], b"\0\1\0\0\1\0\0\0")(items)

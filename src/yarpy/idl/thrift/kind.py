@@ -17,6 +17,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from struct import calcsize
 from typing import TYPE_CHECKING, Annotated, Any, Final, TypeAlias, TypeVar, get_args, get_origin
 
 from yarpy.data.value import (
@@ -99,6 +100,16 @@ NESTED: Final = _Nested()
 
 #: the last is the class of a Struct or of an Enum
 Kind: TypeAlias = Scalar | ListOf | SetOf | MapOf | External | type[Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A value in a row of them: an argument, a result, the struct that is the whole message."""
+
+    name: str
+    kind: Kind
+    nested: bool = False
+
 
 BOOL: Final = Scalar("bool", VOCAB32, "?")
 I8: Final = Scalar("i8", INT8, "b")
@@ -257,3 +268,8 @@ def list_code(element: Kind) -> int:
 def name_of(kind: Kind) -> str:
     """What a kind is called in errors."""
     return kind.__name__ if isinstance(kind, type) else str(kind)
+
+
+def size_of(kind: Scalar) -> int:
+    """The bytes of a number without its tag."""
+    return calcsize("<" + kind.letter)

@@ -21,10 +21,9 @@ from typing import Any, Final, TypeVar
 from yarpy.data import codec
 from yarpy.data.value import LIST, STRING, VOCAB32, Buffer, vocab_code
 from yarpy.errors import DecodeError
-from yarpy.idl.thrift import fast, reader
+from yarpy.idl.thrift import fast_reader, fast_writer, reader
 from yarpy.idl.thrift.extent import Ending, ending_of
-from yarpy.idl.thrift.fast import Part
-from yarpy.idl.thrift.kind import External, Kind, Scalar, flat, is_enum, kind_of, name_of
+from yarpy.idl.thrift.kind import External, Kind, Part, Scalar, flat, is_enum, kind_of, name_of
 from yarpy.idl.thrift.structure import _New
 from yarpy.idl.thrift.word import SERVICE, original
 
@@ -111,14 +110,14 @@ class Method:
         return _PAIR(LIST, count) + b"".join(pieces)
 
     @cached_property
-    def ask(self) -> fast.Dump:
+    def ask(self) -> fast_writer.Dump:
         """The request for these arguments, all of them. TypeError, OverflowError."""
-        return fast.dump(self.name, self.parts, self.head)
+        return fast_writer.dump(self.name, self.parts, self.head)
 
     @cached_property
-    def read_arguments(self) -> fast.Load:
+    def read_arguments(self) -> fast_reader.Load:
         """The arguments that begin at a place. DecodeError."""
-        return fast.load(self.name, self.parts, self.defaults)
+        return fast_reader.load(self.name, self.parts, self.defaults)
 
     # -- answers ----------------------------------------------------------------------------------
 
@@ -132,7 +131,7 @@ class Method:
         if isinstance(result, External):
             return lambda value: b"".join(codec.encode(value))
         path = f"the result of {self.name}"
-        return fast.dump(path, [Part("", result)], _PAIR(LIST, flat(result)))
+        return fast_writer.dump(path, [Part("", result)], _PAIR(LIST, flat(result)))
 
     def bottle_answer(self, value: Any) -> bytes:
         """The same as a Bottle, whatever C++ would make of it."""
@@ -141,12 +140,12 @@ class Method:
             return self.answer(value)
         head = _PAIR(LIST, flat(result))
         path = f"the result of {self.name}"
-        return fast.slow_dump(path, [Part("", result)], [value], head, bottle=True)
+        return fast_writer.slow_dump(path, [Part("", result)], [value], head, bottle=True)
 
     @cached_property
-    def _load_result(self) -> fast.Load:
+    def _load_result(self) -> fast_reader.Load:
         assert self.result is not None
-        return fast.load(f"the result of {self.name}", [Part("", self.result)])
+        return fast_reader.load(f"the result of {self.name}", [Part("", self.result)])
 
     def read_answer(self, data: Buffer) -> Any:
         """The result in an answer. DecodeError."""

@@ -23,7 +23,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.value import Blocks, Buffer, Vocab
 from yarpy.errors import DecodeError
 from yarpy.idl.rosmsg.code import Code
-from yarpy.idl.thrift import fast, reader
+from yarpy.idl.thrift import fast_reader, fast_writer, reader
 from yarpy.idl.thrift.editor import Editor, editor_of
 from yarpy.idl.thrift.kind import (
     BINARY,
@@ -35,6 +35,7 @@ from yarpy.idl.thrift.kind import (
     Kind,
     ListOf,
     MapOf,
+    Part,
     Scalar,
     SetOf,
     flat,
@@ -133,7 +134,7 @@ class Struct:
         cls = type(self)
         found = cls.__dict__.get("_dumps_")
         if found is None:
-            found = cls._dumps_ = fast.dump_struct(cls)  # type: ignore[attr-defined]
+            found = cls._dumps_ = fast_writer.dump_struct(cls)  # type: ignore[attr-defined]
         data: bytes = found(self)
         return data
 
@@ -141,7 +142,7 @@ class Struct:
     def _load(cls, data: Buffer, at: int, size: int) -> tuple[Self, int]:
         found = cls.__dict__.get("_loads_")
         if found is None:
-            found = cls._loads_ = fast.load_struct(cls)  # type: ignore[attr-defined]
+            found = cls._loads_ = fast_reader.load_struct(cls)  # type: ignore[attr-defined]
         result: tuple[Self, int] = found(data, at, size)
         return result
 
@@ -156,8 +157,8 @@ class Struct:
         field that is another."""
         loads = cls.__dict__.get("_whole_")
         if loads is None:
-            parts = [fast.Part("", cls)]
-            loads = cls._whole_ = fast.load(cls.__name__, parts)  # type: ignore[attr-defined]
+            parts = [Part("", cls)]
+            loads = cls._whole_ = fast_reader.load(cls.__name__, parts)  # type: ignore[attr-defined]
         count = reader.pair(view, 0)[1]
         if count != cls._flat():
             names = " ".join(cls._attributes)
@@ -169,8 +170,10 @@ class Struct:
 
     def to_bottle(self) -> Bottle:
         """The fields as the elements of a list, those of structs within in place."""
-        part = fast.Part("", type(self), nested=True)
-        return Bottle.from_bytes(fast.slow_dump(type(self).__name__, [part], [self], bottle=True))
+        part = Part("", type(self), nested=True)
+        return Bottle.from_bytes(
+            fast_writer.slow_dump(type(self).__name__, [part], [self], bottle=True)
+        )
 
     @classmethod
     def from_bottle(cls, items: Any) -> Self:
