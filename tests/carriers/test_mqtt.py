@@ -137,6 +137,20 @@ def test_who_subscribes_reads(hello: bytes, subscribe: bytes, granted: str, sent
         next(steps)
 
 
+def test_subscriptions_are_limited() -> None:
+    end, carrier = accepted(HELLO3, "/" + "/".join("abcdefgh"))
+    reader = read(end, carrier, mqtt.packet(0x82, b"\0\1\0\1#\0")).payload
+    steps = reader.listen(end.stream)
+    next(steps)
+    with pytest.raises(RemoteProtocolError, match="subscriptions"):
+        for number in range(256):  # each takes the topic
+            levels = ["+" if number >> place & 1 else "abcdefgh"[place] for place in range(8)]
+            topic = mqtt.string("/".join(levels).encode())
+            end.stream.feed(mqtt.packet(0x82, b"\0\1" + topic + b"\0"))
+            next(steps)
+            end.take()
+
+
 def test_who_subscribes_to_something_else_still_writes() -> None:
     end, carrier = accepted(HELLO3, "/leg")
     message = read(end, carrier, SUBSCRIBE3 + PUBLISH3)

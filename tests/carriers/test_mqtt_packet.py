@@ -98,6 +98,7 @@ def test_an_end_is_noticed_anywhere() -> None:
         ("arm/+/hand", "arm/left/hand", True),
         ("arm/left", "arm", False),
         ("leg", "arm", False),
+        ("#/left", "arm/left", False),
     ],
 )
 def test_subscriptions(pattern: str, topic: str, does: bool) -> None:

@@ -38,6 +38,7 @@ CLEAN: Final = 0x02
 MAX_HEARD: Final = 1 << 14  # bytes of a packet of somebody who reads
 MAX_CONNECT: Final = 1 << 16  # bytes of the packet that begins a connection
 MAX_TOPIC: Final = 1 << 12  # bytes
+MAX_PATTERNS: Final = 64  # of one reader
 _BROKER: Final = re.compile(r"/mqtt://[^/]++/")
 _REFUSALS: Final = {
     1: "it does not speak version 3.1.1",
@@ -445,6 +446,8 @@ class Reader(Mqtt):
             granted += b"\x80" if refused else b"\0"
             if not refused and mqtt.matches(pattern.removeprefix("/"), self._topic):
                 self._wanted.add(pattern)
+            if len(self._wanted) > MAX_PATTERNS:
+                raise RemoteProtocolError(f"more than {MAX_PATTERNS} subscriptions")
         stream.write(mqtt.packet(mqtt.SUBACK, number + self._properties() + granted))
         return bool(self._wanted)
 

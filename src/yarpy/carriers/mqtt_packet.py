@@ -207,7 +207,7 @@ def matches(pattern: str, topic: str) -> bool:
     wanted, levels = pattern.split("/"), topic.split("/")
     for place, want in enumerate(wanted):
         if want == "#":
-            return True
+            return place == len(wanted) - 1
         if place >= len(levels) or want not in ("+", levels[place]):
             return False
     return len(wanted) == len(levels)
