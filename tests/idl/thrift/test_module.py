@@ -144,14 +144,34 @@ def test_the_linter_likes_it_and_types_are_right(tmp_path: Path) -> None:
             else read_interface(GOLDEN / "capt.thrift")
         )
         (tmp_path / f"{name}.pyi").write_text(stubs(interface))
+    pair = text_interface(
+        "service A { list<double> f(1: list<double> v) }\nservice B extends A { i32 g() }", "p"
+    )
+    (tmp_path / "pair.py").write_text(python(pair))
+    (tmp_path / "pair.pyi").write_text(stubs(pair))
     (tmp_path / "use.py").write_text(
-        "import capt\nimport robot\n\n"
+        "import capt\nimport pair\nimport robot\nfrom yarpy.idl import thrift\n\n"
         "line: robot.Line = robot.Line(robot.Point(x=1.0, list_=[1, 2]))\n"
         "good: bool = robot.connect('/r').go(line, speeds=[1.5, 2])\n"
         "total: int = capt.connect('/c').add(1, 2)\n"
         "mean: float = capt.Lists(ld=[1.0]).ld.mean()\n"
         "bad: str = capt.connect('/c').add(1, 2)  # type: ignore[assignment]\n"
         "capt.connect('/c').add('one', 2)  # type: ignore[arg-type]\n"
+        "capt.connect('/c').r_ldouble([1, 2]).mean()\n"
+        "version: tuple[int, ...] | None = capt.connect('/c').remote_version()\n"
+        "class Server(capt.Capt):\n"
+        "    def r_ldouble(self, v: thrift.Float64s) -> thrift.Float64s:\n"
+        "        return v * 2\n"
+        "    def r_bool(self, v: int) -> str:  # type: ignore[override]\n"
+        "        return ''\n"
+        "pair.B.connect('/x').f([1]).sum()\n"
+        "number: int = pair.B.connect('/x').g()\n"
+        "async def main() -> int:\n"
+        "    async with pair.B.connect_async('/x') as both:\n"
+        "        (await both.f([1])).sum()\n"
+        "    async with capt.connect_async('/c', timeout=1.0) as client:\n"
+        "        await client.r_bool('x')  # type: ignore[arg-type]\n"
+        "        return await client.add(1, 2)\n"
     )
     done = subprocess.run(
         [*run, "mypy", "--strict", "--warn-unused-ignores", "use.py"],

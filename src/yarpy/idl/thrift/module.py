@@ -105,7 +105,7 @@ class _Module:
             )
         head = f'"""The interface {self.interface.name}, written by `yarpy idl thrift`."""\n'
         imports = []
-        typing = sorted(self.uses & {"Annotated", "Final"})
+        typing = sorted(self.uses & {"Annotated", "Any", "Final"})
         if typing:
             imports.append(f"from typing import {', '.join(typing)}")
         third = []
@@ -196,18 +196,56 @@ class _Module:
         for method in each.methods:
             lines += self.method(method)
             lines.append("")
+        if self.stubs:
+            return "\n".join([*lines, *self.clients(each, base)])
         if len(lines) == 1:
             lines.append("    pass")
         return "\n".join(lines)
 
-    def method(self, method: MethodText) -> list[str]:
+    def clients(self, each: ServiceText, base: str) -> list[str]:
+        """The stubs of what `connect` and `connect_async` give: they take lists for arrays."""
+        self.uses.add("Any")
+        name = attribute(each.name)
+        lines = []
+        for kind, how in (("Client", "connect"), ("AsyncClient", "connect_async")):
+            lines += [
+                "    @classmethod",
+                f"    def {how}(",
+                "        cls, target: str, *, timeout: float | None = ..., carrier: str = ..., "
+                "**options: Any",
+                f"    ) -> _{name}{kind}: ...",
+            ]
+        before = base.rpartition(".")
+        sync = f"{name}"
+        apart = "object"
+        if each.extends:
+            sync = f"{before[0]}{before[1]}_{before[2]}Client, {name}"
+            apart = f"{before[0]}{before[1]}_{before[2]}AsyncClient"
+        lines += ["", f"class _{name}Client({sync}):"]
+        lines.append("    def remote_version(self) -> tuple[int, int, int, int] | None: ...")
+        for method in each.methods:
+            lines += self.method(method, "def")[1:]
+        lines += ["", f"class _{name}AsyncClient({apart}):"]
+        lines += [
+            "    timeout: float | None",
+            "    async def remote_version(self) -> tuple[int, int, int, int] | None: ...",
+            "    async def close(self) -> None: ...",
+            f"    async def __aenter__(self) -> _{name}AsyncClient: ...",
+            "    async def __aexit__(self, *error: object) -> None: ...",
+        ]
+        for method in each.methods:
+            lines += self.method(method, "async def")[1:]
+        return lines
+
+    def method(self, method: MethodText, how: str = "") -> list[str]:
+        """A method; `how`: of a client, so that it takes whatever becomes an array."""
         mark = "oneway" if method.oneway else "method"
         arguments = ["self"]
         optional = False
         for argument in method.arguments:
             name = attribute(argument.name)
             kind = self.annotation(argument.type, nested=_nested(argument))
-            if self.stubs:
+            if how:
                 kind = self.accepted(argument.type)
             text = f"{name}: {kind}"
             if argument.default is not None:
@@ -220,10 +258,11 @@ class _Module:
             arguments.append(text)
         result = "None" if method.result is None else self.annotation(method.result)
         name = attribute(method.name, SERVICE)
-        head = f"    def {name}({', '.join(arguments)}) -> {result}:"
+        how = how or "def"
+        head = f"    {how} {name}({', '.join(arguments)}) -> {result}:"
         if len(head) > 100:
             inner = "".join(f"        {argument},\n" for argument in arguments)
-            head = f"    def {name}(\n{inner}    ) -> {result}:"
+            head = f"    {how} {name}(\n{inner}    ) -> {result}:"
         lines = [f"    @{self.thrift}.{mark}", head]
         lines += _docstring(method.doc, 2)
         lines.append("        ..." if self.stubs else "        raise NotImplementedError")
