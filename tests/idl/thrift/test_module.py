@@ -4,10 +4,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
 from support.thrift import GOLDEN
 
-from yarpy.errors import DecodeError
 from yarpy.idl.thrift.interface import read_interface, text_interface
 from yarpy.idl.thrift.library import loads
 from yarpy.idl.thrift.module import python, stubs
@@ -178,31 +176,6 @@ def test_the_linter_likes_it_and_types_are_right(tmp_path: Path) -> None:
         cwd=tmp_path, capture_output=True, text=True, timeout=50,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
-
-
-@pytest.mark.parametrize(
-    ("text", "error"),
-    [
-        ("struct A { 1: i32 a = 'x' }", "f:1: expected a value for i32, found 'x'"),
-        ("struct A { 1: i8 a = 300 }", r"300 \(300\) does not fit in i8"),
-        ("struct A { 1: bool a = 2 }", "expected a value for bool, found 2"),
-        ("struct A { 1: string a = 2 }", "expected a value for string"),
-        ("struct A { 1: list<i32> a = 2 }", "expected a value for a list, found 2"),
-        ("struct A { 1: map<i32, i32> a = [1] }", "expected a value for a map, found a list"),
-        ("enum E { A }\nstruct S { 1: E e = E.B }", "f:2: E is one of A, not E.B"),
-        ("enum E { A }\nstruct S { 1: E e = 'A' }", "expected a value for E, found 'A'"),
-        ("enum E { A = 300 } (yarp.enumbase = 'int8_t')", "does not fit in i8"),
-        ("const i32 A = B\nconst i32 B = 1", 'the constant "B" comes later'),
-        ("const i32 A = C", 'no constant "C"'),
-        ("struct S {}\nconst i32 A = S", '"S" is no constant'),
-        ("struct S { 1: i32 a }\nconst S A = { 'b': 1 }", "S has no field 'b'"),
-        ("struct S { 1: i32 a }\nconst S A = 5", "expected a value for S, found 5"),
-        ("service S { void f(1: i32 a = 1, 2: i32 b) }", '"b" needs a default'),
-    ],
-)
-def test_values_must_fit(text: str, error: str) -> None:
-    with pytest.raises(DecodeError, match=error):
-        python(text_interface(text, "f"))
 
 
 def test_nothing_in_a_file_becomes_code() -> None:
