@@ -8,6 +8,7 @@ import time
 
 import pytest
 from support.inbound import Owner, linked, message, served
+from support.patience import patience
 from support.transport import scripted
 from support.wait import wait_until
 
@@ -15,6 +16,7 @@ from yarpy.carriers.tcp import FastTcp, Tcp
 from yarpy.carriers.text import Text, TextAck
 from yarpy.data.bottle import Bottle
 from yarpy.errors import LinkClosed, Timeout
+from yarpy.link import receiver
 from yarpy.link.driver import Driver
 from yarpy.link.inbound import Inbound
 from yarpy.link.receiver import MAX_UNSENT_ACKS
@@ -190,3 +192,32 @@ def test_message_cannot_ask_for_another_connection() -> None:
         near.sendall(b"tcp\r\n")
         wait_until(lambda: owner.ended)
         assert "nothing that a message can ask for" in owner.ended[0][0]
+
+
+# ------------------------------------------------------------------------------------- answers
+
+
+def test_who_does_not_read_its_answer_keeps_nobody_waiting(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The thread that answers may be the one that reads for everybody."""
+    monkeypatch.setattr(receiver, "STRANGERS", 0.2)
+    with linked(Text) as (near, _, owner):
+        owner.answer = ["x" * 10_000_000]
+        near.sendall(b"d\r\nhello\r\n")
+        wait_until(lambda: owner.ended)
+        reason = "it did not take an answer within 0.2 s"
+        assert owner.ended == [(f'"/peer" is gone: {reason}', False)]
+        assert f"/here: /peer does not read, and is disconnected: {reason}" in caplog.text
+
+
+def test_who_reads_its_answer_slowly_gets_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(receiver, "STRANGERS", patience(0.5))
+    with linked(Text) as (near, _, owner):
+        owner.answer = ["x" * 4_000_000]
+        near.sendall(b"d\r\nhello\r\n")
+        got = 0
+        while got < 4_000_002:
+            time.sleep(0.02)
+            got += len(near.recv(1 << 17))
+        assert not owner.ended

@@ -13,10 +13,18 @@ from typing import TYPE_CHECKING
 
 from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
-from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout, YarpError
+from yarpy.errors import (
+    LinkClosed,
+    LocalProtocolError,
+    RemoteProtocolError,
+    Timeout,
+    YarpError,
+)
 from yarpy.link.counter import Counter
 from yarpy.link.driver import Driver
 from yarpy.link.intake import Intake
+from yarpy.link.write_timeout import STRANGERS
+from yarpy.log import logger
 from yarpy.wire.effects import Claim, Flush, May, Show, Within
 from yarpy.wire.message import CALL, Answer, Message
 from yarpy.wire.stream import LARGE
@@ -27,7 +35,10 @@ if TYPE_CHECKING:
     from yarpy.route import Route
     from yarpy.wire.steps import Effect, Steps
 
+log = logger("yarpy.link")
+
 MAX_UNSENT_ACKS = 64
+LEAST = 1 << 16  # bytes of answers that a peer must take in each period of patience
 
 
 class Receiver:
@@ -256,7 +267,7 @@ class Receiver:
         if carrier.acks:
             # As C++ does behind the words of ROS, before it hangs up.
             carrier.encode_ack(stream, 2 if getattr(answered, "is_last", False) else 1)
-        self.driver.flush()
+        self._flush()
 
     def _reply(self, value: object) -> None:
         stream = self.driver.stream
@@ -265,7 +276,7 @@ class Receiver:
         try:
             if self.carrier.acks:
                 self.carrier.encode_ack(stream, 1)
-            self.driver.flush()
+            self._flush()
         finally:
             self.question = None  # not before: a port that closes waits for that
 
@@ -274,7 +285,33 @@ class Receiver:
         if self._unsent_acks:
             self.carrier.encode_ack(self.driver.stream, self._unsent_acks)
             self._unsent_acks = 0
-        self.driver.flush()
+        self._flush()
+
+    def _flush(self) -> None:
+        """Send what was written. Who dialled us and does not read must not keep a thread of the
+        program waiting: LinkClosed for a peer that takes less than LEAST bytes in its time."""
+        driver = self.driver
+        try:
+            driver.flush(0.0)
+            return
+        except Timeout:
+            pass
+        while True:
+            before = driver.bytes_out
+            try:
+                driver.flush(time.monotonic() + STRANGERS)
+                return
+            except Timeout as error:
+                if driver.bytes_out - before < LEAST:
+                    why = f"it did not take an answer within {STRANGERS:g} s"
+                    log.warning(
+                        "%s: %s does not read, and is disconnected: %s",
+                        self.route.target,
+                        self.route.source or "somebody",
+                        why,
+                    )
+                    driver.transport.interrupt()
+                    raise LinkClosed(f'"{self.route.source}" is gone: {why}') from error
 
     def finish(self) -> None:
         """The last acknowledgements, and the end."""
