@@ -82,7 +82,7 @@ def test_port_answers(names: LocalNames) -> None:
         assert probe.is_alive(contact)
         lines = probe.describe(contact)
         assert lines[0] == f"This is /it at tcp://{port.address}/"
-        assert lines[2] == "There is an input connection from <ping> to /it using text_ack"
+        assert "There is an input connection from <ping> to /it using text_ack" in lines
         wait_until(lambda: not port.inputs)  # the questions have left
 
 
