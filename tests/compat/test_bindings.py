@@ -151,6 +151,30 @@ def test_texts_for_people() -> None:
     assert repr(yarp.Property("(a 1)")) == "<yarp.Property (a 1)>"
 
 
+@pytest.mark.parametrize("carrier", ["local", "tcp"])
+def test_what_was_written_may_be_changed_at_once(carrier: str) -> None:
+    inp, out = yarp.BufferedPortBottle(), yarp.Port()
+    inp.setStrict()
+    assert inp.open("/in") and out.open("/out")
+    assert yarp.Network.connect("/out", "/in", carrier)
+    bottle = yarp.Bottle("first")
+    for text in ("second", "third"):
+        assert out.write(bottle)
+        bottle.fromString(text)
+    assert [inp.read().toString() for _ in range(2)] == ["first", "second"]
+    image, got = yarp.ImageMono(), yarp.ImageMono()
+    image.resize(2, 2)
+    reader = yarp.Port()
+    assert reader.open("/reader") and yarp.Network.connect("/out", "/reader", carrier)
+    assert yarp.Network.disconnect("/out", "/in")
+    writer = threading.Thread(target=out.write, args=(image,))
+    writer.start()
+    assert reader.read(got) and got.width() == 2
+    writer.join()
+    for port in (inp, out, reader):
+        port.close()
+
+
 def test_old_names() -> None:
     bottle = yarp.Bottle()
     bottle.addInt(1)

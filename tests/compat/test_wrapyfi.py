@@ -53,6 +53,31 @@ print("image", good, "answer", answer, flush=True)
 os._exit(0 if good and answer[0] == {"sum": 5} else 1)
 """
 
+SOUND = """
+import os, time, numpy as np
+from wrapyfi.connect.wrapper import MiddlewareCommunicator
+
+class Ear(MiddlewareCommunicator):
+    @MiddlewareCommunicator.register("AudioChunk", "yarp", "Ear", "/ear/sound", channels=1,
+                                     rate=16000, chunk=200, should_wait=True)
+    def listen(self):
+        return (np.sin(np.arange(200) / 10).astype(np.float32), 16000),
+
+child = os.fork()
+ear = Ear()
+ear.activate_communication(ear.listen, "publish" if child else "listen")
+for _ in range(30 if child else 2):
+    got, = ear.listen()
+    time.sleep(0.05 if child else 0)
+if child:
+    print("child", os.waitpid(child, 0)[1], flush=True)
+    os._exit(0)
+samples, rate = got
+error = np.abs(samples.ravel() - np.sin(np.arange(200) / 10)).max()
+print("sound", rate, error < 1e-3, flush=True)
+os._exit(0)
+"""
+
 
 @pytest.fixture(scope="module")
 def wrapyfi() -> Path:
@@ -105,4 +130,10 @@ def test_its_own_tests_pass(
 def test_images_and_questions(wrapyfi: Path, server: yarpy.NameServer, tmp_path: Path) -> None:
     done = run(wrapyfi, server, tmp_path, "-c", IMAGES)
     assert "image True answer [{'sum': 5}]" in done.stdout, done.stdout + done.stderr
+    assert "child 0" in done.stdout, done.stderr
+
+
+def test_sound(wrapyfi: Path, server: yarpy.NameServer, tmp_path: Path) -> None:
+    done = run(wrapyfi, server, tmp_path, "-c", SOUND)
+    assert "sound 16000 True" in done.stdout, done.stdout + done.stderr
     assert "child 0" in done.stdout, done.stderr

@@ -44,7 +44,9 @@ class BufferedPort(Contactable, Generic[T]):
         self._replier: Any = None
 
     def _make(self, name: str, tcp_port: int) -> Any:
-        port = yarpy.BufferedPort(name, tcp_port=tcp_port, names=self._names())
+        port = yarpy.BufferedPort(
+            name, tcp_port=tcp_port, names=self._names(), on_connection=self._event
+        )
         if self._strict:
             port.read_strictly()
         return port
@@ -102,7 +104,7 @@ class BufferedPort(Contactable, Generic[T]):
             return
         port.strict = forceStrict
         try:
-            port.write(self.prepare()._outgoing(), envelope)
+            port.write(self._leaving(self.prepare()), envelope)
         except yarpy.PortClosed:
             pass
         except (ValueError, OverflowError) as error:  # too deep, too large

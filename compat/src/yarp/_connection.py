@@ -23,7 +23,7 @@ class ConnectionWriter:
         self._object = writer._outgoing()
 
     def _outgoing(self) -> Any:
-        return _Raw(bytes(self._bytes)) if self._object is None else self._object
+        return Raw(bytes(self._bytes)) if self._object is None else self._object
 
     @property
     def _empty(self) -> bool:
@@ -90,7 +90,7 @@ class ConnectionWriter:
         return False
 
 
-class _Raw:
+class Raw:
     """Bytes that are a message already."""
 
     def __init__(self, data: bytes) -> None:

@@ -14,7 +14,7 @@ from typing import Any
 
 import yarpy
 from yarp import _names
-from yarp._connection import ConnectionReader
+from yarp._connection import ConnectionReader, Raw
 from yarp._contact import Contact
 from yarp._log import say
 from yarp._memory import encoded
@@ -44,6 +44,7 @@ class Contactable:
         self._resumed.set()
         self._properties = Property()
         self._reporter: Any = None
+        self._locals = 0  # connections over which objects go as they are
 
     def _make(self, name: str, tcp_port: int) -> Any:
         raise NotImplementedError
@@ -68,8 +69,6 @@ class Contactable:
             return False
         self._name = self._port.name
         _open.add(self)
-        if self._reporter is not None:
-            self.setReporter(self._reporter)
         self._start()
         return True
 
@@ -140,8 +139,18 @@ class Contactable:
     def setReporter(self, reporter: Any) -> None:
         """Call `reporter.report` when connections come and go."""
         self._reporter = reporter
-        if self._port is not None:
-            self._port.on_connection(None if reporter is None else _Reporting(reporter))
+
+    def _event(self, event: yarpy.ConnectionEvent) -> None:
+        """A connection came or went."""
+        if event.carrier == "local" and not event.incoming:
+            self._locals += 1 if event.created else -1
+        if self._reporter is not None:
+            self._reporter.report(PortInfo(event))
+
+    def _leaving(self, writer: Any) -> Any:
+        """What is sent; a copy where the reader would get the object itself."""
+        native = writer._outgoing()
+        return Raw(encoded(native)) if self._locals else native
 
     def resetReporter(self) -> None:
         """Report no more."""
@@ -315,11 +324,3 @@ class PortReport:
 
     def report(self, info: PortInfo) -> None:
         """Called when a connection comes or goes."""
-
-
-class _Reporting:
-    def __init__(self, reporter: Any) -> None:
-        self._reporter = reporter
-
-    def __call__(self, event: yarpy.ConnectionEvent) -> None:
-        self._reporter.report(PortInfo(event))

@@ -21,7 +21,7 @@ class Port(Contactable):
         self._timeout: float | None = None
 
     def _make(self, name: str, tcp_port: int) -> Any:
-        return yarpy.Port(name, tcp_port=tcp_port, names=self._names())
+        return yarpy.Port(name, tcp_port=tcp_port, names=self._names(), on_connection=self._event)
 
     def write(self, writer: Any, reader: Any = None, callback: Any = None) -> bool:
         """Send; with a reader as the second argument, ask and read the answer into it."""
@@ -32,7 +32,7 @@ class Port(Contactable):
         port, envelope, self._envelope = self._port, self._envelope, None
         if port is not None:
             try:
-                port.write(writer._outgoing(), envelope)
+                port.write(self._leaving(writer), envelope)
             except yarpy.PortClosed:
                 return False
             except (ValueError, OverflowError) as error:  # too deep, too large

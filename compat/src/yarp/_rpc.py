@@ -38,7 +38,9 @@ class RpcClient(Contactable):
         self._timeout: float | None = None
 
     def _make(self, name: str, tcp_port: int) -> Any:
-        return yarpy.RpcClient(name=name, tcp_port=tcp_port, names=self._names())
+        return yarpy.RpcClient(
+            name=name, tcp_port=tcp_port, names=self._names(), on_connection=self._event
+        )
 
     def write(self, data1: Any, data2: Any = None) -> bool:
         """Ask, and read the answer into the second argument; False if there is none."""
