@@ -426,6 +426,46 @@ def test_what_does_not_leave_at_once_is_dropped() -> None:
         assert link.send(Packet([1]))
 
 
+def test_a_slow_reader_costs_its_writer_nothing_and_is_not_cut_off_for_asking() -> None:
+    with connected(AtOnce) as (link, far):
+        large = Packet([bytes(1_000_000)])
+        while link.send(large):
+            pass  # now a part of one waits
+        assert link.sender.halfway
+        started = time.monotonic()
+        for _ in range(1000):
+            assert not link.send(large)
+        assert time.monotonic() - started < 10  # much less, but for a busy machine
+        thread = threading.Thread(target=link.attend)
+        thread.start()
+        far.sendall(b"how are you?")
+        time.sleep(0.3)
+        assert not link.broken
+        data = b""
+        while not data.endswith(b"!"):  # behind the messages
+            data = data[-1:] + far.recv(1 << 20)
+        assert link.send(Packet([1]))
+        link.close(quit_=False)
+        thread.join(patience(5.0))
+        assert not thread.is_alive()
+
+
+def test_a_flood_of_questions_takes_no_memory() -> None:
+    with connected(AtOnce) as (link, far):
+        thread = threading.Thread(target=link.attend)
+        thread.start()
+        far.settimeout(0.5)
+        asked = 0
+        with suppress(TimeoutError):
+            while asked < 1 << 26:
+                asked += far.send(b"?" * (1 << 16))  # and none of the answers is read
+        assert asked < 1 << 26
+        waiting, _ = link.driver.stream.written()
+        assert waiting < 1 << 23
+        link.close(quit_=False)
+        thread.join(patience(5.0))
+
+
 def test_what_a_reader_says_is_heard_at_once() -> None:
     with connected(AtOnce) as (link, far):
         thread = threading.Thread(target=link.attend)

@@ -33,7 +33,6 @@ log = logger("yarpy.link")
 
 UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may buffer
 LISTEN_MOST: Final = 64  # reads at a time of what a reader says
-MOMENT: Final = 0.02  # seconds that a message to be sent at once may take
 ATTENTION: Final = 0.5  # seconds of each wait for a reader to say something
 LISTEN_PATIENCE: Final = 0.1  # seconds for an answer to what a reader says while we send
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
@@ -185,9 +184,7 @@ class Outbound:
             if passed is None:
                 return False
             packet = passed
-        # Another thread may have the lock for a moment. A reader that is too slow costs this once.
-        until = 0.0 if self.sender.halfway else time.monotonic() + MOMENT
-        if self.sender.send(packet, until, copies=True) is NOTHING:
+        if self.sender.send(packet, 0.0, copies=True) is NOTHING:
             self.counter.drops += 1
             return False
         return True
@@ -372,12 +369,17 @@ class Outbound:
         try:
             if self.broken or self.sender.window.open:
                 return  # what comes then may be an acknowledgement
+            if self.sender.halfway:
+                return  # nobody is answered who does not take what was sent before
             driver = self.driver
             next(steps)
             for _ in range(LISTEN_MOST):
                 if not driver.try_fill():
                     break
                 next(steps)
+            if self.carrier.delivery.at_once:
+                self.sender.flush_at_once()
+                return
             driver.transport.limit_waiting(LISTEN_PATIENCE)
             driver.flush()
             driver.transport.limit_waiting(None)

@@ -34,6 +34,7 @@ log = logger("yarpy.link")
 RUSH: Final = 3.0
 BURST: Final = 16
 GATHER: Final = 64  # messages
+MOMENT: Final = 0.02  # seconds
 AT_A_TIME: Final = 0.1  # seconds of each wait until a reader takes more
 
 
@@ -72,7 +73,7 @@ class Sender:
             if deadline is None:
                 with self.lock:
                     return self._send(packet, None, copies)
-            if not self._lock_by(deadline):
+            if not self._lock_by(self._patience(deadline)):
                 return NOTHING
             try:
                 return self._send(packet, deadline, copies)
@@ -80,7 +81,7 @@ class Sender:
                 self.lock.release()
         until = self.write_timeout.until(deadline)
         sent = NOTHING
-        if self._lock_by(until):
+        if self._lock_by(self._patience(until)):
             try:
                 sent = self._send(packet, until, copies)
             finally:
@@ -137,6 +138,15 @@ class Sender:
             raise self.cut()
         return done
 
+    def flush_at_once(self) -> None:
+        """Send what was written as far as it leaves without waiting; the rest follows by itself.
+        The lock is held. Raises LinkClosed."""
+        try:
+            self.flush(0.0)
+        except Timeout:
+            self.driver.stream.snapshot_output()
+            self._watch()
+
     def leave(self) -> None:
         """The writer does not come back for `finish`: what is halfway follows by itself."""
         if self.lock.acquire(blocking=False):  # else another thread is sending it
@@ -151,6 +161,13 @@ class Sender:
     def busy(self) -> bool:
         """Whether another message would have to wait."""
         return self.halfway or self.lock.locked()
+
+    def _patience(self, until: float | None) -> float | None:
+        """Until when to wait for the lock. What is to be sent at once waits while another thread
+        does something short, but not behind the rest of a message."""
+        if until == 0.0 and self.carrier.delivery.at_once and not self.halfway:
+            return time.monotonic() + MOMENT
+        return until
 
     def _lock_by(self, until: float | None) -> bool:
         if until is None:
