@@ -266,6 +266,8 @@ def test_what_cannot_be_opened(capfd: pytest.CaptureFixture[str]) -> None:
         assert '"/none' in capfd.readouterr().err
         assert not yarp.PolyDriver("(device controlBoard_nws_yarp)").isValid()
         assert yarp.PolyDriver().viewIEncoders() is None
+        with pytest.raises(AttributeError, match=r"no device of yarpy-compat has .*viewIGaze"):
+            _ = yarp.PolyDriver().viewIGazeControl
     finally:
         yarp.Network.setLocalMode(False)
 

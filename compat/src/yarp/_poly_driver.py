@@ -142,6 +142,15 @@ class PolyDriver:
         found = device is not None and (hasattr(type(device), member) or hasattr(device, member))
         return kind(device) if found else None
 
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("view"):
+            known = ", ".join(sorted(one for one in dir(type(self)) if one.startswith("view")))
+            raise AttributeError(
+                f"no device of yarpy-compat has the interface of {name}; there are {known}. Open "
+                "an issue of yarpy if you need it"
+            )
+        raise AttributeError(f"PolyDriver has no attribute {name!r}")
+
     # What an interface of a device is told by.
 
     def viewIPositionControl(self) -> IPositionControl | None:
