@@ -408,7 +408,7 @@ def only(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, site: 
 
 @pytest.mark.parametrize("only", ["", "http://good.test:{site}"], indirect=True)
 def test_only_some_pages_may_act(browser: Browser, names: LocalNames, site: int, only: str) -> None:
-    browser.excuse("403|refused|WebSocket|Framing|frame-ancestors")
+    browser.excuse("403|refused|REFUSED|WebSocket|Framing|frame-ancestors")
     heard: list[object] = []
 
     def answer(message: yarpy.Message) -> None:

@@ -50,7 +50,7 @@ def test_python_calls_a_port() -> None:
         assert len(server.inputs) == 1  # one connection for all
         assert server.inputs[0].source == "rpc"
         with pytest.raises(xmlrpc.client.ProtocolError):
-            proxy(server, "/RPC2").big("x" * (1 << 25))
+            proxy(server, "/RPC2").big("x" * (17 << 20))
         assert remote.still("there")[1] == "echo"
     wait_until(lambda: not server.inputs)
 

@@ -53,7 +53,7 @@ def test_nothing_is_grabbed_while_nobody_looks(server, camera, names):
     with yarpy.BufferedPort("/me", names=names) as port:
         port.listen_to("/eye")
         port.read(PATIENCE)
-    wait_until(lambda: not server._images.outputs, PATIENCE)
+    wait_until(lambda: not server.images.outputs, PATIENCE)
     threading.Event().wait(0.02)  # what was begun is done
     taken = camera.taken
     threading.Event().wait(0.05)

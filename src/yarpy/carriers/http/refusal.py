@@ -17,7 +17,7 @@ from yarpy.wire.effects import May, Within
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
-DRAIN: Final = 1 << 24  # bytes that are read behind a refused request
+DRAIN: Final = 1 << 26  # bytes that are read behind a refused request
 LINGER: Final = 2.0  # seconds
 
 

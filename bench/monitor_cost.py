@@ -1,6 +1,6 @@
 """What monitors that decide cost per message: scripts in Python and in Lua, and priority.
 
-    python bench/monitors.py
+    python bench/monitor_cost.py
 
 Prints microseconds per message, the best of several runs; one thread, nothing is sent.
 """
