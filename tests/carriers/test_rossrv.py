@@ -72,6 +72,15 @@ def test_a_server_answers_rospy_as_cpp_does(name: str, piece: int) -> None:
     assert end.result is None or end.result.key == QUIT
 
 
+def test_nothing_is_awaited_behind_a_goodbye() -> None:
+    """Which is never answered: who closes would wait in vain."""
+    end, talk = End(0), RosSrv(Route("/me", "/s", "rossrv"))
+    talk.encode_quit(end.stream)
+    assert end.take() == b""
+    end.begin(talk.expect_ack(end.stream))
+    assert end.done
+
+
 @pytest.mark.parametrize("piece", PIECES)
 def test_a_probe_gets_a_header_and_no_more(piece: int) -> None:
     end, carrier = accept(load_capture("ros_yarp_srv_tcpros").steps[0].data, SERVED, piece)

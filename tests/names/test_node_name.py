@@ -74,6 +74,9 @@ def test_types_for_the_master() -> None:
     assert [master_type(item) for item in ("", "*", "yarp/vector", "std_msgs/String")] == [
         *("*", "*", "yarp/vector", "std_msgs/String")
     ]
+    assert master_type("std_msgs/msg/String") == "std_msgs/String"
+    for refused in ("a/b/c", "bad~x/Type", "two words", "/x", "x/", "std_msgs/String\n", "é/Type"):
+        assert master_type(refused) == "*", refused
 
 
 @pytest.mark.parametrize("name", ["/", "chatter", "/1st", "/a-b", "/a/", "//a", "/a b", "/a/\n"])

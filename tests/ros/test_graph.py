@@ -14,7 +14,8 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.errors import AddressError
-from yarpy.ros.graph import GRAPH
+from yarpy.ros.graph import GRAPH, SOON
+from yarpy.ros.membership import Membership
 from yarpy.ros.node import Node
 
 #: how often programs are killed; 10 where there is time
@@ -74,6 +75,19 @@ def test_a_node_may_come_before_its_master(
         node.publisher("/early_words", "std_msgs/String")
         graph.start()
         wait_until(lambda: registered(graph, "/early"), patience(15), "registered")
+
+
+def test_what_the_master_refuses_is_said_once_and_keeps_nothing_else_out(
+    graph: RosGraph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Membership, "shown_type", property(lambda self: self.type))
+    with yarpy.Port("/first+@/mixed~a/b/c"), yarpy.Port("/second+@/mixed~std_msgs/String"):
+        graph.core.kill()
+        graph.start()
+        wait_until(lambda: ["/second", ["/mixed"]] in graph.master.state()[0], patience(15), "it")
+        time.sleep(3 * SOON)
+        said = [each for each in caplog.records if "refuses registerPublisher" in each.message]
+        assert len(said) <= 2, caplog.text  # as it opens, and by the new master
 
 
 def test_rosnode_kill_closes_the_ports(graph: RosGraph) -> None:

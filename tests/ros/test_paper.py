@@ -104,6 +104,15 @@ def test_services(robot: RosGraph) -> None:
             our.wait_line("Message: 1", count=2)
             our.write_line('1 "as new"')
             rpc.wait_line("Response: ")
+            rpc.write_line("1 2 3")  # is not sent, and the next line is asked
+            rpc.wait_line("error: std_srvs/SetBoolRequest is expected .* got 3")
+            rpc.write_line("0")
+            our.wait_line("Message: 0")
+            our.write_line('1 "as old"')
+            rpc.wait_line("Response: ", count=2)
+            rpc.end_input()
+            assert rpc.wait() == 0
+        assert "reconnecting" not in rpc.stderr
 
 
 def test_everything_is_gone_in_the_end(robot: RosGraph) -> None:
@@ -144,6 +153,9 @@ def test_names_are_listed(robot: RosGraph) -> None:
         listed = robot.yarpy("name", "list", ROS_MASTER_URI="")
         assert listed.wait() == 0
         assert 'node "/lister"' in listed.stdout and 'topic "/listed"' in listed.stdout
+        found = robot.yarpy("name", "query", "/listed", ROS_MASTER_URI="")
+        assert found.wait() == 1
+        assert '"/listed" is a topic of ROS, not a port' in found.stderr
 
 
 def test_the_folder_is_as_users_have_it(robot: RosGraph) -> None:

@@ -81,6 +81,7 @@ class RosSrv(Carrier):
 
     def encode_quit(self, stream: ByteStream) -> None:
         """Only closing ends the connection."""
+        self._confirmed = True  # nothing comes for that
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         (ok,) = yield from stream.read_exact(1)

@@ -124,17 +124,23 @@ def yarp_name(name: str) -> str:
     return name.replace("__", ":")
 
 
-def master_type(port_type: str) -> str:
-    """The type that the master is told of.
+_TYPE: Final = re.compile(r"([A-Za-z]\w*+)/(?:(?:msg|srv)/)?([A-Za-z]\w*+)", re.ASCII)
 
-    >>> master_type(""), master_type("yarp/image"), master_type("thing")
-    ('*', 'sensor_msgs/Image', 'yarp/thing')
+
+def master_type(port_type: str) -> str:
+    """The type that the master is told of: `*` for what it would not take.
+
+    >>> master_type(""), master_type("yarp/image"), master_type("thing"), master_type("a/b/c")
+    ('*', 'sensor_msgs/Image', 'yarp/thing', '*')
+    >>> master_type("std_msgs/msg/String")
+    'std_msgs/String'
     """
     if port_type == "yarp/image":
         return "sensor_msgs/Image"
     if port_type in ("", ANY_TYPE):
         return ANY_TYPE
-    return port_type if "/" in port_type else f"yarp/{port_type}"
+    found = _TYPE.fullmatch(port_type if "/" in port_type else f"yarp/{port_type}")
+    return f"{found[1]}/{found[2]}" if found else ANY_TYPE
 
 
 def check_graph_name(name: str) -> str:

@@ -20,7 +20,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.errors import AddressError, NoNameServer, YarpError
 from yarpy.log import logger
 from yarpy.names.base import NameClient
-from yarpy.names.node_name import PUBLISHER, SERVER
+from yarpy.names.node_name import CLIENT, PUBLISHER, SERVER
 from yarpy.names.ros_master import RosMaster, advertised_host, uri_of
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Mailbox
@@ -182,16 +182,26 @@ class GraphNode:
             return
         found = self.master.node(self.name)
         known = found is not None and uri_of(found.host, found.port) == self.place.uri
-        self._tell("")
-        if known and not self._unknown:
+        if (known and not self._unknown) or (found is not None and not known):
+            self._tell("")  # if it is not ours, another node of that name has come
             return
-        if found is not None and not known:
-            return  # another node of that name has come, and we were told to leave
         again = found is None
-        for member in self.members:
-            if again or member in self._unknown:
+        members, problem = self.members, ""
+        if again:
+            self._unknown.update(members)  # whatever happens to the first of them
+        for member in members:
+            if member not in self._unknown:
+                continue
+            try:
                 member.register(self.place, again)
-                self._unknown.discard(member)
+            except NoNameServer:
+                raise
+            except YarpError as error:  # the others are registered all the same
+                problem = str(error)
+                if member.name.category != CLIENT:  # the master is told nothing of those
+                    continue
+            self._unknown.discard(member)
+        self._tell(problem)
         if again and any(member.name.category != "+1" for member in self.members):
             log.info("%s is registered with the master at %s", self.name, self.master.uri)
 

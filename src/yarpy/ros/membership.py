@@ -316,6 +316,8 @@ def kind_of(type_: str, category: str) -> Any:
     from yarpy.idl.rosmsg.library import default_library
 
     library, name = default_library(), master_type(type_)
+    if name == ANY_TYPE:
+        name = type_  # the error says what is wrong with it
     try:
         return library.service(name) if category in (CLIENT, SERVER) else library.message(name)
     except (UnknownType, DecodeError) as error:

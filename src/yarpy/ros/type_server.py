@@ -30,6 +30,7 @@ from yarpy.wire.message import Message
 SERVICE: Final = "/typ"
 TYPE: Final = "test_roscpp/TestStringString"
 TIMEOUT: Final = 3.0  # seconds for an answer
+HINT: Final = f"the type server {SERVICE} (`yarpy idl rosmsg --name {SERVICE}@/yarpros` starts one)"
 
 
 class TypeServer:
@@ -100,9 +101,7 @@ class TypeClient:
         return text if is_service == (kind == "srv") else None
 
     def __str__(self) -> str:
-        return (
-            f"the type server {SERVICE} (`yarpy idl rosmsg --name {SERVICE}@/yarpros` starts one)"
-        )
+        return HINT
 
 
 _asked: Final[set[str]] = set()  # masters whose type servers are among the sources

@@ -1,5 +1,7 @@
 """`yarpy admin`."""
 
+import os
+
 import yarpy
 
 
@@ -25,6 +27,15 @@ def test_rpc(cli, names):
             'Response: "v w"',
             'Response: [fail] "send [help] for list of valid commands"',
         ]
+
+
+def test_rpc_of_what_nodes_of_ros_are_asked(cli, names):
+    """Ports hang up behind those answers: what is asked next comes over another connection."""
+    with yarpy.Port("/admin/ros", names=names):
+        said = cli.run("admin", "rpc", "/admin/ros", input="getPid /me\ngetPid /me\n[ver]\n")
+    pid = f'Response: 1 "" {os.getpid()}\n'
+    assert said.stdout == f"{pid}{pid}Response: [ver] 1 2 3\n"
+    assert (said.returncode, said.stderr) == (0, "")
 
 
 def test_write(cli, names):

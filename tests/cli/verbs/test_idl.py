@@ -71,6 +71,26 @@ def test_contexts(here, folder, tmp_path):
     assert said.out == "863b248d5016ca62ea2e895ae5265cf9\n"
 
 
+def test_types_of_the_network(cli, folder, names):
+    from yarpy.idl.rosmsg.library import Library
+    from yarpy.idl.rosmsg.source import Folder
+    from yarpy.ros.type_server import TypeServer
+
+    wanted = ("turtlesim/Poses", "turtlesim/Spawn")
+    server = TypeServer("/typ", Library([Folder(folder)]), names)
+    try:
+        said = cli.run("idl", "rosmsg", "--raw", *wanted)
+    finally:
+        server.close()
+    assert (said.returncode, said.stderr) == (0, "")
+    poses = (folder / "turtlesim/msg/Poses.msg").read_text()
+    spawn = (folder / "turtlesim/srv/Spawn.srv").read_text()
+    assert said.stdout == f"[{wanted[0]}]:\n{poses}\n[{wanted[1]}]:\n{spawn}"
+    said = cli.run("idl", "rosmsg", *wanted)
+    assert said.returncode == 1
+    assert "the type server /typ (`yarpy idl rosmsg --name /typ@/yarpros` starts" in said.stderr
+
+
 def test_what_is_not_there_or_wrong(here, folder):
     said = here("idl", "rosmsg", "nowhere/Thing")
     assert (said.code, said.out) == (1, "")

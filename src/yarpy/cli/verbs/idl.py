@@ -12,7 +12,7 @@
 
 A NAME is package/Type, or the path of a .msg or .srv file. Names are looked for in the folders of
 --folder, in folders `msgs` where `yarpy resource` looks for files of the --context, in the packages
-of ROS, and among those that rosbags and yarpy bring.
+of ROS, among those that rosbags and yarpy bring, and at last at the type server of the network.
 
 Files that a .thrift file includes are looked for beside it, then in the folders of --folder; they
 are written, too.
@@ -30,9 +30,11 @@ from typing import TYPE_CHECKING
 import click
 
 from yarpy.cli.output import print_line
+from yarpy.errors import YarpError
 
 if TYPE_CHECKING:
     from yarpy.idl.rosmsg.library import Library
+    from yarpy.ros.type_server import TypeClient
 
 
 @click.group()
@@ -73,6 +75,7 @@ def rosmsg(
     from yarpy.idl.rosmsg.stub import python, stubs
 
     library = library_of(folders, contexts)
+    library.catalogue.sources.append(TypeServers())
     found = [library.load(name) for name in names]
     if form in ("python", "stubs"):
         print_line((python if form == "python" else stubs)(found).rstrip("\n"))
@@ -159,6 +162,39 @@ def sniff(port: str, count: int) -> int:
         samples = [bytes(reader.read().to_bytes()) for _ in range(max(count, 1))]
     print_line(write(*samples).rstrip("\n"))
     return 0
+
+
+class TypeServers:
+    """A source of definitions: the type servers of the graph of ROS and of the YARP network, which
+    are looked for when it is asked."""
+
+    def __init__(self) -> None:
+        self._clients: list[TypeClient] | None = None
+
+    def find(self, name: str, kind: str) -> str | None:
+        """The text of a type, from the first that knows it."""
+        if self._clients is None:
+            self._clients = _type_servers()
+        found = (client.find(name, kind) for client in self._clients)
+        return next((text for text in found if text is not None), None)
+
+    def __str__(self) -> str:
+        from yarpy.ros.type_server import HINT
+
+        return HINT
+
+
+def _type_servers() -> list[TypeClient]:
+    from yarpy.names.ros import RosNames
+    from yarpy.ros.part import services, without_masters
+    from yarpy.ros.type_server import TypeClient
+
+    try:
+        names, master = services(None)
+    except YarpError:
+        return []
+    yarp = without_masters(names)
+    return [TypeClient(each) for each in (master and RosNames(master), yarp) if each]
 
 
 def library_of(folders: tuple[str, ...], contexts: tuple[str, ...]) -> Library:

@@ -24,7 +24,6 @@ import click
 import yarpy
 from yarpy.cli.output import print_json, print_line
 from yarpy.cli.stderr import complain
-from yarpy.errors import UnknownName
 
 if TYPE_CHECKING:
     from yarpy.names.ros import RosNames
@@ -97,7 +96,9 @@ def _answer_for_ros(
     if verb == "query" and len(arguments) == 1 and alone:
         contact = names.query(arguments[0])
         if contact is None:
-            raise UnknownName(f'the ROS master knows no "{arguments[0]}"')
+            from yarpy.port.connecting import unknown
+
+            raise unknown(arguments[0], names)
         _print_contact(contact, as_json)
         return True
     if verb != "list" or not (alone or as_json):

@@ -6,7 +6,8 @@ one that is asked sees the name `anon_rpc`, or NAME. With `--client LOCALPORT` t
 for somebody to connect it to a server, and replies are printed bare.
 
 When the target goes away it is asked again, up to three times, a moment apart. `help` is asked of
-control boards as they want it asked, `[help] [all]`; at a terminal Tab offers what it lists.
+control boards as they want it asked, `[help] [all]`; at a terminal Tab offers what it lists. What a
+service of ROS cannot take is said, and the next line is asked.
 Exit codes: 0 at the end of input; 1 the target cannot be reached.
 """
 
@@ -30,6 +31,7 @@ from yarpy.errors import (
     WrongPort,
     YarpError,
 )
+from yarpy.wire.message import UNSENDABLE
 
 if TYPE_CHECKING:
     from yarpy.port.probe import Caller
@@ -50,19 +52,27 @@ class Target:
         self._port = port
         self._name = name
         self._admin = admin
+        self._of_ros = False  # a node or service of ROS, or its master
         self._caller: Caller | None = self._dial()
 
     def ask(self, question: Any) -> Any:
-        """The reply as a Bottle. Raises LinkClosed when the target stays away."""
+        """The reply as a Bottle. Raises LinkClosed when the target stays away, DecodeError when a
+        service of ROS takes nothing like `question`."""
         pauses = iter(PAUSES)
         while True:
             try:
                 if self._caller is None:
                     self._caller = self._dial()
-                return _bottle(self._caller.ask(question))
+                reply = _bottle(self._caller.ask(question))
+                if self._admin and _ends_connection(question):
+                    self._hang_up()  # the next question must not go where nobody reads it
+                return reply
             except WrongPort:
                 raise
-            except DecodeError as error:
+            except UNSENDABLE as error:
+                if self._of_ros:
+                    self._hang_up()
+                    raise DecodeError(str(error)) from error
                 raise RemoteProtocolError(
                     f'"{self._port}" does not answer as a port does ({error}); '
                     "a name server of C++ YARP is asked with `yarpy name list` or `yarpy name help`"
@@ -77,8 +87,12 @@ class Target:
 
     def close(self) -> None:
         """Hang up."""
-        if self._caller is not None:
-            self._caller.close()
+        self._hang_up()
+
+    def _hang_up(self) -> None:
+        caller, self._caller = self._caller, None
+        if caller is not None:
+            caller.close()
 
     def _dial(self) -> Caller:
         from yarpy.cli.service import masters
@@ -90,7 +104,8 @@ class Target:
         carrier = parse_contact(self._port).carrier or "tcp"
         name = self._name or ANONYMOUS
         found = confirmed(self._port, carrier=carrier)
-        if is_of_ros(found):
+        self._of_ros = is_of_ros(found)
+        if self._of_ros:
             for master in masters():
                 ask_type_server(master.master)
         return Caller(found, name, carrier=carrier, admin=self._admin)
@@ -105,7 +120,11 @@ def converse(ask: Ask, history: str, label: str = "Response: ") -> None:
         except yarpy.DecodeError as error:
             complain(str(error))
             continue
-        reply = ask(question)
+        try:
+            reply = ask(question)
+        except DecodeError as error:
+            complain(str(error))
+            continue
         if question == HELP and _refused(reply):
             reply = ask(yarpy.Bottle(HELP_ALL))
         print_reply(reply, label)
@@ -154,6 +173,15 @@ def commands_of(ask: Ask) -> list[str]:
 
 def _refused(reply: Any) -> bool:
     return bool(reply) and isinstance(reply[0], yarpy.Vocab) and reply[0] in ("nak", "fail")
+
+
+def _ends_connection(question: Any) -> bool:
+    """Whether ports hang up behind the answer, as they do to what nodes of ROS ask."""
+    from yarpy.data.text import plain_text
+    from yarpy.port.guard import ROS, TOLD
+
+    word = plain_text(question[0]) if question and isinstance(question[0], str) else ""
+    return word in ROS or word in TOLD
 
 
 def talk(port: str, name: str = "", admin: bool = False) -> int:
