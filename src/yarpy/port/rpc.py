@@ -33,8 +33,9 @@ class RpcServer(BasePort):
 
     The handler runs in the connection's thread, so calls of different clients run side by side;
     with `lock` one at a time. What it raises is answered as `[fail] "reason"` and logged. It may
-    also call `message.reply(...)` itself. Without `register` no name service hears of it; `part` is
-    what it does in the graph of another system. Other parameters as `Port`.
+    also call `message.reply(...)` itself. If it has a method `page`, that is what browsers see, as
+    of `on_page`. Without `register` no name service hears of it; `part` is what it does in the
+    graph of another system. Other parameters as `Port`.
     """
 
     def __init__(

@@ -10,7 +10,7 @@ from support.thrift import CALLS
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError, Timeout
+from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError, Timeout, UnknownName
 from yarpy.idl.thrift.client import client_class, is_failure, version
 from yarpy.idl.thrift.library import loads
 from yarpy.wire.message import CALL, Message
@@ -171,10 +171,13 @@ def test_false_is_no_failure_but_fail_for_a_number_is(capt: ModuleType) -> None:
 
 
 def test_errors_name_the_method(capt: ModuleType) -> None:
-    made, _ = client(capt.Capt, Timeout("late"), LinkClosed("gone"), Bottle(["x"]).to_bytes())
+    gone = [LinkClosed("gone"), UnknownName("nobody")]
+    made, _ = client(capt.Capt, Timeout("late"), *gone, Bottle(["x"]).to_bytes())
     with pytest.raises(Timeout, match=r"add: no answer within 2\.0 s"):
         made.add(1, 2)
     with pytest.raises(LinkClosed, match="add: gone"):
+        made.add(1, 2)
+    with pytest.raises(UnknownName, match="add: nobody"):
         made.add(1, 2)
     with pytest.raises(DecodeError, match="the result of add: expected an integer"):
         made.add(1, 2)

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import LIST, STRING, VOCAB32, Buffer
-from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError, Timeout, YarpError
+from yarpy.errors import DecodeError, RemoteProtocolError, Timeout, YarpError
 from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.thrift import reader
 from yarpy.idl.thrift.extent import version_ending
@@ -34,11 +34,11 @@ class _Client:
         self._port = port
         self.timeout = timeout
 
-    def _raised(self, method: str, error: YarpError) -> YarpError:
+    def _told(self, method: str, error: YarpError) -> YarpError:
         """An error of the port, with the name of the method."""
         if isinstance(error, Timeout):
             return Timeout(f"{method}: no answer within {self.timeout} s")
-        return type(error)(f"{method}: {error}") if type(error) is LinkClosed else error
+        return error if method in str(error) else type(error)(f"{method}: {error}")
 
     def __repr__(self) -> str:
         return f"<client of {type(self).__name__}>"
@@ -61,7 +61,10 @@ class _Sync(_Client):
                 raise refused(method, why)
             return method.read_answer(answer)
         except YarpError as error:
-            raise self._raised(method.name, error) from error
+            told = self._told(method.name, error)
+            if told is error:
+                raise
+            raise told from error
 
     def _why(self) -> str:
         """What a server of yarpy says about the last failure."""
@@ -96,7 +99,10 @@ class _Async(_Client):
                 raise refused(method, why)
             return method.read_answer(answer)
         except YarpError as error:
-            raise self._raised(method.name, error) from error
+            told = self._told(method.name, error)
+            if told is error:
+                raise
+            raise told from error
 
     async def _why(self) -> str:
         message = await self._port.ask(Bottle([FAILURE]), self.timeout)
