@@ -71,17 +71,27 @@ print(image.width(), image.height(), image.pixel(4, 2).g, image.pixel(4, 2).r)
 class Heard(yarp.BottleCallback):
     def onRead(self, bottle, *reader):
         print("callback", bottle.toString())
+        got_it.append(True)
 
 
+def wait(condition):
+    for _ in range(1000):
+        if condition():
+            return
+        time.sleep(0.01)
+    print("waited in vain")
+
+
+got_it = []
 heard = Heard()
 back = yarp.BufferedPortBottle()
 back.useCallback(heard)
 back.open("/back")
 yarp.Network.connect("/out", "/back")
-time.sleep(0.1)
+wait(lambda: back.getInputCount() == 1)
 out.prepare().fromString("hi there")
 out.write(True)
-time.sleep(0.5)
+wait(lambda: got_it)
 print(back.read(False))
 back.disableCallback()
 for port in (back, i_in, i_out, s_in, s_out, p_in, p_out, v_in, v_out, inp, out):

@@ -11,14 +11,25 @@ yarp.Network.setLocalMode(True)
 class OnSound(yarp.TypedReaderCallbackSound):
     def onRead(self, sound, *reader):
         print("sound", sound.getSamples(), sound.get(2))
+        came.append("Sound")
 
 
 class OnProperty(yarp.PropertyCallback):
     def onRead(self, values, *reader):
         print("property", values.toString())
+        came.append("Property")
 
 
 kept = []
+came = []
+
+
+def wait(condition):
+    for _ in range(1000):
+        if condition():
+            return
+        time.sleep(0.01)
+    print("waited in vain")
 
 
 def told(kind, callback, fill):
@@ -27,10 +38,10 @@ def told(kind, callback, fill):
     inp.useCallback(callback)
     print(inp.open("/%s/in" % kind), out.open("/%s/out" % kind))
     print(yarp.Network.connect("/%s/out" % kind, "/%s/in" % kind))
-    time.sleep(0.2)
+    wait(lambda: inp.getInputCount() == 1)
     fill(out.prepare())
     out.write(True)
-    time.sleep(0.5)
+    wait(lambda: kind in came)
 
 
 def fill_sound(sound):

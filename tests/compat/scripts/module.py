@@ -67,7 +67,10 @@ module = Module("a note")
 codes = []
 thread = threading.Thread(target=lambda: codes.append(module.runModule(rf)))
 thread.start()
-time.sleep(0.5)
+for _ in range(1000):
+    if yarp.Network.exists("/m/rpc") and module.count:
+        break
+    time.sleep(0.01)
 client = yarp.RpcClient()
 client.open("/cc")
 print(client.addOutput("/m/rpc"))

@@ -13,7 +13,10 @@ print(server.open("/s"), client.open("/c"))
 reply = yarp.Bottle("old")
 print("unconnected", client.write(yarp.Bottle("hi"), reply), reply.toString())
 print(client.addOutput("/s"), client.addOutput("/nn"), client.getOutputCount())
-time.sleep(0.3)
+for _ in range(1000):
+    if server.getInputCount():
+        break
+    time.sleep(0.01)
 print(server.getInputCount())
 said = []
 

@@ -23,7 +23,8 @@ class Worker(yarp.Thread):
 
 worker = Worker()
 print(worker.isRunning(), worker.start(), worker.isRunning())
-time.sleep(0.2)
+while "run" not in notes:
+    time.sleep(0.01)
 print(worker.stop(), worker.isRunning(), notes)
 
 
