@@ -4,6 +4,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+from support.patience import patience
 from support.thrift import GOLDEN
 
 from yarpy.idl.thrift.interface import read_interface, text_interface
@@ -121,6 +123,7 @@ def test_it_runs_and_is_what_the_file_says() -> None:
     assert made.Robot().help("go")[0].startswith("bool go(Line line, Point to = Point(x=3.0,")
 
 
+@pytest.mark.timeout(250)  # mypy reads numpy's types
 def test_the_linter_likes_it_and_types_are_right(tmp_path: Path) -> None:
     """`ruff format` leaves it alone, mypy checks it and a program that uses it."""
     for name, interface in (
@@ -132,7 +135,7 @@ def test_the_linter_likes_it_and_types_are_right(tmp_path: Path) -> None:
     run = [sys.executable, "-m"]
     done = subprocess.run(
         [*run, "ruff", "format", "--diff", "--config", config, "."],
-        cwd=tmp_path, capture_output=True, text=True, timeout=50,
+        cwd=tmp_path, capture_output=True, text=True, timeout=patience(100),
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
     for name in ("robot", "capt"):
@@ -173,7 +176,7 @@ def test_the_linter_likes_it_and_types_are_right(tmp_path: Path) -> None:
     )
     done = subprocess.run(
         [*run, "mypy", "--strict", "--warn-unused-ignores", "use.py"],
-        cwd=tmp_path, capture_output=True, text=True, timeout=50,
+        cwd=tmp_path, capture_output=True, text=True, timeout=patience(100),
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
 
