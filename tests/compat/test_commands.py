@@ -29,8 +29,10 @@ TRANSLATED = [
     ("hear", "--remote /mic --nodevice", "hear /mic --name /yarphear"),
     ("hear", "--name /ears", "hear --name /ears"),
     ("thrift", "--gen yarp:no_doc -o out cam.thrift", "idl thrift --out out cam.thrift"),
+    ("thrift", "--help", "idl thrift --help"),
     ("thrift", "-gen py -I include -v a.thrift b.thrift", None),
     ("rosmsg", "--name /typ@/yarpros", "idl rosmsg --name /typ@/yarpros"),
+    ("rosmsg", "--help", "idl rosmsg --help"),
     ("rosmsg", "--no-ros true --out . std_msgs/String", None),
     ("rosmsg", "std_msgs/String --out .", "idl rosmsg --python std_msgs/String"),
 ]
@@ -81,6 +83,7 @@ def test_config(tmp_path: Path) -> None:
     assert config_lines(["--nameserver"], environment) == [str(tmp_path / "yarp.conf")]
     assert config_lines(["--namespace"], environment) == [str(tmp_path / "yarp_namespace.conf")]
     assert config_lines(["--version"], environment) == [yarpy.__version__]
+    assert config_lines(["--help"], environment)[0].startswith("yarp-config --namespace")
     assert config_lines(["context", "--list"], environment)[1] == "lab"
     assert config_lines(["context", "--where", "lab"], environment) == [
         str(tmp_path / "data/contexts/lab")

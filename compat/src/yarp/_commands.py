@@ -40,6 +40,8 @@ _WINDOW: Final = frozenset(
     """.split()  # noqa: SIM905
 )
 
+_HELP: Final = frozenset(("-h", "-help", "--help"))
+
 
 class Wrong(Exception):
     """The arguments make no sense; the text says why."""
@@ -86,6 +88,8 @@ def translate_hear(arguments: Sequence[str]) -> list[str]:
 def translate_thrift(arguments: Sequence[str]) -> list[str]:
     """`yarpidl_thrift --gen yarp [-o DIR] [-I DIR] FILE...`, which writes Python here."""
     found, files = ["idl", "thrift"], list[str]()
+    if _HELP.intersection(arguments):
+        return [*found, "--help"]
     words = iter(arguments)
     for word in words:
         if word in ("-gen", "--gen"):
@@ -109,6 +113,8 @@ def translate_thrift(arguments: Sequence[str]) -> list[str]:
 
 def translate_rosmsg(arguments: Sequence[str]) -> list[str]:
     """`yarpidl_rosmsg --name /typ@/yarpros` serves types; with a type, Python for it is printed."""
+    if _HELP.intersection(arguments):
+        return ["idl", "rosmsg", "--help"]
     options, plain = _split(arguments)
     dropped = {"no-ros", "web", "no-cache", "no-index", "verbose", "out", "soft"}
     values = [word for key in ("no-cache", "no-index", "verbose") for word in _words(options, key)]
@@ -138,6 +144,11 @@ def translate_server(arguments: Sequence[str]) -> list[str]:
 
 # --- yarp-config
 
+_CONFIG: Final = (
+    "yarp-config --namespace | --nameserver | --version | context --list | context --where C | "
+    "robot --list | robot --where R | robot --current; files of contexts are copied by hand"
+)
+
 
 def config_lines(arguments: Sequence[str], environment: Mapping[str, str]) -> list[str]:
     """What `yarp-config` prints. Raises Wrong."""
@@ -159,10 +170,9 @@ def config_lines(arguments: Sequence[str], environment: Mapping[str, str]) -> li
             return paths
         case ["robot", "--current"]:
             return [environment.get("YARP_ROBOT_NAME") or "default"]
-    raise Wrong(
-        "yarp-config --namespace | --nameserver | --version | context --list | context --where C | "
-        "robot --list | robot --where R | robot --current; files of contexts are copied by hand"
-    )
+        case ["--help"]:
+            return [_CONFIG]
+    raise Wrong(_CONFIG)
 
 
 def _folders(kind: str, environment: Mapping[str, str]) -> list[Path]:

@@ -7,7 +7,9 @@ import pytest
 
 from yarpy import idl
 from yarpy.errors import DecodeError
+from yarpy.idl.thrift.interface import read_interface
 from yarpy.idl.thrift.library import load, loads
+from yarpy.idl.thrift.module import stubs
 
 
 def test_a_file_is_a_module(tmp_path: Path) -> None:
@@ -44,6 +46,27 @@ def test_included_services_and_constants(tmp_path: Path) -> None:
     assert found.M == 4 and found.base.P(found.base.E.A) == found.Q
     assert [*found.T._methods] == ["f", "g"]
     assert found.T._methods["g"].prototype == "P g(E e = E.B)"
+
+
+def test_typedefs_of_included_files_and_of_those_that_they_include(tmp_path: Path) -> None:
+    (tmp_path / "deep.thrift").write_text("enum K { A = 1, B }\nstruct D { 1: i32 a = 4 }")
+    (tmp_path / "mid.thrift").write_text(
+        'include "deep.thrift"\ntypedef list<deep.D> Ds\ntypedef map<deep.K, deep.D> Table\n'
+        "struct M { 1: deep.D d, 2: deep.K k }"
+    )
+    (tmp_path / "top.thrift").write_text(
+        'include "mid.thrift"\n'
+        "struct T { 1: mid.Ds ds = [{}], 2: mid.Table t = {1: {'a': 7}},\n"
+        "3: mid.M m = {'d': {'a': 9}, 'k': 2} }\n"
+        "service S { void f(1: mid.Ds ds) }"
+    )
+    found = load(tmp_path / "top.thrift")
+    deep = found.mid.deep
+    top = found.T()
+    assert (top.ds, top.t) == ([deep.D(4)], {deep.K.A: deep.D(7)})
+    assert top.m == found.mid.M(deep.D(9), deep.K.B)
+    text = stubs(read_interface(tmp_path / "top.thrift"))
+    assert "def f(self, ds: mid.Ds) -> None:" in text
 
 
 def test_folders_to_include_from(tmp_path: Path) -> None:

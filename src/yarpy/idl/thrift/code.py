@@ -69,9 +69,9 @@ class Code:
 
     def accepted(self, type_: TypeText) -> str:
         """What may be given for it."""
-        _, what = self.interface.resolve(type_)
+        where, what = self.interface.resolve(type_)
         if isinstance(what, TypeText) and what.name == "list":
-            _, element = self.interface.resolve(what.inner[0])
+            _, element = where.resolve(what.inner[0])
             if isinstance(element, Scalar) and element in ARRAYS:
                 self.uses.add("ArrayLike")
                 return "ArrayLike"
@@ -97,7 +97,7 @@ class Code:
         """A name where it is used: in quotes, if it comes later."""
         where, found = self.interface.find(name, line)
         if where is not self.interface:
-            return f"{name.partition('.')[0]}.{attribute(found.name)}"
+            return f"{name.rpartition('.')[0]}.{attribute(found.name)}"
         text = attribute(found.name)
         return text if name in self.known or self.stubs else f'"{text}"'
 
@@ -141,7 +141,7 @@ class Code:
 
     def value(self, type_: TypeText, value: Any, line: int) -> str:
         """A value of a type, as Python code."""
-        _, what = self.interface.resolve(type_)
+        where, what = self.interface.resolve(type_)
         if isinstance(value, Name):
             return self.named(type_, what, value)
         if isinstance(what, Scalar):
@@ -154,6 +154,7 @@ class Code:
             return str(value) if member is None else f"{name}.{attribute(member, ENUM)}"
         if isinstance(what, StructText):
             return self.record(type_, what, value, line)
+        what = self.seen(what, where)
         if what.name == "map":
             if not isinstance(value, Pairs):
                 raise self._misfit("a map", value, line)
@@ -189,12 +190,19 @@ class Code:
             return type_
         inner = tuple(self.seen(each, where) for each in type_.inner)
         name = type_.name
-        if name not in BASE and not inner and "." not in name:
-            name = next(
-                (f"{p}.{name}" for p, other in self.interface.includes.items() if other is where),
-                name,
-            )
+        if name not in BASE and not inner:
+            name = f"{self._prefix(where)}.{name}"
         return replace(type_, name=name, inner=inner)
+
+    def _prefix(self, wanted: Interface) -> str:
+        """By which names an included file is reached, also over others."""
+        ways = [(prefix, other) for prefix, other in self.interface.includes.items()]
+        for prefix, other in ways:  # grows; each file is looked at once
+            if other is wanted:
+                return prefix
+            seen = [each for _, each in ways]
+            ways += [(f"{prefix}.{p}", o) for p, o in other.includes.items() if o not in seen]
+        raise LookupError(wanted.name)
 
     def named(self, type_: TypeText, what: Any, value: Name) -> str:
         line = value.line

@@ -91,13 +91,15 @@ class Interface:
 
     def find(self, name: str, line: int, what: str = "type") -> tuple[Interface, Declaration]:
         """The declaration of a name, and the file that it is in. DecodeError."""
-        found = self.names.get(name)
-        if found is not None:
-            return self, found
-        prefix, dot, rest = name.partition(".")
-        inside = self.includes.get(prefix) if dot else None
-        if inside is not None and rest in inside.names:
-            return inside, inside.names[rest]
+        where, rest = self, name
+        while rest not in where.names:
+            prefix, dot, rest = rest.partition(".")
+            inside = where.includes.get(prefix) if dot else None
+            if inside is None:
+                break
+            where = inside
+        else:
+            return where, where.names[rest]
         inner = (f"{p}.{n}" for p, other in self.includes.items() for n in other.names)
         known = [*self.names, *inner, *(BASE if what == "type" else ())]
         near = get_close_matches(name[:100], known[:_COMPARED], n=1)
