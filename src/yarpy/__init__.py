@@ -140,7 +140,7 @@ if TYPE_CHECKING:
 def __getattr__(name: str) -> Any:
     module = _WHERE.get(name)
     if module is None:
-        if name in ("aio", "devices"):
+        if name in ("aio", "devices", "idl", "ros"):
             from importlib import import_module
 
             return import_module(f"yarpy.{name}")

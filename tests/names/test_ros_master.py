@@ -78,8 +78,9 @@ def test_a_lying_master_is_found_out(answer: object) -> None:
         server.register_function(lambda *_: answer, "getSystemState")
         threading.Thread(target=server.handle_request, daemon=True).start()
         master = RosMaster(f"http://127.0.0.1:{server.server_address[1]}/")
-        with pytest.raises(RemoteProtocolError, match="is no"):
+        with pytest.raises(RemoteProtocolError, match="is no") as caught:
             master.state()
+        assert f"{master.uri} " in str(caught.value) and "unpack" not in str(caught.value)
 
 
 def test_another_server_is_found_out() -> None:
@@ -92,8 +93,9 @@ def test_another_server_is_found_out() -> None:
                 sock.sendall(b"SSH-2.0-OpenSSH\r\n")
 
         threading.Thread(target=answer, daemon=True).start()
-        with pytest.raises((RemoteProtocolError, LinkClosed, NoNameServer)):
-            RosMaster(f"http://127.0.0.1:{listener.getsockname()[1]}/").state()
+        uri = f"http://127.0.0.1:{listener.getsockname()[1]}/"
+        with pytest.raises((RemoteProtocolError, LinkClosed, NoNameServer), match=uri):
+            RosMaster(uri).state()
 
 
 @pytest.mark.parametrize(

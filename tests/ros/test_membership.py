@@ -1,7 +1,9 @@
 """Publishers that do not answer as they should; what works is tested in test_node.py."""
 
+import signal
 import socket
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -16,6 +18,7 @@ from support.wait import wait_until
 import yarpy
 from yarpy.errors import AddressError
 from yarpy.names.node_name import NodeName
+from yarpy.ros import membership
 from yarpy.ros.membership import DIALS, PUBLISHERS, Membership
 from yarpy.ros.node import Node
 
@@ -74,6 +77,24 @@ def test_a_publisher_that_is_gone_is_tried_again(graph: RosGraph) -> None:
                 server.shutdown()
                 thread.join()
         graph.master.call("unregisterPublisher", "/gone", "/later", uri)
+
+
+def test_a_goodbye_is_no_trouble(
+    graph: RosGraph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Programs of rospy hang up first, and tell the master a moment later."""
+    soon = patience(1)
+    monkeypatch.setattr(membership, "SOON", soon)
+    with Node("/host") as node:
+        words = node.subscriber("/visit", "std_msgs/String")
+        for _ in range(2):
+            with graph.run("rostopic", "pub", "/visit", "std_msgs/String", "hello") as guest:
+                assert words.take(timeout=patience(20)).data == "hello"
+                time.sleep(1.2 * soon)  # a connection that is new is not dialled again at once
+                guest.signal(signal.SIGTERM)
+                wait_until(lambda: not words.inputs, patience(10), "it hung up")
+                guest.wait()
+    assert "no connection to the publisher" not in caplog.text
 
 
 def test_a_stranger_who_names_many_publishers_starts_few_threads(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import socket
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -261,6 +263,12 @@ print("saw", image.width, image.height, image.encoding, image.header.stamp.to_ns
         assert (message.as_(yarpy.Image).array == pixels).all()
         stamp = message.stamp
         assert stamp is not None and stamp.time > 1e9
+
+
+def test_found_without_more_imports() -> None:
+    program = "import yarpy; print(yarpy.ros.Node.__name__, yarpy.idl.load.__name__)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.stdout == "Node load\n", done.stderr
 
 
 def test_a_port_of_yarp_is_a_topic_too(graph: RosGraph) -> None:

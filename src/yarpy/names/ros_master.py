@@ -153,25 +153,33 @@ def call(where: Uri, method: str, *arguments: Any, timeout: float = TIMEOUT) -> 
     refuses).
     """
     route = Route("", "", f"xmlrpc+path.{where.path.removeprefix('/')}", where.port, where.host)
-    carrier = XmlRpc(route)
+    carrier, place = XmlRpc(route), uri_of(where.host, where.port)
     driver = handshake.call(where.contact, timeout, MAX_ANSWER)
     try:
         carrier.post(driver.stream, xmlrpc.encode_plain_call(method, arguments))
         body = driver.run(carrier.read_response(driver.stream), time.monotonic() + timeout)
     except Timeout as error:
         raise Timeout(f"it did not answer within {timeout:g} s") from error
+    except RemoteProtocolError as error:
+        raise _no_part(place, str(error)) from error
     finally:
         driver.transport.close()
-    place = uri_of(where.host, where.port)
     try:
-        code, text, value = xmlrpc.decode_plain_answer(body)
+        answer = xmlrpc.decode_plain_answer(body)
     except (DecodeError, TypeError, ValueError) as error:
-        raise RemoteProtocolError(
-            f"what answers at {place} is no part of ROS: {readable(str(error)[:80])}"
-        ) from error
+        raise _no_part(place, str(error)) from error
+    if not isinstance(answer, list) or len(answer) != 3:
+        raise _no_part(place, f"it says {repr(answer)[:80]}")
+    code, text, value = answer
     if code != 1:
         raise LocalProtocolError(f"{place} refuses {method}: {readable(str(text)[:300])}")
     return value
+
+
+def _no_part(place: str, why: str) -> RemoteProtocolError:
+    return RemoteProtocolError(
+        f"what answers at {place} is no part of ROS: {readable(why[:120])}; is the address right?"
+    )
 
 
 def uri_of(host: str, port: int, scheme: str = "http") -> str:

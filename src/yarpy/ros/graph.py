@@ -202,7 +202,7 @@ class GraphNode:
                     continue
             self._unknown.discard(member)
         self._tell(problem)
-        if again and any(member.name.category != "+1" for member in self.members):
+        if again and not problem and any(member.name.category != "+1" for member in self.members):
             log.info("%s is registered with the master at %s", self.name, self.master.uri)
 
     def _tell(self, problem: str) -> None:

@@ -190,6 +190,10 @@ class Membership:
             return
         now = time.monotonic()
         with self._lock:
+            for item in self._publishers.values():
+                if item.link is not None and item.link not in hub.inputs and not item.dialling:
+                    # It may have said goodbye, of which the master tells in a moment.
+                    item.link, item.due = None, max(item.due, now + SOON)
             due = [item for item in self._publishers.values() if self._is_due(hub, item, now)]
             due = sorted(due, key=lambda item: item.due)[: DIALS - self._dials]
             self._dials += len(due)
