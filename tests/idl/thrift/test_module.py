@@ -9,7 +9,7 @@ from support.patience import patience
 from support.thrift import GOLDEN
 
 from yarpy.idl.thrift.interface import read_interface, text_interface
-from yarpy.idl.thrift.library import loads
+from yarpy.idl.thrift.library import load, loads
 from yarpy.idl.thrift.module import python, stubs
 
 TEXT = """\
@@ -121,6 +121,28 @@ def test_it_runs_and_is_what_the_file_says() -> None:
     )
     assert made.Point.__doc__ == "Where it is.\n    In metres.\n    "
     assert made.Robot().help("go")[0].startswith("bool go(Line line, Point to = Point(x=3.0,")
+
+
+def test_members_with_the_names_of_types(tmp_path: Path) -> None:
+    text = (
+        "struct Point { 1: double x }\nenum Mode { OFF, ON }\n"
+        "struct A { 1: i32 bytes, 2: binary data, 3: string str, 4: string name,\n"
+        "5: Point Point, 6: Point p, 7: Mode Mode, 8: Mode m = Mode.ON, 9: i32 thrift, 10: i32 n,\n"
+        "11: list<string> dict, 12: map<string, string> map_, 13: base.Point base,\n"
+        "14: list<base.Point> others }\n"
+        "service S { string str(1: string s); string other(1: string s, 2: Mode m = Mode.ON);\n"
+        "Mode Mode(1: Mode m = Mode.ON) }"
+    )
+    (tmp_path / "base.thrift").write_text("struct Point { 1: i32 y }")
+    (tmp_path / "top.thrift").write_text('include "base.thrift"\n' + text)
+    found = load(tmp_path / "top.thrift")
+    a = found.A(5, b"d", "s", "n", Mode=found.Mode.ON, thrift=3, others=[found.base.Point(1)])
+    assert found.A.from_bottle(a.to_bottle()) == a
+    assert (a.Point, a.p, a.base) == (found.Point(), found.Point(), found.base.Point())
+    assert found.S._methods["other"].prototype == "string other(string s, Mode m = Mode.ON)"
+    lines = stubs(read_interface(tmp_path / "top.thrift")).splitlines()
+    assert "    data: _bytes = ..." in lines and "_bytes = bytes" in lines
+    assert "    base: _base.Point = ..." in lines and "_base = base" in lines
 
 
 @pytest.mark.timeout(250)  # mypy reads numpy's types

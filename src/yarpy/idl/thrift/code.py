@@ -6,6 +6,7 @@ literal or as names that are there: DecodeError says file and line.
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any, Final
 
@@ -17,6 +18,7 @@ from yarpy.idl.thrift.document import (
     FieldText,
     Name,
     Pairs,
+    ServiceText,
     StructText,
     TypeText,
 )
@@ -25,6 +27,18 @@ from yarpy.idl.thrift.kind import ARRAYS, BINARY, BOOL, DOUBLE, TEXT, External, 
 from yarpy.idl.thrift.word import ENUM, STRUCT, attribute
 
 _PLAIN: Final = {BOOL: "bool", DOUBLE: "float", TEXT: "str", BINARY: "bytes"}
+_WORD: Final = re.compile(r"(?<![\w.])[^\W\d]\w*")
+
+
+def _members(interface: Interface) -> set[str]:
+    """The names of all fields and methods."""
+    found: set[str] = set()
+    for each in interface.document.declarations:
+        if isinstance(each, StructText):
+            found.update(field.name for field in each.fields)
+        elif isinstance(each, ServiceText):
+            found.update(method.name for method in each.methods)
+    return found
 
 
 class Code:
@@ -35,7 +49,9 @@ class Code:
         self.interface = interface
         self.stubs = stubs
         self.known: set[str] = set()  # what is defined so far
-        taken = {*interface.names, *interface.includes}
+        self.members: set[str] = set()  # of the class that is being written
+        self.hidden: set[str] = set()  # names that members of a class in the stubs hide
+        taken = {*interface.names, *interface.includes, *_members(interface)}
         self.thrift = "thrift"
         while self.thrift in taken:
             self.thrift += "_"
@@ -51,8 +67,18 @@ class Code:
         found = self._annotation(type_)
         _, what = self.interface.resolve(type_)
         if nested and isinstance(what, StructText) and external(what) is None:
-            return f"{self.thrift}.Nested[{found}]"
-        return found
+            found = f"{self.thrift}.Nested[{found}]"
+        return self.uncovered(found)
+
+    def uncovered(self, text: str) -> str:
+        """An annotation in a class that has members with the names of types: `bytes: bytes`."""
+        hidden = self.members.intersection(_WORD.findall(text))
+        if not hidden:
+            return text
+        if not self.stubs:  # it is looked up in the module
+            return quoted(text.replace('"', ""))
+        self.hidden |= hidden
+        return _WORD.sub(lambda found: ("_" if found[0] in hidden else "") + found[0], text)
 
     def _annotation(self, type_: TypeText) -> str:
         if type_.name == "list":
@@ -75,7 +101,7 @@ class Code:
             if isinstance(element, Scalar) and element in ARRAYS:
                 self.uses.add("ArrayLike")
                 return "ArrayLike"
-        return self._annotation(type_)
+        return self.uncovered(self._annotation(type_))
 
     def scalar(self, kind: Scalar) -> str:
         return _PLAIN.get(kind) or f"{self.thrift}.{kind.name}"
@@ -105,6 +131,15 @@ class Code:
 
     def default(self, field: FieldText) -> str:
         """The default of a field or an argument."""
+        found = self._default(field)
+        make = f"{self.thrift}.new("
+        inner = found.removeprefix(make).removesuffix(")") if found.startswith(make) else ""
+        if inner.startswith("lambda") or not self.members.intersection(_WORD.findall(found)):
+            return found
+        # a function looks a name up in the module, not in the class
+        return f"{make}lambda: {inner}())" if inner else f"{make}lambda: {found})"
+
+    def _default(self, field: FieldText) -> str:
         _, what = self.interface.resolve(field.type)
         if self.stubs:
             return "..."

@@ -77,15 +77,19 @@ class _Module(Code):
             elif isinstance(each, EnumText):
                 blocks.append(self.enum(each))
             elif isinstance(each, StructText):
+                self.members = {attribute(field.name, STRUCT) for field in each.fields}
                 blocks.append(self.struct(each))
             else:
+                self.members = {attribute(method.name, SERVICE) for method in each.methods}
                 blocks.append(self.service(each))
                 services.append(attribute(each.name))
+            self.members = set()
             self.known.add(each.name)
         if len(services) == 1 and "connect" not in self.interface.names:
             blocks.append(
                 f"connect = {services[0]}.connect\nconnect_async = {services[0]}.connect_async"
             )
+        blocks += [f"_{name} = {name}" for name in sorted(self.hidden)]
         head = f'"""The interface {self.interface.name}, written by `yarpy idl thrift`."""\n'
         imports = []
         typing = sorted(self.uses & {"Annotated", "Any", "Final"})
@@ -189,13 +193,15 @@ class _Module(Code):
         """The stubs of what `connect` and `connect_async` give: they take lists for arrays."""
         self.uses.add("Any")
         name = attribute(each.name)
+        word, number = self.uncovered("str"), self.uncovered("float")
+        version = self.uncovered("tuple[int, int, int, int]") + " | None"
         lines = []
         for kind, how in (("Client", "connect"), ("AsyncClient", "connect_async")):
             lines += [
                 "    @classmethod",
                 f"    def {how}(",
-                "        cls, target: str, *, timeout: float | None = ..., carrier: str = ..., "
-                "**options: Any",
+                f"        cls, target: {word}, *, timeout: {number} | None = ..., "
+                f"carrier: {word} = ..., **options: Any",
                 f"    ) -> _{name}{kind}: ...",
             ]
         before = base.rpartition(".")
@@ -205,13 +211,13 @@ class _Module(Code):
             sync = f"{before[0]}{before[1]}_{before[2]}Client, {name}"
             apart = f"{before[0]}{before[1]}_{before[2]}AsyncClient"
         lines += ["", f"class _{name}Client({sync}):"]
-        lines.append("    def remote_version(self) -> tuple[int, int, int, int] | None: ...")
+        lines.append(f"    def remote_version(self) -> {version}: ...")
         for method in each.methods:
             lines += self.method(method, "def")[1:]
         lines += ["", f"class _{name}AsyncClient({apart}):"]
         lines += [
-            "    timeout: float | None",
-            "    async def remote_version(self) -> tuple[int, int, int, int] | None: ...",
+            f"    timeout: {number} | None",
+            f"    async def remote_version(self) -> {version}: ...",
             "    async def close(self) -> None: ...",
             f"    async def __aenter__(self) -> _{name}AsyncClient: ...",
             "    async def __aexit__(self, *error: object) -> None: ...",
