@@ -39,9 +39,11 @@ def test_records(caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.INFO, "yarpy"):
         log.info("%s: refused: %s", "/in", "evil\n[ERROR] all is lost\x1b[2J")
         log.info("%d of %d", 1, 2)
+        log.info("from %s", "/caf\udce9")
     assert [record.getMessage() for record in caplog.records] == [
         "/in: refused: evil\\n[ERROR] all is lost\\x1b[2J",
         "1 of 2",
+        "from /caf\\udce9",
     ]
     assert logger("yarpy.test_log") is log and len(log.filters) == 1
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 # Control characters (of ASCII and C1), marks of direction, ends of lines.
 _HIDDEN: Final = re.compile(r"[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+_LONE: Final = re.compile(r"[\ud800-\udfff]")  # surrogates
 BURST: Final = 20  # warnings that are alike in a minute
 MINUTE: Final = 60.0  # seconds
 _KINDS: Final = 1000  # of which this is known at a time
@@ -98,6 +99,8 @@ def _make_readable(record: logging.LogRecord, more: str) -> bool:
         text = record.getMessage()
     except Exception:
         return True  # the handler reports what is wrong with it
-    if more or _HIDDEN.search(text) is not None:
-        record.msg, record.args = readable(text) + more, ()
+    if more or _HIDDEN.search(text) is not None or _LONE.search(text) is not None:
+        # A file of UTF-8 has no place for bytes of a stranger that are none.
+        text = readable(text).encode("utf-8", "backslashreplace").decode()
+        record.msg, record.args = text + more, ()
     return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import resource
 import socket
 import threading
@@ -174,8 +175,9 @@ def test_oldest_silent_one_goes_when_there_are_too_many(
 def test_no_more_files_is_survived(caplog: pytest.LogCaptureFixture) -> None:
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     with accepting(echo) as acceptor, ExitStack() as stack:
+        before = len(os.listdir("/dev/fd"))
         old = [stack.enter_context(dial(acceptor)) for _ in range(5)]
-        time.sleep(0.05)
+        wait_until(lambda: len(os.listdir("/dev/fd")) == before + 10, what="all are accepted")
         taken = [stack.enter_context(closing(socket.socket())) for _ in range(1)]
         resource.setrlimit(resource.RLIMIT_NOFILE, (taken[0].fileno() + 2, hard))
         try:
