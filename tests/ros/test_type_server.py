@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from support.port import free_port
 from support.ros_graph import RosGraph
 
 import yarpy
@@ -95,3 +96,38 @@ def test_the_command(graph: RosGraph, library: Library, tmp_path: Path) -> None:
         assert "/typ" in graph.tool("rosservice", "list").split()
     served.stop()
     assert "/typ" not in graph.tool("rosservice", "list").split()
+
+
+def test_rpc_asks_it_beside_a_yarp_server(
+    graph: RosGraph, library: Library, tmp_path: Path
+) -> None:
+    """Which alone knows where the master is. Services of rospy tell nobody their definition."""
+    (tmp_path / "turtlesim/srv/Greet.srv").write_text("string name\n---\nstring said\n")
+    program = """
+import rospy, sys
+from genpy.dynamic import generate_dynamic
+class Greet:
+    _type = "turtlesim/Greet"
+    _md5sum = sys.argv[1]
+    _request_class = generate_dynamic(_type, "string name")[_type]
+    _response_class = generate_dynamic(_type, "string said")[_type]
+rospy.init_node("greeter", disable_signals=True)
+rospy.Service("/greet", Greet, lambda asked: Greet._response_class("hello " + asked.name))
+print("ready", flush=True)
+rospy.spin()
+"""
+    beside = {"YARPY_SERVER": f"127.0.0.1:{free_port()}", "ROS_MASTER_URI": ""}
+    number = beside["YARPY_SERVER"].rpartition(":")[2]
+    server = TypeServer("/typ@/yarpros", library)
+    try:
+        with (
+            graph.yarpy("server", "--ros", "--socket", number, "--ip", "127.0.0.1") as yarp,
+            graph.python(program, library.service("turtlesim/Greet").md5sum) as greeter,
+        ):
+            yarp.wait_line("Ready!")
+            greeter.wait_line("ready")
+            with graph.yarpy("rpc", "/greet", **beside) as asking:
+                asking.write_line("you")
+                asking.wait_line('Response: "hello you"')
+    finally:
+        server.close()

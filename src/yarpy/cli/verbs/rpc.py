@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
 
 import click
@@ -26,6 +27,7 @@ from yarpy.cli.stderr import complain
 from yarpy.errors import (
     DecodeError,
     LinkClosed,
+    NoNameServer,
     RemoteProtocolError,
     UnknownName,
     WrongPort,
@@ -95,19 +97,18 @@ class Target:
             caller.close()
 
     def _dial(self) -> Caller:
-        from yarpy.cli.service import masters
         from yarpy.contact import parse_contact
         from yarpy.network.connection import confirmed
         from yarpy.port.probe import ANONYMOUS, Caller, is_of_ros
-        from yarpy.ros.type_server import ask_type_server
+        from yarpy.ros.part import services
 
         carrier = parse_contact(self._port).carrier or "tcp"
         name = self._name or ANONYMOUS
         found = confirmed(self._port, carrier=carrier)
         self._of_ros = is_of_ros(found)
         if self._of_ros:
-            for master in masters():
-                ask_type_server(master.master)
+            with suppress(NoNameServer):
+                services(None)  # finds the master, and with it the type server
         return Caller(found, name, carrier=carrier, admin=self._admin)
 
 
