@@ -14,6 +14,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.errors import AddressError
+from yarpy.names.ros import RosNames
 from yarpy.ros.graph import GRAPH, SOON
 from yarpy.ros.membership import Membership
 from yarpy.ros.node import Node
@@ -73,8 +74,11 @@ def test_a_node_may_come_before_its_master(
     assert len([each for each in caplog.records if each.name == "yarpy.ros"]) == 1, caplog.text
     with Node("/early") as node:
         node.publisher("/early_words", "std_msgs/String")
-        graph.start()
-        wait_until(lambda: registered(graph, "/early"), patience(15), "registered")
+        names = RosNames(graph.master)  # as `yarpy detect --ros` stores it, and no other
+        with yarpy.BufferedPort("/early_words-@/earlier", names=names):
+            graph.start()
+            for name in ("/early", "/earlier"):
+                wait_until(lambda name=name: registered(graph, name), patience(15), name)
 
 
 def test_what_the_master_refuses_is_said_once_and_keeps_nothing_else_out(

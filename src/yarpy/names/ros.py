@@ -57,7 +57,9 @@ class RosNames:
             self.master.call("unregisterPublisher", ros_name(name), REGISTRATION, uri)
 
     def query(self, name: str) -> Contact | None:
-        """Where a node, a port or a service is, or the master."""
+        """Where a node, a port or a service is, or the master; nothing has a topic's name."""
+        if not _is_port(name):
+            return None  # without asking, so that such a port opens before its master comes
         found = self._node(name)
         if found is None:
             found = self._service(name)
