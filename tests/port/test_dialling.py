@@ -45,6 +45,22 @@ def test_a_failed_attempt_lets_the_next_one_in() -> None:
         assert alone
 
 
+def test_an_attempt_for_which_there_is_no_thread_is_made_later(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    attempts, done = Attempts("dial"), threading.Event()
+
+    def refuse(thread: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(threading.Thread, "start", refuse)
+        assert not attempts.begin("/a", done.set)
+    assert attempts.under_way == 0
+    assert attempts.begin("/a", done.set), "the target is free again"
+    assert done.wait(10)
+
+
 def test_one_attempt_at_each_target_and_a_limited_number_in_all() -> None:
     attempts = Attempts("dial")
     go_on, done = threading.Event(), []

@@ -192,8 +192,9 @@ class Acceptor:
         )
         try:
             thread.start()
-        except RuntimeError as error:  # the system has no more threads
-            log.error("%s: a connection is refused: %s", self._name, error)
+        except RuntimeError as error:  # the system has no more threads, or Python is ending
+            if threading.main_thread().is_alive():
+                log.error("%s: a connection is refused: %s", self._name, error)
             self.occupancy.leave(address)
             sock.close()
 

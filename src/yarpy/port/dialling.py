@@ -59,13 +59,21 @@ class Attempts:
 
     def begin(self, target: str, attempt: Callable[[], object]) -> bool:
         """Call `attempt` in a thread of its own; False if that has to wait: one at the same target
-        is under way, or too many at others."""
+        is under way, or too many at others, or the system has no more threads."""
         with self._lock:
             if target in self._targets or len(self._targets) >= ATTEMPTS:
                 return False
             self._targets.add(target)
         name = f"yarpy {self._task} {target}"
-        threading.Thread(target=self._run, args=(target, attempt), name=name, daemon=True).start()
+        thread = threading.Thread(target=self._run, args=(target, attempt), name=name, daemon=True)
+        try:
+            thread.start()
+        except RuntimeError as error:
+            with self._lock:
+                self._targets.discard(target)
+            if threading.main_thread().is_alive():  # else Python is ending, which is no news
+                log.warning("to %s %s has to wait: %s", self._task, target, error)
+            return False
         return True
 
     @property
