@@ -22,16 +22,19 @@ _HEAD = Struct("<8i")
 
 
 class Matrix(Wired):
-    """Rows and columns of float64. `Matrix(array)` takes anything numpy makes two-dimensional."""
+    """Rows and columns of float64. `Matrix(array)` takes anything numpy makes two-dimensional;
+    `Matrix()` has no rows and no columns."""
 
     __slots__ = ("_array", "_data", "cols", "rows")
 
     rows: int
     cols: int
 
-    def __init__(self, array: ArrayLike) -> None:
+    def __init__(self, array: ArrayLike | None = None) -> None:
         import numpy as np
 
+        if array is None:
+            array = np.empty((0, 0))
         values = np.ascontiguousarray(array, dtype="<f8")
         if np.ndim(array) != 2:
             raise ValueError(f"a Matrix has two dimensions, this has {np.ndim(array)}: use Vector")
@@ -45,6 +48,8 @@ class Matrix(Wired):
         if len(view) < _HEAD.size:
             raise Truncated(f"a Matrix has a header of {_HEAD.size} bytes", _HEAD.size)
         code, length, tag, rows, tag2, cols, list_code, count = _HEAD.unpack_from(view)
+        if list_code == 256 and not count:  # an empty list that went through a Bottle
+            list_code = 266
         if (code, length, tag, tag2, list_code) != (256, 3, 1, 1, 266):
             raise DecodeError("not a Matrix, a list of rows, columns and a list of float64")
         if rows < 0 or cols < 0 or count != rows * cols:

@@ -78,3 +78,12 @@ def test_folders_to_include_from(tmp_path: Path) -> None:
 
 def test_texts() -> None:
     assert loads("const i32 A = 3").A == 3
+
+
+def test_types_of_cpp_that_yarpy_has_begin_empty() -> None:
+    kinds = ("os::Bottle", "os::Property", "os::Stamp", "sig::Vector", "sig::Matrix")
+    text = "".join(f'struct T{n} {{}} (yarp.name = "yarp::{k}")\n' for n, k in enumerate(kinds))
+    fields = ", ".join(f"{n}: T{n} t{n}" for n in range(1, len(kinds)))
+    made = loads(f"{text}struct All {{ {fields} }}").All()
+    again = type(made).from_bottle(made.to_bottle())
+    assert again == made and (again.t4.rows, again.t4.cols) == (0, 0)
