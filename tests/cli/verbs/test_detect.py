@@ -85,7 +85,7 @@ def test_a_ros_master_is_stored_for_the_namespace(here, tmp_path, monkeypatch):
             assert line in listed.out
         assert '"carrier": "rossrv"' in here("name", "list", "--json").out
         assert "port 2 type rossrv+service./s" in here("name", "query", "/s").out
-        assert "knows no" in here("name", "query", "/nobody").err
+        assert 'no port "/nobody" is registered' in here("name", "query", "/nobody").err
     assert here("where").code == 1
 
 
