@@ -178,8 +178,10 @@ def test_no_more_files_is_survived(caplog: pytest.LogCaptureFixture) -> None:
         before = len(os.listdir("/dev/fd"))
         old = [stack.enter_context(dial(acceptor)) for _ in range(5)]
         wait_until(lambda: len(os.listdir("/dev/fd")) == before + 10, what="all are accepted")
-        taken = [stack.enter_context(closing(socket.socket())) for _ in range(1)]
-        resource.setrlimit(resource.RLIMIT_NOFILE, (taken[0].fileno() + 2, hard))
+        last = 0  # the highest number there is; the one behind it is the listing's own
+        while last + 1 < max(int(number) for number in os.listdir("/dev/fd")):
+            last = stack.enter_context(closing(socket.socket())).fileno()
+        resource.setrlimit(resource.RLIMIT_NOFILE, (last + 2, hard))
         try:
             # One file number is left for our side; the acceptor has none until it lets one go.
             fresh = stack.enter_context(socket.socket())

@@ -132,6 +132,7 @@ class Sender:
                 if self.broken:
                     raise self.gone()
                 done = not self.halfway or self._flush_by(until)
+                self.counter.bytes = self.driver.bytes_out
             finally:
                 self.lock.release()
         if self.write_timeout.over(done):
