@@ -1,7 +1,6 @@
 """Types of other systems: their languages are read, their values are Python objects.
 
     load        a type by its name or its file
-    model       what a type is, whatever language it was written in
     rosmsg      messages and services of ROS 1
     thrift      structs, enums and services of Thrift, as YARP speaks it
 

@@ -12,8 +12,8 @@ from support.ros_value import filled
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError
-from yarpy.idl.model import PRIMITIVES
 from yarpy.idl.rosmsg.library import Library
+from yarpy.idl.rosmsg.model import PRIMITIVES
 from yarpy.idl.rosmsg.wire import code_of
 
 

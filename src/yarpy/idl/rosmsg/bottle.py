@@ -19,9 +19,9 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.value import Float32, Int8, Int16, Int64
 from yarpy.data.vector import Vector
 from yarpy.errors import DecodeError
-from yarpy.idl.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.fault import array_of, described
 from yarpy.idl.rosmsg.message import Duration, Message, Time
+from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,7 +14,7 @@ from hashlib import md5
 from typing import Final
 
 from yarpy.errors import DecodeError
-from yarpy.idl.model import PRIMITIVES, Constant, Field, ListOf, Struct, Type
+from yarpy.idl.rosmsg.model import PRIMITIVES, Constant, Field, ListOf, Struct, Type
 from yarpy.idl.rosmsg.parse import BUILTIN, FieldText, MessageText
 
 #: messages within messages

@@ -12,12 +12,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from yarpy.idl.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg import reader, writer
 from yarpy.idl.rosmsg.bottle import from_bottle, to_bottle
 from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.rosmsg.definition import Definition
 from yarpy.idl.rosmsg.message import Duration, Message, Time, attribute
+from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.wire import from_wire, to_wire
 
 _PACKAGE = __name__.rpartition(".")[0]
@@ -87,7 +87,7 @@ def annotation(kind: Type) -> str:
         if kind.is_number:
             return "bool" if kind.name == "bool" else kind.name.rstrip("0123456789").lstrip("u")
         return {"string": "str", "binary": "bytes"}.get(kind.name, kind.name.capitalize())
-    return kind.name.rpartition("/")[2] if isinstance(kind, Struct) else "Any"
+    return kind.name.rpartition("/")[2]
 
 
 def documentation(struct: Struct) -> str:

@@ -12,8 +12,8 @@ from struct import error as struct_error
 from typing import TYPE_CHECKING, Any
 
 from yarpy.data.embedded import with_article
-from yarpy.idl.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.message import attribute
+from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
 
 if TYPE_CHECKING:
     import numpy as np

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar, Final, NamedTuple, Self
 
 from yarpy.data.value import Blocks, Buffer
-from yarpy.idl.model import Constant, Field, Struct
+from yarpy.idl.rosmsg.model import Constant, Field, Struct
 
 if TYPE_CHECKING:
     from yarpy.data.bottle import Bottle

@@ -19,9 +19,9 @@ from typing import Any, Final
 from yarpy.data.limit import limits
 from yarpy.data.value import Buffer
 from yarpy.errors import DecodeError, Truncated
-from yarpy.idl.model import ListOf, Primitive, Struct, Type, smallest
 from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.rosmsg.message import Duration, Message, Time, attribute
+from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type, smallest
 
 #: `read(bytes, position, size, room)` gives a message and the position behind it
 Read = Callable[[Buffer, int, int, list[int] | None], tuple[Any, int]]

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from yarpy.idl.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.factory import annotation
 from yarpy.idl.rosmsg.library import Service
 from yarpy.idl.rosmsg.message import Message, attribute
+from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
 
 Loaded = type[Message] | Service
 

@@ -15,8 +15,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from yarpy.idl.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.definition import Definition, ServiceDefinition
+from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
 
 UNKNOWN: Final = "?"
 

@@ -33,10 +33,10 @@ from yarpy.data.value import (
     Buffer,
 )
 from yarpy.errors import DecodeError, Truncated
-from yarpy.idl.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.bottle import from_bottle
 from yarpy.idl.rosmsg.fault import array_of, fault
 from yarpy.idl.rosmsg.message import Duration, Message, Time, attribute
+from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.writer import joined
 
 M = TypeVar("M", bound=Message)

@@ -12,10 +12,10 @@ from struct import error as struct_error
 from typing import TYPE_CHECKING, Any
 
 from yarpy.data.value import BIG, Blocks
-from yarpy.idl.model import ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.rosmsg.fault import array_of, fault, wrong_length
 from yarpy.idl.rosmsg.message import Message, attribute
+from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

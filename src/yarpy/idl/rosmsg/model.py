@@ -1,14 +1,12 @@
-"""The types of an interface, whatever language it was written in: what parsers make and classes
-are made of.
+"""The types of ROS messages: what definitions are parsed into and classes are made of.
 
-    Primitive              numbers, strings, blobs; `time` and `duration` of ROS
-    ListOf, MapOf          any number of elements, or a fixed one; pairs
-    Enum, Struct           named; a Struct has Fields, and Constants beside them
-    Service, Method        what can be asked, and what comes back
+    Primitive    numbers, strings, blobs; `time` and `duration`
+    ListOf       any number of elements, or a fixed one
+    Struct       named; it has Fields, and Constants beside them
 
-Rules: values without behaviour. Structs and enums are told apart by identity, since two versions of
-a type may have the same name. Nothing here knows a wire format: `size` is what a value takes where
-it is packed, as C and ROS do.
+Rules: values without behaviour. Structs are told apart by identity, since two versions of a type
+may have the same name. `size` is in bytes, what a value takes where it is packed. (Thrift has kinds
+of its own, `yarpy.idl.thrift.kind`: its structs are classes with vocabs and nested lists.)
 """
 
 from __future__ import annotations
@@ -67,15 +65,6 @@ class ListOf:
 
 
 @dataclass(frozen=True, slots=True)
-class MapOf:
-    key: Type
-    value: Type
-
-    def __str__(self) -> str:
-        return f"map<{self.key}, {self.value}>"
-
-
-@dataclass(frozen=True, slots=True)
 class Field:
     """A value with a name. Without a `default` it begins as 0, "", or empty."""
 
@@ -91,19 +80,6 @@ class Constant:
     type: Primitive
     value: Any
     doc: str = ""
-
-
-@dataclass(eq=False, slots=True)
-class Enum:
-    """Names for integers of the type `base`."""
-
-    name: str
-    base: Primitive
-    values: dict[str, int]
-    doc: str = ""
-
-    def __str__(self) -> str:
-        return self.name
 
 
 @dataclass(eq=False, slots=True)
@@ -126,26 +102,9 @@ class Struct:
         return self.name
 
 
-@dataclass(frozen=True, slots=True)
-class Method:
-    """A question and its answer; `response` is None where none comes."""
+Type: TypeAlias = Primitive | ListOf | Struct
 
-    name: str
-    request: Struct
-    response: Type | None
-    doc: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Service:
-    name: str
-    methods: tuple[Method, ...]
-    doc: str = ""
-
-
-Type: TypeAlias = Primitive | ListOf | MapOf | Enum | Struct
-
-#: of lists, maps and strings: what says how many follow
+#: of lists and strings: what says how many follow
 _COUNT: Final = 4
 
 
@@ -155,8 +114,6 @@ def smallest(type_: Type) -> int:
         return type_.smallest
     if isinstance(type_, ListOf) and type_.length is not None:
         return type_.length * smallest(type_.element)
-    if isinstance(type_, Enum):
-        return type_.base.size
     return (type_.size if isinstance(type_, Primitive) else 0) or _COUNT
 
 
