@@ -19,6 +19,7 @@ from support.process import Process
 from support.wait import wait_until
 
 import yarpy
+from yarpy.carriers import mqtt_broker
 
 WAIT = patience(5.0)
 for _program in ("mosquitto", "mosquitto_sub"):
@@ -158,6 +159,27 @@ def test_a_broker_that_vanishes_is_dialled_again(
     wait_until(lambda: out.outputs and reader.inputs, patience(10.0))
     out.write([2])
     assert reader.read(timeout=WAIT).value == yarpy.Bottle([2])
+
+
+@pytest.mark.parametrize("added", ["", "+v5"])
+def test_a_silent_port_stays_connected(
+    broker: Broker,
+    out: yarpy.Port,
+    reader: yarpy.BufferedPort,
+    added: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)  # the broker hangs up after 1.5 s
+    monkeypatch.setattr(mqtt_broker.Client, "ping_interval", 0.4)
+    reader.connect(broker.topic("x", f"+sub{added}"))
+    out.connect(broker.topic("x", added))
+    links = (*out._hub.outputs, *reader._hub.inputs)
+    for link in links:  # four seconds, on a machine with time to spare
+        before = link.driver.bytes_in
+        wait_until(lambda: link.driver.bytes_in >= before + 16, patience(10.0))  # noqa: B023
+    assert (*out._hub.outputs, *reader._hub.inputs) == links
+    out.write([1])
+    assert reader.read(timeout=WAIT).value == yarpy.Bottle([1])
 
 
 def test_a_broker_in_tls_with_passwords(

@@ -85,6 +85,8 @@ class Carrier:
     introduces: ClassVar[bool] = True  # the initiator gives its name and modifiers
     connectionless: ClassVar[bool] = False  # the peer must be told of the end in some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
+    ping: ClassVar[bytes] = b""  # what a peer that we have dialled wants to hear now and then ...
+    ping_interval: float = 0.0  # ... so often, in seconds; 0: it does not
     delivery: Delivery = Delivery()
     limits: ClassVar[Limits] = Limits()
 

@@ -37,6 +37,7 @@ NOT_HEARD: Final = 0x10  # the reason in a PUBACK: nobody has subscribed
 
 RESPONSE_TOPIC: Final = 0x08
 CORRELATION: Final = 0x09
+SERVER_KEEP_ALIVE: Final = 0x13
 REASON: Final = 0x1F
 MAXIMUM_QOS: Final = 0x24
 RETAIN_AVAILABLE: Final = 0x25

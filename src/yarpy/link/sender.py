@@ -123,6 +123,29 @@ class Sender:
             self.lock.release()
         return self.finish()
 
+    def interject(self, data: bytes) -> bool:
+        """Send what is no message, between two of them; False, and nothing has left, where that
+        would take waiting."""
+        if not self.lock.acquire(blocking=False):
+            return False
+        try:
+            driver = self.driver
+            if self.broken or self.halfway or driver.stream.pending:
+                return False
+            left = driver.transport.try_send([data])
+            unsent = sum(map(len, left))
+            if unsent == len(data):
+                return False
+            driver.bytes_out += len(data) - unsent
+            if left:
+                driver.stream.put_back(left)
+                self.halfway, self.gathered = True, 1
+            return True
+        except OSError:
+            return True  # whoever writes or looks meets the same end
+        finally:
+            self.lock.release()
+
     def finish(self, deadline: float | None = None) -> bool:
         """Send the rest of a message by `deadline`; whether it has left. Raises LinkClosed."""
         until = self.write_timeout.until(deadline)

@@ -28,6 +28,7 @@ from yarpy.port import connecting, disconnecting, identity, probe
 from yarpy.port.dialling import Attempts
 from yarpy.port.hub import Hub
 from yarpy.port.keepalive import Keepalive, Link
+from yarpy.port.ping import Pings
 from yarpy.port.server_watch import ServerWatch
 from yarpy.route import Route
 
@@ -86,6 +87,7 @@ class Reconnector:
         self._attempts = Attempts("dial")
         self._reports = Attempts("end outputs of")
         self._keepalive = Keepalive(self._died)
+        self._pings = Pings()
         self._servers = ServerWatch()
         self._thread: threading.Thread | None = None
         self._wake = threading.Event()
@@ -182,6 +184,7 @@ class Reconnector:
             try:
                 self._look_at_outputs(hubs)
                 self._keepalive.look(hubs)
+                self._pings.look(hubs)
                 server_away = self._servers.look(hubs)
                 self._dial(lost)
             except Exception:

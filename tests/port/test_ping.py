@@ -1,0 +1,56 @@
+"""Pings: who gets one, when, and that nothing waits for it."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from support.wait import wait_until
+
+import yarpy
+from yarpy.port import ping
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Any:
+    found = SimpleNamespace(now=0.0)
+    monkeypatch.setattr(ping, "time", SimpleNamespace(monotonic=lambda: found.now))
+    return found
+
+
+def test_each_connection_gets_one_in_its_time(clock: Any) -> None:
+    names = yarpy.LocalNames()
+    with yarpy.Port("/out", names=names) as out, yarpy.BufferedPort("/in", names=names) as inlet:
+        out.connect("/in")
+        (link,), hubs = out._hub.outputs, [out._hub]
+        pings = ping.Pings()
+        pings.look(hubs)
+        before = link.driver.bytes_out
+        clock.now = 1000.0
+        pings.look(hubs)
+        assert link.driver.bytes_out == before  # YARP wants none
+        link.carrier.ping_interval = 5.0
+        type(link.carrier).ping, kept = b"~\0\0\0\1~\0\0", type(link.carrier).ping
+        try:
+            for clock.now, sent in (
+                (1001.0, 0),
+                (1005.9, 0),
+                (1006.1, 8),
+                (1010.0, 8),
+                (1011.2, 16),
+            ):
+                pings.look(hubs)
+                assert link.driver.bytes_out == before + sent
+            with link.sender.lock:  # somebody sends
+                clock.now = 1020.0
+                pings.look(hubs)
+                assert link.driver.bytes_out == before + 16
+            pings.look(hubs)
+            assert link.driver.bytes_out == before + 24
+        finally:
+            type(link.carrier).ping = kept
+        out.disconnect("/in")
+        wait_until(lambda: not inlet.inputs)
+        pings.look(hubs)
+        assert not pings._due
