@@ -272,8 +272,7 @@ def open_router(
     configuration file of Zenoh, that the others change. Raises as `share`, and LinkClosed if it
     cannot listen there.
     """
-    zenoh = load()
-    config = _from_file(file) if file else zenoh.Config()
+    config = _from_file(file) if file else load().Config()
     _set(config, "mode", "router")
     _set(config, "scouting/delay", 0)  # it does not wait for others before it begins
     where = [endpoint(item) for item in listen or (() if file else (HERE,))]
@@ -291,7 +290,7 @@ def open_router(
     for item in where:
         _check_free(item)
     try:
-        router: zenoh.Session = zenoh.open(config)
+        router: zenoh.Session = load().open(config)
         return router
     except Exception as error:
         raise LinkClosed(
