@@ -31,6 +31,7 @@ from yarpy.errors import (
     RemoteProtocolError,
     UnknownType,
 )
+from yarpy.idl.ros2msg import parse as ros2_parse
 from yarpy.idl.rosmsg.catalogue import Catalogue
 from yarpy.idl.rosmsg.source import Standard
 from yarpy.idl.thrift.interface import text_interface
@@ -42,6 +43,7 @@ from yarpy.names.ros_master import parse_uri
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.topology import Topology
+from yarpy.ros2.token import parse_token
 from yarpy.route import Route, masked, parse_carrier
 from yarpy.wire.framing import parse_command
 
@@ -150,12 +152,23 @@ def _definition(data: bytes) -> object:
     return catalogue.service_of("p/Do", text)
 
 
+def _definition_2(data: bytes) -> object:
+    """A file of ROS 2, as a message and as a service."""
+    text = data.decode("utf-8", "surrogateescape")
+    ros2_parse.parse_service(text, "p/Do")
+    return ros2_parse.parse_message(text, "p/Type")
+
+
 LINE = b" and words up to the end of the line, as in a file that people write\n"
 _TEXT_PIECES = (
     *(b"1", b"0", b"0x", b"+", b"-", b".", b"e", b"inf", b"nan", b"null", b"true", b"a", b"[a]"),
     *(b'"', b"\\", b"(", b")", b"{", b"}", b"[", b"]", b" ", b",", b"\n", b"\xc3", b"\0", b"12 "),
 )
 
+_TOKEN = (
+    b"@ros2_lv/0/abc/0/10/MS/%/%/listener/%chatter/std_msgs::msg::dds_::String_/"
+    b"TypeHashNotSupported/::,10:,:,:,,"
+)
 _SEPARATOR = b"\n" + b"=" * 80 + b"\nMSG: "
 
 
@@ -296,6 +309,62 @@ GRAMMARS = {
             *(b"<i4>", b"</i4>", b"<array>", b"</array>", b"<data>", b"</data>", b"<value>"),
             *(b"</value>", b"<string>", b"</string>", b"1", b"<struct>", b"</struct>", b"<nil/>"),
             *(b"<member>", b"</member>", b"<name>", b"</name>", b"faultCode", b"faultString"),
+        ),
+    ),
+    "ros 2 definition": Grammar(
+        _definition_2,
+        (
+            *((b"", piece, b"") for piece in (b"#", b"\n", b"=", b"a", b"[", b"1", b" ", b"---\n")),
+            *((b"int32", piece, b" a") for piece in (b"[", b"]", b"1", b"/", b"/a", b"<=", b"<")),
+            *((b"int32[] a ", piece, b"") for piece in (b"[", b"1,", b"-", b"(", b"true", b" ")),
+            *((b"string A=", piece, b"") for piece in (b"'", b'"', b"#", b"a=", b"\\")),
+            (b"", b"# a\n", b"int8 a"),
+            (b"int8 a\n", b"# a\n", b"int8 b"),
+        ),
+        (
+            *(
+                b"int32 ",
+                b"string<=3 ",
+                b"float64[] ",
+                b"uint8[<=4] ",
+                b"A ",
+                b"p/msg/T ",
+                b"byte ",
+            ),
+            *(
+                b"a",
+                b"b",
+                b"A=1",
+                b"B = 'x # y'",
+                b"\n",
+                b"# ",
+                b"---\n",
+                b" ",
+                b"\xff",
+                b"[",
+                b"]",
+            ),
+            *(b"1.5", b"true", b"[1, 2]", b'"', b"wstring ", b"<="),
+        ),
+    ),
+    "ros 2 token": Grammar(
+        _of_text(parse_token),
+        (
+            *((b"@ros2_lv/", piece, b"") for piece in (b"0/", b"/", b"0", b"%/", b"NN/", b":,")),
+            (_TOKEN, b"/a", b""),
+            (_TOKEN, b"0", b""),
+        ),
+        (
+            b"@ros2_lv",
+            b"/0",
+            b"/NN",
+            b"/MP",
+            b"/%",
+            b"/a",
+            b"/%chatter",
+            b"/::,10:,:,:,,",
+            b"/",
+            b"x",
         ),
     ),
     "ros address": Grammar(

@@ -42,6 +42,8 @@ from yarpy.devices.control_board.state import State
 from yarpy.devices.multi_sensor.client import read_names
 from yarpy.devices.multi_sensor.interface import KINDS
 from yarpy.errors import DecodeError, YarpError
+from yarpy.idl.ros2msg.library import Library as Library2
+from yarpy.idl.ros2msg.source import Standard as Standard2
 from yarpy.idl.rosmsg.library import Library
 from yarpy.idl.rosmsg.native import to_value
 from yarpy.idl.rosmsg.sniff import sniff
@@ -300,9 +302,9 @@ def _sniffed(data: bytes) -> None:
     _ROS.message_of("p/Sniffed", sniff(data)).from_ros(data)
 
 
-def _ros(name: str) -> Target:
+def _ros(name: str, library: Library | Library2 | None = None) -> Target:
     """What a peer of ROS sends, and what comes as that type on connections of YARP."""
-    cls = _ROS.message(name)
+    cls = (library or _ROS).message(name)
 
     def read(data: bytes) -> None:
         for convert in (cls.from_ros, cls.from_wire):
@@ -378,6 +380,7 @@ _THRIFT_SAID = tuple(
 _THRIFT_STRUCTS = tuple(bytes.fromhex(row["hex"]) for row in thrift_rows("structs"))
 
 _ROS = Library([Standard()])
+_ROS_2 = Library2([Standard2()])
 _PIXELS = np.arange(24 * 32 * 3, dtype="u1").reshape(24, 32, 3)
 _MESSAGES = tuple(
     bytes.fromhex(row["binary"]) for kind in ("bottle", "types") for row in rows(kind)
@@ -441,6 +444,10 @@ TARGETS = {
     "messages": Target(_decode_all, _MESSAGES),
     **{
         f"ros {name}": _ros(f"sensor_msgs/{name}")
+        for name in ("JointState", "PointCloud2", "Image")
+    },
+    **{
+        f"ros 2 {name}": _ros(f"sensor_msgs/{name}", _ROS_2)
         for name in ("JointState", "PointCloud2", "Image")
     },
     "sniff": Target(_sniffed, _MESSAGES),

@@ -29,7 +29,10 @@ def _value(cls: type[Message], kind: Type, chance: Random, texts: Sequence[str])
     if isinstance(kind, Struct):
         return filled(cls._used[kind], chance, texts)
     if isinstance(kind, ListOf):
-        length = chance.choice((0, 1, 2, 7)) if kind.length is None else kind.length
+        most = 7 if kind.most is None else kind.most
+        length = kind.length
+        if length is None:
+            length = chance.choice([count for count in (0, 1, 2, 7) if count <= most])
         values = [_value(cls, kind.element, chance, texts) for _ in range(length)]
         if isinstance(kind.element, Primitive) and kind.element.is_number:
             return np.array(values, "<" + kind.element.letters)

@@ -2,6 +2,7 @@
 
     load        a type by its name or its file
     rosmsg      messages and services of ROS 1
+    ros2msg     ... and of ROS 2
     thrift      structs, enums and services of Thrift, as YARP speaks it
 
 Rules: pure, as `wire` and `data` are: definitions come from files and texts, bytes go in and out.

@@ -108,19 +108,26 @@ def resolve(
     find: Callable[[str, str], MessageText],
     known: dict[str, Definition],
     most: int = MAX_DECLARATIONS,
+    sum_: Callable[[Definition], str] | None = None,
 ) -> Definition:
     """The type of a text. `find(name, within)` gives the texts of others or raises; what is in
-    `known` is not asked for, what is found is put there. `most`: fields that are resolved."""
-    return _Resolver(find, known, most).resolve(parsed)
+    `known` is not asked for, what is found is put there. `most`: fields that are resolved. `sum_`:
+    what types are told apart by, if not by the checksum of ROS 1."""
+    return _Resolver(find, known, most, sum_ or _md5sum).resolve(parsed)
 
 
 class _Resolver:
     def __init__(
-        self, find: Callable[[str, str], MessageText], known: dict[str, Definition], most: int
+        self,
+        find: Callable[[str, str], MessageText],
+        known: dict[str, Definition],
+        most: int,
+        sum_: Callable[[Definition], str],
     ) -> None:
         self.find = find
         self.known = known
         self.most = most
+        self.sum = sum_
         self.path: list[str] = []
         self.declared = 0
         self.fields = 0
@@ -145,7 +152,8 @@ class _Resolver:
         for declared in parsed.fields:
             if declared.builtin is None and declared.base not in used:
                 used[declared.base] = self._used(declared, parsed.name)
-            fields.append(Field(declared.name, _type(declared, used), None, declared.doc))
+            type_ = _type(declared, used)
+            fields.append(Field(declared.name, type_, declared.default, declared.doc))
         constants = tuple(
             Constant(item.name, PRIMITIVES[BUILTIN[item.spelled]], item.value, item.doc)
             for item in parsed.constants
@@ -154,7 +162,7 @@ class _Resolver:
         _check(struct)
         self.path.pop()
         definition = Definition(parsed, struct, "", tuple(used.values()))
-        definition.md5sum = checksum(summed(definition))
+        definition.md5sum = self.sum(definition)
         return definition
 
     def _used(self, declared: FieldText, within: str) -> Definition:
@@ -172,6 +180,10 @@ def checksum(text: str) -> str:
     return md5(text.encode("utf-8", "surrogateescape")).hexdigest()
 
 
+def _md5sum(definition: Definition) -> str:
+    return checksum(summed(definition))
+
+
 def summed(definition: Definition) -> str:
     """The text that the checksum is of."""
     sums = {used.name: used.md5sum for used in definition.used}
@@ -185,7 +197,7 @@ def summed(definition: Definition) -> str:
 def _type(declared: FieldText, used: dict[str, Definition]) -> Type:
     builtin = declared.builtin
     element: Type = PRIMITIVES[builtin] if builtin else used[declared.base].struct
-    return ListOf(element, declared.length) if declared.is_list else element
+    return ListOf(element, declared.length, declared.most) if declared.is_list else element
 
 
 def _check(struct: Struct) -> None:

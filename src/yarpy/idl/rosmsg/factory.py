@@ -10,14 +10,16 @@ never sends a value of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import ModuleType
 from typing import Any
 
-from yarpy.idl.rosmsg import reader, writer
+from yarpy.idl.rosmsg import reader as plain_reader
+from yarpy.idl.rosmsg import writer as plain_writer
 from yarpy.idl.rosmsg.bottle import from_bottle, to_bottle
 from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.rosmsg.definition import Definition
 from yarpy.idl.rosmsg.message import Duration, Message, Time, attribute
-from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
+from yarpy.idl.rosmsg.model import Field, ListOf, Primitive, Struct, Type
 from yarpy.idl.rosmsg.wire import from_wire, to_wire
 
 _PACKAGE = __name__.rpartition(".")[0]
@@ -27,9 +29,12 @@ def make(
     definition: Definition,
     used: Mapping[Struct, type[Message]],
     restore: Callable[[str, str, bytearray], Message],
+    reader: ModuleType = plain_reader,
+    writer: ModuleType = plain_writer,
 ) -> type[Message]:
     """The class of a type; `used` has those of all types in it. `restore` makes a message of its
-    name, full text and bytes in whatever process they are unpickled."""
+    name, full text and bytes in whatever process they are unpickled; `reader` and `writer` know
+    these bytes."""
     struct = definition.struct
     package, _, name = definition.name.rpartition("/")
     names = tuple(map(attribute, struct.fields))
@@ -111,7 +116,7 @@ def _initialiser(struct: Struct, used: Mapping[Struct, type[Message]]) -> Callab
     arguments = ["self"]
     for item in struct.fields:
         name = attribute(item)
-        default = _default(item.type, used)
+        default = _default(item.type, used) if item.default is None else _given(item)
         if callable(default):
             arguments.append(f"{name}=None")
             code.line(f"self.{name} = {code.name(default)}() if {name} is None else {name}")
@@ -119,6 +124,20 @@ def _initialiser(struct: Struct, used: Mapping[Struct, type[Message]]) -> Callab
             arguments.append(f"{name}={code.name(default)}")
             code.line(f"self.{name} = {name}")
     return code.compiled("__init__", ", ".join(arguments))
+
+
+def _given(item: Field) -> Any:
+    """What the definition says: a value, or what makes a list with such elements."""
+    kind, given = item.type, item.default
+    if not isinstance(kind, ListOf):
+        return given
+    element = kind.element
+    if isinstance(element, Primitive) and element.is_number:
+        import numpy as np
+
+        dtype = np.dtype("<" + element.letters)
+        return lambda: np.array(given, dtype)
+    return lambda: [*given]
 
 
 def _default(kind: Type, used: Mapping[Struct, type[Message]]) -> Any:

@@ -55,13 +55,16 @@ PRIMITIVES: Final = {
 
 @dataclass(frozen=True, slots=True)
 class ListOf:
-    """Elements of one type; `length` is None where there may be any number of them."""
+    """Elements of one type; `length` is None where there may be any number of them, `most` where
+    that number is not limited (which ROS 2 alone does)."""
 
     element: Type
     length: int | None = None
+    most: int | None = None
 
     def __str__(self) -> str:
-        return f"{self.element}[{'' if self.length is None else self.length}]"
+        within = f"<={self.most}" if self.most is not None else ""
+        return f"{self.element}[{within if self.length is None else self.length}]"
 
 
 @dataclass(frozen=True, slots=True)

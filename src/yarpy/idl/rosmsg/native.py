@@ -79,7 +79,7 @@ def to_message(
     if isinstance(value, Sound) and name == "audio_common_msgs/AudioData":
         return cls(data=value.array.T.tobytes() if value.channels > 1 else _bytes(value))
     if isinstance(value, Stamp) and name == "std_msgs/Header":
-        return cls(max(value.count, 0), _time(value.time), frame_id)
+        return _filled(cls, value, frame_id)
     if isinstance(value, Message):
         raise TypeError(f"a {value._type} is no {name}")
     if isinstance(value, (list, tuple, dict, str, int, float, Vector)) or value is None:
@@ -120,6 +120,9 @@ def stamp_of(message: Any) -> Stamp | None:
     if not isinstance(header, Message) or header._type != "std_msgs/Header":
         return None
     found: Any = header
+    if isinstance(found.stamp, Message):  # ROS 2, which does not count
+        seconds: Any = found.stamp
+        return Stamp(0, seconds.sec + seconds.nanosec / 1e9)
     return Stamp(found.seq & 0x7FFFFFFF, Time(*found.stamp).to_sec())
 
 
@@ -127,7 +130,16 @@ def _header(cls: type[Message], stamp: Stamp | None, frame_id: str) -> Any:
     header: Any = next(used for used in cls._used.values() if used._type == "std_msgs/Header")
     if stamp is None or not stamp.valid:
         return header(frame_id=frame_id)
-    return header(stamp.count, _time(stamp.time), frame_id)
+    return _filled(header, stamp, frame_id)
+
+
+def _filled(header: type[Message], stamp: Stamp, frame_id: str) -> Message:
+    """A header with number and time, or with the time alone in ROS 2."""
+    time = _time(stamp.time)
+    if "seq" in header._names:
+        return header(max(stamp.count, 0), time, frame_id)
+    times = next(iter(header._used.values()))
+    return header(times(min(time.secs, (1 << 31) - 1), time.nsecs), frame_id)
 
 
 def _time(seconds: float) -> Time:

@@ -40,7 +40,8 @@ _FIELD_NAME = re.compile(_WORD)
 
 @dataclass(frozen=True, slots=True)
 class FieldText:
-    """`spelled` is the type as in the file, `base` without brackets and with its package."""
+    """`spelled` is the type as in the file, `base` without brackets and with its package. ROS 2
+    alone has a limit for a list (`most`) and a `default`."""
 
     spelled: str
     base: str
@@ -48,6 +49,8 @@ class FieldText:
     is_list: bool = False
     length: int | None = None
     doc: str = ""
+    most: int | None = None
+    default: Any = None
 
     @property
     def builtin(self) -> str | None:

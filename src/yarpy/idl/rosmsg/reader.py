@@ -69,7 +69,7 @@ class _Reader:
         self.classes = classes
         self.code = Code()
         self.code.globals.update(
-            _str=str, _range=range, _short=_short, _take=_take, _times=_times, _tuple=tuple.__new__,
+            _str=str, _range=range, _short=short, _take=take, _times=_times, _tuple=tuple.__new__,
             _Time=Time, _Duration=Duration,
         )  # fmt: skip
         self.after: list[str] = []
@@ -183,11 +183,11 @@ class _Reader:
         self.code.line("_p = _e")
 
 
-def _short(path: str, need: int, size: int) -> None:
+def short(path: str, need: int, size: int) -> None:
     raise Truncated(f"{path} takes bytes up to {need}, the message has {size}", need)
 
 
-def _take(room: list[int], count: int, path: str) -> None:
+def take(room: list[int], count: int, path: str) -> None:
     room[0] -= count
     if room[0] < 0:
         raise DecodeError(
