@@ -231,6 +231,19 @@ def test_numpy_and_images() -> None:
     assert fixed.copy(image)
 
 
+def test_numbers_of_another_size_earn_one_warning(capfd: pytest.CaptureFixture[str]) -> None:
+    image = yarp.ImageMono16()
+    numbers = np.ones((2, 4), np.float64)
+    image.setExternal(numbers, 4, 2)  # as in C++: bytes are bytes
+    assert (image.width(), image.pixel(3, 0)) == (4, 0x3FF0)
+    said = capfd.readouterr().err
+    assert "ImageMono16.setExternal takes the bytes" in said and "8 (format 'd')" in said
+    image.setExternal(numbers, 4, 2)
+    image.setExternal(numbers.astype("u2"), 4, 2)
+    image.setExternal(yarp.Vector(8), 4, 2)
+    assert capfd.readouterr().err == ""
+
+
 def test_received_picture_fills_foreign_memory() -> None:
     out, inp = yarp.Port(), yarp.Port()
     assert inp.open("/in") and out.open("/out") and yarp.Network.connect("/out", "/in")
@@ -309,3 +322,21 @@ def test_asking_without_a_port() -> None:
     assert reply.get(0).asString() == "ver"
     assert not yarp.Network.write(yarp.Contact("/none"), yarp.Bottle("x"), reply)
     inp.close()
+
+
+def test_port_without_a_name_opens_without_a_name_server(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))
+    monkeypatch.delenv("YARPY_SERVER", raising=False)
+    yarp.Network.setLocalMode(False)
+    source, target = yarp.Port(), yarp.BufferedPortBottle()
+    assert source.open("") and target.open("")
+    assert not yarp.Port().open("/named") and not yarp.Port().open("...")
+    place = target.where()
+    assert place.isValid() and target.getName().startswith("/")
+    assert source.addOutput(f"tcp://{place.getHost()}:{place.getPort()}")
+    source.write(yarp.Bottle("hello"))
+    assert target.read().toString() == "hello"
+    source.close()
+    target.close()

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import subprocess
 import sys
+import urllib.request
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 import pytest
 from support.patience import patience
 from support.port import free_block
@@ -178,3 +182,52 @@ def test_yarpdev_without_a_device(environment: Mapping[str, str]) -> None:
     with start("main", "--device", "nonsense", environment=environment) as process:
         assert process.wait(patience(20.0)) == 1
     assert "device not available; there are" in process.stderr
+
+
+@pytest.mark.parametrize("words", [("yarpdev", "--list"), ("yarp-config", "--version")])
+def test_who_reads_only_the_beginning_may_go(
+    words: tuple[str, str], environment: Mapping[str, str]
+) -> None:
+    module = "yarp._yarpdev" if words[0] == "yarpdev" else "yarp._commands"
+    function = "main" if words[0] == "yarpdev" else "yarp_config"
+    code = f"from {module} import {function}; {function}()"
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", code, words[1]],
+            stdout=writing,
+            stderr=subprocess.PIPE,
+            env=environment,
+            timeout=patience(20.0),
+        )
+    finally:
+        os.close(writing)
+    assert done.stderr == b"" and done.returncode == 0
+
+
+def test_programs_with_a_page_and_ears_run(environment: Mapping[str, str], tmp_path: Path) -> None:
+    with yarpy.NameServer(free_block(200)) as server:
+        there = {**environment, **server.environment}
+        wav = str(tmp_path / "heard.wav")
+        with (
+            start("yarpview", "--name", "/see", "--x", "5", environment=there) as view,
+            start("yarpscope", "--remote", "/numbers", environment=there) as scope,
+            start("yarphear", "--name", "/ear", "--record", wav, environment=there) as ear,
+            yarpy.Port("/source") as port,
+        ):
+            for program, script in ((view, "/view.js"), (scope, "/scope.js")):
+                found = program.wait_line(r"is shown at (http\S+)", timeout=patience(20.0))
+                with urllib.request.urlopen(found[1], timeout=patience(10.0)) as page:
+                    assert script in page.read().decode()
+            ear.wait_line("Port /ear active", timeout=patience(20.0))
+            port.connect("/see")
+            port.write(yarpy.Image(np.zeros((4, 6, 3), "u1")))
+            port.disconnect("/see")
+            port.connect("/ear")
+            port.write(yarpy.Sound(np.zeros((1, 800), "i2"), 8000), wait=True)
+            for program in (view, scope, ear):
+                program.signal(signal.SIGINT)
+                assert program.wait(patience(20.0)) in (0, 130), program.stderr
+    assert "--x means nothing in a browser" in view.stderr
+    assert Path(wav).stat().st_size == 44 + 1600

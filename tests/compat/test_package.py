@@ -27,6 +27,7 @@ ALLOWED = {
     "yarpy.data.pixel",
     "yarpy.data.text",
     "yarpy.devices",
+    "yarpy.idl",
     "yarpy.log",
     "yarpy.names.default",
     "yarpy.network.connection",

@@ -110,8 +110,22 @@ from yarp._rf_module import RFModule as RFModule
 from yarp._rpc import RpcClient as RpcClient
 from yarp._rpc import RpcServer as RpcServer
 from yarp._searchable import Searchable as Searchable
+from yarp._sensor_view import IContactLoadCellArrays as IContactLoadCellArrays
+from yarp._sensor_view import IEncoderArrays as IEncoderArrays
+from yarp._sensor_view import IOrientationSensors as IOrientationSensors
+from yarp._sensor_view import IPositionSensors as IPositionSensors
+from yarp._sensor_view import ISixAxisForceTorqueSensors as ISixAxisForceTorqueSensors
+from yarp._sensor_view import ISkinPatches as ISkinPatches
+from yarp._sensor_view import ITemperatureSensors as ITemperatureSensors
+from yarp._sensor_view import IThreeAxisGyroscopes as IThreeAxisGyroscopes
+from yarp._sensor_view import IThreeAxisLinearAccelerometers as IThreeAxisLinearAccelerometers
+from yarp._sensor_view import IThreeAxisMagnetometers as IThreeAxisMagnetometers
 from yarp._sound import Sound as Sound
 from yarp._stamp import Stamp as Stamp
+from yarp._struct import LLMVector as LLMVector
+from yarp._struct import LLM_Message as LLM_Message
+from yarp._struct import Map2DLocation as Map2DLocation
+from yarp._struct import Map2DLocationVector as Map2DLocationVector
 from yarp._thread import PeriodicThread as PeriodicThread
 from yarp._thread import RateThread as RateThread
 from yarp._thread import Semaphore as Semaphore
@@ -142,6 +156,7 @@ from yarp._vocab import VOCAB1 as VOCAB1
 from yarp._vocab import VOCAB2 as VOCAB2
 from yarp._vocab import VOCAB3 as VOCAB3
 from yarp._vocab import VOCAB4 as VOCAB4
+from yarp._vocab import Vocab as Vocab
 from yarp._vocab import createVocab as createVocab
 from yarp._vocab import createVocab32 as createVocab32
 from yarp._vocab import decode as decode
@@ -372,6 +387,16 @@ YARP_FEATURE_TRIGGER_DELAY: int
 YARP_FEATURE_WHITE_BALANCE: int
 YARP_FEATURE_WHITE_SHADING: int
 YARP_FEATURE_ZOOM: int
+navigation_status_aborted: int
+navigation_status_error: int
+navigation_status_failing: int
+navigation_status_goal_reached: int
+navigation_status_idle: int
+navigation_status_moving: int
+navigation_status_paused: int
+navigation_status_preparing_before_move: int
+navigation_status_thinking: int
+navigation_status_waiting_obstacle: int
 
 Bottle_copyPortable = Bottle.copyPortable
 Bottle_describeBottleCode = Bottle.describeBottleCode
@@ -388,6 +413,7 @@ ImageMono16_copyPortable = ImageMono16.copyPortable
 ImageRgb_copyPortable = ImageRgb.copyPortable
 ImageRgbFloat_copyPortable = ImageRgbFloat.copyPortable
 ImageRgba_copyPortable = ImageRgba.copyPortable
+LLM_Message_copyPortable = LLM_Message.copyPortable
 Log_debug = Log.debug
 Log_error = Log.error
 Log_fatal = Log.fatal
@@ -395,6 +421,7 @@ Log_info = Log.info
 Log_nolog = Log.nolog
 Log_trace = Log.trace
 Log_warning = Log.warning
+Map2DLocation_copyPortable = Map2DLocation.copyPortable
 Matrix_copyPortable = Matrix.copyPortable
 Network_assertion = Network.assertion
 Network_autoInitMinimum = Network.autoInitMinimum
@@ -536,3 +563,5 @@ Value_makeVocab32 = Value.makeVocab32
 Vector_copyPortable = Vector.copyPortable
 VectorBase_copyPortable = VectorBase.copyPortable
 VectorInt_copyPortable = VectorInt.copyPortable
+Vocab_decode = Vocab.decode
+Vocab_encode = Vocab.encode

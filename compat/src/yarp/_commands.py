@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any, Final, NoReturn
 
 import yarpy
+from yarp._log import print_lines
 from yarpy.config.command_line import parse_options
 from yarpy.config.configuration import (
     conf_directory,
@@ -276,6 +277,5 @@ def yarp_config() -> NoReturn:
     except Wrong as wrong:
         print(f"usage: {wrong}", file=sys.stderr)
         sys.exit(1)
-    for line in lines:
-        print(line)
+    print_lines(lines)
     sys.exit(0)

@@ -153,6 +153,16 @@ _WORDS = {
     "VOCAB_VEL_LIMITS": "vlim",
     "VOCAB_VEL_PID": "vpd",
     "VOCAB_VEL_PIDS": "vpds",
+    "navigation_status_aborted": "abrt",
+    "navigation_status_error": "err",
+    "navigation_status_failing": "fail",
+    "navigation_status_goal_reached": "rech",
+    "navigation_status_idle": "idle",
+    "navigation_status_moving": "movg",
+    "navigation_status_paused": "paus",
+    "navigation_status_preparing_before_move": "prep",
+    "navigation_status_thinking": "thnk",
+    "navigation_status_waiting_obstacle": "wait",
 }
 _NUMBERS = {
     "BOTTLE_TAG_BLOB": 12,

@@ -50,20 +50,21 @@ class Contactable:
         raise NotImplementedError
 
     def open(self, name: str | Contact, registerName: bool = True) -> bool:
-        """Open the port; `...` as its name lets the name server choose one."""
+        """Open the port; without a name, or with `...`, the name server chooses one. Where there is
+        no name server, a port without a name opens unregistered."""
         number = 0
         if isinstance(name, Contact):
             number, name = max(name.getPort(), 0), name.getName()
         if not isinstance(name, str):
             raise TypeError(f"a port is opened by its name, not by {name!r}")
-        name = name or "..."
+        unnamed, name = not name, name or "..."
         if not name.startswith(("/", "...", "=")):
             say("ERROR", f"|yarp.os.Port| Port name '{name}' needs to start with a '/' character")
             return False
         self.close()
         self._name = name
         try:
-            self._port = self._make(name, number)
+            self._port = self._make_somehow(name, number) if unnamed else self._make(name, number)
         except (yarpy.YarpError, OSError) as error:
             say("ERROR", f"|yarp.os.Port| Port {name} failed to open: {error}")
             return False
@@ -71,6 +72,13 @@ class Contactable:
         _open.add(self)
         self._start()
         return True
+
+    def _make_somehow(self, name: str, tcp_port: int) -> Any:
+        """A port for a program that does not care what it is called."""
+        try:
+            return self._make(name, tcp_port)
+        except yarpy.NoNameServer:
+            return self._make("", tcp_port)
 
     def close(self) -> None:
         """Close it; the name is given back."""

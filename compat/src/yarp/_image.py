@@ -10,12 +10,15 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 import yarpy
+from yarp._log import say
 from yarp._pixel import Pixel, PixelRgb, PixelRgba, PixelRgbFloat
 from yarp._portable import Portable
 from yarp._vector import VectorBase
 from yarpy.data.pixel import pixel as pixel_kind
 
 OWN_QUANTUM = 8
+# What was warned about: numbers of a format in images of a kind.
+_warned: set[tuple[int, str]] = set()
 
 
 class Image(Portable):
@@ -106,13 +109,16 @@ class Image(Portable):
 
     def setExternal(self, mem: Any, w: int, h: int) -> None:
         """Use the memory of `mem`: bytes, a numpy array, a memoryview; rows without padding. Of a
-        Vector it is a copy.
+        Vector it is a copy. As in C++ the bytes are taken as they are; numbers of another size than
+        a pixel's earn a warning.
 
         Raises TypeError for what is not contiguous memory, ValueError if there is too little.
         """
         view = memoryview(mem._memory() if isinstance(mem, VectorBase) else mem)
         if not view.c_contiguous:
             raise TypeError("an image needs contiguous memory: numpy.ascontiguousarray makes it so")
+        if view.itemsize > 1:
+            self._check_numbers(view)
         raw = view.cast("B") if view.nbytes else view
         size = w * h * self.getPixelSize()
         if len(raw) < size:
@@ -122,6 +128,20 @@ class Image(Portable):
         self._memory = raw[:size]
 
     setExternal2 = setExternal
+
+    def _check_numbers(self, view: memoryview) -> None:
+        """Warn, once in a program, of numbers that are hardly what the pixels are made of."""
+        kind = pixel_kind(self._kind)
+        size = 1 if kind is None else int(kind.dtype[-1])
+        if view.itemsize != size and (self._kind, view.format) not in _warned:
+            _warned.add((self._kind, view.format))
+            say(
+                "WARNING",
+                f"|yarp.sig.Image| {type(self).__name__}.setExternal takes the bytes of an array "
+                f"as they are: its pixels have {size} byte(s) a channel, the array's numbers "
+                f"{view.itemsize} (format {view.format!r}); convert it first, as by "
+                "array.astype()",
+            )
 
     def getRawImage(self) -> int:
         """The address of the pixels, as ctypes takes it."""
@@ -290,9 +310,13 @@ class ImageMono16(Image):
 class ImageInt(Image):
     _code = _code("int")
 
+    getPixel = Image.pixel
+
 
 class ImageFloat(Image):
     _code = _code("dec")
+
+    getPixel = Image.pixel
 
 
 class FlexImage(Image):

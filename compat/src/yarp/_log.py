@@ -6,6 +6,7 @@ Rules: control characters that a terminal would obey are escaped.
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 
 from yarpy.log import readable
 
@@ -15,6 +16,14 @@ def say(level: str, text: str) -> None:
     stream = sys.stderr if level in ("WARNING", "ERROR", "FATAL") else sys.stdout
     stream.write(f"[{level}] {readable(text)}\n")
     stream.flush()
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    """Print what a command was asked for. Who reads only the beginning, as `head` does, may go."""
+    try:
+        print(*lines, sep="\n", flush=True)
+    except BrokenPipeError:
+        sys.stdout = None  # nothing more to flush at exit
 
 
 class Log:

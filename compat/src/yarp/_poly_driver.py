@@ -35,6 +35,19 @@ from yarp._motion_view import (
 )
 from yarp._property import Property
 from yarp._searchable import Searchable
+from yarp._sensor_view import (
+    IContactLoadCellArrays,
+    IEncoderArrays,
+    IOrientationSensors,
+    IPositionSensors,
+    ISixAxisForceTorqueSensors,
+    ISkinPatches,
+    ITemperatureSensors,
+    IThreeAxisGyroscopes,
+    IThreeAxisLinearAccelerometers,
+    IThreeAxisMagnetometers,
+)
+from yarp._table import NOT_HERE
 from yarp._value import Value
 from yarp._view import FAILURES, View
 from yarpy import devices
@@ -92,9 +105,7 @@ class PolyDriver:
             return False
         inner = device._device if isinstance(device, PolyDriver) else device
         try:
-            server = (
-                devices.FrameGrabberServer if self._serves_camera else devices.ControlBoardServer
-            )
+            server = getattr(devices, SERVERS[self._text("device")])
             self._device = server(device=inner, **self._waiting)
         except (*FAILURES, ValueError) as error:
             say("ERROR", f"|yarp.dev.PolyDriver| {error}")
@@ -145,9 +156,10 @@ class PolyDriver:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("view"):
             known = ", ".join(sorted(one for one in dir(type(self)) if one.startswith("view")))
+            why = NOT_HERE.get(name.removeprefix("view"), "the bindings of C++ YARP may have it")
             raise AttributeError(
-                f"no device of yarpy-compat has the interface of {name}; there are {known}. Open "
-                "an issue of yarpy if you need it"
+                f"no device of yarpy-compat has the interface of {name} ({why}); there are "
+                f"{known}. Open an issue of yarpy if you need it"
             )
         raise AttributeError(f"PolyDriver has no attribute {name!r}")
 
@@ -220,6 +232,36 @@ class PolyDriver:
 
     viewIFrameGrabberControls2 = viewIFrameGrabberControls
 
+    def viewIThreeAxisGyroscopes(self) -> IThreeAxisGyroscopes | None:
+        return self._view(IThreeAxisGyroscopes, IThreeAxisGyroscopes.kind)
+
+    def viewIThreeAxisLinearAccelerometers(self) -> IThreeAxisLinearAccelerometers | None:
+        return self._view(IThreeAxisLinearAccelerometers, IThreeAxisLinearAccelerometers.kind)
+
+    def viewIThreeAxisMagnetometers(self) -> IThreeAxisMagnetometers | None:
+        return self._view(IThreeAxisMagnetometers, IThreeAxisMagnetometers.kind)
+
+    def viewIOrientationSensors(self) -> IOrientationSensors | None:
+        return self._view(IOrientationSensors, IOrientationSensors.kind)
+
+    def viewITemperatureSensors(self) -> ITemperatureSensors | None:
+        return self._view(ITemperatureSensors, ITemperatureSensors.kind)
+
+    def viewISixAxisForceTorqueSensors(self) -> ISixAxisForceTorqueSensors | None:
+        return self._view(ISixAxisForceTorqueSensors, ISixAxisForceTorqueSensors.kind)
+
+    def viewIPositionSensors(self) -> IPositionSensors | None:
+        return self._view(IPositionSensors, IPositionSensors.kind)
+
+    def viewIContactLoadCellArrays(self) -> IContactLoadCellArrays | None:
+        return self._view(IContactLoadCellArrays, IContactLoadCellArrays.kind)
+
+    def viewIEncoderArrays(self) -> IEncoderArrays | None:
+        return self._view(IEncoderArrays, IEncoderArrays.kind)
+
+    def viewISkinPatches(self) -> ISkinPatches | None:
+        return self._view(ISkinPatches, ISkinPatches.kind)
+
     # -- devices ------------------------------------------------------------------------------
 
     def _text(self, key: str, default: str = "") -> str:
@@ -241,9 +283,19 @@ class PolyDriver:
             names=_names.names(),
         )
 
+    def _open_sensors(self) -> None:
+        self._device = devices.MultiSensor(
+            self._text("remote"),
+            self._text("local"),
+            carrier=self._text("carrier", "tcp"),
+            timeout=self._options.find("timeout").asFloat64() or 0.5,
+            names=_names.names(),
+        )
+
     def _open_server(self) -> None:
         period = self._options.find("period").asFloat64()
-        default = "/grabber" if self._serves_camera else ""
+        camera = SERVERS[self._text("device")] == "FrameGrabberServer"
+        default = "/grabber" if camera else ""
         self._waiting = {
             "name": self._text("name", default),
             # In files of robots it is in milliseconds.
@@ -252,10 +304,6 @@ class PolyDriver:
         }
         if not self._waiting["name"]:
             raise yarpy.AddressError('the option "name" says what its ports are called')
-
-    @property
-    def _serves_camera(self) -> bool:
-        return self._text("device") in ("frameGrabber_nws_yarp", "grabberDual")
 
     def _open_fake_camera(self) -> None:
         width, height = (self._options.find(key).asInt32() for key in ("width", "height"))
@@ -266,6 +314,13 @@ class PolyDriver:
         self._device = FakeMotionControl(joints or 4)
 
 
+#: Which class of `yarpy.devices` serves what is attached.
+SERVERS = {
+    "controlBoard_nws_yarp": "ControlBoardServer",
+    "controlboardwrapper2": "ControlBoardServer",
+    "frameGrabber_nws_yarp": "FrameGrabberServer",
+    "multipleanalogsensorsserver": "MultiSensorServer",
+}
 #: Devices that somebody has to serve, and who does unless the options say.
 WRAPPERS = {
     "fakeFrameGrabber": "frameGrabber_nws_yarp",
@@ -285,6 +340,8 @@ DEVICES = {
     "RemoteFrameGrabber": PolyDriver._open_camera,
     "controlBoard_nws_yarp": PolyDriver._open_server,
     "controlboardwrapper2": PolyDriver._open_server,
+    "multipleanalogsensorsclient": PolyDriver._open_sensors,
+    "multipleanalogsensorsserver": PolyDriver._open_server,
 }
 
 

@@ -37,7 +37,8 @@ _MODULES = {
     "_image": "Image ImageRgb ImageRgba ImageRgbFloat ImageMono ImageMono16 ImageInt ImageFloat "
     "FlexImage",
     "_file": "read write",
-    "_vocab": "encode decode createVocab createVocab32 VOCAB VOCAB1 VOCAB2 VOCAB3 VOCAB4",
+    "_vocab": "encode decode createVocab createVocab32 VOCAB VOCAB1 VOCAB2 VOCAB3 VOCAB4 Vocab",
+    "_struct": "Map2DLocation Map2DLocationVector LLM_Message LLMVector",
     "_resource_finder": "ResourceFinder",
     "_rf_module": "RFModule",
     "_thread": "Thread PeriodicThread RateThread Semaphore",
@@ -48,6 +49,9 @@ _MODULES = {
     "_measuring_view": "IEncoders IEncodersTimed IMotorEncoders IMotor IAmplifierControl IAxisInfo "
     "IRemoteVariables",
     "_control_view": "IControlMode IInteractionMode IControlLimits IPidControl Pid PidVector",
+    "_sensor_view": "IThreeAxisGyroscopes IThreeAxisLinearAccelerometers IThreeAxisMagnetometers "
+    "IOrientationSensors ITemperatureSensors ISixAxisForceTorqueSensors IPositionSensors "
+    "IContactLoadCellArrays IEncoderArrays ISkinPatches",
     "_camera_view": "IFrameGrabberImage IFrameGrabberRgb IFrameGrabberControls CameraDescriptor",
 }
 WHERE = {name: module for module, names in _MODULES.items() for name in names.split()}
@@ -59,6 +63,9 @@ CLASSES = frozenset(name for name in WHERE if name[0].isupper() and not name.isu
 NOT_HERE: dict[str, str] = {
     "useNetworkClock": "time is that of the system here",
     "useCustomClock": "time is that of the system here",
-    "ICartesianControl": "it moves an iCub's hand through a solver of its own, in C++",
-    "IGazeControl": "it moves an iCub's eyes through a controller of its own, in C++",
+    "ICartesianControl": "it asks a solver of the iCub in C++, whose protocol yarpy does not "
+    "speak: joints are moved by viewIPositionControl and viewIPositionDirect",
+    "IGazeControl": "it asks iKinGazeCtrl of the iCub in C++, whose protocol yarpy does not speak: "
+    "the head and the eyes are moved by viewIPositionControl, and iKinGazeCtrl takes angles and "
+    "points at its own ports",
 }

@@ -34,3 +34,10 @@ def encode(str: str) -> int:
 def decode(code: int) -> str:
     """The word of a number."""
     return str(yarpy.Vocab.from_code(int32(code)))
+
+
+class Vocab:
+    """The same two under the names of older versions: `Vocab.encode`, `Vocab_encode`."""
+
+    encode = staticmethod(encode)
+    decode = staticmethod(decode)

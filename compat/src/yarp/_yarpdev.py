@@ -17,6 +17,7 @@ import sys
 from typing import NoReturn
 
 import yarpy
+from yarp._log import print_lines
 from yarp._poly_driver import DEVICES, WRAPPERS, PolyDriver
 from yarp._property import Property
 
@@ -73,13 +74,13 @@ class Yarpdev(yarpy.Module):
 def main() -> NoReturn:
     """The program `yarpdev`."""
     if "--list" in sys.argv[1:]:
-        print("\n".join(sorted(DEVICES)))
+        print_lines(sorted(DEVICES))
         sys.exit(0)
     try:
         finder = yarpy.ResourceFinder(sys.argv[1:])
         name = str(finder.find("device") or "")
         if not name:
-            print(__doc__)
+            print_lines([__doc__ or ""])
             print("[WARNING] --device option not specified. Closing.", file=sys.stderr)
             sys.exit(0)
         code = Yarpdev().run(finder)
