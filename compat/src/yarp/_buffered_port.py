@@ -99,12 +99,12 @@ class BufferedPort(Contactable, Generic[T]):
     def write(self, forceStrict: bool = False) -> None:
         """Send what was prepared; a reader that is still busy with the one before misses it, unless
         `forceStrict`."""
-        port, envelope, self._envelope = self._port, self._envelope, None
+        port = self._port
         if port is None:
             return
         port.strict = forceStrict
         try:
-            port.write(self._leaving(self.prepare()), envelope)
+            port.write(self._leaving(self.prepare()), self._envelope)
         except yarpy.PortClosed:
             pass
         except (ValueError, OverflowError) as error:  # too deep, too large

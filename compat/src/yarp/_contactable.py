@@ -167,21 +167,13 @@ class Contactable:
     # -- envelopes ----------------------------------------------------------------------------
 
     def setEnvelope(self, envelope: Any) -> bool:
-        """Send this beside the next message: a Stamp or a Bottle."""
-        native = envelope._outgoing()
-        self._envelope = native.to_text()
+        """Send this beside each message from now on: a Stamp or a Bottle."""
+        self._envelope = envelope._outgoing().to_text() or self._envelope
         return True
 
     def getEnvelope(self, envelope: Any) -> bool:
-        """What came beside the last message; False if that was nothing, or something else."""
-        if self._last is None or not self._last.envelope:
-            return False
-        try:
-            words = yarpy.Bottle.from_text(self._last.envelope)
-            envelope._take(yarpy.Message("D", encoded(words)))
-        except yarpy.DecodeError:
-            return False
-        return True
+        """What came beside the last message; False if that is no such object."""
+        return self._last is not None and bool(envelope._take_text(self._last.envelope))
 
     # -- readers ------------------------------------------------------------------------------
 

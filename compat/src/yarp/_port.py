@@ -29,10 +29,10 @@ class Port(Contactable):
             raise TypeError(f"a port writes a Bottle, an image and the like, not {writer!r}")
         if reader is not None and isinstance(reader, PortReader):
             return self._ask(writer, reader)
-        port, envelope, self._envelope = self._port, self._envelope, None
+        port = self._port
         if port is not None:
             try:
-                port.write(self._leaving(writer), envelope)
+                port.write(self._leaving(writer), self._envelope)
             except yarpy.PortClosed:
                 return False
             except (ValueError, OverflowError) as error:  # too deep, too large

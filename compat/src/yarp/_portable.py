@@ -46,6 +46,16 @@ class PortReader:
 
         self.read(ConnectionReader(message))
 
+    def _take_text(self, text: str) -> bool:
+        """Fill this from an envelope; whether that is one."""
+        from yarp._memory import encoded
+
+        try:
+            self._take(yarpy.Message("D", encoded(yarpy.Bottle.from_text(text))))
+        except yarpy.DecodeError:
+            return False
+        return True
+
     @classmethod
     def _from(cls, message: yarpy.Message) -> Self:
         """A new one, filled by a message."""

@@ -36,3 +36,12 @@ class Stamp(Portable):
 
     def _take(self, message: yarpy.Message) -> None:
         self._stamp = message.as_(yarpy.Stamp)
+
+    def _take_text(self, text: str) -> bool:
+        """Fill this from an envelope; what is none leaves an invalid stamp."""
+        try:
+            self._stamp = yarpy.Stamp.from_text(text)
+        except yarpy.DecodeError:
+            self._stamp = yarpy.Stamp()
+            return False
+        return True

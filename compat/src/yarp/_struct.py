@@ -29,14 +29,20 @@ class _Place(_OlderPlace):
 
 
 class _Said(thrift.Struct):
-    type: str = ""
-    content: str = ""
-    parameters: list[str] = thrift.new(list)
-    arguments: list[str] = thrift.new(list)
+    type: str
+    content: str
+    parameters: list[str]
+    arguments: list[str]
 
 
 class Map2DLocation(Portable):
     """A place in a map: metres, and where one looks, in degrees."""
+
+    map_id: str
+    x: float
+    y: float
+    theta: float
+    description: str
 
     def __init__(
         self,
@@ -47,14 +53,8 @@ class Map2DLocation(Portable):
         desc: str = "",
     ) -> None:
         if isinstance(map_name, Map2DLocation):
-            place = map_name
-            map_name, inX, inY, inT, desc = (
-                place.map_id,
-                place.x,
-                place.y,
-                place.theta,
-                place.description,
-            )
+            self.__dict__.update(map_name.__dict__)
+            return
         self.map_id = map_name
         self.x, self.y, self.theta = inX, inY, inT
         self.description = desc

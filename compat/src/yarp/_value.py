@@ -282,7 +282,9 @@ class Value(Portable):
         """The low bits of a number; vocabs have no fewer than 32."""
         value = self._native
         if isinstance(value, float):
-            found = int(value) if value == value and abs(value) < 1 << 63 else 0
+            # What does not fit is the least there is, as processors have it.
+            most = 1 << 63 if bits == 64 else 1 << 31
+            found = int(value) if -most - 1 < value < most else -most
         elif isinstance(value, int) and not isinstance(value, bool):
             found = int(value)
         else:
@@ -379,7 +381,8 @@ def code_of(native: Any) -> int:
             return TAG_LIST + TAG_DICT
         case list() | tuple():
             kinds = {code_of(item) for item in native}
-            return TAG_LIST + (kinds.pop() if len(kinds) == 1 else 0)
+            kind = kinds.pop() if len(kinds) == 1 else TAG_LIST
+            return TAG_LIST + (kind if kind < TAG_LIST else 0)
     return -1
 
 
