@@ -80,6 +80,9 @@ class Qos:
         return -1 if self.packets is None else tos_of(self.packets)
 
 
+NOTHING_ASKED: Final = Qos()
+
+
 def policy_name(policy: int) -> str:
     """SCHED_FIFO and the like for the number of a policy."""
     return next((name for name, one in POLICIES.items() if one == policy), str(policy))

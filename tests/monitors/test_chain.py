@@ -261,3 +261,19 @@ def test_made_from_a_carrier_string() -> None:
             made("tcp+send.mdae")
     finally:
         registry.monitors.remove("made")
+
+
+class Fails:
+    def update(self, message: Message) -> object:
+        raise DecodeError("what is this?")
+
+
+def test_what_each_monitor_drops_is_counted() -> None:
+    chain = Chain([Word("a"), Fails()], "here")
+    assert (chain.dropped, chain.failures) == ([0, 0], ["", ""])
+    assert chain.take(message("hi")) is None
+    assert chain.send(Packet(["drop"])) is None
+    assert (chain.dropped, chain.failures) == ([1, 1], ["", "what is this?"])
+    both = Chain([Word("b")], "there").followed_by(chain)
+    assert both.take(message("hi")) is None
+    assert chain.dropped == [1, 2]

@@ -1,50 +1,71 @@
-"""All connections of a network."""
+"""What is known of a network at one moment."""
 
 from __future__ import annotations
 
-import socket
-
-from support.wait import wait_until
-
 import yarpy
-from yarpy.network.traffic import End, Flow, flows, read
-
-
-def test_every_connection_once_as_both_ends_see_it() -> None:
-    names = yarpy.LocalNames()
-    with (
-        yarpy.Port("/a", names=names) as a,
-        yarpy.BufferedPort("/b", names=names) as b,
-        yarpy.RpcServer("/s", lambda message: message.value, names=names),
-        yarpy.RpcClient("/s", name="/c", names=names) as client,
-    ):
-        a.connect("/b", "udp")
-        for number in range(5):
-            a.write([number])
-        client.call("hello")
-        wait_until(lambda: b.inputs and b.inputs[0].stats["messages"] == 5)
-        found = {(flow.source, flow.target): flow for flow in flows(names)}
-        assert [*found] == [("/a", "/b"), ("/c", "/s")]
-        flow = found["/a", "/b"]
-        assert flow.carrier == "udp"
-        assert flow.sender is not None
-        assert flow.receiver is not None
-        assert (flow.sender.messages, flow.receiver.messages) == (5, 5)
-        assert flow.drops == flow.receiver.drops
-        assert flow.measured("rate") > 0
-        assert found["/c", "/s"].measured("latency") > 0
-
-
-def test_ports_that_do_not_answer_have_no_connections() -> None:
-    names = yarpy.LocalNames()
-    with socket.create_server(("127.0.0.1", 0)) as silent, yarpy.Port("/a", names=names):
-        names.register("/silent", "tcp", "127.0.0.1", silent.getsockname()[1])
-        names.register("/dead", "tcp", "127.0.0.1", 9)
-        names.register("/camera", "mjpeg", "127.0.0.1", 9)
-        assert flows(names) == []
+from yarpy.contact import Contact
+from yarpy.network.traffic import End, Flow, PortState, Snapshot, read, read_port
 
 
 def test_what_nobody_counts_is_none() -> None:
     flow = Flow("/a", "/b", End("tcp"), None)
     assert (flow.drops, flow.measured("messages"), flow.carrier) == (None, None, "tcp")
     assert read(yarpy.Property(source="/a", target="/b"))[2] == End()
+
+
+def test_the_side_that_knows_is_asked() -> None:
+    flow = Flow("/a", "/b", End("tcp", drops=1), End("tcp+recv.x", messages=7, drops=2))
+    assert (flow.drops, flow.measured("messages"), flow.carrier) == (3, 7, "tcp+recv.x")
+
+
+def test_drops_by_monitor() -> None:
+    told = yarpy.Property(
+        source="/a", target="/b", monitors=["one", "two"], dropped=[0, 3], failures=["", "bad"],
+        port_monitor="Gate", port_dropped=5, port_failures=["worse"],
+    )  # fmt: skip
+    end = read(told)[2]
+    assert end.dropped == {"one": 0, "two": 3, "Gate of the port": 5}
+    assert end.failures == {"two": "bad", "Gate of the port": "worse"}
+
+
+def test_nonsense_is_none() -> None:
+    told = yarpy.Property(
+        source=5, target=["/b"], messages="many", rate=float("nan"), jitter="x", monitors=3,
+        policy="SCHED_NEVER", packets="AF99", dropped="x", failures=7, parameters=9, asked="x",
+        failure="y" * 5000, latency=True,
+    )  # fmt: skip
+    source, target, end = read(told)
+    assert (source, target) == ("", "")
+    assert len(end.failure) == 1000
+    end.failure = ""
+    assert end == End(latency=1.0)
+
+
+def test_a_connection_belongs_to_its_ends() -> None:
+    snapshot = Snapshot(0.0)
+    snapshot.add(
+        "/a",
+        [
+            ("out", "/a", "/b", End("tcp")),
+            ("in", "/c", "/d", End("tcp")),
+            ("out", "/a", "/a", End("udp")),
+            ("in", "/a", "/a", End("mcast")),
+        ],
+    )
+    snapshot.add("/b", [("in", "/a", "/b", End("tcp", 5))])
+    assert set(snapshot.flows) == {("/a", "/b"), ("/a", "/a")}
+    assert snapshot.flows["/a", "/b"] == Flow("/a", "/b", End("tcp"), End("tcp", 5))
+    assert snapshot.flows["/a", "/a"] == Flow("/a", "/a", End("udp"), End("mcast"))
+
+
+def test_a_port_about_itself() -> None:
+    state = PortState("/a", Contact("tcp", "/a", "127.0.0.1", 1))
+    reply = yarpy.Bottle.from_text(
+        '(process ((arguments "write /w") (name yarp) (pid 6208))) (platform ((hostname here)))'
+        ' (port ((is_rpc 1) (type "yarp/image")))'
+    )
+    read_port(state, reply)
+    assert (state.pid, state.program, state.host) == (6208, "yarp write /w", "here")
+    assert (state.is_rpc, state.type) == (True, "yarp/image")
+    read_port(state, yarpy.Bottle(["no"]))
+    assert (state.pid, state.program) == (0, "")

@@ -7,7 +7,8 @@ from support.patience import patience
 from support.wait import wait_until
 
 from yarpy.nameserver.local import LocalNames
-from yarpy.network.traffic import flows, read
+from yarpy.network.sampling import flows
+from yarpy.network.traffic import read
 from yarpy.port.port import BufferedPort, Port
 from yarpy.port.report import report
 

@@ -58,3 +58,32 @@ def test_every_connection_with_a_port_and_no_visitor() -> None:
 def test_a_port_alone() -> None:
     with yarpy.Port("/it", names=yarpy.LocalNames()) as port:
         assert report(port._hub) == []
+
+
+def test_what_the_doctor_asks_for() -> None:
+    names = yarpy.LocalNames()
+    with (
+        yarpy.BufferedPort("/in", names=names) as in_,
+        yarpy.Port("/out", names=names) as out,
+        yarpy.Port("/back", names=names, callback=lambda message: message.as_(yarpy.Image)) as back,
+    ):
+        out.connect("/in")
+        out.connect("/back")
+        for number in range(3):
+            out.write([number], wait=True)
+        wait_until(lambda: back.inputs and back.inputs[0].stats["drops"] == 3)
+        [told] = report(in_._hub)
+        assert (told["delivered"], told["waiting"], told["lost"]) == (1, 1, 0)
+        [told] = report(back._hub)
+        assert "expected an Image" in told["failure"]
+        sent = report(out._hub)[0]
+        assert sent["unacknowledged"] == 0
+        assert "asked" not in sent
+        link = out._hub.outputs[0]
+        link.asked = yarpy.Qos(packets="CRIT")  # and somebody else has set the socket since
+        assert report(out._hub)[0]["asked"] == {"packets": "VA"}
+        in_.attach("in", {"monitor": "throttleDown", "period_ms": 100000})
+        for number in range(3):
+            out.write([number], wait=True)
+        [told] = report(in_._hub)
+        assert (told["port_monitor"], told["port_dropped"]) == ("ThrottleDown", 2)

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from yarpy.cli.output import print_json, print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.log import readable
-from yarpy.network.traffic import End, Flow, flows
+from yarpy.network.sampling import Sampler
+from yarpy.network.traffic import End, Flow
 from yarpy.route import parse_carrier
 
 if TYPE_CHECKING:
@@ -56,43 +57,25 @@ GAP: Final = "  "
 
 
 class Overview:
-    """The connections at the last look, and the one before."""
+    """The connections at the last look."""
 
     def __init__(self) -> None:
         self.flows: list[Flow] = []
-        self._before: dict[tuple[str, str], tuple[float, int, int]] = {}
-        self.rates: dict[tuple[str, str], tuple[float | None, float | None]] = {}
+        self._sampler = Sampler()
 
     def look(self) -> None:
         """Ask all ports."""
-        self.flows = flows()
-        now = time.monotonic()
-        seen: dict[tuple[str, str], tuple[float, int, int]] = {}
-        self.rates = {}
-        for flow in self.flows:
-            key = (flow.source, flow.target)
-            messages, size = flow.measured("messages"), flow.measured("bytes")
-            self.rates[key] = (flow.measured("rate"), None)
-            if messages is None or size is None:
-                continue
-            before = self._before.get(key)
-            if before is not None and now > before[0]:
-                passed = now - before[0]
-                self.rates[key] = ((messages - before[1]) / passed, (size - before[2]) / passed)
-            elif flow.measured("rate"):
-                self.rates[key] = (
-                    flow.measured("rate"),
-                    size / max(messages, 1) * self.rates[key][0],
-                )
-            seen[key] = (now, messages, size)
-        self._before = seen
+        self.flows = list(self._sampler.look().flows.values())
+
+    def close(self) -> None:
+        """Hang up."""
+        self._sampler.close()
 
     def rows(self, wide: bool) -> list[tuple[str, ...]]:
         """What the table shows. That somebody writes while nobody listens is no trouble."""
         return [self._row(flow) for flow in self.flows if wide or flow.target or flow.drops]
 
     def _row(self, flow: Flow) -> tuple[str, ...]:
-        rate, speed = self.rates[(flow.source, flow.target)]
         monitors = [
             f"{one}{_state(end)}"
             for end in (flow.sender, flow.receiver)
@@ -104,8 +87,8 @@ class Overview:
             flow.target or NOBODY,
             parse_carrier(flow.carrier).base if flow.target else "",
             _number(flow.measured("messages"), 0),
-            _number(rate, 1),
-            _number(None if speed is None else speed / 1e6, 2),
+            _number(flow.rate, 1),
+            _number(flow.speed, 2, 1e-6),
             _number(flow.drops, 0),
             _number(flow.sender.unconfirmed if flow.sender else None, 0),
             _number(flow.sender.unconnected if flow.sender else None, 0),
@@ -120,14 +103,13 @@ class Overview:
         """All that is known, for programs."""
         found = []
         for flow in self.flows:
-            rate, speed = self.rates[(flow.source, flow.target)]
             found.append(
                 {
                     "source": flow.source,
                     "target": flow.target,
                     "carrier": flow.carrier,
-                    "messages_per_second": rate,
-                    "bytes_per_second": speed,
+                    "messages_per_second": flow.rate,
+                    "bytes_per_second": flow.speed,
                     "drops": flow.drops,
                     "sender": flow.sender and asdict(flow.sender),
                     "receiver": flow.receiver and asdict(flow.receiver),
@@ -139,6 +121,13 @@ class Overview:
 def show(watch: bool, as_json: bool, wide: bool) -> int:
     """The command without PORT."""
     overview = Overview()
+    try:
+        return _show(overview, watch, as_json, wide)
+    finally:
+        overview.close()
+
+
+def _show(overview: Overview, watch: bool, as_json: bool, wide: bool) -> int:
     overview.look()
     if as_json:
         return _repeat(overview, watch, lambda: print_json(overview.as_json()))

@@ -17,7 +17,7 @@ from yarpy.link.driver import Driver
 from yarpy.link.receiver import Receiver
 from yarpy.link.turn import SILENCE, Turn
 from yarpy.log import logger
-from yarpy.qos import Sched
+from yarpy.qos import NOTHING_ASKED, Sched
 from yarpy.wire.message import CALL, DATA, QUIT, Message
 
 if TYPE_CHECKING:
@@ -67,8 +67,10 @@ class Inbound:
         self.served = threading.Event()  # the thread has ended it, and has told everybody
         self.sched = Sched()  # as requested; -1: nothing was
         self.tos = 0
+        self.asked = NOTHING_ASKED  # priorities, granted or not
         self.own_chain: Chain | None = None  # the monitors that ride on it
         self.chain: Chain | None = None  # those, and the port's
+        self.failure = ""  # why the program could not use a message, the last time
         self._closing = False
         self._quit = False
         self._reversed = False

@@ -16,7 +16,7 @@ from yarpy.link.intake import Intake
 from yarpy.link.sender import Sender, interrupts, seconds
 from yarpy.link.write_timeout import ALL, NOTHING, PART, STRANGERS
 from yarpy.log import logger
-from yarpy.qos import Sched, schedule
+from yarpy.qos import NOTHING_ASKED, Sched, schedule
 from yarpy.transports.base import SocketTransport
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import CALL, Message, Packet
@@ -62,6 +62,7 @@ class Outbound:
         self.dialled = dialled  # by us; else the reader dialled us, and has to dial again
         self.sched = Sched()  # as requested; -1: nothing was
         self.tos = 0
+        self.asked = NOTHING_ASKED  # priorities, granted or not
         self.chain: Chain | None = None  # the monitors that ride on it
         self.log = carrier.route.spec.log is not None  # gets what the port receives, not writes
         self.active = True  # of the multicast links of a port only one sends

@@ -1,15 +1,18 @@
 """A connection's priority: give its thread and packets what was asked, read back what was granted.
 
-Rules: everything is checked before anything is changed; what the system refuses changes nothing. An
-output that is scheduled gets a thread of its own, which sends from then on.
+Rules: everything is checked before anything is changed; what the system refuses changes nothing,
+but stays known as what was asked. An output that is scheduled gets a thread of its own, which sends
+from then on.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from yarpy.errors import LocalProtocolError
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
-from yarpy.qos import Qos, Sched, check, schedule, scheduled
+from yarpy.qos import Qos, Sched, check, packets_name, schedule, scheduled
 
 
 def grant_sched(link: Inbound | Outbound, wanted: Sched) -> None:
@@ -25,6 +28,8 @@ def grant_sched(link: Inbound | Outbound, wanted: Sched) -> None:
     if wanted.policy == 0 and wanted.priority < 0:
         sched = Sched(0, 0)
     check(sched)
+    asked = Qos.of(sched, -1)
+    link.asked = replace(link.asked, policy=asked.policy, priority=asked.priority)
     own = sched.policy > 0
     if own and isinstance(link, Outbound) and thread_of(link) < 0:
         link.start_background()
@@ -43,6 +48,7 @@ def grant_tos(link: Inbound | Outbound, tos: int) -> None:
     """
     if not 0 <= tos < 256:
         raise ValueError(f"a TOS byte lies between 0 and 255, not {tos}")
+    link.asked = replace(link.asked, packets=packets_name(tos))
     try:
         link.driver.transport.set_dscp(tos)
     except OSError as error:

@@ -2,7 +2,8 @@
 
 Rules: a chain is made before its connection, so that a wrong name or parameter refuses it. Only the
 methods that its monitors have are called. If a monitor fails, the message is dropped and a line
-logged; the connection continues.
+logged; the connection continues. What is dropped is counted for each monitor; what passes costs
+nothing more.
 """
 
 from __future__ import annotations
@@ -55,11 +56,22 @@ def from_carrier(spec: CarrierSpec, place: Place) -> list[object]:
     return made
 
 
+class _Tally:
+    """What one monitor has dropped, and what went wrong in it last."""
+
+    __slots__ = ("dropped", "failure")
+
+    def __init__(self) -> None:
+        self.dropped = 0
+        self.failure = ""
+
+
 class Chain:
     """Monitors in their order, for one connection or one port."""
 
     def __init__(self, monitors: Sequence[object], where: str, group: Group | None = None) -> None:
         self.monitors = tuple(monitors)
+        self._tallies = tuple(_Tally() for _ in monitors)
         self._where = where
         self._group = group
         # Only monitors of a group trigger the others.
@@ -68,8 +80,9 @@ class Chain:
                 one if group is not None else None,
                 getattr(one, "accept", None),
                 getattr(one, "update", None),
+                tally,
             )
-            for one in monitors
+            for one, tally in zip(self.monitors, self._tallies, strict=True)
         )
         self._replies = tuple(one.update_reply for one in monitors if hasattr(one, "update_reply"))
         self._lock = threading.Lock()  # several writers may use one connection
@@ -94,19 +107,25 @@ class Chain:
     def _through(self, message: Message) -> Message | None:
         """The message after all monitors; None: one has dropped it."""
         group = self._group
+        tally = None
         try:
-            for peer, accept, update in self._steps:
+            for peer, accept, update, tally in self._steps:
                 if accept is not None and not accept(message):
+                    tally.dropped += 1
                     return None
                 if peer is not None and group is not None:
                     group.trigger(peer)
                 if update is not None:
                     made = update(message)
                     if made is DROP:
+                        tally.dropped += 1
                         return None
                     if made is not None and made is not message:
                         message = made if isinstance(made, Message) else message.replaced(made)
         except FAILURES as error:
+            if tally is not None:
+                tally.dropped += 1
+                tally.failure = _told(error)
             self._complain(error)
             return None
         return message
@@ -132,7 +151,7 @@ class Chain:
         return message
 
     def _complain(self, error: BaseException) -> None:
-        text = f"{error}" if isinstance(error, YarpError) else f"{type(error).__name__}: {error}"
+        text = _told(error)
         if text not in self._told and len(self._told) < _MOST_TOLD:
             self._told.add(text)
             log.warning("%s: a monitor dropped a message: %s", self._where, text)
@@ -167,6 +186,16 @@ class Chain:
             found.update(told())
         return found
 
+    @property
+    def dropped(self) -> list[int]:
+        """How many messages each monitor has dropped."""
+        return [tally.dropped for tally in self._tallies]
+
+    @property
+    def failures(self) -> list[str]:
+        """What went wrong last in each monitor, "" where nothing did."""
+        return [tally.failure for tally in self._tallies]
+
     def close(self) -> None:
         """The connection or port ends."""
         for monitor in self.monitors:
@@ -176,3 +205,8 @@ class Chain:
                 getattr(monitor, "close", lambda: None)()
             except FAILURES as error:
                 log.warning("%s: a monitor did not close: %s", self._where, error)
+
+
+def _told(error: BaseException) -> str:
+    """An error as people are told of it."""
+    return f"{error}" if isinstance(error, YarpError) else f"{type(error).__name__}: {error}"

@@ -17,7 +17,7 @@ from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.errors import Timeout, YarpError
-from yarpy.network.traffic import ends
+from yarpy.network.sampling import ends
 from yarpy.port import probe
 from yarpy.route import parse_carrier
 

@@ -12,7 +12,7 @@ from yarpy.contact import parse_contact
 from yarpy.names.base import NameClient
 from yarpy.network import qos as remote_qos
 from yarpy.network.connection import disconnect, join
-from yarpy.network.traffic import flow
+from yarpy.network.sampling import flow
 from yarpy.port.connection import Connection
 from yarpy.qos import Qos
 

@@ -1,38 +1,43 @@
-"""Traffic: every connection in the network and its counters, asked of all registered ports.
+"""Traffic: what is known of a network at one moment - its ports, its connections, their counters.
 
-Rules: ports are asked in parallel, each once, with a time limit; one that does not answer has no
-connections. C++ ports report to whom they send, over what, and with which priority; what they do
-not count is None.
+Rules: plain values; who asks for them is `sampling`. What a port says of itself was written by a
+stranger: numbers are finite or None, texts have a limit, and whatever else comes is passed over.
+C++ ports report to whom they send, over what, and with which priority; what they do not count is
+None.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, Literal, TypeAlias
 
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
-from yarpy.data.value import Vocab
-from yarpy.errors import UnknownName, YarpError
-from yarpy.names.base import NameClient
-from yarpy.names.default import DEFAULT
-from yarpy.network import qos
-from yarpy.network.connection import query
-from yarpy.port import probe
 from yarpy.qos import Qos
 
-AT_ONCE: Final = 16  # ports asked at the same time
-PATIENCE: Final = 1.0  # seconds for an answer
+LONGEST: Final = 1000  # characters of a text that a port says
+MOST: Final = 4096  # connections of one port, and elements of a list
+
+#: `answers`; `refused`: nobody listens there; `silent`: somebody does, and says nothing;
+#: `unreachable`: no way there; `denied`: it does not let us ask; `other`: what answers is no port
+#: that can be asked, or another one; `foreign`: of another system, which is not asked
+State: TypeAlias = Literal[
+    "answers", "refused", "silent", "unreachable", "denied", "other", "foreign"
+]
 
 
 @dataclass(slots=True)
 class End:
     """A connection as one of its ports sees it; None: that port does not count it.
 
-    `rate` is in messages per second, `jitter` and `latency` (until a reply) in seconds.
+    `rate` is in messages per second, `jitter` and `latency` (until a reply) in seconds. Of a
+    sender: messages `unacknowledged` now. Of a receiver: messages `delivered` to the program,
+    `waiting` for it now (of all connections), `lost` on the way; `failure`: why the program could
+    not use one. `dropped`: by monitors, by their names, with their `failures`. `asked`: priorities
+    that are not what the system does.
     """
 
     carrier: str = ""
@@ -41,11 +46,19 @@ class End:
     drops: int | None = None
     unconfirmed: int | None = None
     unconnected: int | None = None
+    unacknowledged: int | None = None
+    delivered: int | None = None
+    waiting: int | None = None
+    lost: int | None = None
     rate: float | None = None
     jitter: float | None = None
     latency: float | None = None
+    failure: str = ""
     qos: Qos = field(default_factory=Qos)
+    asked: dict[str, Any] = field(default_factory=dict)
     monitors: list[str] = field(default_factory=list)
+    dropped: dict[str, int] = field(default_factory=dict)
+    failures: dict[str, str] = field(default_factory=dict)
     parameters: dict[str, Any] = field(default_factory=dict)
     state: dict[str, Any] = field(default_factory=dict)
 
@@ -55,13 +68,16 @@ class Flow:
     """A connection of two ports, as the sender and the receiver see it.
 
     Without a target: what the sender dropped on connections that have ended, and what it wrote
-    while it had none (`unconnected`).
+    while it had none (`unconnected`). `rate` (1/s) and `speed` (bytes/s) are counted between two
+    looks; after the first one they are what the ports say, or None.
     """
 
     source: str
     target: str
     sender: End | None = None
     receiver: End | None = None
+    rate: float | None = None
+    speed: float | None = None
 
     @property
     def carrier(self) -> str:
@@ -84,108 +100,149 @@ class Flow:
         return getattr(self.sender or self.receiver, key, None)
 
 
-def flows(names: NameClient | None = None) -> list[Flow]:
-    """Every connection between registered ports, by source and target.
+@dataclass(slots=True)
+class PortState:
+    """A registered name, and what was found there.
 
-    Raises NoNameServer.
+    `ours`: it is a port of yarpy, which counts; None: not known. `answer_time` in seconds.
+    `program` is the command line, `pid` 0 if it is not told. `error` says why there is no answer.
     """
-    known = [one for one in (names or DEFAULT.current()).list() if _answers(one)]
-    found: dict[tuple[str, str], Flow] = {}
-    with ThreadPoolExecutor(AT_ONCE) as pool:
-        for port, told in zip(known, pool.map(_ask, known), strict=True):
-            for source, target, end in told:
-                flow = found.setdefault((source, target), Flow(source, target))
-                if source == port.name:
-                    flow.sender = end
-                else:
-                    flow.receiver = end
-    return [found[key] for key in sorted(found)]
+
+    name: str
+    contact: Contact
+    state: State = "foreign"
+    error: str = ""
+    ours: bool | None = None
+    answer_time: float | None = None
+    pid: int = 0
+    program: str = ""
+    host: str = ""
+    type: str = ""
+    is_rpc: bool = False
 
 
-def flow(source: str, target: str, names: NameClient | None = None) -> Flow:
-    """The connection `source` -> `target`, asked of these two ports.
+@dataclass(slots=True)
+class Snapshot:
+    """A network at `time` (seconds since 1970): ports by name, flows by source and target."""
 
-    Raises UnknownName when neither knows of it, NoNameServer.
-    """
-    found = Flow(source, target)
-    for name in (source, target):
-        contact = query(name, names)
-        if contact is None or not _answers(contact):
-            continue
-        for from_, to, end in ends(contact):
-            if (from_, to) != (source, target):
+    time: float
+    ports: dict[str, PortState] = field(default_factory=dict)
+    flows: dict[tuple[str, str], Flow] = field(default_factory=dict)
+
+    def add(self, port: str, told: Iterable[tuple[str, str, str, End]]) -> None:
+        """Take in what `port` says of its connections; what it says of those of others is passed
+        over."""
+        for side, source, target, end in told:
+            if port not in (source, target):
                 continue
-            if name == source:
-                found.sender = end
+            flow = self.flows.get((source, target))
+            if flow is None:
+                flow = self.flows[source, target] = Flow(source, target)
+            if side == "out" if source == target else source == port:
+                flow.sender = end
             else:
-                found.receiver = end
-    if found.sender is None and found.receiver is None:
-        raise UnknownName(
-            f'neither "{source}" nor "{target}" has a connection from the first to the second; '
-            f"`yarpy ping {source}` lists those it has"
-        )
-    return found
+                flow.receiver = end
 
 
-def _answers(contact: Contact) -> bool:
-    return contact.carrier == "tcp" and contact.name.startswith("/") and bool(contact.port)
-
-
-def ends(contact: Contact) -> list[tuple[str, str, End]]:
-    """The connections of one port, source and target first; none if it does not answer."""
-    return [one for one in _ask(contact) if one[1]]
-
-
-def _ask(contact: Contact) -> list[tuple[str, str, End]]:
-    try:
-        reply = probe.ask(contact, ["stat"], timeout=PATIENCE)
-        if reply and reply[0] == Vocab("fail"):
-            return list(_ask_each(contact))
-        return [read(Property.from_bottle(_pairs(item))) for item in reply]
-    except (YarpError, OSError):
-        return []
-
-
-def _pairs(item: Any) -> Bottle:
-    """The `(key value)` lists of a connection, which may already be a dict."""
-    return Bottle([key, value] for key, value in item.items()) if isinstance(item, dict) else item
+# --- reading what ports say
 
 
 def read(told: Property) -> tuple[str, str, End]:
     """One connection in the answer to [stat]: source, target and counters."""
-    monitors = told.get("monitors")
-    end = End(
-        plain_text(told.get("carrier", "")),
-        **{key: told.get(key) for key in ("messages", "bytes", "drops")},
-        **{key: told.get(key) for key in ("unconfirmed", "unconnected")},
-        **{key: told.get(key) for key in ("rate", "jitter", "latency")},
-        qos=Qos(told.get("policy"), told.get("priority"), _packets(told.get("packets"))),
-        monitors=[plain_text(one) for one in monitors] if isinstance(monitors, list) else [],
+    names = [_text(one) for one in _list(told.get("monitors"))]
+    numbers: dict[str, Any] = {key: _count(told.get(key)) for key in _COUNTED}
+    numbers.update({key: _number(told.get(key)) for key in ("rate", "jitter", "latency")})
+    found = End(
+        _text(told.get("carrier", "")),
+        **numbers,
+        failure=_text(told.get("failure", "")),
+        qos=_qos(told),
+        asked=_dict(told.get("asked")),
+        monitors=names,
         parameters=_dict(told.get("parameters")),
         state=_dict(told.get("state")),
     )
-    return plain_text(told.get("source", "")), plain_text(told.get("target", "")), end
+    _read_drops(found, names, told.get("dropped"), told.get("failures"))
+    own = told.get("port_monitor")
+    if own is not None:
+        shown = [f"{_text(own)} of the port"]
+        _read_drops(found, shown, [told.get("port_dropped")], told.get("port_failures"))
+    return _text(told.get("source", "")), _text(told.get("target", "")), found
+
+
+def read_port(state: PortState, reply: Bottle) -> None:
+    """The answer of a port to `prop get` of its own name, put into `state`."""
+    process, platform, port = (
+        _dict(Property.from_bottle(reply).get(key)) for key in ("process", "platform", "port")
+    )
+    state.pid = _count(process.get("pid")) or 0
+    words = (_text(process.get(key, "")) for key in ("name", "arguments"))
+    state.program = " ".join(filter(None, words))
+    state.host = _text(platform.get("hostname", ""))
+    state.type = _text(port.get("type", ""))
+    state.is_rpc = bool(_count(port.get("is_rpc")))
+
+
+def side_of(told: Property) -> str:
+    """`in` or `out`."""
+    return _text(told.get("side", ""))
+
+
+def pairs(item: Any) -> Bottle:
+    """The `(key value)` lists of a connection, which may already be a dict."""
+    if isinstance(item, dict):
+        return Bottle([key, value] for key, value in item.items())
+    return item if isinstance(item, Bottle) else Bottle(_list(item))
+
+
+_COUNTED: Final = (
+    *("messages", "bytes", "drops", "unconfirmed", "unconnected", "unacknowledged"),
+    *("delivered", "waiting", "lost"),
+)
+
+
+def _read_drops(end: End, names: list[str], counts: Any, failures: Any) -> None:
+    for name, count in zip(names, _list(counts), strict=False):
+        end.dropped[name] = _count(count) or 0
+    for name, failure in zip(names, _list(failures), strict=False):
+        if failure:
+            end.failures[name] = _text(failure)
+
+
+def _text(value: Any) -> str:
+    return plain_text(value)[:LONGEST] if isinstance(value, str) else ""
+
+
+def _list(value: Any) -> list[Any]:
+    return list(value[:MOST]) if isinstance(value, list | tuple) else []
+
+
+def _count(value: Any) -> int | None:
+    return value if isinstance(value, int) and not isinstance(value, bool) else None
+
+
+def _number(value: Any) -> float | None:
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        return None
+    return float(value)
 
 
 def _dict(told: Any) -> dict[str, Any]:
-    return dict(Property.from_bottle(_pairs(told))) if told else {}
+    return dict(Property.from_bottle(pairs(told))) if told else {}
 
 
-def _packets(value: Any) -> str | int | None:
-    text = str(value) if value is not None else "None"
-    return None if text == "None" else int(text) if text.isdigit() else text
+def _qos(told: Property) -> Qos:
+    """Priorities; what no system has is none."""
+    packets = told.get("packets")
+    text = str(packets) if packets is not None else "None"
+    try:
+        return Qos(
+            told.get("policy"),
+            _count(told.get("priority")),
+            None if text == "None" else int(text) if text.isdigit() else text,
+        )
+    except (ValueError, AttributeError, TypeError):
+        return Qos()
 
 
-def _ask_each(contact: Contact) -> Iterable[tuple[str, str, End]]:
-    """The connections of a port that has no counters."""
-    for side in ("out", "in"):
-        for name in map(plain_text, probe.ask(contact, ["list", side], timeout=PATIENCE)):
-            if not name.startswith("/"):
-                continue
-            listed = probe.ask(contact, ["list", side, name], timeout=PATIENCE)
-            qos_ = qos.read(probe.ask(contact, ["prop", "get", name], timeout=PATIENCE))
-            ends = (contact.name, name) if side == "out" else (name, contact.name)
-            yield *ends, End(plain_text(listed.find("carrier", "")), qos=qos_)
-
-
-__all__ = ["End", "Flow", "ends", "flow", "flows", "read"]
+__all__ = ["End", "Flow", "PortState", "Snapshot", "State", "pairs", "read", "read_port", "side_of"]

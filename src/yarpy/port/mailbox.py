@@ -345,9 +345,11 @@ class Callback(Mailbox):
         except PortClosed:
             return True
         except YarpError as error:
+            link.failure = str(error)
             log.warning("%s: message from %s: %s", link.owner.name, link.route.source, error)
             return True
-        except Exception:
+        except Exception as error:
+            link.failure = f"{type(error).__name__}: {error}"
             log.exception("%s: the callback failed on %r", link.owner.name, message)
             return True
         return False

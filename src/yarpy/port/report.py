@@ -5,6 +5,12 @@ that a person at a text prompt can read it too. Times in seconds, rates per seco
 nobody measured is missing. What was written and is lost with the connections that have ended, or
 since there was none, comes last, without a target. `[stat] [in] NAME` and `[stat] [out] NAME` tell
 of one connection.
+
+An input also tells what `yarpy doctor` asks for: `delivered` messages went on to the program,
+`waiting` of all inputs it has not taken yet, `lost` ones were lost on the way, `failure` is what it
+said last of one that it could not use; an output: how many messages are `unacknowledged`. `asked`
+are priorities that are not what the system does. Behind `monitors` stand what each has `dropped`,
+and their `failures`; `port_monitor` is the one of the port itself.
 """
 
 from __future__ import annotations
@@ -15,15 +21,17 @@ from yarpy.link.outbound import Outbound
 from yarpy.link.qos import effective
 from yarpy.port.hub import Hub
 from yarpy.port.monitoring import Side, monitored
+from yarpy.qos import Qos
 
+LONGEST = 300  # characters of an error that is passed on
 COUNTED = ("messages", "bytes", "drops", "unconfirmed")
 MEASURED = ("rate", "jitter", "latency")  # of these a zero says: not known
 
 
 def report(hub: Hub) -> Bottle:
     """Every connection of `hub` with another port; passing visitors have no rooted name."""
-    found = Bottle(connection(link) for link in hub.outputs)
-    found += [connection(link) for link in hub.inputs if link.route.source.startswith("/")]
+    found = Bottle(connection(hub, link) for link in hub.outputs)
+    found += [connection(hub, link) for link in hub.inputs if link.route.source.startswith("/")]
     past = hub.past["outputs"].as_dict()
     if hub.unconnected or past["drops"] or past["unconfirmed"]:
         found.append(
@@ -35,12 +43,12 @@ def report(hub: Hub) -> Bottle:
 def report_one(hub: Hub, side: Side, peer: str) -> Bottle:
     """The connection with `peer` on that side, if there is one."""
     if side == "in":
-        return Bottle(connection(link) for link in hub.inputs if link.route.source == peer)
-    return Bottle(connection(link) for link in hub.outputs if link.route.target == peer)
+        return Bottle(connection(hub, link) for link in hub.inputs if link.route.source == peer)
+    return Bottle(connection(hub, link) for link in hub.outputs if link.route.target == peer)
 
 
-def connection(link: Inbound | Outbound) -> Property:
-    """One connection."""
+def connection(hub: Hub, link: Inbound | Outbound) -> Property:
+    """One connection of `hub`."""
     stats, qos, route = link.snapshot(), effective(link), link.route
     found = Property(
         side="in" if isinstance(link, Inbound) else "out",
@@ -53,6 +61,15 @@ def connection(link: Inbound | Outbound) -> Property:
     )
     if isinstance(link, Inbound):  # what its sender need not count as lost
         found["received"] = link.counter.messages + link.lost
+        found["delivered"] = link.counter.messages - link.counter.drops
+        found["waiting"], found["lost"] = hub.mailbox.waiting, link.lost
+        if link.failure:
+            found["failure"] = link.failure[:LONGEST]
+    else:
+        found["unacknowledged"] = stats["unacknowledged"]
+    asked = _unfulfilled(link.asked, qos)
+    if asked:
+        found["asked"] = asked
     if qos.policy is not None:
         found["policy"], found["priority"] = qos.policy, qos.priority
     monitors = monitored(link)
@@ -61,4 +78,22 @@ def connection(link: Inbound | Outbound) -> Property:
         found["monitors"] = Bottle(monitors)
         if chain is not None:
             found["parameters"], found["state"] = chain.parameters(), chain.state()
+            found["dropped"], found["failures"] = Bottle(chain.dropped), _short(chain.failures)
+    own = hub.monitoring.input if isinstance(link, Inbound) else hub.monitoring.output
+    if own is not None:
+        found["port_monitor"] = type(own.monitors[0]).__name__
+        found["port_dropped"], found["port_failures"] = own.dropped[0], _short(own.failures)
     return found
+
+
+def _short(texts: list[str]) -> Bottle:
+    return Bottle(text[:LONGEST] for text in texts)
+
+
+def _unfulfilled(asked: Qos, granted: Qos) -> Property:
+    """What was asked for and is not so."""
+    return Property(
+        (key, value)
+        for key in ("policy", "priority", "packets")
+        if (value := getattr(asked, key)) is not None and value != getattr(granted, key)
+    )

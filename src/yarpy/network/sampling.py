@@ -1,0 +1,288 @@
+"""Sampling: ask the ports of a network how they are doing, once or again and again.
+
+    sampler = Sampler()
+    snapshot = sampler.look()            # now; again later, with rates in between
+    sampler.close()
+
+Rules: only the administrative side of ports is asked, in parallel, each with a time limit; so C++
+ports answer too, with what they know. A Sampler keeps one connection to each port, which makes a
+look cheap for both (a fraction of a millisecond); a port that was silent is left alone for a while.
+An answer has a size limit. What is asked changes nothing.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import Final
+
+from yarpy.contact import Contact
+from yarpy.data.bottle import Bottle, Property
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+from yarpy.errors import (
+    AccessRefused,
+    LinkClosed,
+    RemoteProtocolError,
+    Timeout,
+    UnknownName,
+    YarpError,
+)
+from yarpy.link.handshake import greet
+from yarpy.link.outbound import Outbound
+from yarpy.names.base import NameClient
+from yarpy.names.default import DEFAULT, secret
+from yarpy.network import qos
+from yarpy.network.connection import query
+from yarpy.network.traffic import (
+    MOST,
+    End,
+    Flow,
+    PortState,
+    Snapshot,
+    State,
+    pairs,
+    read,
+    read_port,
+    side_of,
+)
+from yarpy.port import probe
+from yarpy.route import Route
+from yarpy.wire.message import ADMIN, Packet
+
+AT_ONCE: Final = 16  # ports asked at the same time
+PATIENCE: Final = 1.0  # seconds for a port's answer
+REST: Final = 5.0  # seconds for which a port that did not answer is left alone
+LARGEST: Final = 1 << 22  # bytes of an answer
+
+Told = tuple[str, str, str, End]  # side, source, target, counters
+
+
+class Line:
+    """One connection to the administrative side of a port, dialled when made.
+
+    Raises LinkClosed, Timeout, RemoteProtocolError.
+    """
+
+    def __init__(self, contact: Contact, timeout: float = PATIENCE) -> None:
+        self.contact = contact
+        route = Route("admin", contact.name or f"/{contact.address}", "tcp")
+        driver, carrier = greet(contact, route, key=secret(), limit=LARGEST, timeout=timeout)
+        self._link = Outbound(driver, carrier)
+
+    def ask(self, *words: object, timeout: float = PATIENCE) -> Bottle:
+        """The answer to an administrative question. Raises LinkClosed, Timeout, DecodeError."""
+        reply = self._link.call(Packet(list(words), key=ADMIN), timeout)
+        return Bottle() if reply is None else reply.as_(Bottle)
+
+    def close(self) -> None:
+        """Hang up."""
+        self._link.driver.transport.close()
+
+
+class Sampler:
+    """Asks ports again and again. `only`: the names that matter, None for all that are registered.
+
+    Not for several threads at once.
+    """
+
+    def __init__(
+        self,
+        names: NameClient | None = None,
+        only: Iterable[str] | None = None,
+        patience: float = PATIENCE,
+    ) -> None:
+        self._names = names
+        self._only = None if only is None else list(only)
+        self._patience = patience
+        self._lines: dict[str, Line] = {}
+        self._known: dict[str, PortState] = {}
+        self._resting: dict[str, float] = {}  # until when, of time.monotonic
+        self._counted: dict[tuple[str, str], tuple[float, int, int]] = {}
+
+    def look(self) -> Snapshot:
+        """Ask all ports. Raises NoNameServer."""
+        contacts = self._contacts()
+        for name in self._known.keys() - {one.name for one in contacts}:
+            self._forget(name)
+        snapshot = Snapshot(time.time())
+        with ThreadPoolExecutor(AT_ONCE) as pool:
+            for state, told in pool.map(self._ask, contacts):
+                snapshot.ports[state.name] = state
+                snapshot.add(state.name, told)
+        snapshot.flows = {key: snapshot.flows[key] for key in sorted(snapshot.flows)}
+        self._count(snapshot)
+        return snapshot
+
+    def close(self) -> None:
+        """Hang up everywhere."""
+        for name in list(self._lines):
+            self._forget(name)
+
+    def __enter__(self) -> Sampler:
+        return self
+
+    def __exit__(self, *details: object) -> None:
+        self.close()
+
+    def _contacts(self) -> list[Contact]:
+        names = self._names or DEFAULT.current()
+        if self._only is None:
+            return [one for one in names.list() if one.name.startswith("/")]
+        found = (query(name, names) for name in self._only)
+        return [replace(one, name=one.label) for one in found if one is not None]
+
+    def _ask(self, contact: Contact) -> tuple[PortState, list[Told]]:
+        """One port. Whatever it does costs it its place in this look, and no more."""
+        state = self._known.get(contact.name)
+        if state is None or state.contact != contact:
+            self._forget(contact.name)
+            state = self._known[contact.name] = PortState(contact.name, contact)
+        state = replace(state)  # the one of the last look stays as it was
+        self._known[contact.name] = state
+        if not can_answer(contact) or self._resting.get(contact.name, 0.0) > time.monotonic():
+            return state, []
+        started = time.perf_counter()
+        try:
+            told = self._ask_again(state)
+        except (YarpError, OSError) as error:
+            self._forget(contact.name, keep=True)
+            state.state, state.error = state_of(error), str(error)
+            if state.state in ("silent", "unreachable"):
+                self._resting[contact.name] = time.monotonic() + REST
+            return state, []
+        state.state, state.error = "answers", ""
+        state.answer_time = time.perf_counter() - started
+        return state, told
+
+    def _ask_again(self, state: PortState) -> list[Told]:
+        """Over the connection that we have, or a new one if that has ended meanwhile."""
+        line = self._lines.get(state.name)
+        if line is not None:
+            try:
+                return ends_of(line, state, self._patience)
+            except LinkClosed:
+                line.close()
+        self._lines[state.name] = line = Line(state.contact, self._patience)
+        reply = line.ask("prop", "get", state.name, timeout=self._patience)
+        read_port(state, reply)
+        return ends_of(line, state, self._patience)
+
+    def _forget(self, name: str, keep: bool = False) -> None:
+        line = self._lines.pop(name, None)
+        if line is not None:
+            line.close()
+        if not keep:
+            self._known.pop(name, None)
+            self._resting.pop(name, None)
+
+    def _count(self, snapshot: Snapshot) -> None:
+        """Rates between this look and the one before."""
+        now = time.monotonic()
+        before, self._counted = self._counted, {}
+        for key, flow in snapshot.flows.items():
+            messages, size = flow.measured("messages"), flow.measured("bytes")
+            flow.rate = flow.measured("rate")
+            if messages is None or size is None:
+                continue
+            self._counted[key] = now, messages, size
+            if key in before and now > before[key][0]:
+                passed = now - before[key][0]
+                flow.rate = max(messages - before[key][1], 0) / passed
+                flow.speed = max(size - before[key][2], 0) / passed
+            elif flow.rate:
+                flow.speed = size / max(messages, 1) * flow.rate
+
+
+def can_answer(contact: Contact) -> bool:
+    """Whether what is registered there is a port that can be asked."""
+    return contact.carrier == "tcp" and contact.name.startswith("/") and bool(contact.port)
+
+
+def state_of(error: BaseException) -> State:
+    """What an error in asking says about a port."""
+    if isinstance(error, AccessRefused):
+        return "denied"
+    if isinstance(error, Timeout):
+        return "unreachable" if type(error.__cause__) is TimeoutError else "silent"
+    if probe.is_refused(error):
+        return "refused"
+    if isinstance(error, LinkClosed) and isinstance(error.__cause__, OSError):
+        return "unreachable"
+    return "other" if isinstance(error, RemoteProtocolError | LinkClosed) else "silent"
+
+
+def ends_of(line: Line, state: PortState, patience: float = PATIENCE) -> list[Told]:
+    """The connections of one port. Raises as `Line.ask`."""
+    if state.ours is not False:
+        reply = line.ask("stat", timeout=patience)
+        refused = bool(reply) and reply[0] == Vocab("fail")
+        state.ours = not refused
+        if not refused:
+            told = [Property.from_bottle(pairs(item)) for item in reply[:MOST]]
+            return [(side_of(one), *read(one)) for one in told]
+    return list(_ask_each(line, state.name, patience))
+
+
+def _ask_each(line: Line, port: str, patience: float) -> Iterator[Told]:
+    """The connections of a port that has no counters."""
+    until = time.monotonic() + 3 * patience  # for all of them
+    for side in ("out", "in"):
+        for name in map(plain_text, line.ask("list", side, timeout=patience)[:MOST]):
+            if not name.startswith("/"):
+                continue
+            if time.monotonic() > until:
+                raise Timeout(f'"{port}" takes too long to tell of its connections')
+            listed = line.ask("list", side, name, timeout=patience)
+            granted = qos.read(line.ask("prop", "get", name, timeout=patience))
+            ends = (port, name) if side == "out" else (name, port)
+            yield side, *ends, End(plain_text(listed.find("carrier", "")), qos=granted)
+
+
+# --- once
+
+
+def flows(names: NameClient | None = None) -> list[Flow]:
+    """Every connection between registered ports, by source and target.
+
+    Raises NoNameServer.
+    """
+    with Sampler(names) as sampler:
+        return list(sampler.look().flows.values())
+
+
+def flow(source: str, target: str, names: NameClient | None = None) -> Flow:
+    """The connection `source` -> `target`, asked of these two ports.
+
+    Raises UnknownName when neither knows of it, NoNameServer.
+    """
+    with Sampler(names, dict.fromkeys((source, target))) as sampler:
+        found = sampler.look().flows.get((source, target))
+    if found is None:
+        raise UnknownName(
+            f'neither "{source}" nor "{target}" has a connection from the first to the second; '
+            f"`yarpy ping {source}` lists those it has"
+        )
+    return found
+
+
+def ends(contact: Contact) -> list[tuple[str, str, End]]:
+    """The connections of one port, source and target first; none if it does not answer."""
+    if not can_answer(contact):
+        return []
+    try:
+        line = Line(contact)
+    except (YarpError, OSError):
+        return []
+    try:
+        told = ends_of(line, PortState(contact.name, contact))
+        return [(source, target, end) for _, source, target, end in told if target]
+    except (YarpError, OSError):
+        return []
+    finally:
+        line.close()
+
+
+__all__ = ["Line", "Sampler", "ends", "flow", "flows"]

@@ -1,0 +1,183 @@
+"""Asking the ports of a network, again and again."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections.abc import Iterator
+
+import pytest
+from support.cpp import CppYarp, MissingPeer
+from support.cpp_program import CppProgram
+from support.wait import wait_until
+
+import yarpy
+from yarpy.data.value import Vocab
+from yarpy.errors import AccessRefused, LinkClosed, RemoteProtocolError, Timeout, UnknownName
+from yarpy.network.sampling import Sampler, ends, flow, flows, state_of
+
+
+@pytest.fixture
+def names() -> yarpy.LocalNames:
+    return yarpy.LocalNames()
+
+
+def test_every_connection_once_as_both_ends_see_it(names: yarpy.LocalNames) -> None:
+    with (
+        yarpy.Port("/a", names=names) as a,
+        yarpy.BufferedPort("/b", names=names) as b,
+        yarpy.RpcServer("/s", lambda message: message.value, names=names),
+        yarpy.RpcClient("/s", name="/c", names=names) as client,
+    ):
+        a.connect("/b", "udp")
+        for number in range(5):
+            a.write([number])
+        client.call("hello")
+        wait_until(lambda: b.inputs and b.inputs[0].stats["messages"] == 5)
+        found = {(flow.source, flow.target): flow for flow in flows(names)}
+        assert [*found] == [("/a", "/b"), ("/c", "/s")]
+        one = found["/a", "/b"]
+        assert one.carrier == "udp"
+        assert one.sender is not None
+        assert one.receiver is not None
+        assert (one.sender.messages, one.receiver.messages) == (5, 5)
+        assert one.drops == one.receiver.drops
+        assert one.measured("rate") > 0
+        assert found["/c", "/s"].measured("latency") > 0
+        assert flow("/a", "/b", names).carrier == "udp"
+        assert [one[:2] for one in ends(b.contact)] == [("/a", "/b")]
+        with pytest.raises(UnknownName, match="yarpy ping /b"):
+            flow("/b", "/a", names)
+
+
+def test_rates_are_counted_between_two_looks(names: yarpy.LocalNames) -> None:
+    with yarpy.Port("/a", names=names) as a, yarpy.BufferedPort("/b", names=names) as b:
+        a.connect("/b")
+        with Sampler(names) as sampler:
+            first = sampler.look()
+            assert first.flows["/a", "/b"].rate is None
+            for number in range(20):
+                a.write([number], wait=True)
+            second = sampler.look()
+            assert (second.flows["/a", "/b"].rate or 0) > 0
+            assert (second.flows["/a", "/b"].speed or 0) > 0
+            assert len(b.inputs) + len(a.inputs) == 1, "those who ask are no inputs"
+            port = second.ports["/a"]
+            assert (port.state, port.ours, port.is_rpc) == ("answers", True, False)
+            assert port.pid
+            assert "python" in port.program
+            assert port.answer_time is not None
+            a.close()
+            assert set(sampler.look().ports) == {"/b"}
+        wait_until(lambda: not [link for link in b._hub.inputs if link.route.source == "admin"])
+
+
+def test_a_port_that_comes_back_is_asked_again(names: yarpy.LocalNames) -> None:
+    with Sampler(names, ["/a", "/nobody"]) as sampler:
+        for _ in range(2):
+            with yarpy.Port("/a", names=names):
+                assert sampler.look().ports["/a"].state == "answers"
+        assert sampler.look().ports == {}
+
+
+def test_what_is_wrong_with_ports_that_do_not_answer(names: yarpy.LocalNames) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as silent, socket.socket() as closed:
+        closed.bind(("127.0.0.1", 0))
+        names.register("/silent", "tcp", "127.0.0.1", silent.getsockname()[1])
+        names.register("/dead", "tcp", "127.0.0.1", closed.getsockname()[1])
+        names.register("/nowhere", "tcp", "no.such.host.invalid", 9)
+        names.register("/camera", "mjpeg", "127.0.0.1", 9)
+        with Sampler(names, patience=0.2) as sampler:
+            snapshot = sampler.look()
+            states = {name: port.state for name, port in snapshot.ports.items()}
+            assert states == {
+                "/silent": "silent",
+                "/dead": "refused",
+                "/nowhere": "unreachable",
+                "/camera": "foreign",
+            }
+            assert snapshot.flows == {}
+            sampler.look()
+        silent.settimeout(2)
+        silent.accept()[0].close()
+        silent.settimeout(0.05)
+        with pytest.raises(TimeoutError):
+            silent.accept()  # it was left alone the second time
+        assert ends(yarpy.Contact("tcp", "/dead", "127.0.0.1", closed.getsockname()[1])) == []
+
+
+def test_errors_as_states() -> None:
+    unreachable = LinkClosed("no route")
+    unreachable.__cause__ = OSError(113, "No route to host")
+    refused = LinkClosed("refused")
+    refused.__cause__ = ConnectionRefusedError()
+    found = map(
+        state_of,
+        (unreachable, refused, Timeout("x"), AccessRefused("x"), RemoteProtocolError("x")),
+    )
+    assert [*found] == ["unreachable", "refused", "silent", "denied", "other"]
+
+
+NONSENSE = [
+    b"\0" * 100,
+    b"HTTP/1.1 400 Bad Request\r\n\r\n",
+    # an answer of a gigabyte
+    b"\x59\x41\x0a\0\0\0\x52\x50" + b"\1\0" + b"\xff" * 8 + (1 << 30).to_bytes(4, "little"),
+]
+
+
+@pytest.mark.parametrize("nonsense", NONSENSE)
+def test_nonsense_costs_its_port_its_place(names: yarpy.LocalNames, nonsense: bytes) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def answer() -> None:
+            with server.accept()[0] as peer:
+                peer.sendall(nonsense)
+                peer.settimeout(5)
+                while peer.recv(1000):
+                    pass
+
+        thread = threading.Thread(target=answer, daemon=True)
+        thread.start()
+        names.register("/liar", "tcp", "127.0.0.1", server.getsockname()[1])
+        with Sampler(names, patience=0.3) as sampler:
+            port = sampler.look().ports["/liar"]
+            assert port.state in ("other", "silent")
+        thread.join(5)
+
+
+def test_a_liar_about_others_is_passed_over(names: yarpy.LocalNames) -> None:
+    with yarpy.Port("/liar", names=names) as liar:
+        lie = [["source", "/x"], ["target", "/y"], ["messages", 5]]
+        odd = [["source", "/liar"], ["target", "/y"], ["messages", "many"], ["rate", "fast"]]
+        liar._hub.callbacks.slave = lambda request: (
+            yarpy.Bottle([lie, odd, 7, [["policy", 99]]]) if request[0] == Vocab("stat") else None
+        )
+        [found] = flows(names)
+        assert (found.source, found.target, found.measured("messages")) == ("/liar", "/y", None)
+
+
+@pytest.fixture(scope="module")
+def cpp(tmp_path_factory: pytest.TempPathFactory) -> Iterator[CppYarp]:
+    try:
+        programs = CppYarp.prepare(tmp_path_factory.mktemp("cpp"))
+    except MissingPeer as missing:
+        pytest.skip(str(missing))
+    with yarpy.NameServer() as server, programs.at("127.0.0.1", server.port) as found:
+        yield found
+
+
+def test_ports_of_cpp_tell_what_they_know(cpp: CppYarp) -> None:
+    with CppProgram(cpp) as peer, yarpy.BufferedPort("/py/in") as in_:
+        peer.do("port = yarp.BufferedPortBottle(); port.open('/cpp/out')")
+        peer.do("yarp.Network.connect('/cpp/out', '/py/in', 'fast_tcp')")
+        assert in_.wait_for_inputs(timeout=5)
+        with Sampler() as sampler:
+            for _ in range(2):
+                snapshot = sampler.look()
+                port, found = snapshot.ports["/cpp/out"], snapshot.flows["/cpp/out", "/py/in"]
+                assert (port.state, port.ours) == ("answers", False)
+                assert port.pid == peer.process.pid
+                assert found.sender is not None and found.receiver is not None
+                assert (found.sender.carrier, found.sender.messages) == ("fast_tcp", None)
+                assert found.receiver.messages == 0
