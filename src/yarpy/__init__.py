@@ -32,6 +32,7 @@ _WHERE = {
     "LocalNames": "yarpy.nameserver.local",
     "NameClient": "yarpy.names.base",
     "YarpNameClient": "yarpy.names.client",
+    "ZenohNames": "yarpy.names.zenoh",
     "Bottle": "yarpy.data.bottle",
     "Property": "yarpy.data.bottle",
     "Vocab": "yarpy.data.value",
@@ -115,6 +116,7 @@ if TYPE_CHECKING:
     from yarpy.module import Module as Module
     from yarpy.names.base import NameClient as NameClient
     from yarpy.names.client import YarpNameClient as YarpNameClient
+    from yarpy.names.zenoh import ZenohNames as ZenohNames
     from yarpy.nameserver.local import LocalNames as LocalNames
     from yarpy.nameserver.server import NameServer as NameServer
     from yarpy.network.connection import admin as admin

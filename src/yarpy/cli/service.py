@@ -10,6 +10,7 @@ from yarpy.names.default import DEFAULT
 
 if TYPE_CHECKING:
     from yarpy.names.ros import RosNames
+    from yarpy.names.zenoh import ZenohNames
 
 
 def server() -> YarpNameClient:
@@ -28,3 +29,10 @@ def masters() -> list[RosNames]:
 
     found = DEFAULT.current()
     return [item for item in getattr(found, "clients", [found]) if isinstance(item, RosNames)]
+
+
+def zenoh_names() -> ZenohNames | None:
+    """The names on Zenoh, if those are what is used first. Raises NoNameServer."""
+    from yarpy.names.default import on_zenoh
+
+    return on_zenoh(DEFAULT.current())

@@ -59,6 +59,9 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
     },
     "The name server": {
         "server": Verb("run a name server", "server --portdb ports.db"),
+        "router": Verb(
+            "pass on names and messages between computers, by Zenoh", "router tcp/0.0.0.0:7447"
+        ),
         "name": Verb("send a command to the name server", "name query /talker"),
         "clean": Verb("take names of dead ports off the name server", "clean"),
         "where": Verb("tell where the name server is", "where"),

@@ -8,6 +8,8 @@ process it runs in. Nothing is printed. Source: nameserver spec 6.1-6.5.
     _name.conf            the same for namespace /name
 
 `YARPY_SERVER=HOST:PORT` takes precedence over every file and may list several, separated by commas.
+Names on Zenoh, without a server, are `zenoh`, `zenoh+tcp://ROUTER:7447`, `zenoh+lan` there (see
+`transports/zenoh.py`), or the mode `zenoh` in a file.
 """
 
 from __future__ import annotations
@@ -23,14 +25,16 @@ from yarpy.errors import AddressError
 
 DEFAULT_PORT = 10000
 ROOT = "/root"
-MODES = ("yarp", "ros", "local")
+ZENOH = "zenoh"
+MODES = ("yarp", "ros", "local", ZENOH)
 
 _UNSAFE = re.compile(r"[^0-9A-Za-z]")
 
 
 @dataclass(frozen=True, slots=True)
 class Server:
-    """One configured name server. `mode`: yarp, ros (a ROS master) or local (no server at all)."""
+    """One configured name server. `mode`: yarp, ros (a ROS master), local (no server at all) or
+    zenoh: then `host` is a place of Zenoh, if `port` is 0."""
 
     host: str
     port: int
@@ -218,6 +222,10 @@ def port_number(name: str, environment: Mapping[str, str]) -> int:
 
 def _parse_host_port(text: str, environment: Mapping[str, str]) -> Server:
     """One item of YARPY_SERVER: `host:port`, `host`, `[ipv6]:port`."""
+    word, _, place = text.partition("+")
+    if word == ZENOH:
+        kind, mark, rest = place.partition("://")
+        return Server(f"{kind}/{rest}" if mark and kind != "file" else place, 0, ZENOH)
     host, colon, port = text.rpartition(":")
     if text.startswith("[") and text.endswith("]"):
         host, colon, port = text, "", ""
@@ -226,7 +234,9 @@ def _parse_host_port(text: str, environment: Mapping[str, str]) -> Server:
     number = _number(port) if colon else default_port(environment)
     host = host.strip("[]")
     if not host or not number:
-        raise AddressError(f'YARPY_SERVER="{text}": give HOST:PORT, for example 127.0.0.1:10000')
+        raise AddressError(
+            f'YARPY_SERVER="{text}": give HOST:PORT, for example 127.0.0.1:10000, or zenoh'
+        )
     return Server(host, number)
 
 

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import os
 import socket
+import sys
 import threading
+from typing import TYPE_CHECKING
 
 from yarpy.carriers.auth import prove_initiator
-from yarpy.config.configuration import Server, configuration
+from yarpy.config.configuration import ZENOH, Server, configuration
 from yarpy.config.resource import find_file
 from yarpy.data.text import plain_text
 from yarpy.errors import AddressError, NoNameServer
@@ -21,6 +23,9 @@ from yarpy.names.base import NameClient
 from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.wire.stream import ByteStream
+
+if TYPE_CHECKING:
+    from yarpy.names.zenoh import ZenohNames
 
 
 class DefaultNames:
@@ -61,20 +66,35 @@ class DefaultNames:
                     "inside one program"
                 )
             if servers != self._servers or self._configured is None:
-                clients = [_client(server) for server in servers]
+                clients = [default_client(server) for server in servers]
                 self._configured = clients[0] if len(clients) == 1 else SeveralNames(clients)
                 self._servers = servers
             return self._configured
 
 
-def _client(server: Server) -> NameClient:
+def default_client(server: Server) -> NameClient:
     """A client for a configured server, or ROS master."""
     if server.mode == "ros":
         from yarpy.names.ros import RosNames
         from yarpy.names.ros_master import RosMaster, uri_of
 
         return RosNames(RosMaster(uri_of(server.host, server.port)), server.namespace)
+    if server.mode == ZENOH:
+        from yarpy.names.zenoh import ZenohNames
+
+        where = f"{server.host}:{server.port}" if server.port else server.host
+        return ZenohNames(where, server.namespace)
     return client_of(server)
+
+
+def on_zenoh(names: NameClient) -> ZenohNames | None:
+    """`names`, or the first of several, if it is names on Zenoh."""
+    if "yarpy.names.zenoh" not in sys.modules:
+        return None
+    from yarpy.names.zenoh import ZenohNames
+
+    found = names.clients[0] if isinstance(names, SeveralNames) else names
+    return found if isinstance(found, ZenohNames) else None
 
 
 def client_of(server: Server) -> YarpNameClient:

@@ -19,7 +19,7 @@ from yarpy.cli.output import print_line
 @click.command()
 @click.argument("host", required=False)
 @click.argument("port", required=False, type=click.IntRange(1, 65535))
-@click.argument("mode", default="yarp", type=click.Choice(["yarp", "ros", "local"]))
+@click.argument("mode", default="yarp", type=click.Choice(["yarp", "ros", "local", "zenoh"]))
 @click.option("--clean", is_flag=True, help="Forget the address.")
 def command(host: str | None, port: int | None, mode: str, clean: bool) -> int:
     """Print the path of the address file, or write HOST and PORT of a name server to it."""

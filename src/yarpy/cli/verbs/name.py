@@ -4,7 +4,8 @@
     set NAME KEY VALUE...   get NAME KEY   check NAME KEY VALUE   route A B   runners   gc   help
     bot ...   topic ...   subscribe ...   and whatever else a server understands
 
-Where a ROS master is configured, its nodes, topics and services are listed too.
+Where a ROS master is configured, its nodes, topics and services are listed too. With names on
+Zenoh there is no server: `list`, `query` and `get` ask the ports.
 
 Arguments are values of Bottle text. `register` takes any address, a camera's for example; the word
 `...` leaves a part to the server.
@@ -27,6 +28,7 @@ from yarpy.cli.stderr import complain
 
 if TYPE_CHECKING:
     from yarpy.names.ros import RosNames
+    from yarpy.names.zenoh import ZenohNames
 
 END = "*** end of message"
 #: What all servers understand.
@@ -46,11 +48,14 @@ _BOTTLES = frozenset({"bot", "announce", "subscribe", "unsubscribe", "topic", "u
 @click.option("--json", "as_json", is_flag=True, help="Print list, query, get ... as JSON.")
 def command(words: tuple[str, ...], as_json: bool) -> int:
     """Send a command to the name server: `name list`, `name query /port`, `name help` ..."""
-    from yarpy.cli.service import masters, server
+    from yarpy.cli.service import masters, server, zenoh_names
     from yarpy.config.command_line import parse_value
     from yarpy.network.connection import find
 
     verb, arguments = (words[0], words[1:]) if words else ("help", ())
+    zenoh = zenoh_names()
+    if zenoh is not None:
+        return _answer_for_zenoh(verb, arguments, zenoh, as_json)
     graphs = masters() if verb in ("list", "query") else []
     if graphs and _answer_for_ros(verb, arguments, graphs, as_json):
         return 0
@@ -81,6 +86,40 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
         else:
             for line in (*lines, *_lines_of(graphs, arguments), END):
                 print_line(line)
+    return 0
+
+
+def _answer_for_zenoh(
+    verb: str, arguments: tuple[str, ...], names: ZenohNames, as_json: bool
+) -> int:
+    """What ports tell themselves, in the words of a name server."""
+    from yarpy.names.registration_line import registration_line
+    from yarpy.network.connection import find
+
+    if verb == "query" and len(arguments) == 1:
+        _print_contact(find(arguments[0], names), as_json)
+    elif verb == "list":
+        contacts = names.list(*arguments[:1])
+        if as_json:
+            print_json([as_dict(contact) for contact in contacts])
+        else:
+            for line in (*map(registration_line, contacts), END):
+                print_line(line)
+    elif verb == "get" and len(arguments) == 2:
+        values = names.get(*arguments)
+        if as_json:
+            print_json(values)
+        elif values:
+            print_line(f"port {arguments[0]} property {arguments[1]} = {' '.join(values)}")
+            print_line(END)
+        else:
+            print_line(END)
+    else:
+        complain(
+            f'with names on Zenoh there is no server to ask for "{verb}", only ports, for list, '
+            "query and get; `yarpy server --zenoh` is one, which keeps names and connections"
+        )
+        return 1
     return 0
 
 

@@ -51,6 +51,9 @@ def command(as_json: bool) -> int:
         return 1
     code = 1
     for server in found.servers:
+        if server.mode == "zenoh":
+            code = 0 if _tell_zenoh(server, as_json) else code
+            continue
         if not as_json:
             print_line(f"Looking for name server on {server.host}, port number {server.port}")
             print_line("If there is a long delay, try:\n  yarpy conf --clean")
@@ -84,6 +87,27 @@ def command(as_json: bool) -> int:
                 )
             )
     return code
+
+
+def _tell_zenoh(server: Server, as_json: bool) -> bool:
+    """Whether names on Zenoh can be used."""
+    from yarpy.names.default import default_client
+    from yarpy.names.zenoh import ZenohNames
+
+    names = default_client(server)
+    assert isinstance(names, ZenohNames)
+    try:
+        place, alive, problem = names.place, names.alive(), ""
+    except NoNameServer as error:
+        place, alive, problem = server.host, False, str(error)
+    names.close()
+    if as_json:
+        print_json({"namespace": server.namespace, "zenoh": place, "available": alive})
+    elif alive:
+        print_line(f"Names of {server.namespace} are on Zenoh, at {place}; there is no name server")
+    else:
+        print_line(framed("PROBLEM", problem or f"No Zenoh router answers at {place}."))
+    return alive
 
 
 def _master_answers(server: Server) -> bool:

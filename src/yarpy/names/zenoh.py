@@ -1,0 +1,352 @@
+"""Names without a name server: every port tells its own over Zenoh, and is asked there.
+
+Rules: one session for each place (`transports/zenoh.py`), opened when it is first needed. What a
+port tells vanishes with its program, and comes back by itself with a router that was restarted. A
+question is answered by the port itself, so it is never out of date. Where a port can be dialled
+directly, its address is returned, else one inside Zenoh (`ZID.zenoh`), which leads there over the
+routers. Of two ports of one name the older one lets go, as with a name server. Questions of others
+are answered in threads of Zenoh: nothing waits there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import os
+import threading
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final
+
+from yarpy.config.configuration import ROOT
+from yarpy.contact import Contact
+from yarpy.errors import AddressError, DecodeError, LinkClosed, NoNameServer, Timeout
+from yarpy.log import logger
+from yarpy.names import zenoh_key
+from yarpy.names.address import is_loopback, local_addresses, outward_address
+from yarpy.names.base import Contacts, Strings
+from yarpy.names.direct import Ways, machine
+from yarpy.names.zenoh_key import Entry, name_key, newest, port_token
+from yarpy.transports.bind import listening_host
+from yarpy.transports.zenoh import Lease, load, share
+
+if TYPE_CHECKING:
+    import zenoh
+
+log = logger("yarpy.names")
+
+PATIENCE: Final = 3.0  # seconds for an answer; those that are there answer in milliseconds
+FUTURE: Final = 60 * 10**9  # ns by which the clocks of two computers may differ
+ANSWERS: Final = 100_000  # programs that may answer one question
+LISTED: Final = 200_000  # names in a list
+MAX_PROPERTY: Final = 1 << 16  # bytes of a property's values
+
+_numbers = itertools.count(1)
+
+
+@dataclass(slots=True)
+class _Own:
+    """A port of this program: what it tells, and what was declared for that."""
+
+    entry: Entry
+    type: str = ""
+    properties: dict[str, list[str]] = field(default_factory=dict)
+    declared: list[Any] = field(default_factory=list)
+
+
+class ZenohNames:
+    """A `NameClient` on Zenoh. `where`: a router, `lan`, or a file, as for YARPY_ZENOH, which is
+    the default. Only names of the same `namespace` see each other.
+    """
+
+    allocates = False
+
+    def __init__(self, where: str = "", namespace: str = ROOT) -> None:
+        self.where = where
+        self.base = zenoh_key.space(namespace)
+        self._lease: Lease | None = None
+        self._process = 0
+        self._own: dict[str, _Own] = {}
+        self._node: list[Any] = []  # what was declared for the whole program
+        self._ways = Ways()
+        self._lock = threading.RLock()  # guards the above; never held while an answer is awaited
+
+    # -- the NameClient ---------------------------------------------------------------------------
+
+    def register(
+        self,
+        name: str,
+        carrier: str | None = None,
+        host: str | None = None,
+        port: int | None = None,
+        port_type: str | None = None,
+    ) -> Contact:
+        if not port:
+            raise AddressError(f'over Zenoh nobody gives out port numbers: give one for "{name}"')
+        lease = self._open()
+        if name.startswith("..."):
+            name = f"/tmp/port/{lease.zid[:8]}/{next(_numbers)}"
+        if carrier == "mcast" and not host:
+            host = _group(lease.zid, port)
+        elif not host or (is_loopback(host) and not listening_host()):
+            host = outward_address()
+        bound = listening_host()
+        reached = [bound] if bound else local_addresses()
+        entry = Entry(
+            Contact(carrier or "tcp", name, host, port),
+            lease.zid,
+            time.time_ns(),
+            machine(),
+            tuple(one for one in reached if not is_loopback(one))[: zenoh_key.ADDRESSES],
+        )
+        self._announce(lease.session, _Own(entry, port_type or ""))
+        self._claim(lease.session, entry)
+        return entry.contact
+
+    def unregister(self, name: str) -> None:
+        """Only names of this program can be taken back; others end with theirs."""
+        with self._lock:
+            own = self._own.pop(name, None)
+        if own is not None:
+            _undeclare(own.declared)
+
+    def query(self, name: str) -> Contact | None:
+        """Where `name` is. Raises NoNameServer (no router), Timeout (its program is stopped)."""
+        with self._lock:
+            own = self._own.get(name)
+        if own is not None:
+            return own.entry.contact
+        entry = self.entry(name)
+        return None if entry is None else self._ways.to(entry)
+
+    def announce(self, name: str, ok: bool = True) -> None:
+        """Nothing: there are no persistent connections without a server."""
+
+    def set(self, name: str, key: str, *values: str | int | float) -> Strings:
+        """Only ports of this program have properties that can be set."""
+        texts = sorted(map(str, values))
+        if not zenoh_key.is_property(key) or sum(map(len, texts)) > MAX_PROPERTY:
+            raise AddressError(f'"{key[:80]}" cannot be a property, or its values are too long')
+        with self._lock:
+            own = self._own.get(name)
+            if own is None:
+                return []
+            own.properties[key] = texts
+        return texts
+
+    def get(self, name: str, key: str) -> Strings:
+        if not zenoh_key.is_property(key):
+            return []
+        with self._lock:
+            own = self._own.get(name)
+            if own is not None:
+                return own.properties.get(key, [])
+        for answer in self._ask(f"{self._key(name)}?key={key}"):
+            if len(answer) <= MAX_PROPERTY and answer:
+                return answer.decode("utf-8", "replace").split("\n")
+        return []
+
+    def list(self, prefix: str | None = None) -> Contacts:
+        """All ports, with the addresses that they tell: whether they can be dialled is not
+        tried."""
+        found: dict[str, Entry] = {}
+        for answer in self._ask(f"{self.base}/node/**"):
+            try:
+                entries = zenoh_key.decode(answer)
+            except DecodeError as error:
+                log.warning("somebody tells names as no port does: %s", error)
+                continue
+            for entry in entries[: LISTED - len(found)]:
+                known = found.get(entry.contact.name)
+                if known is None or known.age < entry.age:
+                    found[entry.contact.name] = entry
+        below = (prefix or "").rstrip("/") + "/"
+        return [
+            found[name].contact
+            for name in sorted(found)
+            if not prefix or name == prefix or name.startswith(below)
+        ]
+
+    def close(self) -> None:
+        with self._lock:
+            own, self._own = self._own, {}
+            node, self._node = self._node, []
+            lease, self._lease = self._lease, None
+        if lease is None or self._process != os.getpid():
+            return
+        for one in own.values():
+            _undeclare(one.declared)
+        _undeclare(node)
+        lease.close()
+
+    # -- what others may need ---------------------------------------------------------------------
+
+    @property
+    def place(self) -> str:
+        """Where it goes, for people. Raises NoNameServer."""
+        return str(self._open().place)
+
+    def alive(self) -> bool:
+        """Whether a router answers, where there should be one."""
+        try:
+            self._open()
+            self._check_router()
+        except NoNameServer:
+            return False
+        return True
+
+    def entry(self, name: str) -> Entry | None:
+        """What the port of that name tells of itself; None if there is none. Raises as `query`."""
+        found: list[Entry] = []
+        for answer in self._ask(self._key(name), name):
+            try:
+                found += zenoh_key.decode(answer, zenoh_key.LONGEST)
+            except DecodeError as error:
+                log.warning("%s: somebody answers as no port does: %s", name, error)
+        entry = newest(found, name)
+        if entry is not None and any(one.age < entry.age for one in found):
+            self._claim(self._open().session, entry)  # for the others, which did not see each other
+        return entry
+
+    # -- what this program tells ------------------------------------------------------------------
+
+    def _announce(self, session: zenoh.Session, own: _Own) -> None:
+        name = own.entry.contact.name
+        self.unregister(name)
+        key = name_key(self.base, name)
+        callback = load().handlers.Callback(
+            lambda query: self._answer(own, key, query), indirect=False
+        )
+        own.declared.append(session.declare_queryable(key, callback))
+        own.declared.append(session.liveliness().declare_token(port_token(self.base, own.entry)))
+        with self._lock:
+            self._own[name] = own
+
+    def _answer(self, own: _Own, key: str, query: Any) -> None:
+        """Somebody asks for a port of ours. Runs in a thread of Zenoh."""
+        try:
+            if query.payload is not None:
+                self._yield(own, query.payload.to_bytes())
+                return
+            wanted = query.parameters.get("key")
+            if wanted:
+                values = own.properties.get(wanted, [])
+                query.reply(key, "\n".join(values).encode("utf-8", "surrogateescape"))
+            else:
+                query.reply(key, zenoh_key.encode([own.entry]))
+        except Exception as error:  # a stranger's question must not end the thread
+            log.debug("%s: a question could not be answered: %s", own.entry.contact.name, error)
+
+    def _answer_all(self, key: str, query: Any) -> None:
+        with self._lock:
+            entries = [own.entry for own in self._own.values()]
+        try:
+            query.reply(key, zenoh_key.encode(entries))
+        except Exception as error:
+            log.debug("a list of names could not be sent: %s", error)
+
+    def _claim(self, session: zenoh.Session, entry: Entry) -> None:
+        """Let older ports of that name know that it has a new owner. Nobody waits for an
+        answer."""
+        zenoh = load()
+        session.get(
+            name_key(self.base, entry.contact.name),
+            zenoh.handlers.Callback(lambda reply: None, indirect=False),
+            payload=zenoh_key.encode([entry]),
+            target=zenoh.QueryTarget.ALL,
+            timeout=PATIENCE,
+        )
+
+    def _yield(self, own: _Own, said: bytes) -> None:
+        name = own.entry.contact.name
+        entry = newest(zenoh_key.decode(said, zenoh_key.LONGEST), name)
+        if entry is None or entry.age <= own.entry.age or entry.start > time.time_ns() + FUTURE:
+            return
+        with self._lock:
+            if self._own.get(name) is not own:
+                return
+            del self._own[name]
+        log.warning("%s: another port has taken this name, at %s", name, entry.contact.address)
+        threading.Thread(target=_undeclare, args=(own.declared,), daemon=True).start()
+
+    # -- asking -----------------------------------------------------------------------------------
+
+    def _open(self) -> Lease:
+        with self._lock:
+            if self._lease is not None and self._process == os.getpid():
+                return self._lease
+            try:
+                lease = share(self.where)
+            except LinkClosed as error:
+                raise NoNameServer(str(error)) from error
+            self._process, self._own = os.getpid(), {}
+            self._lease = lease
+            session = lease.session
+            key = f"{self.base}/node/{lease.zid}/{next(_numbers)}"
+            callback = load().handlers.Callback(
+                lambda query: self._answer_all(key, query), indirect=False
+            )
+            self._node = [session.declare_queryable(key, callback)]
+            return lease
+
+    def _key(self, name: str) -> str:
+        try:
+            return name_key(self.base, name)
+        except AddressError:
+            return name_key(self.base, "/no/such/name")  # no port can be called that
+
+    def _ask(self, selector: str, name: str = "") -> Iterable[bytes]:
+        """The answers to a question. Raises NoNameServer; Timeout if a name's program is silent."""
+        zenoh = load()
+        lease = self._open()
+        self._check_router()  # a session without one would wait in vain
+        replies = lease.session.get(
+            selector,
+            zenoh.handlers.FifoChannel(ANSWERS),
+            target=zenoh.QueryTarget.ALL,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            timeout=PATIENCE,
+        )
+        found: list[bytes] = []
+        silent = False
+        size = 0
+        for reply in replies:
+            if reply.ok is None:
+                silent = True
+                continue
+            data = reply.ok.payload.to_bytes()
+            size += len(data)
+            if size > 8 * zenoh_key.MOST:
+                log.warning("too many answers to %s: the rest is left out", selector)
+                break
+            found.append(data)
+        if silent and name and not found:
+            raise Timeout(
+                f'the program of "{name}" does not answer just now, perhaps stopped or busy: '
+                "end it, or try again"
+            )
+        return found
+
+    def _check_router(self) -> None:
+        """Raises NoNameServer if the router went away."""
+        lease = self._open()
+        if lease.place.routers and not lease.session.info.routers_zid():
+            raise NoNameServer(
+                f"the Zenoh router at {lease.place} does not answer any more; once it is back, "
+                "names are too: start it with `yarpy router`"
+            )
+
+
+def _undeclare(things: Iterable[Any]) -> None:
+    for thing in things:
+        try:
+            thing.undeclare()
+        except Exception as error:  # the session may be closed already, and with it everything
+            log.debug("not undeclared: %s", error)
+
+
+def _group(zid: str, number: int) -> str:
+    """A multicast group that nobody else has, with luck: of those for one organisation's use."""
+    digest = hashlib.sha256(f"{zid} {number} {next(_numbers)}".encode()).digest()
+    return f"239.{192 + digest[0] % 4}.{digest[1]}.{digest[2]}"
