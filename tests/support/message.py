@@ -46,9 +46,9 @@ def kinds(value: object) -> object:
     return type(value)
 
 
-def walk(message: bytes, step: int = 1) -> int:
+def walk(message: bytes, step: int = 1, yarp4: bool = False) -> int:
     """Feed a Walker `step` more bytes at a time; the length it finds, -1 if it wants more."""
-    walker = Walker()
+    walker = Walker(yarp4=yarp4)
     for size in range(0, len(message) + step, step):
         size = min(size, len(message))
         need = walker.advance(message[:size])

@@ -93,11 +93,12 @@ class RpcClient(BasePort[rpc.RpcClient]):
         tcp_port: int = 0,
         limit: int = DEFAULT_LIMIT,
         on_connection: Callable[[ConnectionEvent], object] | None = None,
+        timeout: float | None = None,
     ) -> None:
         super().__init__(name, on_connection)
         self._make_client = partial(
             rpc.RpcClient, target, name=name, carrier=carrier, names=names,
-            tcp_port=tcp_port, limit=limit, on_connection=self._tell,
+            tcp_port=tcp_port, limit=limit, on_connection=self._tell, timeout=timeout,
         )  # fmt: skip
         self._turn = asyncio.Lock()
 

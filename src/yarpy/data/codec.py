@@ -14,7 +14,8 @@
     numpy arrays                                see `yarpy.data.array`
     anything with `to_wire() -> blocks`         what that returns
 
-Rules: decoding raises DecodeError or Truncated, nothing else. Sending something unknown is a
+Rules: decoding raises DecodeError or Truncated, nothing else. What cannot be read is tried as a
+message of YARP 4.0 (`yarpy.data.yarp4`); ours are those of 3.x. Sending something unknown is a
 TypeError that says what can be sent. Large data are not copied, on the way out or in.
 """
 
@@ -47,6 +48,7 @@ from yarpy.data.value import (
 from yarpy.data.vector import Vector
 from yarpy.data.walker import Walker
 from yarpy.data.writer import dict_elements, list_blocks, value_blocks
+from yarpy.data.yarp4 import older
 from yarpy.errors import DecodeError
 
 __all__ = [
@@ -146,27 +148,43 @@ def decode(view: Buffer) -> Any:
     A Bottle; a single value if it was sent as one; a Vector over the received bytes for a list of
     floats; an Image; a Sound. DecodeError or Truncated if it is none of these.
     """
-    if len(view) < 12:
-        return read_bottle(view)
-    code, count = _read_head(view)
-    if code == LIST:
-        if count == 1:
-            tag = _read_i32(view, 8)[0]
-            bottle = read_bottle(view)
-            return bottle if tag & GROUP_MASK else bottle[0]
-        if count == 4 and len(view) >= 16:
-            tag, word = _read_head(view, 8)
-            if tag == VOCAB32 and word == _MAT:
-                image = Image.found(view)
-                if image is not None:
-                    return image
-            elif tag == 0:
-                from yarpy.data.sound import Sound
+    try:
+        if len(view) < 12:
+            return read_bottle(view)
+        code, count = _read_head(view)
+        if code == LIST:
+            if count == 1:
+                tag = _read_i32(view, 8)[0]
+                bottle = read_bottle(view)
+                return bottle if tag & GROUP_MASK else bottle[0]
+            if count == 4 and len(view) >= 16:
+                tag, word = _read_head(view, 8)
+                if tag == VOCAB32 and word == _MAT:
+                    image = Image.found(view)
+                    if image is not None:
+                        return image
+                elif tag == 0:
+                    from yarpy.data.sound import Sound
 
-                return Sound.from_wire(view)
-    elif count and (code == LIST + FLOAT64 or code == LIST + FLOAT32):
+                    return Sound.from_wire(view)
+        elif count and (code == LIST + FLOAT64 or code == LIST + FLOAT32):
+            return Vector.from_wire(view)
+        return read_bottle(view)
+    except DecodeError:
+        other = older(view)
+        if other is None:
+            raise
+    return _decode_older(other)
+
+
+def _decode_older(view: Buffer) -> Any:
+    """The value of a message that came from YARP 4.0."""
+    code, count = _read_head(view)
+    if count and (code == LIST + FLOAT64 or code == LIST + FLOAT32):
         return Vector.from_wire(view)
-    return read_bottle(view)
+    bottle = read_bottle(view)
+    single = code == LIST and count == 1 and not _read_i32(view, 8)[0] & GROUP_MASK
+    return bottle[0] if single else bottle
 
 
 def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
@@ -198,6 +216,16 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
     with `from_wire(view)`. Numbers convert where nothing is lost in kind (int to float), a word is
     accepted as a Vocab and a Vocab as a word, because YARP programs do not tell them apart.
     """
+    try:
+        return _decode_as(view, type_)
+    except DecodeError:
+        other = older(view)
+        if other is None:
+            raise
+    return _decode_as(other, type_)
+
+
+def _decode_as(view: Buffer, type_: type[T]) -> T:
     convert = _CONVERTERS.get(type_)
     if convert is not None:
         return cast(T, convert(view))
@@ -213,7 +241,7 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
     origin = getattr(origin, "__value__", origin)  # `type` aliases, as NDArray is from 3.12 on
     origin = getattr(origin, "__origin__", origin)
     if isinstance(origin, type):  # list[int]: what is in the list is the caller's business
-        return cast(T, decode_as(view, origin))
+        return cast(T, _decode_as(view, origin))
     if type_.__name__ == "ndarray" and type_.__module__ == "numpy":
         return cast(T, _to_array(view))
     for base in (Bottle, Property, Vocab, str, int, float, bytes, list, tuple, dict):

@@ -2,7 +2,9 @@
 
 Replies and some messages come without any length. A Walker finds their end in a buffer that is
 still growing, without building objects. Rules: no byte is read twice, nothing is allocated on a
-header's word, and bytes that cannot be a message are refused at the first wrong one.
+header's word, and bytes that cannot be a message are refused at the first wrong one. Messages of
+YARP 4.0 are known by the tags that only it has; where there is none before a float32, the asker
+says so.
 """
 
 from __future__ import annotations
@@ -12,20 +14,18 @@ from struct import Struct
 from yarpy.data.value import (
     BLOB,
     DICT,
-    FIXED,
     LIST,
     MAX_DEPTH,
     STRING,
     UNIT_MASK,
     Buffer,
 )
+from yarpy.data.yarp4 import ONLY_4, WIDTHS_3, WIDTHS_4
 from yarpy.errors import DecodeError
 
 _read_i32 = Struct("<i").unpack_from
 _read_pair = Struct("<ii").unpack_from
 _read_sound = Struct("<10i").unpack_from
-
-_WIDTH = {tag: width for tag, (_, width) in FIXED.items()}
 
 
 class Walker:
@@ -34,12 +34,13 @@ class Walker:
     Call `advance` with everything received so far, again and again, until `done`. Every call
     returns the least number of bytes that the message can have; if that is more than have come,
     call again when so many are there. Once `done`, it is the length of the message. DecodeError if
-    this is not a message, or longer than `limit` bytes.
+    this is not a message, or longer than `limit` bytes. `yarp4`: it comes from YARP 4.0.
     """
 
-    __slots__ = ("_begun", "_kinds", "_left", "_owed", "_pos", "done", "limit")
+    __slots__ = ("_begun", "_kinds", "_left", "_owed", "_pos", "_widths", "done", "limit")
 
-    def __init__(self, limit: int = 1 << 30) -> None:
+    def __init__(self, limit: int = 1 << 30, yarp4: bool = False) -> None:
+        self._widths = WIDTHS_4 if yarp4 else WIDTHS_3
         self.limit = limit
         self.done = False
         self._begun = False
@@ -85,7 +86,10 @@ class Walker:
                 kind = _read_i32(view, pos)[0]
             else:
                 start = pos
-            width = _WIDTH.get(kind)
+            width = self._widths.get(kind)
+            if width is None and kind in ONLY_4:
+                self._widths = WIDTHS_4
+                width = WIDTHS_4[kind]
             if width is not None:
                 if kinds[-1]:  # all of them at once
                     self._owed -= left[-1] * width
@@ -109,9 +113,7 @@ class Walker:
                 self._check(pos)
                 continue
             if not LIST <= kind < 2 * DICT:
-                raise DecodeError(
-                    f"unknown element tag {kind} at byte {pos}: not a Bottle of YARP 3.x"
-                )
+                raise DecodeError(f"unknown element tag {kind} at byte {pos}: not a Bottle")
             if kind & DICT:
                 if start + 8 > size:
                     return self._wait(pos, 7)
@@ -142,11 +144,13 @@ class Walker:
             raise DecodeError(f"a list with {count} elements at byte {self._pos - 4}")
         if len(self._kinds) > MAX_DEPTH:
             raise DecodeError(f"lists nested more than {MAX_DEPTH} deep")
-        if count and kind and kind not in _WIDTH and kind != STRING and kind != BLOB:
+        if count and kind in ONLY_4:
+            self._widths = WIDTHS_4
+        if count and kind and kind not in self._widths and kind != STRING and kind != BLOB:
             raise DecodeError(f"unknown list code {kind} at byte {self._pos - 8}")
         self._kinds.append(kind)
         self._left.append(count)
-        self._owed += count * (_WIDTH.get(kind, 4) if kind else 5)
+        self._owed += count * (self._widths.get(kind, 4) if kind else 5)
         self._check(self._pos)
 
     def _check(self, pos: int) -> None:
@@ -162,7 +166,7 @@ class Walker:
             return 40
         _, _, _, samples, one, channels, also, _, again, _ = _read_sound(view, 0)
         if (one, also, again) != (1, 1, 1) or samples < 0 or channels < 0:
-            raise DecodeError("unknown element tag 0 at byte 8: not a Bottle of YARP 3.x")
+            raise DecodeError("unknown element tag 0 at byte 8: not a Bottle")
         self._pos = 40 + 2 * samples * channels
         self._check(self._pos)
         self.done = self._pos <= size

@@ -29,7 +29,7 @@ from yarpy.errors import (
     YarpError,
 )
 from yarpy.link.driver import Driver
-from yarpy.link.handshake import find_carrier, greet
+from yarpy.link.handshake import PATIENCE, find_carrier, greet
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.names.address import is_local, is_loopback
@@ -46,10 +46,15 @@ _POLL: Final = 0.05  # seconds between attempts to reach a port that is not ther
 
 
 def connect(
-    hub: Hub, target: str, carrier: str, timeout: float | None, lost: Route | None = None
+    hub: Hub,
+    target: str,
+    carrier: str,
+    timeout: float | None,
+    lost: Route | None = None,
+    patience: float | None = None,
 ) -> None:
     """Connect `hub` to `target`, in place of the connection `lost` that broke, if given; see
-    Port.connect."""
+    Port.connect. `patience`: seconds for which its listener may be silent, less than usual."""
     wanted = parse_contact(target)
     if not wanted.carrier or ":/" not in target:  # what is written in front of a target counts
         wanted = replace(wanted, carrier=carrier)
@@ -57,7 +62,7 @@ def connect(
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
         try:
-            dial(hub, wanted, lost, own=lost is None or lost.spec.own)
+            dial(hub, wanted, lost, own=lost is None or lost.spec.own, patience=patience)
             return
         except YarpError as error:
             # A camera locks those out who try a wrong password again and again.
@@ -133,9 +138,15 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
 # -- one attempt ----------------------------------------------------------------------------------
 
 
-def dial(hub: Hub, wanted: Contact, lost: Route | None = None, own: bool = False) -> CarrierSpec:
+def dial(
+    hub: Hub,
+    wanted: Contact,
+    lost: Route | None = None,
+    own: bool = False,
+    patience: float | None = None,
+) -> CarrierSpec:
     """Connect `hub` to the destination `wanted`, once; an existing connection to it is replaced.
-    `lost` is one that broke.
+    `lost` is one that broke; `patience` as of `connect`.
 
     `own`: its program says so, not somebody on the network.
 
@@ -168,7 +179,7 @@ def dial(hub: Hub, wanted: Contact, lost: Route | None = None, own: bool = False
                 if old.route.target == target:
                     close_output(hub, old)
         _check(hub, kind, spec)
-        open_output(hub, contact, target, spec, lost)
+        open_output(hub, contact, target, spec, lost, patience)
         hub.crew.reconnect.give_up(hub, target)  # one that broke before is replaced
     return spec
 
@@ -260,8 +271,15 @@ def _greet(
         route.peer = lost.peer
     else:
         known = identity.properties_of(hub.service())
-        route.peer = identity.confirm(contact, known, hub.key, secure=route.spec.in_tls)
-    return greet(contact, route, key=hub.key, group=hub.registration.group, limit=hub.limit)
+        route.peer = identity.confirm(contact, known, hub.key, timeout, secure=route.spec.in_tls)
+    return greet(
+        contact,
+        route,
+        key=hub.key,
+        group=hub.registration.group,
+        limit=hub.limit,
+        timeout=timeout or PATIENCE,
+    )
 
 
 def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:

@@ -205,7 +205,8 @@ class Hub:
     def take_input(self, link: Inbound) -> None:
         """Make an open connection one of our inputs, to be served next.
 
-        It replaces an earlier one of the same sender, and waits up to 2 s until that has ended.
+        It replaces an earlier one of the same sender, and waits up to 2 s until that has ended,
+        unless that is at work on a question: nobody waits for the answer any more.
         Raises PortClosed, or what a monitor raises that cannot start; the connection is then
         closed.
         """
@@ -239,7 +240,8 @@ class Hub:
             raise PortClosed(f'"{self.name}" is closed')
         for old in older:
             old.close()
-            if old.thread is not threading.current_thread():
+            stuck = old.receiver.question is not None
+            if old.thread is not threading.current_thread() and not stuck:
                 old.served.wait(2.0)  # what it still brings comes before what the new one brings
 
     def _has_datagrams(self, link: Inbound, others: tuple[Inbound, ...]) -> bool:

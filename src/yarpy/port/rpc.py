@@ -135,6 +135,7 @@ class RpcClient(BasePort):
         tcp_port: int = 0,
         limit: int = DEFAULT_LIMIT,
         on_connection: Callable[[ConnectionEvent], None] | None = None,
+        timeout: float | None = None,
     ) -> None:
         mailbox: Mailbox = Callback(lambda message: None)
         super().__init__(
@@ -154,7 +155,8 @@ class RpcClient(BasePort):
         self._last: Route | None = None  # of the last call; the next has to reach the same port
         if target:
             try:
-                self.connect(target, carrier)
+                connecting.connect(self._hub, target, carrier, None, patience=timeout)
+                self._target, self._carrier = target, carrier
             except YarpError:
                 self.close()
                 raise
@@ -184,7 +186,7 @@ class RpcClient(BasePort):
     def ask(self, question: object, timeout: float | None = None) -> Message | None:
         """As `call` with one argument, but returns the whole Message; None if there is no reply."""
         self._check_open()
-        link = self._link()
+        link = self._link(timeout)
         packet = Packet(question, key=CALL)
         output = self._hub.monitoring.output
         if output is not None:
@@ -214,8 +216,9 @@ class RpcClient(BasePort):
             self._hub.drop_output(link, str(error))
             raise
 
-    def _link(self) -> Outbound:
-        """The connection to the server: the one there is, if it lives, else a new one."""
+    def _link(self, patience: float | None = None) -> Outbound:
+        """The connection to the server: the one there is, if it lives, else a new one. `patience`:
+        the seconds for which it may be silent."""
         for link in self._hub.outputs:
             if link.carrier.delivery.lossy:
                 continue  # somebody looks on
@@ -229,7 +232,7 @@ class RpcClient(BasePort):
         if last is not None:
             target, carrier = last.target, last.spec.whole
         if target:
-            connecting.connect(self._hub, target, carrier, None, last)
+            connecting.connect(self._hub, target, carrier, None, last, patience)
             for link in self._hub.outputs:
                 if not link.carrier.delivery.lossy:
                     return link

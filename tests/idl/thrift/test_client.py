@@ -24,9 +24,13 @@ class Port:
     def __init__(self, *answers: Any) -> None:
         self.answers = [*answers]
         self.asked: list[bytes] = []
+        self.silent = True
 
     def ask(self, question: Any, timeout: float | None) -> Message | None:
-        self.asked.append(b"".join(_wire(question)))
+        data = b"".join(_wire(question))
+        if self.silent and b"getRemoteProtocolVersion" in data:
+            return Message(CALL, FAILED)  # as C++ before 3.12
+        self.asked.append(data)
         answer = self.answers.pop(0)
         if isinstance(answer, Exception):
             raise answer
@@ -185,7 +189,8 @@ def test_errors_name_the_method(capt: ModuleType) -> None:
 
 def test_versions(capt: ModuleType) -> None:
     answer = bytes.fromhex("00010000010000000000 0300 0c00 0000")
-    made, _ = client(capt.Capt, answer, FAILED, Bottle([0, 4, 0, 0]).to_bytes())
+    made, port = client(capt.Capt, answer, FAILED, Bottle([0, 4, 0, 0]).to_bytes())
+    port.silent = False
     assert made.remote_version() == (0, 3, 12, 0)
     assert made.remote_version() is None
     assert made.remote_version() == (0, 4, 0, 0)
@@ -228,3 +233,57 @@ def test_names_that_python_needs() -> None:
     assert Bottle.from_bytes(port.asked[1]) == ["import"]
     user.close()
     assert repr(user) == "<client of S>"
+
+
+# -- YARP 4.0 ----------------------------------------------------------------------------------
+
+VERSION_4 = bytes.fromhex("00010000010000000000 0400 0000 0000")
+
+
+def test_fractions_for_yarp_4_have_its_tags() -> None:
+    module = loads("""
+        struct Pair { 1: double min, 2: double max }
+        service Four {
+          Pair turn(1: double angle, 2: list<double> more, 3: i32 joint);
+          double now(); double far(1: i32 joint);
+          list<list<double>> grid(1: list<list<double>> grid);
+        }
+    """)
+    pair = bytes.fromhex("00010000 02000000 14000000 000000000000f83f 14000000 0000000000000440")
+    made, port = client(module.Four, VERSION_4, pair, pair[:8] + pair[8:])
+    port.silent = False
+    assert made.turn(1.5, [1.5, 2.5], 3) == module.Pair(1.5, 2.5)
+    asked, request = port.asked
+    assert b"getRemoteProtocolVersion" in asked
+    assert request == bytes.fromhex(
+        "00010000 04000000 09000000 7475726e"
+        "14000000 000000000000f83f"
+        "14010000 02000000 000000000000f83f 0000000000000440"
+        "01000000 03000000"
+    )
+    made.turn(2.5, [], 1)
+    assert len(port.asked) == 3  # asked for the version once
+
+
+def test_what_has_no_fractions_asks_for_no_version(capt: ModuleType) -> None:
+    made, port = client(capt.Capt, bytes.fromhex("00010000010000000100000003000000"))
+    port.silent = False
+    assert made.add(1, 2) == 3
+    assert len(port.asked) == 1
+
+
+def test_answers_of_yarp_4_are_read_by_their_tags(capt: ModuleType) -> None:
+    answer = bytes.fromhex("00010000 01000000 14000000 0000000000000a40")
+    made, _ = client(capt.Capt, answer)
+    assert made.r_double(1.0) == 3.25
+    floats = bytes.fromhex("00010000 01000000 0a000000 00005040")
+    made, _ = client(capt.Capt, floats)
+    assert made.r_float32(1.0) == 3.25
+    lists = bytes.fromhex("00010000 01000000 14010000 01000000 0000000000000a40")
+    made, _ = client(capt.Capt, lists)
+    assert made.r_ldouble([1.0]).tolist() == [3.25]
+    made, _ = client(capt.Capt, bytes.fromhex("14010000 01000000 0000000000000a40"))
+    assert made.r_double(1.0) == 3.25
+    made, _ = client(capt.Capt, bytes.fromhex("00010000 01000000 80000000 00005040 01"))
+    with pytest.raises(DecodeError, match="bytes are left over"):
+        made.r_float32(1.0)

@@ -14,6 +14,8 @@ from yarpy.idl.thrift.kind import (
     MapOf,
     SetOf,
     flat,
+    has_floats,
+    has_sets,
     kind_of,
     list_code,
     name_of,
@@ -66,3 +68,15 @@ def test_names() -> None:
     assert name_of(MapOf(kinds.TEXT, ListOf(kinds.SIZE))) == "map<string, list<size_t>>"
     assert name_of(External("yarp::sig::Vector")) == "yarp::sig::Vector"
     assert all(hasattr(kinds, name) for name in ARRAYS.values())
+
+
+def test_who_has_sets(capt: ModuleType) -> None:
+    assert has_sets([capt.Sets]) and has_sets([ListOf(capt.Sets)])
+    assert has_sets([MapOf(kinds.I32, SetOf(kinds.I32))])
+    assert not has_sets([capt.Nest, kinds.I32])
+
+
+def test_who_has_floats(capt: ModuleType) -> None:
+    assert has_floats([kinds.DOUBLE]) and has_floats([ListOf(kinds.FLOAT)])
+    assert has_floats([MapOf(kinds.I32, capt.One)]) and has_floats([External("Vector")])
+    assert not has_floats([capt.Point, kinds.I32, SetOf(kinds.TEXT)])

@@ -14,7 +14,7 @@ from yarpy.data.vector import Vector
 from yarpy.errors import DecodeError, Truncated
 from yarpy.idl.thrift import kind as kinds
 from yarpy.idl.thrift.kind import External, Kind, ListOf, MapOf, SetOf
-from yarpy.idl.thrift.reader import Cursor, get, has_sets, pair, skip, spread
+from yarpy.idl.thrift.reader import Cursor, get, pair, skip, spread
 
 
 def read(kind: Kind, *items: Any) -> Any:
@@ -149,12 +149,6 @@ def test_spread_gives_each_element_its_tag() -> None:
             spread(bad)
     with pytest.raises(Truncated):
         pair(b"1234567", 0)
-
-
-def test_who_has_sets(capt: ModuleType) -> None:
-    assert has_sets([capt.Sets]) and has_sets([ListOf(capt.Sets)])
-    assert has_sets([MapOf(kinds.I32, SetOf(kinds.I32))])
-    assert not has_sets([capt.Nest, kinds.I32])
 
 
 @settings(max_examples=300)

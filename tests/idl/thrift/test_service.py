@@ -177,3 +177,51 @@ def test_closing_a_server_is_refused(server: Any) -> None:
 
     with pytest.raises(LocalProtocolError, match="is no client"):
         server.close()
+
+
+# -- YARP 4.0 ----------------------------------------------------------------------------------
+
+VERSION = Bottle(["getRemoteProtocolVersion"]).to_bytes()
+
+
+def test_fractions_are_answered_as_they_came() -> None:
+    module = loads("""
+        service Four {
+          double half(1: double value); double last();
+          list<double> all(1: list<double> values); float32 small(1: float32 value);
+        }
+        typedef double (yarp.type="yarp::conf::float32_t") float32
+    """)
+
+    class Four(module.Four):  # type: ignore[misc, name-defined]
+        def half(self, value: float) -> float:
+            return value / 2
+
+        def last(self) -> float:
+            return 1.5
+
+        def all(self, values: Any) -> Any:
+            return values
+
+        def small(self, value: float) -> float:
+            return value
+
+    server = Four()
+    three = bytes.fromhex("00010000 01000000 0a000000 000000000000f83f")
+    four = bytes.fromhex("00010000 01000000 14000000 000000000000f83f")
+    last = Bottle([Vocab("last")]).to_bytes()
+    half = "00010000 02000000 09000000 68616c66 {}000000 0000000000000840"
+    assert reply(server, last) == three
+    assert reply(server, bytes.fromhex(half.format("14"))) == four
+    assert reply(server, last) == four  # the same client
+    assert reply(server, bytes.fromhex(half.format("0a"))) == three
+    assert reply(server, last) == three
+    lists = "00010000 02000000 09000000 616c6c00 {}010000 01000000 0000000000000840"
+    assert reply(server, bytes.fromhex(lists.format("14"))).hex()[16:24] == "14010000"
+    assert reply(server, bytes.fromhex(lists.format("0a"))).hex()[16:24] == "0a010000"
+    small = bytes.fromhex("00010000 02000000 04000000 05000000 736d616c6c 0a000000 00002040")
+    assert reply(server, small).hex()[16:] == "0a00000000002040"
+    reply(server, VERSION)
+    assert reply(server, last) == four  # who asks for it is of YARP 4
+    assert reply(server, "last") == "1.5"
+    assert reply(server, bytes.fromhex(half.format("0b"))) == FAILED

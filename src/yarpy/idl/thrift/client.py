@@ -2,18 +2,19 @@
 
 Rules: the bytes are made and read here, a port is handed in: whatever has `ask(question, timeout)`,
 `tell(question)` and `close()`. Errors begin with the name of the server and the method. `[fail]`
-becomes RemoteProtocolError, with the reason where the server is yarpy's.
+becomes RemoteProtocolError, with the reason where the server is yarpy's. A server of YARP 4.0,
+which spells floats otherwise, is known by its version.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from struct import Struct as Packing
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import LIST, STRING, VOCAB32, Buffer
-from yarpy.errors import DecodeError, RemoteProtocolError, Timeout, YarpError
+from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError, Timeout, YarpError
 from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.thrift import reader
 from yarpy.idl.thrift.extent import version_ending
@@ -26,16 +27,59 @@ _FAILED: Final = (LIST + VOCAB32, 1, FAIL)
 _HEAD: Final = Packing("<iii").unpack_from
 _VERSION: Final = Packing("<iihhhh")
 
+_Work: TypeAlias = Generator[tuple[Any, bool], Any, Any]
+
 
 class _Client:
-    """What clients have beside the methods."""
+    """What clients have beside the methods. Their work is written once, as generators that yield a
+    payload and whether it is a question, and are given the answer."""
 
     def __init__(self, port: Any, timeout: float | None) -> None:
         self._port = port
         self.timeout = timeout
+        self._yarp4: bool | None = None  # whether the server spells floats as YARP 4.0; None: ask
+
+    def _work(self, method: Method, values: tuple[Any, ...]) -> _Work:
+        """A call of a method. TypeError, OverflowError for what cannot be sent."""
+        data: Buffer = method.ask(*values)
+        try:
+            if method.asks_floats and (yield from self._speaks_yarp4()):
+                data = method.yarp4_ask(values)
+            if method.oneway:
+                yield Payload(data), False
+                return None
+            message = yield Payload(data, method.ending), True
+            if message is None:
+                return None
+            answer = message.to_bytes()
+            if is_failure(answer, method, message.spelling == "text"):
+                why = reason(answer)
+                if not why:  # a server of yarpy can say more about the last failure
+                    message = yield Bottle([FAILURE]), True
+                    why = "" if message is None else told(message.to_bytes())
+                raise refused(method, why)
+            return method.read_answer(answer)
+        except YarpError as error:
+            said = self._told(method.name, error)
+            if said is error:
+                raise
+            raise said from error
+
+    def _speaks_yarp4(self) -> _Work:
+        """Whether the server is of YARP 4: it is asked before the first fraction is sent."""
+        if self._yarp4 is None:
+            found = yield from self._version()
+            self._yarp4 = found is not None and found[1] >= 4
+        return self._yarp4
+
+    def _version(self) -> _Work:
+        message = yield Payload(Bottle([VERSION]).to_bytes(), version_ending), True
+        return None if message is None else version(message.to_bytes())
 
     def _told(self, method: str, error: YarpError) -> YarpError:
         """An error of the port, with the name of the method."""
+        if isinstance(error, LinkClosed):
+            self._yarp4 = None  # who comes instead may be another
         if isinstance(error, Timeout):
             return Timeout(f"{method}: no answer within {self.timeout} s")
         return error if method in str(error) else type(error)(f"{method}: {error}")
@@ -45,37 +89,27 @@ class _Client:
 
 
 class _Sync(_Client):
-    def _call(self, method: Method, data: bytes) -> Any:
-        try:
-            if method.oneway:
-                self._port.tell(Payload(data))
-                return None
-            message = self._port.ask(Payload(data, method.ending), self.timeout)
-            if message is None:
-                return None
-            answer = message.to_bytes()
-            if is_failure(answer, method, message.spelling == "text"):
-                why = reason(answer)
-                if not why:
-                    why = self._why()
-                raise refused(method, why)
-            return method.read_answer(answer)
-        except YarpError as error:
-            told = self._told(method.name, error)
-            if told is error:
-                raise
-            raise told from error
+    def _call(self, method: Method, values: tuple[Any, ...]) -> Any:
+        return self._run(self._work(method, values))
 
-    def _why(self) -> str:
-        """What a server of yarpy says about the last failure."""
-        message = self._port.ask(Bottle([FAILURE]), self.timeout)
-        return "" if message is None else told(message.to_bytes())
+    def _run(self, work: _Work) -> Any:
+        port = self._port
+        try:
+            payload, question = next(work)
+            while True:
+                try:
+                    answer = port.ask(payload, self.timeout) if question else port.tell(payload)
+                except YarpError as error:
+                    payload, question = work.throw(error)
+                else:
+                    payload, question = work.send(answer)
+        except StopIteration as done:
+            return done.value
 
     def remote_version(self) -> tuple[int, int, int, int] | None:
         """The version of the server's interface, and of its YARP: `(0, 3, 12, 0)`. None for those
         before 3.12, which do not tell."""
-        message = self._port.ask(_version_question(), self.timeout)
-        return None if message is None else version(message.to_bytes())
+        return self._run(self._version())  # type: ignore[no-any-return]
 
     def close(self) -> None:
         """End the connection."""
@@ -83,35 +117,27 @@ class _Sync(_Client):
 
 
 class _Async(_Client):
-    async def _call(self, method: Method, data: bytes) -> Any:
-        try:
-            if method.oneway:
-                await self._port.tell(Payload(data))
-                return None
-            message = await self._port.ask(Payload(data, method.ending), self.timeout)
-            if message is None:
-                return None
-            answer = message.to_bytes()
-            if is_failure(answer, method, message.spelling == "text"):
-                why = reason(answer)
-                if not why:
-                    why = await self._why()
-                raise refused(method, why)
-            return method.read_answer(answer)
-        except YarpError as error:
-            told = self._told(method.name, error)
-            if told is error:
-                raise
-            raise told from error
+    async def _call(self, method: Method, values: tuple[Any, ...]) -> Any:
+        return await self._run(self._work(method, values))
 
-    async def _why(self) -> str:
-        message = await self._port.ask(Bottle([FAILURE]), self.timeout)
-        return "" if message is None else told(message.to_bytes())
+    async def _run(self, work: _Work) -> Any:
+        port = self._port
+        try:
+            payload, question = next(work)
+            while True:
+                try:
+                    wait = port.ask(payload, self.timeout) if question else port.tell(payload)
+                    answer = await wait
+                except YarpError as error:
+                    payload, question = work.throw(error)
+                else:
+                    payload, question = work.send(answer)
+        except StopIteration as done:
+            return done.value
 
     async def remote_version(self) -> tuple[int, int, int, int] | None:
         """As that of the other client."""
-        message = await self._port.ask(_version_question(), self.timeout)
-        return None if message is None else version(message.to_bytes())
+        return await self._run(self._version())  # type: ignore[no-any-return]
 
     async def close(self) -> None:
         """End the connection."""
@@ -147,14 +173,14 @@ def _call(method: Method) -> Any:
     arguments = ["self"]
     names = [*method.signature.parameters][1:]
     first = len(names) - len(method.defaults)
-    code.globals.update(_method=method, _nothing=_NOTHING, _ask=method.ask)
+    code.globals.update(_method=method, _nothing=_NOTHING)
     for at, name in enumerate(names):
         if at < first:
             arguments.append(name)
             continue
         arguments.append(f"{name}=_nothing")
         code.line(f"if {name} is _nothing: {name} = {code.name(method.defaults[at - first])}()")
-    code.line(f"return self._call(_method, _ask({', '.join(names)}))")
+    code.line(f"return self._call(_method, ({''.join(f'{name}, ' for name in names)}))")
     made = code.compiled(method.attribute, ", ".join(arguments))
     made.__doc__ = method.doc
     return made
@@ -202,10 +228,6 @@ def refused(method: Method, why: str) -> RemoteProtocolError:
     return RemoteProtocolError(
         f"the server refuses {method.name}" + (f": {why}" if why else "; its log may say why")
     )
-
-
-def _version_question() -> Payload:
-    return Payload(Bottle([VERSION]).to_bytes(), version_ending)
 
 
 def version(answer: Buffer) -> tuple[int, int, int, int] | None:

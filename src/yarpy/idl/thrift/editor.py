@@ -144,7 +144,7 @@ class Editor:
     ) -> RemoteEditor:
         """What sets fields of the struct that the port `target` has. Parameters as
         `Service.connect`."""
-        port = registry.clients.load("rpc")(target, carrier=carrier, **options)
+        port = registry.clients.load("rpc")(target, carrier=carrier, timeout=timeout, **options)
         return RemoteEditor(cls, port, timeout)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from struct import error as struct_error
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from yarpy.data.value import LIST, Buffer, Vocab
 from yarpy.errors import DecodeError
@@ -25,6 +25,7 @@ from yarpy.idl.thrift.kind import (
     Part,
     Scalar,
     flat,
+    has_sets,
     is_enum,
     is_struct,
     size_of,
@@ -36,7 +37,11 @@ _INLINE: Final = 100
 #: larger messages are read value by value, which costs little then; these are copied once
 _SMALL: Final = 1 << 16
 
-Load = Callable[[Buffer, int], tuple[Any, ...]]
+
+class Load(Protocol):
+    """A function that reads values from a place on; `yarp4`: as YARP 4.0 spells them."""
+
+    def __call__(self, data: Buffer, at: int, yarp4: bool = False, /) -> tuple[Any, ...]: ...
 
 
 def load(path: str, parts: Sequence[Part], defaults: Sequence[Callable[[], Any]] = ()) -> Load:
@@ -50,11 +55,11 @@ def load(path: str, parts: Sequence[Part], defaults: Sequence[Callable[[], Any]]
     made.code.line("if _p != _size: raise _Other")
     made.code.line(f"return ({', '.join(names)}{',' if names else ''})")
     quick = made.code.compiled("load", "_b, _p, _size")
-    sets = reader.has_sets([part.kind for part in parts])
+    sets = has_sets([part.kind for part in parts])
     first_default = len(parts) - len(defaults)
 
-    def slow(data: Buffer, at: int, tagged_sets: bool) -> tuple[Any, ...]:
-        cursor = reader.Cursor(data, at, tagged_sets)
+    def slow(data: Buffer, at: int, tagged_sets: bool, yarp4: bool) -> tuple[Any, ...]:
+        cursor = reader.Cursor(data, at, tagged_sets, yarp4)
         values = []
         for number, part in enumerate(parts):
             if cursor.at == cursor.end and number >= first_default:
@@ -66,12 +71,12 @@ def load(path: str, parts: Sequence[Part], defaults: Sequence[Callable[[], Any]]
             raise surplus(path, parts, cursor.end - cursor.at)
         return tuple(values)
 
-    def read(data: Buffer, at: int) -> tuple[Any, ...]:
+    def read(data: Buffer, at: int, yarp4: bool = False, /) -> tuple[Any, ...]:
         size = len(data)
         if size <= _SMALL and type(data) is not bytes:
             data = bytes(data)
         try:
-            if size <= _SMALL:
+            if size <= _SMALL and not yarp4:
                 found: tuple[Any, ...] = quick(data, at, size)
                 return found
         except (Other, struct_error):
@@ -79,12 +84,12 @@ def load(path: str, parts: Sequence[Part], defaults: Sequence[Callable[[], Any]]
         except RecursionError:
             raise DecodeError(f"{path}: too many lists within each other") from None
         try:
-            return slow(data, at, False)
+            return slow(data, at, False, yarp4)
         except DecodeError:
             if not sets:
                 raise
             try:
-                return slow(data, at, True)
+                return slow(data, at, True, yarp4)
             except DecodeError:
                 pass
             raise

@@ -15,7 +15,7 @@ i32. (Wire of YARP 3.7 to 3.12.)
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from struct import calcsize
 from typing import TYPE_CHECKING, Annotated, Any, Final, TypeAlias, TypeVar, get_args, get_origin
@@ -248,6 +248,32 @@ def flat(kind: Kind) -> int:
         found: int = kind._flat()  # type: ignore[union-attr]
         return found
     return kind.size if isinstance(kind, External) else 1
+
+
+def within(kinds: Iterable[Kind], known: set[Any] | None = None) -> Iterator[Kind]:
+    """These kinds, and all that are in them."""
+    known = set() if known is None else known
+    for kind in kinds:
+        yield kind
+        inner: list[Kind] = []
+        if isinstance(kind, (ListOf, SetOf)):
+            inner = [kind.element]
+        elif isinstance(kind, MapOf):
+            inner = [kind.key, kind.value]
+        elif is_struct(kind) and kind not in known:
+            known.add(kind)
+            inner = [field.kind for field in kind._specs()]  # type: ignore[union-attr]
+        yield from within(inner, known)
+
+
+def has_sets(kinds: Iterable[Kind]) -> bool:
+    """Whether there are sets among them, which C++ writes wrong."""
+    return any(isinstance(kind, SetOf) for kind in within(kinds))
+
+
+def has_floats(kinds: Iterable[Kind]) -> bool:
+    """Whether there are fractions among them, which YARP 4.0 spells otherwise than 3.x."""
+    return any(kind in (FLOAT, DOUBLE) or isinstance(kind, External) for kind in within(kinds))
 
 
 def list_code(element: Kind) -> int:

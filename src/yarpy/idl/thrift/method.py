@@ -7,23 +7,35 @@
     set_on([ok])            [set] on [ok]: the last is a string before an argument that is a vocab
 
 Rules: pure functions of bytes, made on first use. Only trailing arguments that have a default may
-be missing. A result that is External is the whole answer.
+be missing. A result that is External is the whole answer. Requests and answers of YARP 4.0, where
+floats have other tags, are read if they can be read no other way.
 """
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from struct import Struct as Packing
 from typing import Any, Final, TypeVar
 
 from yarpy.data import codec
 from yarpy.data.value import LIST, STRING, VOCAB32, Buffer, vocab_code
+from yarpy.data.yarp4 import to_yarp3, to_yarp4
 from yarpy.errors import DecodeError
 from yarpy.idl.thrift import fast_reader, fast_writer, reader
 from yarpy.idl.thrift.extent import Ending, ending_of
-from yarpy.idl.thrift.kind import External, Kind, Part, Scalar, flat, is_enum, kind_of, name_of
+from yarpy.idl.thrift.kind import (
+    External,
+    Kind,
+    Part,
+    Scalar,
+    flat,
+    has_floats,
+    is_enum,
+    kind_of,
+    name_of,
+)
 from yarpy.idl.thrift.structure import _New
 from yarpy.idl.thrift.word import SERVICE, original
 
@@ -119,6 +131,24 @@ class Method:
         """The arguments that begin at a place. DecodeError."""
         return fast_reader.load(self.name, self.parts, self.defaults)
 
+    @cached_property
+    def asks_floats(self) -> bool:
+        """Whether there are fractions among the arguments: YARP 4.0 spells them otherwise."""
+        return has_floats(part.kind for part in self.parts)
+
+    def arguments(self, data: Buffer, at: int) -> tuple[tuple[Any, ...], bool | None]:
+        """The arguments that begin at a place, and whether they are spelled as by YARP 4.0; None
+        where nobody could tell. DecodeError."""
+        try:
+            return self.read_arguments(data, at), False if self.asks_floats else None
+        except DecodeError as error:
+            if not self.asks_floats:
+                raise
+            try:
+                return self.read_arguments(data, at, True), True
+            except DecodeError:
+                raise error from None
+
     # -- answers ----------------------------------------------------------------------------------
 
     @cached_property
@@ -147,6 +177,11 @@ class Method:
         assert self.result is not None
         return fast_reader.load(f"the result of {self.name}", [Part("", self.result)])
 
+    @cached_property
+    def answers_floats(self) -> bool:
+        """Whether there are fractions in the result."""
+        return self.result is not None and has_floats([self.result])
+
     def read_answer(self, data: Buffer) -> Any:
         """The result in an answer. DecodeError."""
         result = self.result
@@ -154,12 +189,31 @@ class Method:
             return None
         if isinstance(result, External):
             return codec.decode_as(data, reader.class_of(result))
-        return self._load_result(reader.spread(data), 8)[0]
+        try:
+            return self._load_result(reader.spread(data), 8)[0]
+        except DecodeError as error:
+            if not self.answers_floats:
+                raise
+            try:
+                if reader.pair(data, 0)[0] == LIST:
+                    return self._load_result(data, 8, True)[0]
+                return self._load_result(reader.spread(to_yarp3(data)), 8)[0]
+            except DecodeError:
+                raise error from None
 
     @cached_property
     def ending(self) -> Ending | None:
         """What finds the end of its answers, where they are no Bottles."""
         return ending_of(self.result)
+
+    def yarp4_ask(self, values: Sequence[Any]) -> Buffer:
+        """The request as YARP 4.0 spells it; lists of lists as 4.0.1 does."""
+        found = fast_writer.slow_dump(self.name, self.parts, values, self.head, bottle=True)
+        return to_yarp4(found)
+
+    def yarp4_answer(self, result: Any) -> Buffer:
+        """The answer as YARP 4.0 spells it; lists of lists as 4.0.1 does."""
+        return to_yarp4(self.bottle_answer(result))
 
     # -- for people -------------------------------------------------------------------------------
 

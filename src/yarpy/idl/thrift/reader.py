@@ -7,14 +7,14 @@
 
 Rules: this accepts what C++ accepts and more: plain lists, integers beside fractions, names of
 enums. Numbers that do not fit are refused, where C++ cuts them. Sets come as C++ writes them, with
-a tag too many at each element, if they are wrong otherwise. Counts are checked against the bytes
+a tag too many at each element, if they are wrong otherwise. A message of YARP 4.0 has other tags
+for floats (`yarpy.data.yarp4`), which a Cursor translates. Counts are checked against the bytes
 that are there before memory is taken; only DecodeError and Truncated come out, which name the
 field.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from importlib import import_module
 from struct import Struct as Packing
 from struct import error as struct_error
@@ -40,6 +40,7 @@ from yarpy.data.value import (
     Float32,
     Vocab,
 )
+from yarpy.data.yarp4 import FLOAT32_4, FLOAT64_4, to_yarp3
 from yarpy.errors import DecodeError, Truncated
 from yarpy.idl.thrift.kind import (
     BINARY,
@@ -66,6 +67,9 @@ _PACK: Final = Packing("<i").pack
 _PACK_PAIR: Final = Packing("<ii").pack
 _UNPACK: Final = {tag: Packing("<" + letter).unpack_from for tag, (letter, _) in FIXED.items()}
 
+#: tags of YARP 4.0 to those of 3.x; one that it has no more to one that nobody has
+_NAMES: Final = {FLOAT64_4: FLOAT64, FLOAT32_4: FLOAT32, FLOAT32: 0xFF}
+
 _INTEGERS: Final = frozenset((INT8, INT16, INT32, INT64))
 _WHAT: Final = {
     INT32: "an int32", STRING: "a string", VOCAB32: "a vocab", FLOAT64: "a float64",
@@ -74,19 +78,31 @@ _WHAT: Final = {
 
 
 class Cursor:
-    """A place in a message. `tagged_sets`: sets are as C++ writes them."""
+    """A place in a message. `tagged_sets`: sets are as C++ writes them. `yarp4`: it comes from
+    YARP 4.0."""
 
-    __slots__ = ("at", "data", "depth", "end", "room", "tagged_sets")
+    __slots__ = ("at", "data", "depth", "end", "room", "tagged_sets", "yarp4")
 
-    def __init__(self, data: Buffer, at: int = 0, tagged_sets: bool = False) -> None:
+    def __init__(
+        self, data: Buffer, at: int = 0, tagged_sets: bool = False, yarp4: bool = False
+    ) -> None:
         self.data = data
         self.at = at
         self.end = len(data)
         self.room = limits().elements
         self.depth = 0
         self.tagged_sets = tagged_sets
+        self.yarp4 = yarp4
 
     def tag(self, path: str) -> int:
+        """The tag of an element, or the header of a list, as YARP 3.x has it."""
+        found = self.number(path)
+        if not self.yarp4:
+            return found
+        kind = found & UNIT_MASK
+        return found - kind + _NAMES.get(kind, kind)
+
+    def number(self, path: str) -> int:
         if self.at + 4 > self.end:
             raise Truncated(f"{path} is missing", self.at + 4)
         found: int = _I32(self.data, self.at)[0]
@@ -95,7 +111,7 @@ class Cursor:
 
     def count(self, path: str, least: int) -> int:
         """How many follow, of at least so many bytes each."""
-        count = self.tag(path)
+        count = self.number(path)
         if count < 0 or self.at + count * least > self.end:
             raise Truncated(
                 f"{path}: {count} elements are announced, there are {self.end - self.at} bytes"
@@ -201,7 +217,7 @@ def _array(element: Scalar, cursor: Cursor, path: str) -> Any:
     import numpy as np
 
     size = Packing("<" + element.letter).size
-    count = cursor.tag(path)
+    count = cursor.number(path)
     data = cursor.take(count * size, path)
     return np.frombuffer(data, "<" + element.letter, count)
 
@@ -216,7 +232,7 @@ def _map(kind: MapOf, tag: int, cursor: Cursor, path: str) -> dict[Any, Any]:
         pair = outer or cursor.tag(path)
         if not pair & LIST:
             raise _other("a pair of key and value", pair, cursor, f"{path}[{at}]")
-        cursor.tag(path)  # two, and not checked by C++ either
+        cursor.number(path)  # two, and not checked by C++ either
         code = pair & UNIT_MASK or None
         key = _value(kind.key, cursor, f"{path}, key {at}", code)
         try:
@@ -237,7 +253,7 @@ def scalar(kind: Scalar, tag: int, cursor: Cursor, path: str) -> Any:
         if tag == STRING:
             return str(_bytes(cursor, path), "utf-8", "surrogateescape")
         if tag == VOCAB32:
-            return str.__str__(Vocab.from_code(cursor.tag(path)))
+            return str.__str__(Vocab.from_code(cursor.number(path)))
         raise _other("a string", tag, cursor, path)
     if kind is BINARY:
         if tag in (BLOB, STRING):
@@ -245,11 +261,11 @@ def scalar(kind: Scalar, tag: int, cursor: Cursor, path: str) -> Any:
         raise _other("a blob", tag, cursor, path)
     if kind is BOOL:
         if tag in (INT32, VOCAB32):
-            return cursor.tag(path) not in (0, FAIL)
+            return cursor.number(path) not in (0, FAIL)
         raise _other("true or false", tag, cursor, path)
     if kind is VOCAB:
         if tag == VOCAB32:
-            return Vocab.from_code(cursor.tag(path))
+            return Vocab.from_code(cursor.number(path))
         if tag == STRING:
             text = bytes(_bytes(cursor, path))
             if len(text) <= 4:
@@ -301,7 +317,7 @@ def _fixed(tag: int, cursor: Cursor, path: str) -> Any:
 
 
 def _bytes(cursor: Cursor, path: str) -> Buffer:
-    return cursor.take(cursor.tag(path), path)
+    return cursor.take(cursor.number(path), path)
 
 
 def _external(kind: External, cursor: Cursor, path: str, code: int | None) -> Any:
@@ -312,6 +328,8 @@ def _external(kind: External, cursor: Cursor, path: str, code: int | None) -> An
     for _ in range(kind.size):
         skip(cursor, path)
     data = cursor.data[start : cursor.at]
+    if cursor.yarp4:
+        data = to_yarp3(_PACK_PAIR(LIST, kind.size) + data)[8:]
     if kind.size != 1:
         data = _PACK_PAIR(LIST, kind.size) + data
     elif not _I32(data)[0] & GROUP_MASK:
@@ -379,26 +397,6 @@ def _other(wanted: str, tag: int, cursor: Cursor, path: str) -> DecodeError:
         value = f"[{Vocab.from_code(number)}]" if tag == VOCAB32 else repr(number)
         return DecodeError(f"{path}: expected {wanted}, got {value}")
     return DecodeError(f"{path}: expected {wanted}, got {_WHAT.get(tag, f'the tag {tag}')}")
-
-
-def has_sets(kinds: Sequence[Kind], known: set[Any] | None = None) -> bool:
-    """Whether there are sets in these kinds, which C++ writes wrong."""
-    known = set() if known is None else known
-    for kind in kinds:
-        if isinstance(kind, SetOf):
-            return True
-        if isinstance(kind, ListOf):
-            inner: list[Kind] = [kind.element]
-        elif isinstance(kind, MapOf):
-            inner = [kind.key, kind.value]
-        elif isinstance(kind, type) and not is_enum(kind) and kind not in known:
-            known.add(kind)
-            inner = [field.kind for field in kind._specs()]
-        else:
-            continue
-        if has_sets(inner, known):
-            return True
-    return False
 
 
 def pair(data: Buffer, at: int) -> tuple[int, int]:

@@ -12,7 +12,8 @@ Rules: every request is answered, a failed one with `[fail]`: alone for programs
 they cannot read more; with the reason for people and whoever spells names as people do. A method
 may be a coroutine function where `yarpy.aio.RpcServer` serves it. What a method raises is logged,
 and is the reason; with a YarpError it only refuses. Inherited methods are called as own ones. A
-oneway call is answered before it is done, where somebody wants an answer.
+oneway call is answered before it is done, where somebody wants an answer. Floats are spelled as the
+client does: as YARP 4.0 for who sent some that way, or asked for the version, as its clients do.
 """
 
 from __future__ import annotations
@@ -37,9 +38,10 @@ log = logger("yarpy.idl")
 
 #: what others are told the version of YARP is whose wire this is
 YARP_VERSION: Final = (3, 12, 0)
+YARP_4: Final = (4, 0, 0)
 
 _DIRECT: Final = "__direct__"
-#: clients whose last failure is remembered
+#: clients whose last failure, or way to spell floats, is remembered
 _REMEMBERED: Final = 100
 _FAILED: Final = Packing("<iii").pack(LIST + 9, 1, 0x6C696166)
 _DONE: Final = Packing("<iiii").pack(LIST, 1, 9, 0x656E6F64)
@@ -52,7 +54,10 @@ class Service:
     _version: ClassVar[int] = 0
     _methods: ClassVar[dict[str, Method]] = {}
     _namespace: ClassVar[Mapping[str, Any] | None] = None
+    #: all clients are of YARP 4, as those of its devices
+    _only_yarp4: ClassVar[bool] = False
     _failures: OrderedDict[str, str]
+    _spellings: OrderedDict[str, bool]
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
@@ -78,7 +83,9 @@ class Service:
             method = self._methods.get(name)
             if method is None:
                 return self._extra(name, data, at, message)
-            values = method.read_arguments(data, at)
+            values, yarp4 = method.arguments(data, at)
+            if yarp4 is not None:
+                self._note(message.source, yarp4)
             function = getattr(self, method.attribute)
             if method.oneway and message.wants_reply:
                 message.reply(Payload(_DONE))
@@ -95,6 +102,8 @@ class Service:
         try:
             if person:
                 return Payload(method.bottle_answer(result))
+            if method.answers_floats and self._is_yarp4(message.source):
+                return Payload(method.yarp4_answer(result))
             return Payload(method.answer(result))
         except Exception as error:
             return self._failed(error, message, person)
@@ -107,6 +116,23 @@ class Service:
         except Exception as error:
             return self._failed(error, message, person)
         return self._answer(method, found, message, person)
+
+    def _note(self, source: str, yarp4: bool) -> None:
+        """Remember how a client spells floats."""
+        known = self.__dict__.get("_spellings")
+        if known is None:
+            if not yarp4:
+                return  # as nearly always
+            known = self.__dict__.setdefault("_spellings", OrderedDict())
+        known.pop(source, None)
+        if yarp4:
+            known[source] = True
+            while len(known) > _REMEMBERED:
+                known.popitem(last=False)
+
+    def _is_yarp4(self, source: str) -> bool:
+        """Whether answers to a client are those of YARP 4.0."""
+        return self._only_yarp4 or source in self.__dict__.get("_spellings", ())
 
     def _named(self, data: bytes) -> tuple[str, int, bool]:
         """The method that a request names, where its arguments begin, and whether it is spelled as
@@ -144,7 +170,8 @@ class Service:
             asked = first_word(data, at)[0] if at < len(data) else ""
             return Payload(many(self.help(asked)))
         if at == len(data) and name == VERSION:
-            numbers = (self._version, *YARP_VERSION)
+            numbers = (self._version, *(YARP_4 if self._only_yarp4 else YARP_VERSION))
+            self._note(message.source, True)  # programs before 4.0 do not ask
             if message.spelling == "text":
                 return Bottle([Int16(number) for number in numbers])
             return Payload(Packing("<iihhhh").pack(LIST, 1, *numbers))
@@ -206,12 +233,13 @@ class Service:
         """A client of the server `target`, with the methods of this service.
 
         A call raises Timeout after `timeout` seconds, RemoteProtocolError if the server refuses it,
-        LinkClosed if it is gone; all name the method. `options` are those of `yarpy.RpcClient`.
+        LinkClosed if it is gone; all name the method. A server that is silent when it is dialled is
+        waited for as long, too: LinkClosed. `options` are those of `yarpy.RpcClient`.
         `with`, or `close()`, ends the connection.
         """
         from yarpy.idl.thrift.client import client_class
 
-        port = registry.clients.load("rpc")(target, carrier=carrier, **options)
+        port = registry.clients.load("rpc")(target, carrier=carrier, timeout=timeout, **options)
         return client_class(cls)(port, timeout)  # type: ignore[no-any-return]
 
     @classmethod
@@ -221,7 +249,7 @@ class Service:
         """The same for event loops: `async with` it, and await its methods."""
         from yarpy.idl.thrift.client import client_class
 
-        port = registry.clients.load("aio")(target, carrier=carrier, **options)
+        port = registry.clients.load("aio")(target, carrier=carrier, timeout=timeout, **options)
         return client_class(cls, waits=True)(port, timeout)
 
     def close(self) -> Any:
