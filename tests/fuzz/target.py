@@ -36,7 +36,7 @@ from yarpy.carriers.mqtt import Mqtt, Reader
 from yarpy.carriers.payload import message_of, payload_of
 from yarpy.carriers.ros_header import LENGTH, encode_header
 from yarpy.carriers.zmq import ROLES, Pub
-from yarpy.data import codec, jpeg
+from yarpy.data import codec, jpeg, yarp4
 from yarpy.data.image import Image
 from yarpy.devices.control_board.state import State
 from yarpy.devices.multi_sensor.client import read_names
@@ -98,6 +98,13 @@ def _decode_all(data: bytes) -> None:
             continue  # not every array that can be read can be sent without saying what it is
         b"".join(codec.encode(value))
         codec.encode_text(value)
+
+
+def _yarp4(data: bytes) -> None:
+    for look in (yarp4.is_yarp4, yarp4.to_yarp3, yarp4.to_yarp4):
+        with suppress(YarpError):
+            look(data)
+    _decode_all(data)
 
 
 def _walk(data: bytes) -> None:
@@ -454,6 +461,7 @@ TARGETS = {
     "thrift requests": Target(_served, (*_THRIFT_SAID, b"help add", b"r_nest 1 2 () () () ()")),
     "thrift answers": Target(_answered, (*_THRIFT_SAID, *_THRIFT_STRUCTS)),
     "walker": Target(_walk, _MESSAGES),
+    "yarp 4": Target(_yarp4, tuple(bytes(yarp4.to_yarp4(each)) for each in _MESSAGES)),
     "jpeg": Target(
         _picture, (jpeg.encode(Image(_PIXELS)), jpeg.encode(Image(_PIXELS[..., 0].copy())))
     ),

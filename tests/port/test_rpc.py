@@ -27,6 +27,7 @@ from yarpy.errors import (
 )
 from yarpy.link.handshake import greet
 from yarpy.nameserver.local import LocalNames
+from yarpy.port import connecting, hub, identity
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.route import Route
@@ -232,6 +233,40 @@ def test_slow_server_is_a_timeout_and_its_late_answer_is_lost(names: LocalNames)
             client.call("slow", timeout=0.05)
         assert time.monotonic() - started < 1
         assert client.call("quick", timeout=5) == ["quick"]
+
+
+def test_a_stuck_handler_keeps_nobody_waiting(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hub, "SETTLING", 1000.0)
+    stuck = threading.Event()
+
+    def handle(message: Message) -> object:
+        if message.value == ["slow"]:
+            stuck.wait()
+        return message.value
+
+    with (
+        RpcServer("/server", handle, names=names),
+        RpcClient("/server", name="/client", names=names) as client,
+    ):
+        with pytest.raises(Timeout):
+            client.call(["slow"], timeout=0.05)
+        assert client.call(["quick"], timeout=patience(5)) == ["quick"]
+        stuck.set()
+
+
+def test_a_server_that_is_silent_when_it_is_dialled(
+    names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in (connecting, identity):
+        monkeypatch.setattr(module, "PATIENCE", 1000.0)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        number = listener.getsockname()[1]
+        with pytest.raises(LinkClosed, match="silent"):
+            RpcClient(f"/127.0.0.1:{number}", names=names, timeout=0.1)
+        with pytest.raises(LinkClosed, match="silent"):
+            RpcClient(f"tcp://127.0.0.1:{number}/named", names=names, timeout=0.1)
 
 
 def test_clients_are_served_side_by_side(names: LocalNames) -> None:

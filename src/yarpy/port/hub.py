@@ -50,6 +50,7 @@ log = logger("yarpy.port")
 # thread and a socket, but costs its sender nothing, since no connection is left that would end with
 # the sender's program.
 MAX_DATAGRAM_INPUTS: Final = 256
+SETTLING: Final = 2.0  # seconds for a connection to end that another takes the place of
 SILENT: Final = "this port sends nothing by itself, it answers what it is asked"
 
 
@@ -205,7 +206,7 @@ class Hub:
     def take_input(self, link: Inbound) -> None:
         """Make an open connection one of our inputs, to be served next.
 
-        It replaces an earlier one of the same sender, and waits up to 2 s until that has ended,
+        It replaces an earlier one of the same sender, and waits SETTLING until that has ended,
         unless that is at work on a question: nobody waits for the answer any more.
         Raises PortClosed, or what a monitor raises that cannot start; the connection is then
         closed.
@@ -242,7 +243,9 @@ class Hub:
             old.close()
             stuck = old.receiver.question is not None
             if old.thread is not threading.current_thread() and not stuck:
-                old.served.wait(2.0)  # what it still brings comes before what the new one brings
+                old.served.wait(
+                    SETTLING
+                )  # what it still brings comes before what the new one brings
 
     def _has_datagrams(self, link: Inbound, others: tuple[Inbound, ...]) -> bool:
         """Whether there are as many inputs over datagrams as there may be."""
