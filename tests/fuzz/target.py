@@ -26,7 +26,7 @@ from support.ros_link import AddTwoInts, String
 from support.ros_value import filled
 from support.thrift import CALLS, GOLDEN
 from support.thrift import rows as thrift_rows
-from support.vectors import rows
+from support.vectors import binaries, rows
 
 import yarpy
 from yarpy import registry
@@ -461,7 +461,7 @@ TARGETS = {
     "thrift requests": Target(_served, (*_THRIFT_SAID, b"help add", b"r_nest 1 2 () () () ()")),
     "thrift answers": Target(_answered, (*_THRIFT_SAID, *_THRIFT_STRUCTS)),
     "walker": Target(_walk, _MESSAGES),
-    "yarp 4": Target(_yarp4, tuple(bytes(yarp4.to_yarp4(each)) for each in _MESSAGES)),
+    "yarp 4": Target(_yarp4, tuple(bytes(yarp4.to_yarp4(each)) for each in binaries())),
     "jpeg": Target(
         _picture, (jpeg.encode(Image(_PIXELS)), jpeg.encode(Image(_PIXELS[..., 0].copy())))
     ),
