@@ -7,7 +7,8 @@
 
 Rules: everything else is the same in both. `is_yarp4` says which one a message is: most by a tag
 that only one of them has; where 10 or 266 comes first, by what stands behind as many float32:
-the end of the message, or a tag. Linear in the bytes; only DecodeError and Truncated come out.
+the end of the message, or a tag. (Whoever tries 3.x first errs with a float32 in front of a list of
+one, which C++ sends nowhere.) Linear in the bytes; only DecodeError and Truncated come out.
 """
 
 from __future__ import annotations
