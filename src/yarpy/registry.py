@@ -1,9 +1,9 @@
 """Name -> plug-in: the one place where carriers, types, monitors and commands are looked up.
 
 Rules: our plug-ins and third-party ones come the same way, from packaging entry points (groups
-`yarpy.carriers`, `yarpy.types`, `yarpy.monitors`, `yarpy.commands`). Nothing registers itself by
-being imported. A lookup loads only what it needs; a plug-in that fails to load is an error that
-names its distribution.
+`yarpy.carriers`, `yarpy.types`, `yarpy.monitors`, `yarpy.commands`, `yarpy.findings`). Nothing
+registers itself by being imported. A lookup loads only what it needs; a plug-in that fails to load
+is an error that names its distribution.
 """
 
 from __future__ import annotations
@@ -61,6 +61,14 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         # These two have ports of their own, and so live above them.
         "rpc_monitor": "yarpy.network.rpc_monitor:RpcMonitor",
         "stats_monitor": "yarpy.network.stats_monitor:StatsMonitor",
+    },
+    # What `yarpy doctor` looks for, in this order.
+    "findings": {
+        name: f"yarpy.network.doctor.{name}:find"
+        for name in (
+            *("server", "name", "address", "program", "connection", "flowing", "monitor"),
+            *("carrier", "content", "dialect", "priority", "kernel"),
+        )
     },
     # What ports may be part of beside their connections; it has ports of its own, too.
     "graphs": {"ros": "yarpy.ros.part:part_of"},
@@ -170,5 +178,6 @@ carriers: Final = Registry("carriers")
 types: Final = Registry("types")
 monitors: Final = Registry("monitors")
 commands: Final = Registry("commands")
+findings: Final = Registry("findings")
 graphs: Final = Registry("graphs")
 clients: Final = Registry("clients")

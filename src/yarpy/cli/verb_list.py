@@ -86,6 +86,7 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
             "send messages of a given size at a given rate",
             "trafficgen /load --bandwidth 100 --size 1",
         ),
+        "doctor": Verb("say why nothing arrives, and what mends it", "doctor /talker /listener"),
         "check": Verb("try whether ports can be opened, found and connected here", "check"),
         "cert": Verb("make a certificate for TLS", "cert robot.lab 192.168.1.7"),
         "resource": Verb("find configuration files", "resource --from robot.ini"),

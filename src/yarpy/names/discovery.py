@@ -18,13 +18,14 @@ import struct
 import threading
 import time
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from yarpy.contact import Contact
 from yarpy.errors import DecodeError
 from yarpy.names.registration_line import PREFIX, parse_registration
 
 GROUP = "224.2.1.1"
+MOST = 100  # servers that are told of
 LARGEST = 65_507  # bytes of payload in one UDP datagram over IPv4
 
 _HEADER = struct.Struct("<Ii")
@@ -86,6 +87,29 @@ def search(
                 if contact is not None and contact.name == namespace:
                     return contact
     return None
+
+
+def search_all(
+    namespaces: Iterable[str], port: int = 10000, *, timeout: float = 0.5, group: str = GROUP
+) -> list[Contact]:
+    """Every server that answers for one of `namespaces`, which is its contact's name. Raises
+    OSError when this computer has no multicast."""
+    asked = set(namespaces)
+    found: list[Contact] = []
+    with _group_socket(group, port) as listener, _sender() as sender:
+        for namespace in sorted(asked):
+            with contextlib.suppress(OSError):
+                sender.sendto(encode_datagram(f"{PREFIX}query {namespace}"), (group, port))
+        deadline = time.monotonic() + timeout
+        while (left := deadline - time.monotonic()) > 0 and len(found) < MOST:
+            listener.settimeout(left)
+            try:
+                contact = parse_registration(decode_datagram(listener.recv(LARGEST)))
+            except (DecodeError, OSError):
+                continue  # as above
+            if contact is not None and contact.name in asked and contact not in found:
+                found.append(contact)
+    return found
 
 
 # --- answering

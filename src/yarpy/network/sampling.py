@@ -25,9 +25,9 @@ from yarpy.data.value import Vocab
 from yarpy.errors import (
     AccessRefused,
     LinkClosed,
-    RemoteProtocolError,
     Timeout,
     UnknownName,
+    WrongPort,
     YarpError,
 )
 from yarpy.link.handshake import greet
@@ -95,7 +95,7 @@ class Sampler:
         patience: float = PATIENCE,
     ) -> None:
         self._names = names
-        self._only = None if only is None else list(only)
+        self._only = None if only is None else list(dict.fromkeys(only))
         self._patience = patience
         self._lines: dict[str, Line] = {}
         self._known: dict[str, PortState] = {}
@@ -116,6 +116,11 @@ class Sampler:
         self._count(snapshot)
         return snapshot
 
+    def extend(self, names: Iterable[str]) -> None:
+        """Ask these from now on as well, where not all are asked anyway."""
+        if self._only is not None:
+            self._only = list(dict.fromkeys([*self._only, *names]))
+
     def close(self) -> None:
         """Hang up everywhere."""
         for name in list(self._lines):
@@ -130,9 +135,11 @@ class Sampler:
     def _contacts(self) -> list[Contact]:
         names = self._names or DEFAULT.current()
         if self._only is None:
-            return [one for one in names.list() if one.name.startswith("/")]
-        found = (query(name, names) for name in self._only)
-        return [replace(one, name=one.label) for one in found if one is not None]
+            found = [one for one in names.list() if one.name.startswith("/")]
+        else:
+            queried = (query(name, names) for name in self._only)
+            found = [replace(one, name=one.label) for one in queried if one is not None]
+        return list({one.name: one for one in found}.values())
 
     def _ask(self, contact: Contact) -> tuple[PortState, list[Told]]:
         """One port. Whatever it does costs it its place in this look, and no more."""
@@ -167,6 +174,8 @@ class Sampler:
                 line.close()
         self._lines[state.name] = line = Line(state.contact, self._patience)
         reply = line.ask("prop", "get", state.name, timeout=self._patience)
+        if reply and reply[0] == Vocab("fail"):  # as to any name that is not its own
+            raise WrongPort(f'another port than "{state.name}" listens at {state.contact.address}')
         read_port(state, reply)
         return ends_of(line, state, self._patience)
 
@@ -205,13 +214,13 @@ def state_of(error: BaseException) -> State:
     """What an error in asking says about a port."""
     if isinstance(error, AccessRefused):
         return "denied"
-    if isinstance(error, Timeout):
-        return "unreachable" if type(error.__cause__) is TimeoutError else "silent"
+    if isinstance(error, Timeout) and type(error.__cause__) is TimeoutError:
+        return "unreachable"
     if probe.is_refused(error):
         return "refused"
     if isinstance(error, LinkClosed) and isinstance(error.__cause__, OSError):
         return "unreachable"
-    return "other" if isinstance(error, RemoteProtocolError | LinkClosed) else "silent"
+    return "silent" if isinstance(error, Timeout) else "other"
 
 
 def ends_of(line: Line, state: PortState, patience: float = PATIENCE) -> list[Told]:

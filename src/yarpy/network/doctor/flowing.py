@@ -1,0 +1,147 @@
+"""Findings about the flow of messages: nothing is written, nothing is read, somebody is held up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from yarpy.network.doctor import process
+from yarpy.network.doctor.case import Case, Pair
+from yarpy.network.doctor.finding import Finding
+
+
+def find(case: Case) -> Iterator[Finding]:
+    """writes-nothing, never-reads, held-up, too-slow."""
+    for pair in case.pairs:
+        if pair.before is None or not case.wanted or not _is_whole(case, pair):
+            continue
+        stuck = list(_receiver(case, pair))
+        yield from stuck
+        if not stuck:
+            yield from _sender(case, pair)
+
+
+def _is_whole(case: Case, pair: Pair) -> bool:
+    """Whether both ends are there, as far as ports can be asked: else that is what is wrong."""
+    if pair.now is None:
+        return False
+    for name, end in ((pair.source, pair.now.sender), (pair.target, pair.now.receiver)):
+        state = case.ports.get(name)
+        if state is not None and state.state != "foreign" and end is None:
+            return False
+    return True
+
+
+def _sender(case: Case, pair: Pair) -> Iterator[Finding]:
+    written = pair.grown("sender", "messages")
+    dropped = pair.grown("sender", "drops")
+    arrived = pair.grown("receiver", "messages")
+    if dropped and not _by_monitors(pair):
+        total = dropped + (written or 0)
+        yield Finding(
+            "too-slow",
+            pair.name,
+            f'"{pair.source}" wrote {total} messages in {case.seconds:.1f} s and dropped {dropped} '
+            f'of them, since "{pair.target}" had not yet taken the one before',
+            f'make "{pair.target}" faster, or send less: `yarpy connect {pair.source} '
+            f"{pair.target} {pair.carrier}+send.throttleDown+period_ms.100`",
+            "warning" if written else "fault",
+        )
+        return
+    silent = written == 0 if written is not None else arrived == 0
+    if not silent or dropped:
+        return
+    if written is None and case.peek(pair.source).kind:
+        return  # it writes, as we have seen ourselves
+    sender = pair.end("sender")
+    so_far = ""
+    if sender is not None and sender.messages is not None:
+        so_far = f"; over this connection it has written {sender.messages} so far"
+    yield Finding(
+        "writes-nothing",
+        pair.name,
+        f'the two are connected, and "{pair.source}" has written nothing for {case.seconds:.1f} s'
+        f"{so_far}",
+        f"look at the program of {pair.source}: it may wait for something itself (`yarpy doctor "
+        f"{pair.source}` looks at what it reads); `yarpy read ... {pair.source}` shows what it "
+        "writes",
+    )
+
+
+def _by_monitors(pair: Pair) -> bool:
+    end = pair.end("sender")
+    return end is not None and any(end.dropped.values())
+
+
+def _receiver(case: Case, pair: Pair) -> Iterator[Finding]:
+    """Whether the receiver takes what comes."""
+    target = pair.target
+    waiting, came = _waiting(pair), pair.grown("receiver", "messages")
+    taken = _taken(case, target)
+    if waiting and taken == 0:
+        kept = (
+            f"{waiting} messages wait there, and what comes is kept until memory is full"
+            if waiting > 1
+            else "one message waits there, and newer ones replace it or wait behind it"
+        )
+        yield Finding(
+            "never-reads",
+            pair.name,
+            f'"{target}" gets messages and its program has not read any for {case.seconds:.1f} s; '
+            f"{kept}",
+            f"look at the program of {target}: it is busy, or waits for something else; "
+            f"`yarpy read ... {pair.source}` shows what it would read",
+        )
+        return
+    held = _held(pair)
+    written = pair.grown("sender", "messages")
+    if held and written == 0 and not came:
+        yield Finding(
+            "held-up",
+            pair.name,
+            f'"{pair.source}" waits: {held} messages are on their way to "{target}", which has not '
+            f"confirmed any for {case.seconds:.1f} s (its program does not read, or its callback "
+            "does not return)",
+            f"look at the program of {target}; so that the sender does not wait for it, write from "
+            "a BufferedPort, or connect over udp",
+        )
+        return
+    state = case.port(target)
+    if state is not None and state.ours is False and case.is_here(target):
+        lying = process.unread(state.contact.port)
+        if lying and not came:
+            yield Finding(
+                "never-reads",
+                pair.name,
+                f'{lying} bytes lie in front of "{target}", and its program does not read them',
+                f"look at the program of {target}: it is busy, or waits for something else",
+            )
+
+
+def _waiting(pair: Pair) -> int:
+    """Messages that wait for the receiver's program at both looks."""
+    old = pair.before.receiver if pair.before is not None else None
+    new = pair.end("receiver")
+    counts = [end.waiting or 0 if end is not None else 0 for end in (old, new)]
+    return counts[1] if all(counts) else 0
+
+
+def _taken(case: Case, target: str) -> int | None:
+    """How many messages of all its connections a program has taken between the looks."""
+    total, waiting, known = 0, 0, False
+    for (source, other), flow in case.now.flows.items():
+        if other != target or flow.receiver is None:
+            continue
+        pair = case.pair(source, other)
+        grown, more = pair.grown("receiver", "delivered"), pair.grown("receiver", "waiting")
+        if grown is None or more is None:
+            continue
+        known, total, waiting = True, total + grown, more
+    return total - waiting if known else None
+
+
+def _held(pair: Pair) -> int:
+    """Messages that were without an acknowledgement at both looks."""
+    old = pair.before.sender if pair.before is not None else None
+    new = pair.end("sender")
+    counts = [end.unacknowledged or 0 if end is not None else 0 for end in (old, new)]
+    return counts[1] if all(counts) else 0
