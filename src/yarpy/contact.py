@@ -30,6 +30,7 @@ from typing import Final
 from yarpy.errors import AddressError
 
 BROKER: Final = "mqtt"
+ZENOH: Final = ".zenoh"  # ends the host of an address inside Zenoh: `a1b2.zenoh:10002`
 
 _HOST_PORT = re.compile(r"^[^:/]+:\d+$")
 _IPV6_PORT = re.compile(r"^\[[0-9A-Fa-f:.%]+\]:\d+$")
@@ -104,6 +105,21 @@ def parse_contact(text: str) -> Contact:
 def is_broker(carrier: str) -> bool:
     """Whether what is connected over a carrier is a topic of a broker."""
     return carrier.partition("+")[0] == BROKER
+
+
+def zid_host(zid: str) -> str:
+    """A session of Zenoh as the host of an address.
+
+    >>> zid_host("a1b2")
+    'a1b2.zenoh'
+    """
+    return zid + ZENOH
+
+
+def host_zid(host: str) -> str:
+    """The session of Zenoh that an address leads to, "" if it is an ordinary address."""
+    zid = host.removesuffix(ZENOH)
+    return zid if zid != host else ""
 
 
 def _host_port(text: str) -> tuple[str, int] | None:

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 from typing import Any, Final, TypeVar
 
+from yarpy.contact import host_zid
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.admission import Admission
 from yarpy.link.intake import Intake
@@ -304,6 +305,10 @@ class Driver:
             return self._group(transport.local[0])
         if isinstance(effect, Open):
             local, remote = transport.local, transport.remote
+            if host_zid(remote[0]):
+                raise LocalProtocolError(
+                    "the port is reached through Zenoh, which carries streams of bytes: take tcp"
+                )
             host = getattr(transport, "host", None)  # of TLS
             if effect.kind == "tcp":
                 left = CONNECT_TIMEOUT if deadline is None else deadline - time.monotonic()

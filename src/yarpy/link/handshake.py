@@ -16,7 +16,7 @@ from typing import Final
 from yarpy import registry
 from yarpy.carriers.auth import prove_acceptor, prove_initiator
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
-from yarpy.contact import Contact
+from yarpy.contact import Contact, host_zid
 from yarpy.errors import (
     LinkClosed,
     LocalProtocolError,
@@ -28,6 +28,7 @@ from yarpy.errors import (
 from yarpy.link.admission import Gate, peer_of
 from yarpy.link.driver import Driver
 from yarpy.route import UNDECLARED, CarrierSpec, Declared, Route
+from yarpy.transports.base import Answerable, Transport
 from yarpy.transports.peer_timeout import PARAMETER, asked_timeout
 from yarpy.transports.tcp import TcpTransport, dial
 from yarpy.transports.tls_setting import FIRST_BYTE, WORD, has_certificate, required
@@ -100,11 +101,13 @@ def greet(
     route.host, route.port = contact.host, contact.port
     kind = find_carrier(route.spec)
     deadline = time.monotonic() + timeout
-    secure = required() or route.spec.in_tls
+    secure = must_be_tls(contact.host) or route.spec.in_tls
     if secure and not route.spec.in_tls:
         route.spec = route.spec.plus(WORD)
     if secure and kind.connectionless:
         raise LocalProtocolError(f"TLS protects no datagrams: take tls, not {kind.name}")
+    if kind.connectionless and host_zid(contact.host):
+        raise LocalProtocolError(f"{kind.name} does not go through Zenoh: take tcp")
     carrier = kind(route)
     silence = _silence(route)
     driver = call(contact, timeout, limit, group, secure)
@@ -136,10 +139,14 @@ def call(
     Raises LinkClosed (nobody listens), Timeout, RemoteProtocolError (a certificate that is wrong).
     """
     deadline = time.monotonic() + timeout
+    transport: Transport
     try:
-        transport: TcpTransport = dial(contact.host, contact.port, timeout)
-        if secure or required():
-            transport = _in_tls(transport, contact.host, deadline)
+        if host_zid(contact.host):
+            transport = _dial_inside(contact, timeout, secure)
+        else:
+            tcp = transport = dial(contact.host, contact.port, timeout)
+            if secure or required():
+                transport = _in_tls(tcp, contact.host, deadline)
     except RemoteProtocolError as error:
         raise RemoteProtocolError(f"{contact.address}: {error}") from error
     except TimeoutError as error:
@@ -149,6 +156,22 @@ def call(
             f"nobody answers at {contact.address} ({error.strerror or error})"
         ) from error
     return Driver(transport, limit, group)
+
+
+def must_be_tls(host: str) -> bool:
+    """Whether a connection there must be TLS. Inside Zenoh it is the links of that that are."""
+    return required() and not host_zid(host)
+
+
+def _dial_inside(contact: Contact, timeout: float, secure: bool) -> Transport:
+    if secure:
+        raise LocalProtocolError(
+            f"{contact.name or contact.address} is reached through Zenoh, whose routers pass "
+            "messages on in TLS if they are at tls/HOST, but there is no TLS through them: take tcp"
+        )
+    from yarpy.transports.zenoh_exchange import dial_inside
+
+    return dial_inside(contact.host, contact.port, timeout)
 
 
 def _speaks_first(driver: Driver) -> bool:
@@ -161,7 +184,7 @@ def _speaks_first(driver: Driver) -> bool:
 
 
 def welcome(
-    transport: TcpTransport,
+    transport: Answerable,
     target: str,
     port: int,
     *,
@@ -180,13 +203,14 @@ def welcome(
     """
     deadline = time.monotonic() + PATIENCE
     opening = _opening(transport, bool(key), deadline)
-    secure = opening == FIRST_BYTE
+    secure = opening == FIRST_BYTE and isinstance(transport, TcpTransport)
     asks_names = gate is not None and gate.asks_names
     if secure:
+        assert isinstance(transport, TcpTransport)
         transport = _in_tls(transport, "", deadline, asks_names)
     elif opening == HUNG_UP:
         return None
-    elif required():
+    elif must_be_tls(_dialler(transport)):
         _turn_away(transport)
     driver = Driver(transport, limit)
     driver.silence = silence
@@ -242,7 +266,7 @@ def _limit_silence(driver: Driver, seconds: int | None, route: Route) -> None:
     driver.transport.limit_silence(seconds)
 
 
-def _opening(transport: TcpTransport, speaks_first: bool, deadline: float) -> int:
+def _opening(transport: Answerable, speaks_first: bool, deadline: float) -> int:
     """The first byte of the peer that dialled us, left unread; 0 if we do not wait for it.
 
     A port with a key speaks first, so it waits for a moment only, and only for TLS.
@@ -277,7 +301,7 @@ def _in_tls(
         raise RemoteProtocolError(explained(error)) from error
 
 
-def _turn_away(transport: TcpTransport) -> None:
+def _turn_away(transport: Transport) -> None:
     """Tell a peer that came without TLS that TLS is required."""
     try:
         transport.send([TLS_ALONE])
@@ -286,7 +310,7 @@ def _turn_away(transport: TcpTransport) -> None:
     raise RemoteProtocolError("it came without TLS, which YARPY_TLS requires here")
 
 
-def _reached(transport: TcpTransport) -> str:
+def _reached(transport: Transport) -> str:
     """Our address that the peer dialled."""
     try:
         return transport.local[0]
@@ -294,7 +318,7 @@ def _reached(transport: TcpTransport) -> str:
         return ""  # closed meanwhile; the next read finds out
 
 
-def _dialler(transport: TcpTransport) -> str:
+def _dialler(transport: Transport) -> str:
     """The address of the peer that dialled us."""
     try:
         return transport.remote[0]

@@ -11,6 +11,8 @@ import socket
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 
+from yarpy.contact import host_zid
+
 LOOPBACK = "127.0.0.1"
 
 
@@ -57,6 +59,8 @@ def is_local(host: str) -> bool:
     host = plain_host(host)
     if is_loopback(host):
         return True
+    if host_zid(host):
+        return False  # no name of DNS
     local = set(local_addresses())
     if host in local:
         return True

@@ -6,7 +6,8 @@ unknown name is None, not an error.
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from collections.abc import Callable
+from typing import Any, Protocol, runtime_checkable
 
 from yarpy.contact import Contact
 
@@ -68,4 +69,14 @@ class NameClient(Protocol):
 
     def close(self) -> None:
         """Close the connections; the client may be used again."""
+        ...
+
+
+@runtime_checkable
+class Medium(Protocol):
+    """A name service through which ports can be called as well, where there is no other way."""
+
+    def listen(self, port: int, welcome: Callable[[Any], object], /) -> Callable[[], None]:
+        """Let the port with that TCP port number be called: `welcome` gets each connection, a
+        transport, in a thread of its own. Returns what ends that."""
         ...

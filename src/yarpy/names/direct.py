@@ -70,7 +70,7 @@ class Ways:
                 if len(self._hosts) >= _MOST:
                     self._hosts.clear()
                 self._hosts[entry.zid] = host, time.monotonic() + KEEP
-        return replace(entry.contact, host=host) if host else entry.contact
+        return replace(entry.contact, host=host) if host else entry.through
 
 
 def candidates(entry: Entry) -> list[str]:

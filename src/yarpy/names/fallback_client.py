@@ -7,11 +7,12 @@ asked of the first. The first one must answer, the others may be down.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from yarpy.contact import Contact
 from yarpy.errors import AddressError, NoNameServer
-from yarpy.names.base import Contacts, NameClient, Strings
+from yarpy.names.base import Contacts, Medium, NameClient, Strings
 
 
 def _warn(message: str, *arguments: object) -> None:
@@ -93,3 +94,13 @@ class SeveralNames:
     def close(self) -> None:
         for client in self.clients:
             client.close()
+
+    def listen(self, port: int, welcome: Callable[[Any], object]) -> Callable[[], None]:
+        """Let a port be called through all that can do so."""
+        stops = [one.listen(port, welcome) for one in self.clients if isinstance(one, Medium)]
+
+        def stop() -> None:
+            for each in stops:
+                each()
+
+        return stop

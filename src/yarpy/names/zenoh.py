@@ -15,7 +15,7 @@ import itertools
 import os
 import threading
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
@@ -30,6 +30,7 @@ from yarpy.names.direct import Ways, machine
 from yarpy.names.zenoh_key import Entry, name_key, newest, port_token
 from yarpy.transports.bind import listening_host
 from yarpy.transports.zenoh import Lease, load, share
+from yarpy.transports.zenoh_exchange import Exchange, Welcome, join, know, leave, undeclare
 
 if TYPE_CHECKING:
     import zenoh
@@ -69,6 +70,7 @@ class ZenohNames:
         self._process = 0
         self._own: dict[str, _Own] = {}
         self._node: list[Any] = []  # what was declared for the whole program
+        self._exchange: Exchange | None = None  # of connections through Zenoh
         self._ways = Ways()
         self._lock = threading.RLock()  # guards the above; never held while an answer is awaited
 
@@ -100,6 +102,7 @@ class ZenohNames:
             machine(),
             tuple(one for one in reached if not is_loopback(one))[: zenoh_key.ADDRESSES],
         )
+        self._calls(lease)  # nobody who finds the name may find nobody there
         self._announce(lease.session, _Own(entry, port_type or ""))
         self._claim(lease.session, entry)
         return entry.contact
@@ -118,7 +121,10 @@ class ZenohNames:
         if own is not None:
             return own.entry.contact
         entry = self.entry(name)
-        return None if entry is None else self._ways.to(entry)
+        if entry is None:
+            return None
+        know(entry.zid, self._open().zid)
+        return self._ways.to(entry)
 
     def announce(self, name: str, ok: bool = True) -> None:
         """Nothing: there are no persistent connections without a server."""
@@ -173,12 +179,25 @@ class ZenohNames:
             own, self._own = self._own, {}
             node, self._node = self._node, []
             lease, self._lease = self._lease, None
+            exchange, self._exchange = self._exchange, None
         if lease is None or self._process != os.getpid():
             return
         for one in own.values():
             _undeclare(one.declared)
         _undeclare(node)
+        if exchange is not None:
+            leave(exchange)
         lease.close()
+
+    def listen(self, port: int, welcome: Welcome) -> Callable[[], None]:
+        """Let a port that listens on that number be called through Zenoh, too; see `Medium`."""
+        return self._calls(self._open()).listen(port, welcome)
+
+    def _calls(self, lease: Lease) -> Exchange:
+        with self._lock:
+            if self._exchange is None:
+                self._exchange = join(lease)
+            return self._exchange
 
     # -- what others may need ---------------------------------------------------------------------
 
@@ -280,7 +299,7 @@ class ZenohNames:
                 lease = share(self.where)
             except LinkClosed as error:
                 raise NoNameServer(str(error)) from error
-            self._process, self._own = os.getpid(), {}
+            self._process, self._own, self._exchange = os.getpid(), {}, None
             self._lease = lease
             session = lease.session
             key = f"{self.base}/node/{lease.zid}/{next(_numbers)}"
@@ -340,10 +359,7 @@ class ZenohNames:
 
 def _undeclare(things: Iterable[Any]) -> None:
     for thing in things:
-        try:
-            thing.undeclare()
-        except Exception as error:  # the session may be closed already, and with it everything
-            log.debug("not undeclared: %s", error)
+        undeclare(thing)
 
 
 def _group(zid: str, number: int) -> str:

@@ -3,8 +3,6 @@
     @yarp/root/port/ZID/START/NAME      token: the port exists; NAME is one chunk, START its age
     @yarp/root/name/robot/head          question: where /robot/head is; `?key=ips`: a property
     @yarp/root/node/ZID/N               question: all ports of a program
-    @yarp/root/here/ZID                 token: the program exists
-    @yarp/root/open/ZID/PORT            question: opens a connection through Zenoh
 
 A port is told of in three lines, those of a program one after the other:
 
@@ -25,12 +23,11 @@ from dataclasses import dataclass, replace
 from typing import Final
 from urllib.parse import quote, unquote
 
-from yarpy.contact import Contact, check_name
+from yarpy.contact import Contact, check_name, zid_host
 from yarpy.errors import AddressError, DecodeError
 from yarpy.names.registration_line import parse_registration, registration_line
 
 PREFIX: Final = "@yarp"
-DOMAIN: Final = ".zenoh"  # of addresses that are sessions of Zenoh
 LONGEST: Final = 1 << 16  # bytes of what is said of one port
 MOST: Final = 1 << 23  # bytes of what one program says of all its ports
 ADDRESSES: Final = 32  # of one port
@@ -111,21 +108,6 @@ def parse_port_token(key: str) -> tuple[str, int, str]:
         return parts[1], int(parts[2], 16), check_name(unquote(parts[3], errors="strict"))
     except (ValueError, AddressError) as error:
         raise DecodeError(f"no token of a port: {key[:80]!r}") from error
-
-
-def zid_host(zid: str) -> str:
-    """A session as the host of an address.
-
-    >>> zid_host("a1b2")
-    'a1b2.zenoh'
-    """
-    return zid + DOMAIN
-
-
-def host_zid(host: str) -> str:
-    """The session that an address leads to, "" if it is no such address."""
-    zid = host.removesuffix(DOMAIN)
-    return zid if zid != host else ""
 
 
 def is_property(key: str) -> bool:

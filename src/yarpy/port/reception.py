@@ -19,7 +19,9 @@ from yarpy.link.admission import Gate
 from yarpy.link.driver import Driver
 from yarpy.link.handshake import welcome
 from yarpy.log import logger
+from yarpy.names.base import Medium
 from yarpy.port.registration import Registration
+from yarpy.transports.base import Answerable, Transport
 from yarpy.transports.tcp import TcpTransport
 
 log = logger("yarpy.port")
@@ -50,6 +52,7 @@ class Reception:
         self._silence = silence
         self._gate: Gate | None = None  # of the name that the port has in the end
         self._closing = False
+        self._stop_medium: Callable[[], None] = lambda: None
 
     def listen(self, port: int) -> int:
         """Listen on `port`, 0 for any free one; the number it is. Raises OSError."""
@@ -61,7 +64,10 @@ class Reception:
     def open(self) -> None:
         """The port knows its name: let them in. Raises AddressError for rules that nobody can
         read."""
-        self._gate = access_file.gate(self._registration.name, self._directory)
+        own = self._registration
+        self._gate = access_file.gate(own.name, self._directory)
+        if own.registered and isinstance(own.names, Medium):
+            self._stop_medium = own.names.listen(own.port, self._receive)
         self._open.set()
 
     @property
@@ -71,9 +77,11 @@ class Reception:
 
     def _welcome(self, sock: socket.socket) -> None:
         """The life of one accepted connection, in its own thread."""
+        self._receive(TcpTransport(sock))
+
+    def _receive(self, transport: Answerable) -> None:
         self._open.wait()
         own = self._registration
-        transport = TcpTransport(sock)
         peer = _peer(transport)
         gate = self._gate
         if gate is None:  # the port was never open
@@ -122,12 +130,13 @@ class Reception:
     def close(self) -> None:
         """Stop listening; connections that were handed on are not touched."""
         self._closing = True
+        self._stop_medium()
         self._open.set()  # nobody waits any longer
         if self._acceptor is not None:
             self._acceptor.close()
 
 
-def _peer(transport: TcpTransport) -> str:
+def _peer(transport: Transport) -> str:
     try:
         host, port = transport.remote
     except OSError:

@@ -80,6 +80,13 @@ class Transport(Protocol):
         """Release it."""
 
 
+class Answerable(Transport, Protocol):
+    """The transport of a peer that has called us, and that speaks first."""
+
+    def peek(self) -> int:
+        """The first byte that comes, left unread; -1 for the end."""
+
+
 class SocketTransport:
     """What all transports on sockets have in common."""
 

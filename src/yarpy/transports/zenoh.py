@@ -145,6 +145,10 @@ class Lease:
         """What Zenoh calls this session."""
         return self._held.zid
 
+    def again(self) -> Lease:
+        """Another lease of the same session."""
+        return _POOL.once_more(self._held)
+
     def close(self) -> None:
         """Give it back; idempotent. What was declared must be undeclared before."""
         if not self._closed:
@@ -196,6 +200,11 @@ class _Pool:
                     threading._register_atexit(self.close)  # type: ignore[attr-defined]
                     self._watching = True
                 held = self._held[where] = _Held(_open(_client(where), where), where)
+            held.users += 1
+            return Lease(held)
+
+    def once_more(self, held: _Held) -> Lease:
+        with self._lock:
             held.users += 1
             return Lease(held)
 

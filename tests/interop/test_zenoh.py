@@ -1,0 +1,189 @@
+"""Ports that reach each other through routers of Zenoh, as if there were no other way."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from support import tls
+from support.port import free_port
+from support.wait import wait_until
+
+import yarpy
+from yarpy.errors import AccessRefused, LocalProtocolError, YarpError
+from yarpy.names import direct
+from yarpy.names.zenoh import ZenohNames
+from yarpy.transports import zenoh_exchange
+from yarpy.transports.zenoh import close, open_router
+
+pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
+
+
+class Lab:
+    """Two routers, each with a program's names; there is no way between the two but through
+    them."""
+
+    def __init__(self) -> None:
+        self.numbers = [free_port(), free_port()]
+        self.first = open_router([self.where(0)])
+        self.start()
+        self.near, self.far = (ZenohNames(self.where(i)) for i in (0, 1))
+
+    def where(self, number: int) -> str:
+        return f"127.0.0.1:{self.numbers[number]}"
+
+    def start(self) -> None:
+        """Start the router of the far side."""
+        self.second = open_router([self.where(1)], [self.where(0)])
+
+    def stop(self) -> None:
+        close(self.second)
+
+
+@pytest.fixture(autouse=True)
+def _far_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("YARPY_ZENOH", "YARPY_TLS", "YARPY_BIND", "YARPY_ACCESS"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(direct.Ways, "to", lambda self, entry: entry.through)
+
+
+@pytest.fixture
+def lab() -> Iterator[Lab]:
+    made = Lab()
+    yield made
+    made.near.close()
+    made.far.close()
+    made.stop()
+    close(made.first)
+    wait_until(lambda: not zenoh_exchange._open)
+
+
+def test_messages_answers_and_administration(lab: Lab) -> None:
+    with (
+        yarpy.Port("/out", names=lab.near) as out,
+        yarpy.BufferedPort("/in", names=lab.far, strict=True) as in_,
+        yarpy.RpcServer("/adder", lambda message: [sum(message.value)], names=lab.far),
+    ):
+        wait_until(lambda: lab.near.query("/adder") and lab.far.query("/out"))
+        assert lab.near.query("/in").host.endswith(".zenoh")  # type: ignore[union-attr]
+        connection = yarpy.connect("/out", "/in", names=lab.near)
+        for number in range(300):
+            out.write([number])
+        assert [in_.read(timeout=10).value[0] for _ in range(300)] == [*range(300)]
+        picture = np.random.default_rng(1).integers(0, 256, 3_000_000, dtype=np.uint8)
+        out.write(picture, wait=True)
+        assert np.array_equal(np.asarray(in_.read(timeout=10).value), picture)
+        with yarpy.RpcClient("/adder", names=lab.near) as client:
+            assert client.ask([1, 2, 3], timeout=10).value == [6]
+        assert yarpy.admin("/in", "list", "in", names=lab.near)[0] == "/out"
+        assert yarpy.exists("/out", "/in", names=lab.near)
+        connection.qos = yarpy.Qos(packets="HIGH")
+        assert connection.qos.packets == "AF42"
+        out.write("with another priority")
+        assert in_.read(timeout=10).value == "with another priority"
+        assert yarpy.disconnect("/out", "/in", names=lab.far)
+        wait_until(lambda: not (out.outputs or in_.inputs))
+
+
+def test_a_slow_reader_holds_up_its_own_sender_alone(lab: Lab) -> None:
+    with (
+        yarpy.Port("/out/slow", names=lab.near) as held,
+        yarpy.Port("/out", names=lab.near) as out,
+        yarpy.Port("/slow", names=lab.far) as slow,
+        yarpy.BufferedPort("/fast", names=lab.far, strict=True) as fast,
+    ):
+        wait_until(lambda: lab.near.query("/fast") and lab.near.query("/slow"))
+        held.connect("/slow")
+        out.connect("/fast")
+        large = bytes(1 << 21)
+        sender = threading.Thread(target=lambda: [held.write(large) for _ in range(20)])
+        sender.start()
+        for number in range(20):
+            out.write([number, large])
+            assert fast.read(timeout=10).value[0] == number
+        assert sender.is_alive()
+        for _ in range(20):
+            assert slow.read(timeout=10).value == large
+        sender.join(10)
+
+
+def test_a_router_that_was_restarted_brings_names_and_connections_back(lab: Lab) -> None:
+    with (
+        yarpy.Port("/out", names=lab.near) as out,
+        yarpy.BufferedPort("/in", names=lab.far, strict=True) as in_,
+    ):
+        wait_until(lambda: lab.near.query("/in"))
+        out.connect("/in")
+        out.write([0], wait=True)
+        lab.stop()
+        sent = 1
+        wait_until(lambda: not out.outputs)
+        assert out.write([-1]) == 0
+        lab.start()
+
+        def arrives() -> bool:
+            nonlocal sent
+            sent += out.write([sent])
+            return in_.waiting >= 2
+
+        wait_until(arrives, 30)
+        came = []
+        while in_.waiting:
+            came.append(in_.read(timeout=10).value[0])
+        assert came[0] == 0 and came[1:] == [*range(came[1], came[1] + len(came) - 1)]
+        assert lab.near.query("/in")
+
+
+def test_what_needs_a_direct_way_says_so(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    with (
+        yarpy.Port("/out", names=lab.near) as out,
+        yarpy.BufferedPort("/in", names=lab.far) as in_,
+    ):
+        wait_until(lambda: lab.near.query("/in"))
+        for carrier in ("udp", "mcast", "unix_stream", "local"):
+            with pytest.raises(YarpError, match="Zenoh"):
+                out.connect("/in", carrier)
+        for carrier in ("fast_tcp", "text_ack", "websocket"):
+            out.connect("/in", carrier)
+            out.write([carrier])
+            assert in_.read(timeout=10).value == [carrier]
+        with pytest.raises(LocalProtocolError, match="tls/HOST"):
+            out.connect("/in", "tls")
+
+
+def test_rules_hold_for_those_who_come_through_zenoh(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch, tmp_path: object
+) -> None:
+    rules = tmp_path / "access.toml"  # type: ignore[operator]
+    rules.write_text('[[allow]]\nwho = ["loopback"]\nmay = ["all"]\n')
+    monkeypatch.setenv("YARPY_ACCESS", str(rules))
+    with (
+        yarpy.Port("/out", names=lab.near) as out,
+        yarpy.BufferedPort("/in", names=lab.far),
+    ):
+        wait_until(lambda: lab.near.query("/in"))
+        with pytest.raises(AccessRefused):
+            out.connect("/in")
+
+
+def test_where_tls_is_required_the_links_of_zenoh_are(
+    tmp_path: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tls.prepare(tmp_path / "tls", monkeypatch, "require")  # type: ignore[operator]
+    where = f"127.0.0.1:{free_port()}"
+    router = open_router([where])
+    names, others = ZenohNames(where), ZenohNames(where.replace("127.0.0.1", "localhost"))
+    with (
+        yarpy.Port("/out", names=names) as out,
+        yarpy.BufferedPort("/in", names=others) as in_,
+    ):
+        wait_until(lambda: names.query("/in"))
+        out.connect("/in")
+        out.write("in tls from router to router")
+        assert in_.read(timeout=10).value == "in tls from router to router"
+    names.close()
+    others.close()
+    close(router)
+    wait_until(lambda: not [one for one in threading.enumerate() if ".zenoh" in one.name])
