@@ -29,6 +29,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "text_ack": "yarpy.carriers.text:TextAck",
         "unix_stream": "yarpy.carriers.unix_stream:UnixStream",
         "local": "yarpy.carriers.local:Local",
+        "memory": "yarpy.carriers.memory:Memory",
         "name_ser": "yarpy.carriers.name_ser:NameSer",
         "http": "yarpy.carriers.http.carrier:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",

@@ -51,7 +51,8 @@ Monitors: TypeAlias = tuple[tuple[str, tuple[str, ...]], ...]
 class CarrierSpec:
     """What a carrier string says. `text` may be shown, `whole` has the password too.
 
-    `own`: this program asked for it, not somebody on the network.
+    `own`: this program asked for it, not somebody on the network. `chosen`: nobody asked for that
+    protocol, it seemed the best one.
     `base` is the protocol, `tokens` what is added to it. `send` and `recv` are the monitors at
     either end. `log` is the value of `+log`: such a connection gets what a port receives, not what
     it writes.
@@ -65,6 +66,7 @@ class CarrierSpec:
     text: str
     whole: str
     own: bool = field(default=False, compare=False)
+    chosen: bool = field(default=False, compare=False)
 
     def value(self, key: str) -> str | None:
         """The value of the first `+key.value`, or None.
@@ -82,7 +84,7 @@ class CarrierSpec:
 
     def plus(self, *tokens: str) -> CarrierSpec:
         """The same carrier with something more added to it."""
-        return replace(parse_carrier("+".join((self.whole, *tokens))), own=self.own)
+        return self._as("+".join((self.whole, *tokens)))
 
     @property
     def in_tls(self) -> bool:
@@ -95,7 +97,10 @@ class CarrierSpec:
         >>> parse_carrier("http+tls").over("mjpeg").text
         'mjpeg+tls'
         """
-        return replace(parse_carrier("+".join((base, *self.tokens))), own=self.own)
+        return self._as("+".join((base, *self.tokens)))
+
+    def _as(self, text: str) -> CarrierSpec:
+        return replace(parse_carrier(text), own=self.own, chosen=self.chosen)
 
     def __str__(self) -> str:
         return self.text

@@ -32,6 +32,7 @@ import yarpy
 from yarpy import registry
 from yarpy.carriers import zmtp
 from yarpy.carriers.base import Carrier
+from yarpy.carriers.memory import Memory
 from yarpy.carriers.mqtt import Mqtt, Reader
 from yarpy.carriers.payload import message_of, payload_of
 from yarpy.carriers.ros_header import LENGTH, encode_header
@@ -60,9 +61,10 @@ from yarpy.ros.bag_reader import BagReader
 from yarpy.ros.bag_writer import BagWriter
 from yarpy.route import UNDECLARED, Declared, Route, parse_carrier
 from yarpy.testing import End
-from yarpy.testing.drive import Stalled
+from yarpy.testing.drive import Shelf, Stalled
 from yarpy.wire.datagram import Assembler
 from yarpy.wire.message import DATA, Answer, Message, Packet
+from yarpy.wire.shared_stream import SharedStream
 from yarpy.wire.stream import DatagramStream
 
 try:
@@ -142,6 +144,25 @@ def _datagrams(data: bytes) -> None:
     assembler = Assembler(LIMIT)
     for at in range(0, len(data), 64):
         assembler.add(data[at : at + 64])
+
+
+def _references(data: bytes) -> None:
+    """What comes beside a piece of shared memory."""
+    end, carrier = End(piece=1 + len(data) % 97), Memory(Route("/w", "/r", "memory"))
+    end.stream = SharedStream(Shelf([bytes(20000)]), LIMIT)
+
+    def read() -> Any:
+        while True:
+            message = yield from carrier.decode(end.stream)
+            with suppress(DecodeError):
+                _ = message.value
+
+    end.begin(read())
+    end.feed(data)
+
+
+_MEETING = b"YARPYMEM\x03\0\0\0/w\0" + bytes(8)
+_REFERENCE = struct.pack("<4sc3x3I2Q", b"\0MEM", b"D", 0, 1, 5, 0, 20000) + b"1 0.5"
 
 
 def _accept(declared: Declared = UNDECLARED) -> Callable[[bytes], None]:
@@ -472,8 +493,11 @@ TARGETS = {
         lambda data: respond(data, str), (b"NAME_SERVER query /root", *_MESSAGES[:9])
     ),
     "datagrams": Target(_datagrams, _said("a")[:40]),
+    "references": Target(_references, (_REFERENCE, *_said("a")[:40])),
     "accepting": Target(
-        _accept(), (*_said("a"), _SUBSCRIBER, *_SOCKETS, *_CLIENTS), refusals=(YarpError, Stalled)
+        _accept(),
+        (*_said("a"), _SUBSCRIBER, *_SOCKETS, *_CLIENTS, _MEETING),
+        refusals=(YarpError, Stalled),
     ),
     "accepting tcpros": Target(
         _accept(Declared("/node", "/topic", "std_msgs/String", String)),
@@ -516,7 +540,7 @@ TARGETS = {
         for name in (
             *("tcp", "fast_tcp", "text", "text_ack", "http", "xmlrpc", "mjpeg", "websocket"),
             *("tcpros", "rossrv"),
-            *("unix_stream", "udp", "mcast", "name_ser"),
+            *("unix_stream", "memory", "udp", "mcast", "name_ser"),
         )
     },
 }

@@ -108,7 +108,7 @@ class BasePort(Generic[P]):
     # -- connections ------------------------------------------------------------------------------
 
     async def connect(
-        self, target: str, carrier: str = "tcp", timeout: float | None = None
+        self, target: str, carrier: str = "", timeout: float | None = None
     ) -> PortConnection:
         """Send what this port writes to `target`; see `yarpy.Port.connect`."""
         return await asyncio.to_thread(self.port.connect, target, carrier, timeout)
@@ -117,7 +117,7 @@ class BasePort(Generic[P]):
         """End the connections to `target`; whether there were any."""
         return await asyncio.to_thread(self.port.disconnect, target)
 
-    async def listen_to(self, source: str, carrier: str = "tcp") -> None:
+    async def listen_to(self, source: str, carrier: str = "") -> None:
         """Ask the port `source` to send here; see `yarpy.Port.listen_to`."""
         await asyncio.to_thread(self.port.listen_to, source, carrier)
 

@@ -84,4 +84,4 @@ def _registered(port: BasePort) -> bool:
 def _carrier(text: str) -> str:
     from yarpy.contact import parse_contact
 
-    return parse_contact(text).carrier or "tcp"
+    return parse_contact(text).carrier

@@ -151,6 +151,9 @@ class Driver:
                 self.bytes_out += len(piece)
             for piece in left:
                 self.bytes_out -= len(piece)
+            if self.stream.aside:
+                self.bytes_out += self.stream.aside
+                self.stream.aside = 0
         if left:
             self.stream.put_back(left)
             raise Timeout("the peer does not read what is sent")
@@ -325,6 +328,10 @@ class Driver:
                 return open_mcast(effect.listen, local, remote, effect.group, effect.port)
             if effect.kind == "unix":
                 return open_unix(effect.listen, local, remote)
+            if effect.kind == "memory":
+                from yarpy.transports.memory import open_memory
+
+                return open_memory(effect.listen, effect.port, effect.group)
             if effect.kind == "inproc":
                 return open_inproc(effect.listen, local, remote)
         raise LocalProtocolError(f"{effect} is not something a connection can do")

@@ -156,7 +156,8 @@ class Receiver:
         message.source = self.route.source
         counter = self.counter
         counter.count(time.perf_counter())
-        counter.bytes = self.driver.bytes_in
+        driver = self.driver
+        counter.bytes = driver.bytes_in + driver.stream.came_aside
 
     def _allow(self, seconds: float | None) -> None:
         """A message has begun and must end within `seconds`; None: none has begun."""

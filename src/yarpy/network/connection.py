@@ -28,6 +28,7 @@ from yarpy.link.handshake import find_carrier
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
 from yarpy.port import identity, probe, refusal
+from yarpy.port.choosing import offers_memory
 from yarpy.port.connecting import unknown
 from yarpy.route import CarrierSpec, masked, parse_carrier
 
@@ -96,7 +97,7 @@ class Pairing:
         self.source, self.target = from_, to
         if self.topical:
             self.spec = parse_carrier(carrier or "tcp")
-            self.ask, self.peer, self.pull = "", "", False
+            self.ask, self.peer, self.pull, self.open = "", "", False, False
             return
         here = from_ if from_.reachable else find(from_.name, names)
         there = to if to.reachable else find(to.name, names)
@@ -106,6 +107,8 @@ class Pairing:
                 constraint = contact.carrier
         given = carrier or _written(target) or _written(source)
         self.spec = parse_carrier(given or constraint or "tcp")
+        # Which carrier is then for the source to say.
+        self.open = not (given or constraint or to.reachable)
         if given and constraint:
             fixed = parse_carrier(constraint)
             if self.spec.base != fixed.base:
@@ -266,10 +269,16 @@ def _join(
     pairing.confirm(names or DEFAULT.current())
     active = pairing.source if pairing.pull else pairing.target
     address = f"/{active.address}{active.name}" if active.reachable else active.name
-    reply = pairing.admin(Vocab("add"), f"{pairing.spec.whole}:/{address}")
+    over, spec = f"{pairing.spec.whole}:/", str(pairing.spec)
+    chooses = pairing.open and offers_memory(pairing.here, names or DEFAULT.current())
+    reply = pairing.admin(Vocab("add"), address if chooses else over + address)
     text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
     if reply and reply[0] == 0:
-        return str(pairing.spec), text
+        if chooses:  # its answer names what is not tcp
+            before, to, told = text.rpartition(" to ")
+            spec = parse_contact(told).carrier or spec
+            text = text if told != address else before + to + over + told
+        return spec, text
     way = f'"{masked(source)}" -> "{masked(target)}" over {pairing.spec}'
     error = refusal.error(text, way)
     if isinstance(error, LinkClosed):

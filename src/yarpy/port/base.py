@@ -70,10 +70,11 @@ class BasePort:
         return self._hub.snapshot()
 
     def connect(
-        self, target: str, carrier: str = "tcp", timeout: float | None = None
+        self, target: str, carrier: str = "", timeout: float | None = None
     ) -> PortConnection:
         """Send what this port writes to `target` (`/name`, `/host:port`) over `carrier`; with a
-        carrier by which the reader dials, such as mjpeg, read from it. Returns the connection.
+        carrier by which the reader dials, such as mjpeg, read from it. Without one it is `memory`
+        to another program of yarpy on this computer, else tcp. Returns the connection.
 
         With `timeout`, wait that many seconds for a port that is not there yet. Raises UnknownName,
         UnknownPlugin (a wrong carrier), LinkClosed (nobody is there), AccessRefused, NotAllowed
@@ -94,9 +95,9 @@ class BasePort:
         """End what `connect` with this target has made; whether there was anything."""
         return disconnecting.disconnect(self._hub, target)
 
-    def listen_to(self, source: str, carrier: str = "tcp") -> None:
-        """Ask the port `source` to send here. Raises UnknownName, LinkClosed,
-        NotAllowed."""
+    def listen_to(self, source: str, carrier: str = "") -> None:
+        """Ask the port `source` to send here; for `carrier` see `connect`. Raises UnknownName,
+        LinkClosed, NotAllowed."""
         connecting.subscribe(self._hub, source, carrier)
 
     def wait_for_outputs(self, count: int = 1, timeout: float | None = None) -> bool:

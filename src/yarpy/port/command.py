@@ -68,6 +68,8 @@ def connect(hub: Hub, text: str) -> tuple[bool, str]:
         line = refusal.line(error, shown)
         log.warning("%s: %s", hub.name, line if str(error) in line else f"{line}: {error}")
         return False, line
+    if spec.chosen and spec.base != "tcp":
+        shown = f"{spec}:/{shown}"
     line = f"Added connection from {hub.name} to {shown}"
     if spec.log is not None:
         line += f"; {hub.name} will forward messages and replies (if any) to {wanted.label}"

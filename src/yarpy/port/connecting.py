@@ -22,6 +22,7 @@ from yarpy.errors import (
     LocalProtocolError,
     LoginRefused,
     NotAllowed,
+    RemoteProtocolError,
     Timeout,
     UnknownName,
     UnknownPlugin,
@@ -34,6 +35,7 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.names.address import is_local, is_loopback
 from yarpy.port import identity, probe, refusal
+from yarpy.port.choosing import choose, instead
 from yarpy.port.disconnecting import close_output
 from yarpy.port.hub import Hub
 from yarpy.route import CarrierSpec, Route, masked, parse_carrier
@@ -153,10 +155,12 @@ def dial(
     Raises UnknownName, WrongPort, NoNameServer, UnknownPlugin, NotAllowed, LinkClosed,
     LoginRefused, LocalProtocolError, RemoteProtocolError, PortClosed.
     """
-    spec = replace(parse_carrier(wanted.carrier or "tcp"), own=own)
+    spec = replace(parse_carrier(wanted.carrier), own=own)
     contact = hub.registration.locate(wanted)
     if contact is None:
         raise UnknownName(f'no port "{wanted.name}" is registered')
+    if not wanted.carrier:
+        spec = choose(contact, hub.service(), own)
     if hub.mailbox.blocks and contact.port == hub.port and is_local(contact.host):
         raise NotAllowed(
             f'"{hub.name}" cannot be connected to itself: a write waits until it is read, and both '
@@ -179,7 +183,7 @@ def dial(
                 if old.route.target == target:
                     close_output(hub, old)
         _check(hub, kind, spec)
-        open_output(hub, contact, target, spec, lost, patience)
+        spec = open_output(hub, contact, target, spec, lost, patience)
         hub.crew.reconnect.give_up(hub, target)  # one that broke before is replaced
     return spec
 
@@ -214,9 +218,28 @@ def open_output(
     spec: CarrierSpec,
     lost: Route | None = None,
     timeout: float | None = None,
-) -> None:
+) -> CarrierSpec:
     """Dial `contact` and take the connection in; `lost` is the one that it takes the place of,
-    `timeout` the seconds for which its listener may be silent then. Raises as `dial`."""
+    `timeout` the seconds for which its listener may be silent then. What it goes over in the end.
+    Raises as `dial`."""
+    other = instead(spec)
+    try:
+        return _open_output(hub, contact, target, spec, lost, timeout)
+    except (LinkClosed, LocalProtocolError, RemoteProtocolError):
+        if other is None:
+            raise
+    return _open_output(hub, contact, target, other, lost, timeout)
+
+
+def _open_output(
+    hub: Hub,
+    contact: Contact,
+    target: str,
+    spec: CarrierSpec,
+    lost: Route | None,
+    timeout: float | None,
+) -> CarrierSpec:
+    """As `open_output`, over `spec` alone."""
     route = Route(hub.name, target, spec, contact.port, declared=hub.registration.declared)
     try:
         chain = hub.monitoring.outgoing(route)
@@ -241,7 +264,7 @@ def open_output(
             source = Inbound(hub, driver, speaker)
             hub.take_input(source)
             threading.Thread(target=hub.serve_input, args=(source,), daemon=True).start()
-            return
+            return route.spec
         if speaker.broadcast or spec.recv:
             _wait_for_member(hub, contact, speaker.name)
         link = Outbound(driver, speaker)
@@ -252,6 +275,7 @@ def open_output(
                 f'"{target}" hung up: its log tells what is wrong with {monitors} there'
             )
         hub.add_output_link(link)
+        return route.spec
     except (YarpError, OSError) as error:
         if chain is not None:
             chain.close()

@@ -25,6 +25,7 @@ from yarpy.link.handshake import find_carrier
 from yarpy.link.outbound import Outbound
 from yarpy.log import logger
 from yarpy.port import connecting, disconnecting, identity, probe
+from yarpy.port.choosing import MEMORY, choose
 from yarpy.port.dialling import Attempts
 from yarpy.port.hub import Hub
 from yarpy.port.keepalive import Keepalive, Link
@@ -262,7 +263,9 @@ class Reconnector:
             return True
         if route.spec.log is not None:
             return True
-        probe.ask(contact, [Vocab("add"), f"{route.spec.whole}:/{hub.name}"], secret_=hub.key)
+        # What a sender has chosen by itself, it chooses again.
+        way = "" if route.spec.base == MEMORY else f"{route.spec.whole}:/"
+        probe.ask(contact, [Vocab("add"), way + hub.name], secret_=hub.key)
         return True
 
     def _dial_again(self, item: _Lost, peer: str) -> bool:
@@ -277,7 +280,10 @@ class Reconnector:
             if contact is None:
                 return False
             item.timeout, timeout = min(2 * item.timeout, identity.PATIENCE), item.timeout
-            connecting.open_output(hub, contact, peer, route.spec, route, timeout)
+            spec = route.spec
+            if spec.chosen:  # what was best need not be so with what is there now
+                spec = choose(contact, hub.service(), spec.own)
+            connecting.open_output(hub, contact, peer, spec, route, timeout)
             if item in self._lost:
                 way = "from" if item.incoming else "to"
                 log.info("%s: the connection %s %s is back", hub.name, way, peer)

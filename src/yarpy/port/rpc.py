@@ -230,7 +230,7 @@ class RpcClient(BasePort):
         last = self._last
         target, carrier = self._target, self._carrier
         if last is not None:
-            target, carrier = last.target, last.spec.whole
+            target, carrier = last.target, "" if last.spec.chosen else last.spec.whole
         if target:
             connecting.connect(self._hub, target, carrier, None, last, patience)
             for link in self._hub.outputs:

@@ -12,10 +12,12 @@ Rules: pure - no sockets, threads or clock. What a carrier asks of its driver (`
 from __future__ import annotations
 
 from collections.abc import Iterable
+from types import SimpleNamespace
 from typing import Any
 
 from yarpy import registry
 from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.errors import RemoteProtocolError
 from yarpy.link.handshake import recognise
 from yarpy.route import Route
 from yarpy.wire.effects import Claim, Flush, Group, May, Open, Show, Switch, Within
@@ -40,6 +42,34 @@ class Handle:
         self.port = UDP_PORT if effect.listen and effect.kind == "udp" else effect.port
 
 
+class Shelf:
+    """A simulated piece of shared memory: a parcel is the number of its bytes in a list."""
+
+    port = 1
+
+    def __init__(self, parcels: list[bytes]) -> None:
+        self.key = self
+        self._parcels = parcels
+
+    def place(self, blocks: Iterable[Buffer], size: int) -> SimpleNamespace:
+        """Keep a payload."""
+        self._parcels.append(b"".join(blocks))
+        return SimpleNamespace(slot=len(self._parcels) - 1, generation=1, offset=0, size=size)
+
+    def lend(self, parcel: object) -> bool:
+        """The peer may have it."""
+        return True
+
+    def take(self, slot: int, generation: int, offset: int, size: int) -> memoryview:
+        """A payload that was kept. Raises RemoteProtocolError for any other."""
+        if slot >= len(self._parcels) or offset + size > len(self._parcels[slot]):
+            raise RemoteProtocolError("a payload that lies nowhere")
+        return memoryview(self._parcels[slot])[offset : offset + size]
+
+    def close(self) -> None:
+        """Nothing to release."""
+
+
 class End:
     """One side of a connection: a stream, and the steps running on it.
 
@@ -52,6 +82,7 @@ class End:
         self.stream = ByteStream(limit)
         self.outbox: list[Any] = []
         self.opened: list[Open] = []
+        self.parcels: list[bytes] = []  # what lies in memory that it shares
         self.done = True
         self.result: Any = None
         self._steps: Steps[Any] | None = None
@@ -123,7 +154,7 @@ class End:
             return GROUP
         if isinstance(effect, Open):
             self.opened.append(effect)
-            return Handle(effect)
+            return Shelf(self.parcels) if effect.kind == "memory" else Handle(effect)
         if isinstance(effect, Show | Within | May | Claim | Flush):
             return None  # no pages, all the time in the world, and no rules
         assert isinstance(effect, Switch)
@@ -153,6 +184,7 @@ class Dialogue:
         self.target = target
         self.initiator: End = End(piece, limit)
         self.acceptor: End = End(piece, limit)
+        self.acceptor.parcels = self.initiator.parcels
         self.initiating = carrier(Route(source, target, carrier.name + modifiers, TCP_PORT))
         self.accepting: Carrier | None = None
         self.traffic: list[tuple[str, Any]] = []

@@ -105,10 +105,10 @@ class Packet:
         self._blocks: tuple[Buffer, ...] | None = None
         self._line: bytes | None = None
         self.framed: list[Buffer] | None = None  # kept by the framing that several carriers share
-        self._forms: dict[object, tuple[Buffer, ...]] | None = None
+        self._forms: dict[object, Any] | None = None
 
     @property
-    def forms(self) -> dict[object, tuple[Buffer, ...]]:
+    def forms(self) -> dict[object, Any]:
         """A cache for carriers: what each made of the packet, under a key of its own."""
         if self._forms is None:
             self._forms = {}

@@ -81,7 +81,9 @@ class ByteStream:
         "_proven",
         "_spare",
         "_view",
+        "aside",
         "buffer",
+        "came_aside",
         "ending",
         "head",
         "limit",
@@ -96,6 +98,8 @@ class ByteStream:
         self.tail = 0
         self.limit = limit
         self.paused = False
+        self.aside = 0  # bytes that go to the peer in another way, behind what was written here
+        self.came_aside = 0  # bytes that have come in another way
         #: what finds the end of the reply that is expected, where it is no Bottle
         self.ending: Callable[[int], Walk] | None = None
         self._eof = False

@@ -52,7 +52,7 @@ def test_prints_what_arrives(cli, writer):
     )
     lines = process.stderr.splitlines()
     assert lines[0].startswith("[INFO] Port /read/a active at tcp://127.0.0.1:")
-    assert lines[1] == "[INFO] Receiving input from /read/writer to /read/a using tcp"
+    assert lines[1] == "[INFO] Receiving input from /read/writer to /read/a using memory"
     assert "Interrupting..." in lines
 
 

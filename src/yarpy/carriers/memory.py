@@ -1,0 +1,169 @@
+"""memory: large payloads lie in memory that both programs see; everything else goes through a
+Unix socket.
+
+    greeting    YARPYMEM, the sender's specifier, eight bytes: where the sender can be met
+    answer      a YARP number: the port's; 0: "I cannot see you", and the connection goes on as tcp
+    messages    as over tcp, but instead of a payload of 16 KiB or more a reference to it:
+                NUL M E M | D or d, three NULs | int32 slot, generation, length of the envelope |
+                int64 offset, length of the payload | the envelope
+
+Rules: between two programs of yarpy of one user on one computer. Every message is acknowledged. One
+copy of a payload is made for all readers of a port, and none at a reader. What finds no room there
+goes through the socket, as answers do.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Final
+
+from yarpy.carriers.base import MAGIC_SIZE, Indexed
+from yarpy.carriers.tcp import Tcp
+from yarpy.errors import LocalProtocolError, RemoteProtocolError
+from yarpy.route import parse_carrier
+from yarpy.wire import framing
+from yarpy.wire.effects import Open, Switch
+from yarpy.wire.message import Message, Packet
+from yarpy.wire.shared_stream import Parcel, SharedMemory, SharedStream
+from yarpy.wire.steps import Steps
+from yarpy.wire.stream import LARGE, ByteStream
+
+NAME: Final = "memory"
+_PLACE: Final = struct.Struct("<Q")
+_REFERENCE: Final = struct.Struct("<4sc3x3I2Q")
+_MARK: Final = b"\0MEM"  # no other message begins with a NUL
+_KEYS: Final = (b"D", b"d")
+
+
+class Memory(Indexed):
+    """tcp's messages on a Unix socket, and references to shared memory."""
+
+    name = NAME
+    magic = b"YARPYMEM"
+    acks = True
+    _memory: SharedMemory | None = None  # what we send from
+
+    @classmethod
+    def recognises(cls, first: bytes) -> int:
+        return MAGIC_SIZE if first == cls.magic else 0
+
+    # -- beginning --------------------------------------------------------------------------------
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        handle = yield Open("memory", listen=False, group=self.route.source)
+        try:
+            where = _PLACE.pack(handle.port)
+            stream.write(self.magic + framing.encode_name(self.route.specifier) + where)
+            answer = yield from framing.read_answer(stream)
+            seen = framing.parse_number(answer)
+            if seen < 0:
+                raise RemoteProtocolError(f"expected a number, got {answer!r}")
+            if not seen:
+                yield from self._go_on_as_tcp(stream)
+        except BaseException:
+            handle.close()
+            raise
+        if not seen:
+            handle.close()
+            return
+        yield Switch(handle, SharedStream(handle, stream.limit))
+        self._memory = handle
+
+    def _go_on_as_tcp(self, stream: ByteStream) -> Steps[None]:
+        """The peer cannot see our memory: as good, unless just that was asked for."""
+        if self.route.spec.chosen:
+            self.route.spec = self.route.spec.over("tcp")
+            return
+        stream.write(framing.QUIT)
+        yield from stream.read_exact(len(framing.ACK))
+        raise LocalProtocolError(
+            f'"{self.route.target}" shares no memory with this program: it is on another computer, '
+            "in another container, or of another user; use tcp"
+        )
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[Tcp | None]:
+        yield from super().welcome(stream, first)
+        (where,) = _PLACE.unpack((yield from stream.read_exact(_PLACE.size)))
+        handle = yield Open("memory", listen=True, port=where)
+        if handle is None:
+            stream.write(framing.number(0))
+            return _Instead(self.route)
+        stream.write(framing.number(self.route.port))
+        yield Switch(handle, SharedStream(handle, stream.limit))
+        return None
+
+    # -- messages ---------------------------------------------------------------------------------
+
+    def prepare(self, packet: Packet) -> bool:
+        return self._placed(packet) is not None or super().prepare(packet)
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        parcel = self._placed(packet)
+        memory = self._memory
+        if parcel is None or memory is None or not memory.lend(parcel):
+            stream.write(*framing.encode(packet))
+            return
+        envelope = packet.envelope
+        numbers = (parcel.slot, parcel.generation, len(envelope), parcel.offset, parcel.size)
+        stream.write(_REFERENCE.pack(_MARK, packet.key.encode(), *numbers) + envelope)
+        stream.aside += parcel.size
+
+    def _placed(self, packet: Packet) -> Parcel | None:
+        """A large payload in shared memory, put there once for all connections of the port."""
+        memory, framed = self._memory, packet.framed
+        if memory is None or (framed is not None and len(framed) == 1):
+            return None
+        parcel: Parcel | None = packet.forms.get(memory.key)
+        if parcel is None:
+            blocks = packet.blocks
+            size = sum(map(len, blocks))
+            if size < LARGE or len(packet.envelope) > framing.MAX_COMMAND:
+                return None
+            parcel = memory.place(blocks, size)
+            if parcel is not None:
+                packet.forms[memory.key] = parcel
+        return parcel
+
+    def parse(self, stream: ByteStream) -> Message | None:
+        if stream.buffer[stream.head]:
+            return framing.parse_plain(stream)
+        if stream.waiting < _REFERENCE.size:
+            return None
+        mark, key, slot, generation, length, offset, size = _REFERENCE.unpack_from(
+            stream.buffer, stream.head
+        )
+        if mark != _MARK or key not in _KEYS or length > framing.MAX_COMMAND:
+            raise RemoteProtocolError("a reference to shared memory that cannot be read")
+        if size > stream.limit:
+            raise RemoteProtocolError(
+                f"a message of {size} bytes; the limit is {stream.limit} bytes"
+            )
+        end = _REFERENCE.size + length
+        if stream.waiting < end:
+            return None
+        if not isinstance(stream, SharedStream):
+            raise RemoteProtocolError("a reference to memory that is not shared")
+        start = stream.head + _REFERENCE.size
+        envelope = stream.buffer[start : start + length].decode("utf-8", "replace").strip()
+        stream.head += end
+        stream.came_aside += size
+        return Message(key.decode(), stream.memory.take(slot, generation, offset, size), envelope)
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        if not stream.waiting:
+            yield from stream.more(1)
+        if stream.buffer[stream.head]:
+            return (yield from framing.read_message(stream))
+        while (message := self.parse(stream)) is None:
+            yield from stream.more(stream.waiting + 1)
+        return message
+
+
+class _Instead(Tcp):
+    """tcp, for a peer that has said already who it is."""
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        added = self.route.spec.tokens
+        self.route.spec = parse_carrier("+".join(("tcp", *added)))
+        return
+        yield

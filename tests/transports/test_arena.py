@@ -1,0 +1,201 @@
+"""Arena: room for payloads, who still looks at them, and what happens when there is none left."""
+
+from __future__ import annotations
+
+import fcntl
+import gc
+import logging
+import mmap
+import os
+from collections.abc import Iterator
+
+import pytest
+
+from yarpy.errors import LocalProtocolError
+from yarpy.transports import arena as module
+from yarpy.transports.arena import LEDGER, PAGE, Arena, Placed, Reader, arena_of, sealed_memory
+
+pytestmark = pytest.mark.skipif(not module.available(), reason="this system has no such memory")
+
+
+class Peer:
+    """A reader, and its end of the pipe and of the ledger."""
+
+    def __init__(self) -> None:
+        ledger = sealed_memory("test", LEDGER)
+        self.memory = mmap.mmap(ledger, LEDGER)
+        self.ledger = memoryview(self.memory).cast("I")
+        ours, self.pipe = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+        self.reader = Reader(ledger, ours)
+
+    def give_back(self, placed: Placed | tuple[int, int]) -> None:
+        slot, generation = (
+            (placed.slot, placed.generation) if isinstance(placed, Placed) else placed
+        )
+        self.ledger[slot] = generation
+
+    def die(self) -> None:
+        if self.pipe >= 0:
+            os.close(self.pipe)
+            self.pipe = -1
+
+
+@pytest.fixture
+def peer() -> Iterator[Peer]:
+    peer = Peer()
+    yield peer
+    peer.die()
+
+
+def lent(arena: Arena, peer: Peer, size: int = PAGE) -> tuple[int, int]:
+    """A payload that its writer has done with, and the peer has."""
+    placed = arena.place([bytes(size)], size)
+    assert placed is not None
+    assert arena.lend(placed, peer.reader)
+    return placed.slot, placed.generation
+
+
+def test_a_payload_lies_there_in_one_piece() -> None:
+    arena = Arena("/out", 4 * PAGE)
+    placed = arena.place([b"head", bytes(range(256)) * 8], 4 + 2048)
+    assert placed is not None
+    data = os.pread(arena.number, placed.size, placed.offset)
+    assert data == b"head" + bytes(range(256)) * 8
+
+
+def test_large_blocks_too() -> None:
+    arena = Arena("/out", 1 << 20)
+    data = os.urandom(500_000)
+    placed = arena.place([b"head", data], 4 + len(data))
+    assert placed is not None
+    assert os.pread(arena.number, placed.size, placed.offset) == b"head" + data
+
+
+def test_nobody_can_shorten_or_write_it() -> None:
+    arena = Arena("/out", 4 * PAGE)
+    with pytest.raises(OSError):
+        os.ftruncate(arena.number, PAGE)
+    with pytest.raises(OSError):
+        os.ftruncate(arena.number, 8 * PAGE)
+    with pytest.raises(OSError):
+        os.write(arena.number, b"x")
+    with pytest.raises(OSError):
+        fcntl.fcntl(arena.number, module.F_ADD_SEALS, 0x8000)
+    with pytest.raises(OSError):
+        mmap.mmap(arena.number, PAGE)  # for writing
+
+
+def test_room_comes_back_once_the_writer_is_done() -> None:
+    arena = Arena("/out", 2 * PAGE)
+    first = arena.place([bytes(PAGE)], PAGE)
+    second = arena.place([bytes(PAGE)], PAGE)
+    assert first is not None
+    assert second is not None
+    assert (first.offset, second.offset) == (0, PAGE)
+    assert arena.place([b"x"], 1) is None
+    del first
+    gc.collect()
+    third = arena.place([b"x"], 1)
+    assert third is not None
+    assert (third.offset, arena.used) == (0, 2)
+
+
+def test_a_reader_keeps_it_until_it_gives_it_back(peer: Peer) -> None:
+    arena = Arena("/out", 2 * PAGE)
+    held = lent(arena, peer, 2 * PAGE)
+    assert arena.place([b"x"], 1) is None
+    peer.give_back(held)
+    assert arena.place([b"x"], 1) is not None
+
+
+def test_of_several_readers_the_last_counts(peer: Peer) -> None:
+    arena, other = Arena("/out", 2 * PAGE), Peer()
+    placed = arena.place([bytes(2 * PAGE)], 2 * PAGE)
+    assert placed is not None
+    for one in (peer, other):
+        assert arena.lend(placed, one.reader)
+        assert not arena.lend(placed, one.reader)  # it would not know for which of the two
+    peer.give_back(placed)
+    held = placed.slot, placed.generation
+    del placed
+    assert arena.place([b"x"], 1) is None
+    other.give_back(held)
+    assert arena.place([b"x"], 1) is not None
+    other.die()
+
+
+def test_after_the_end_of_a_connection_views_still_count(peer: Peer) -> None:
+    arena = Arena("/out", PAGE)
+    held = lent(arena, peer)
+    peer.reader.ended = True
+    assert arena.used == 1
+    peer.give_back(held)
+    assert arena.used == 0
+
+
+def test_a_reader_that_was_killed_keeps_nothing(peer: Peer) -> None:
+    arena = Arena("/out", PAGE)
+    lent(arena, peer)
+    peer.reader.ended = True
+    assert arena.used == 1
+    peer.die()
+    assert arena.used == 0
+
+
+def test_a_reader_cannot_deceive_us_into_an_error(peer: Peer) -> None:
+    """It harms itself alone: what it looks at changes."""
+    arena = Arena("/out", PAGE)
+    lent(arena, peer)
+    for slot in range(len(peer.ledger)):
+        peer.ledger[slot] = 0xFFFFFFFF
+    assert arena.used == 1
+    os.write(peer.pipe, b"noise")
+    peer.reader.ended = True
+    assert arena.used == 1
+
+
+def test_without_room_it_says_so_once(caplog: pytest.LogCaptureFixture, peer: Peer) -> None:
+    arena = Arena("/out", PAGE)
+    held = lent(arena, peer)
+    with caplog.at_level(logging.WARNING, "yarpy"):
+        for _ in range(3):
+            assert arena.place([b"x"], 1) is None
+        assert arena.place([bytes(2 * PAGE)], 2 * PAGE) is None  # never fits: nobody's fault
+        peer.give_back(held)
+        assert arena.place([b"x"], 1) is not None
+    texts = [record.getMessage() for record in caplog.records]
+    assert len(texts) == 2
+    assert "sent as a copy" in texts[0]
+    assert "fit again" in texts[1]
+
+
+def test_slots_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "SLOTS", 3)
+    arena = Arena("/out", 100 * PAGE)
+    kept = [arena.place([b"x"], 1) for _ in range(4)]
+    assert [placed is not None for placed in kept] == [True, True, True, False]
+
+
+def test_a_system_without_memory_to_give(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*arguments: object) -> int:
+        raise OSError(28, "No space left on device")
+
+    arena = Arena("/out", 4 * PAGE)
+    assert arena.place([b"x"], 1) is not None
+    monkeypatch.setattr(os, "posix_fallocate", fails)
+    assert arena.place([bytes(PAGE)], PAGE) is not None  # where it has given some before
+    assert arena.place([bytes(PAGE), bytes(PAGE)], 2 * PAGE) is None
+    monkeypatch.setattr(os, "memfd_create", fails)
+    with pytest.raises(LocalProtocolError, match="use the carrier tcp"):
+        Arena("/out", 4 * PAGE)
+
+
+def test_a_port_has_one_arena_for_as_long_as_it_is_used() -> None:
+    one = arena_of("/one")
+    assert arena_of("/one") is one
+    assert arena_of("/two") is not one
+    number = one.number
+    del one
+    gc.collect()
+    with pytest.raises(OSError):
+        os.fstat(number)

@@ -1,0 +1,186 @@
+"""Borrowed: what is looked at, when it is given back, and descriptors that are refused."""
+
+from __future__ import annotations
+
+import gc
+import mmap
+import os
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from yarpy.errors import RemoteProtocolError
+from yarpy.transports.arena import LEDGER, PAGE, Arena, available, sealed_memory
+from yarpy.transports.borrowed import Borrowed
+
+pytestmark = pytest.mark.skipif(not available(), reason="this system has no such memory")
+
+
+class Shown:
+    """An arena as its reader sees it, with what the reader says of it."""
+
+    def __init__(self) -> None:
+        self.arena = Arena("/out", 4 * PAGE)
+        ledger = sealed_memory("test", LEDGER)
+        self.memory = mmap.mmap(ledger, LEDGER)
+        self.ledger = memoryview(self.memory).cast("I")
+        self.pipe, theirs = os.pipe()
+        os.set_blocking(self.pipe, False)
+        self.borrowed: Borrowed | None = Borrowed(os.dup(self.arena.number), ledger, theirs)
+
+    @property
+    def held(self) -> bool:
+        """Whether the reader still has its end of the pipe."""
+        try:
+            return bool(os.read(self.pipe, 1))
+        except BlockingIOError:
+            return True
+
+
+def test_a_payload_is_given_back_with_its_last_view() -> None:
+    shown = Shown()
+    placed = shown.arena.place([bytes(range(100))], 100)
+    assert placed is not None
+    assert shown.borrowed is not None
+    view = shown.borrowed.take(3, 7, placed.offset, 100)
+    assert view == bytes(range(100))
+    assert (view.readonly, view.format, view.ndim) == (True, "B", 1)
+    array = np.frombuffer(view[10:20], np.uint8)
+    shape = np.ndarray((2, 5), np.uint8, view[10:20])
+    del view
+    gc.collect()
+    assert shown.ledger[3] == 0
+    assert not array.flags.writeable
+    with pytest.raises(ValueError):
+        array.flags.writeable = True
+    del array
+    assert shown.ledger[3] == 0
+    del shape
+    assert shown.ledger[3] == 7
+    os.close(shown.pipe)
+
+
+def test_no_copy_is_made() -> None:
+    shown = Shown()
+    placed = shown.arena.place([bytes(100)], 100)
+    assert placed is not None
+    assert shown.borrowed is not None
+    view = shown.borrowed.take(0, 1, placed.offset, 100)
+    shown.arena._view[placed.offset + 5] = 42  # as only a sender that breaks the rules does
+    assert view[5] == 42
+    os.close(shown.pipe)
+
+
+def test_views_outlive_the_connection() -> None:
+    shown = Shown()
+    placed = shown.arena.place([b"still here"], 10)
+    assert placed is not None
+    assert shown.borrowed is not None
+    view = shown.borrowed.take(0, 1, placed.offset, 10)
+    shown.borrowed = None
+    gc.collect()
+    assert shown.held
+    assert bytes(view) == b"still here"
+    del view
+    gc.collect()
+    assert not shown.held
+    os.close(shown.pipe)
+
+
+@pytest.mark.parametrize(
+    ("slot", "offset", "size"),
+    [(256, 0, 1), (0, 4 * PAGE, 1), (0, 0, 4 * PAGE + 1), (0, 1 << 63, 8), (0, 8, (1 << 64) - 4)],
+)
+def test_places_outside(slot: int, offset: int, size: int) -> None:
+    shown = Shown()
+    assert shown.borrowed is not None
+    with pytest.raises(RemoteProtocolError):
+        shown.borrowed.take(slot, 1, offset, size)
+    os.close(shown.pipe)
+
+
+def descriptors() -> int:
+    return len(os.listdir("/proc/self/fd"))
+
+
+def refused(file: int, ledger: int, pipe: int, match: str) -> None:
+    """They are refused, and closed."""
+    before = descriptors()
+    with pytest.raises(RemoteProtocolError, match=match):
+        Borrowed(file, ledger, pipe)
+    gc.collect()
+    assert descriptors() == before - 3
+
+
+def ends() -> tuple[int, int]:
+    ours, theirs = os.pipe()
+    os.close(ours)
+    return theirs, sealed_memory("test", LEDGER)
+
+
+def test_a_file_that_can_become_shorter_is_refused() -> None:
+    """Reading behind the end of a file kills a process."""
+    pipe, ledger = ends()
+    unsealed = os.memfd_create("test", os.MFD_ALLOW_SEALING)
+    os.ftruncate(unsealed, PAGE)
+    refused(unsealed, ledger, pipe, "not shared memory")
+
+
+def test_an_ordinary_file_is_refused(tmp_path: Path) -> None:
+    pipe, ledger = ends()
+    (tmp_path / "file").write_bytes(bytes(PAGE))
+    refused(os.open(tmp_path / "file", os.O_RDWR), ledger, pipe, "not shared memory")
+
+
+@pytest.mark.skipif(not hasattr(os, "MFD_HUGETLB"), reason="no huge pages")
+def test_huge_pages_are_refused() -> None:
+    """They may not be there when they are read, which kills a process, too."""
+    pipe, ledger = ends()
+    try:
+        huge = os.memfd_create("test", os.MFD_ALLOW_SEALING | os.MFD_HUGETLB)
+    except OSError:
+        os.close(pipe)
+        os.close(ledger)
+        pytest.skip("this system has no huge pages")
+    import fcntl
+
+    fcntl.fcntl(huge, 1033, 2)
+    refused(huge, ledger, pipe, "not shared memory")
+
+
+@pytest.mark.parametrize("size", [0, LEDGER - 1])
+def test_a_short_ledger_is_refused(size: int) -> None:
+    pipe, ledger = ends()
+    os.close(ledger)
+    refused(sealed_memory("a", PAGE), sealed_memory("b", size), pipe, "not shared memory")
+
+
+def test_something_else_than_a_pipe_is_refused() -> None:
+    pipe, ledger = ends()
+    os.close(pipe)
+    refused(sealed_memory("a", PAGE), ledger, os.open("/dev/null", os.O_WRONLY), "no pipe")
+
+
+def test_a_file_without_bytes_is_refused() -> None:
+    pipe, ledger = ends()
+    refused(sealed_memory("a", 0), ledger, pipe, "cannot be looked at")
+
+
+def test_a_file_beyond_all_measure_is_refused() -> None:
+    pipe, ledger = ends()
+    refused(sealed_memory("a", 1 << 40), ledger, pipe, "at most")
+
+
+def test_a_copy_of_a_view_is_an_ordinary_array() -> None:
+    shown = Shown()
+    placed = shown.arena.place([b"0123456789"], 10)
+    assert placed is not None
+    assert shown.borrowed is not None
+    array = np.frombuffer(shown.borrowed.take(0, 1, placed.offset, 10), np.uint8)
+    copies = [array.copy(), pickle.loads(pickle.dumps(array))]
+    del array
+    assert shown.ledger[0] == 1
+    assert [bytes(copy) for copy in copies] == [b"0123456789"] * 2
+    os.close(shown.pipe)
