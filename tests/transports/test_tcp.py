@@ -13,7 +13,7 @@ from support.port import free_port
 from support.wait import wait_until
 
 from yarpy.errors import AddressError
-from yarpy.transports.tcp import TcpListener, TcpTransport, dial, is_taken
+from yarpy.transports.tcp import NEAR, TcpListener, TcpTransport, dial, is_taken
 
 
 def readable(listener: TcpListener, timeout: float | None) -> bool:
@@ -34,6 +34,29 @@ def test_dial_reaches_a_listener_and_sends_without_delay() -> None:
     near.send([b"hello"])
     room = memoryview(bytearray(10))
     assert far.recv_into(room) == 5
+    for end in (near, far):
+        end.close()
+    listener.close()
+    listener.release()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have other caches")
+@pytest.mark.parametrize("size", [1, 70_000, 8_000_000])
+def test_little_is_under_way_on_one_computer(size: int) -> None:
+    listener = TcpListener()
+    near = dial("127.0.0.1", listener.port)
+    assert readable(listener, 5)
+    far = TcpTransport(listener.accept()[0])
+    for end in (near, far):
+        assert end.sock.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF) == 2 * NEAR
+    sent = bytes(range(256)) * (size // 256) + bytes(size % 256)
+    sender = threading.Thread(target=near.send, args=([sent],))
+    sender.start()
+    room, filled = memoryview(bytearray(size)), 0
+    while filled < size:
+        filled += far.recv_into(room[filled:])
+    sender.join(10)
+    assert room == sent
     for end in (near, far):
         end.close()
     listener.close()
