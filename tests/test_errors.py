@@ -21,6 +21,7 @@ TREE = [
     ("PortClosed", RuntimeError),
     ("LinkClosed", ConnectionError),
     ("Timeout", TimeoutError),
+    ("RemoteError", errors.YarpError),
     ("DecodeError", ValueError),
     ("Truncated", errors.DecodeError),
     ("LocalProtocolError", errors.YarpError),

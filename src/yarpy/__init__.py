@@ -67,6 +67,7 @@ _WHERE = {
     "PortClosed": "yarpy.errors",
     "LinkClosed": "yarpy.errors",
     "Timeout": "yarpy.errors",
+    "RemoteError": "yarpy.errors",
     "DecodeError": "yarpy.errors",
     "Truncated": "yarpy.errors",
     "LocalProtocolError": "yarpy.errors",
@@ -105,6 +106,7 @@ if TYPE_CHECKING:
     from yarpy.errors import NoNameServer as NoNameServer
     from yarpy.errors import NotAllowed as NotAllowed
     from yarpy.errors import PortClosed as PortClosed
+    from yarpy.errors import RemoteError as RemoteError
     from yarpy.errors import RemoteProtocolError as RemoteProtocolError
     from yarpy.errors import Timeout as Timeout
     from yarpy.errors import Truncated as Truncated
@@ -142,7 +144,7 @@ if TYPE_CHECKING:
 def __getattr__(name: str) -> Any:
     module = _WHERE.get(name)
     if module is None:
-        if name in ("aio", "devices", "idl", "ros"):
+        if name in ("aio", "devices", "idl", "ros", "wrap"):
             from importlib import import_module
 
             return import_module(f"yarpy.{name}")

@@ -11,6 +11,7 @@
     |-- PortClosed (RuntimeError)        the port was closed or interrupted meanwhile
     |-- LinkClosed (ConnectionError)     the other side of a connection went away
     |-- Timeout (TimeoutError)           nothing came in the time given
+    |-- RemoteError                      a method of another program raised an exception
     |-- DecodeError (ValueError)         bytes or text that are not what they claim to be
     |   `-- Truncated                    ... because they end too early
     |-- LocalProtocolError               we asked for the impossible (a reply where none can go)
@@ -67,6 +68,15 @@ class LinkClosed(YarpError, ConnectionError):
 
 class Timeout(YarpError, TimeoutError):
     """Nothing came in the time given."""
+
+
+class RemoteError(YarpError):
+    """A method of another program raised an exception: `type` is its name, `text` what it said."""
+
+    def __init__(self, text: str, type_: str = "") -> None:
+        super().__init__(f"{type_}: {text}" if type_ else text)
+        self.type = type_
+        self.text = text
 
 
 class DecodeError(YarpError, ValueError):

@@ -1,9 +1,9 @@
 """Name -> plug-in: the one place where carriers, types, monitors and commands are looked up.
 
 Rules: our plug-ins and third-party ones come the same way, from packaging entry points (groups
-`yarpy.carriers`, `yarpy.types`, `yarpy.monitors`, `yarpy.commands`, `yarpy.findings`). Nothing
-registers itself by being imported. A lookup loads only what it needs; a plug-in that fails to load
-is an error that names its distribution.
+`yarpy.carriers`, `yarpy.types`, `yarpy.monitors`, `yarpy.commands`, `yarpy.findings`,
+`yarpy.middlewares`). Nothing registers itself by being imported. A lookup loads only what it needs;
+a plug-in that fails to load is an error that names its distribution.
 """
 
 from __future__ import annotations
@@ -70,6 +70,10 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
             *("server", "name", "address", "program", "connection", "flowing", "monitor"),
             *("carrier", "content", "dialect", "priority", "kernel"),
         )
+    },
+    # What methods are decorated with (`yarpy.wrap`).
+    "middlewares": {
+        "yarp": "yarpy.wrap.middlewares.yarp:Yarp",
     },
     # What ports may be part of beside their connections; it has ports of its own, too.
     "graphs": {"ros": "yarpy.ros.part:part_of"},
@@ -182,3 +186,4 @@ commands: Final = Registry("commands")
 findings: Final = Registry("findings")
 graphs: Final = Registry("graphs")
 clients: Final = Registry("clients")
+middlewares: Final = Registry("middlewares")

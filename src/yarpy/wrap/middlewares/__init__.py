@@ -1,0 +1,2 @@
+"""The middlewares that come with yarpy; those of other packages have the entry point group
+`yarpy.middlewares`."""

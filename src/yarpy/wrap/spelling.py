@@ -1,0 +1,151 @@
+"""Values as messages of YARP, and messages of YARP as values.
+
+Rules: what YARP brings back equal is sent in YARP's own types. Anything else is a frame, as the
+Bottle `yarpy/1 header blob ...`. A reader tells the two, and Wrapyfi's texts, by the bytes.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.jpeg import encode as to_jpeg
+from yarpy.data.value import Vocab
+from yarpy.errors import DecodeError
+from yarpy.wire.message import Message
+from yarpy.wrap import frame
+from yarpy.wrap.middleware import Failure, Item, Received
+from yarpy.wrap.shape import NOT_NATIVE, Picture, Scalar, Shape, survives
+from yarpy.wrap.tree import Jpeg, from_text, to_text
+
+WORD: Final = "yarpy/1"
+_WORD: Final = WORD.encode()
+
+
+def native(item: Item) -> Any:
+    """What a port writes for an item. Raises TypeError, ValueError for what cannot be sent."""
+    jpeg = jpeg_of(item)
+    if jpeg is not None:
+        return bottle(frame.Frame(jpeg, item.count, item.time, item.source))
+    found = item.shape.native(item.plain)
+    return framed(item) if found is NOT_NATIVE else found
+
+
+def framed(item: Item) -> Any:
+    """The frame of an item as a Bottle."""
+    return bottle(frame.Frame(jpeg_of(item) or item.plain, item.count, item.time, item.source))
+
+
+def bottle(found: frame.Frame) -> list[Any]:
+    """A frame as a Bottle."""
+    header, *blocks = frame.to_parts(found)
+    return [WORD, bytes(header).decode(), *blocks]
+
+
+def wrapyfi(item: Item) -> Any:
+    """What Wrapyfi sends: pictures as they are, everything else as a list of one text."""
+    if isinstance(item.shape, Picture):
+        return native(item)
+    return [to_text(item.plain)]
+
+
+FORMS: Final = {"native": native, "frame": framed, "wrapyfi": wrapyfi}
+
+
+def jpeg_of(item: Item) -> Jpeg | None:
+    """The JPEG of an item whose hint asks for one."""
+    shape = item.shape
+    if not isinstance(shape, Picture) or shape.image.jpeg is None:
+        return None
+    found: Jpeg = item.form("jpeg", _jpeg)
+    return found
+
+
+def _jpeg(item: Item) -> Jpeg:
+    assert isinstance(item.shape, Picture) and item.shape.image.jpeg is not None
+    return Jpeg(to_jpeg(item.plain, item.shape.image.jpeg))
+
+
+# ------------------------------------------------------------------------------------ receiving
+
+
+def frame_of(message: Message) -> frame.Frame | None:
+    """The frame in a message, None if it is something else. Raises DecodeError."""
+    if message.spelling == "binary":
+        data = message.payload
+        if bytes(data[16:23]) != _WORD and bytes(data[12:19]) != _WORD:
+            return None
+    value = message.value
+    if not isinstance(value, (list, tuple)) or len(value) < 2 or value[0] != WORD:
+        return None
+    if not isinstance(value[1], str):
+        raise DecodeError("the header of the frame is no text")
+    blocks = value[2:]
+    if not all(isinstance(block, (bytes, bytearray, memoryview)) for block in blocks):
+        raise DecodeError("what follows the header of the frame is no blob")
+    return frame.from_parts([value[1].encode("utf-8", "surrogateescape"), *blocks])
+
+
+def received(message: Message, shape: Shape) -> Received:
+    """A message as the value that `shape` says. Raises DecodeError."""
+    found = frame_of(message)
+    if found is not None:
+        return Received(
+            shape.load(found.value), found.count, found.time, found.source or message.source
+        )
+    stamp = message.stamp
+    count, time = (stamp.count, stamp.time) if stamp is not None else (None, None)
+    return Received(_native(message, shape), count, time, message.source)
+
+
+def _native(message: Message, shape: Shape) -> Any:
+    text = text_of(message)
+    if text is not None and (text[:1] == '"' or not _is_text(shape)):
+        try:
+            return shape.load(from_text(text))
+        except DecodeError:
+            pass  # not one of Wrapyfi's
+    return shape.load(shape.read(message))
+
+
+def _is_text(shape: Shape) -> bool:
+    return isinstance(shape, Scalar) and shape.kind is str
+
+
+def text_of(message: Message) -> str | None:
+    """The only element of a list, if that is a text, as Wrapyfi sends it. Texts by themselves, and
+    the lists of `native`, are spelled otherwise."""
+    if message.spelling != "binary" or bytes(message.payload[:8]) != _ONE_TEXT:
+        return None
+    found: str = message.as_(str)
+    return found
+
+
+_ONE_TEXT: Final = (256 + 4).to_bytes(4, "little") + (1).to_bytes(4, "little")
+
+
+# ------------------------------------------------------------------------------------ questions
+
+
+def question(name: str, args: list[Any], kwargs: dict[str, Any]) -> list[Any]:
+    """The question of a client: `look 1.0 fast`, as any program may ask; a frame of the arguments
+    if YARP has no types for them."""
+    if not kwargs and all(map(survives, args)):
+        return [name, *args]
+    return bottle(frame.Frame([args, kwargs]))
+
+
+def failure(found: Failure) -> Bottle:
+    """How a server of YARP says that something went wrong."""
+    return Bottle([Vocab("fail"), f"{found.type}: {found.text}"])
+
+
+def failure_of(message: Message) -> Failure | None:
+    """The failure that an answer tells of."""
+    value = message.value
+    if not isinstance(value, list) or len(value) < 2 or not isinstance(value[0], Vocab):
+        return None
+    if value[0] != "fail":
+        return None
+    kind, colon, text = str(value[1]).partition(": ")
+    return Failure(kind, text) if colon and kind.isidentifier() else Failure("", str(value[1]))
