@@ -19,6 +19,11 @@ Brokers of MQTT have topics, which are no ports, and a usual number:
     Contact(carrier='mqtt', name='/robot/arm', host='broker', port=1883)
     >>> parse_contact("mqtt+tls://broker/robot/arm").label
     '/mqtt://broker:8883/robot/arm'
+
+Topics of ROS 2 have no address at all, but perhaps a type:
+
+    >>> parse_contact("ros2://camera/image~sensor_msgs/msg/Image").label
+    '/ros2://camera/image'
 """
 
 from __future__ import annotations
@@ -31,6 +36,8 @@ from yarpy.errors import AddressError
 
 BROKER: Final = "mqtt"
 ZENOH: Final = ".zenoh"  # ends the host of an address inside Zenoh: `a1b2.zenoh:10002`
+#: carriers whose ends have names and no addresses, and that no name service knows
+MEDIA: Final = frozenset({"ros2"})
 
 _HOST_PORT = re.compile(r"^[^:/]+:\d+$")
 _IPV6_PORT = re.compile(r"^\[[0-9A-Fa-f:.%]+\]:\d+$")
@@ -51,6 +58,11 @@ class Contact:
         return bool(self.host) and self.port > 0
 
     @property
+    def placed(self) -> bool:
+        """Whether nobody needs to be asked where it is: it has an address, or needs none."""
+        return self.reachable or is_medium(self.carrier)
+
+    @property
     def address(self) -> str:
         """`host:port`, with brackets around an IPv6 host."""
         host = f"[{self.host}]" if ":" in self.host else self.host
@@ -61,6 +73,8 @@ class Contact:
         """What ports call a connection that was dialled this way: the name, or `/host:port/`."""
         if self.name and self.reachable and is_broker(self.carrier):
             return f"/{BROKER}://{self.address}{self.name}"
+        if is_medium(self.carrier):
+            return f"/{self.carrier.partition('+')[0]}:/{self.name.partition('~')[0]}"
         return self.name or f"/{self.address}/"
 
     def __str__(self) -> str:
@@ -120,6 +134,11 @@ def host_zid(host: str) -> str:
     """The session of Zenoh that an address leads to, "" if it is an ordinary address."""
     zid = host.removesuffix(ZENOH)
     return zid if zid != host else ""
+
+
+def is_medium(carrier: str) -> bool:
+    """Whether what is connected over a carrier has a name and no address."""
+    return carrier.partition("+")[0] in MEDIA
 
 
 def _host_port(text: str) -> tuple[str, int] | None:

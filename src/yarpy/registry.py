@@ -34,6 +34,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "http": "yarpy.carriers.http.carrier:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
         "mqtt": "yarpy.carriers.mqtt:Mqtt",
+        "ros2": "yarpy.carriers.ros2:Ros2",
         "rossrv": "yarpy.carriers.rossrv:RosSrv",
         "tcpros": "yarpy.carriers.tcpros:TcpRos",
         "websocket": "yarpy.carriers.websocket:WebSocket",
@@ -75,6 +76,8 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
     "middlewares": {
         "yarp": "yarpy.wrap.middlewares.yarp:Yarp",
     },
+    # What carriers go over that have no connections of their own.
+    "media": {"ros2": "yarpy.ros2.medium:open_medium"},
     # What ports may be part of beside their connections; it has ports of its own, too.
     "graphs": {"ros": "yarpy.ros.part:part_of"},
     # What typed clients call with: `yarpy.idl` is pure, and so below all ports.
@@ -184,6 +187,7 @@ types: Final = Registry("types")
 monitors: Final = Registry("monitors")
 commands: Final = Registry("commands")
 findings: Final = Registry("findings")
+media: Final = Registry("media")
 graphs: Final = Registry("graphs")
 clients: Final = Registry("clients")
 middlewares: Final = Registry("middlewares")

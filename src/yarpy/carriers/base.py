@@ -83,6 +83,7 @@ class Carrier:
     nameless: ClassVar[bool] = False  # whoever speaks it where we dialled is the peer again
     attentive: ClassVar[bool] = False  # what a reader says to `listen` is to be heard at once
     introduces: ClassVar[bool] = True  # the initiator gives its name and modifiers
+    medium: ClassVar[str] = ""  # over which it goes instead of a connection: objects, not bytes
     connectionless: ClassVar[bool] = False  # the peer must be told of the end in some other way
     broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
     ping: ClassVar[bytes] = b""  # what a peer that we have dialled wants to hear now and then ...

@@ -166,17 +166,24 @@ def envelope_of(body: Buffer) -> str:
     return f"{count & 0x7FFFFFFF} {seconds}.{nanoseconds:09d}"
 
 
+def said_by(envelope: bytes) -> tuple[int, int, int] | None:
+    """Number, seconds and nanoseconds in an envelope, if it is a Stamp."""
+    found = _ENVELOPE.match(envelope)
+    if found is None:
+        return None
+    return max(int(found[1]), 0), int(found[2]), int((found[3] or b"0").ljust(9, b"0"))
+
+
 def _stamped(
     blocks: Blocks, kind: type[Ros], envelope: bytes, now: Callable[[], float] | None
 ) -> Blocks:
     """The message with number and time of its envelope, else with the time that it is."""
     if not has_header(kind):
         return blocks
-    found = _ENVELOPE.match(envelope)
     count, seconds, nanoseconds = _STAMP.unpack_from(blocks[0])
-    if found is not None:
-        count = max(int(found[1]), 0)
-        seconds, nanoseconds = int(found[2]), int((found[3] or b"0").ljust(9, b"0"))
+    said = said_by(envelope)
+    if said is not None:
+        count, seconds, nanoseconds = said
     elif not (seconds or nanoseconds) and now is not None:
         seconds, nanoseconds = divmod(round(now() * 1e9), 1_000_000_000)
     head = _STAMP.pack(count & 0xFFFFFFFF, seconds & 0xFFFFFFFF, nanoseconds)

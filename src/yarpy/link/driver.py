@@ -16,9 +16,9 @@ from yarpy.contact import host_zid
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.admission import Admission
 from yarpy.link.intake import Intake
-from yarpy.transports.base import Transport
+from yarpy.transports.base import ObjectTransport, Transport
 from yarpy.transports.datagram import open_mcast, open_udp
-from yarpy.transports.inproc import InprocTransport, open_inproc
+from yarpy.transports.inproc import open_inproc
 from yarpy.transports.tcp import CONNECT_TIMEOUT, dial
 from yarpy.transports.unix import open_unix
 from yarpy.wire.effects import HEAR, Claim, Group, May, Open, Switch, Within
@@ -49,7 +49,8 @@ class Driver:
         group: Callable[[str], tuple[str, int]] | None = None,
     ) -> None:
         self.transport = transport
-        self.stream = ByteStream(limit)
+        self._objects = transport if isinstance(transport, ObjectTransport) else None
+        self.stream = ByteStream(limit) if self._objects is None else ObjectStream()
         self.admission = Admission()  # what the peer may do with our port
         self.silence = ""  # why nobody can hear what our port writes: it never writes
         self.eager = _CORES > 1  # whether polling may beat sleeping
@@ -58,7 +59,6 @@ class Driver:
         self._penalty = FIRST_PENALTY
         self.bytes_in = 0
         self.bytes_out = 0
-        self._objects: InprocTransport | None = None
         self._group = group
 
     def run(
@@ -154,6 +154,9 @@ class Driver:
             if self.stream.aside:
                 self.bytes_out += self.stream.aside
                 self.stream.aside = 0
+        else:
+            for piece in output:
+                self.bytes_out += getattr(piece, "size", 0)
         if left:
             self.stream.put_back(left)
             raise Timeout("the peer does not read what is sent")
@@ -243,13 +246,14 @@ class Driver:
             self.stream.feed_eof()
         return True
 
-    def _fill_objects(self, pipe: InprocTransport, wait: bool = True) -> None:
+    def _fill_objects(self, pipe: ObjectTransport, wait: bool = True) -> None:
         item = pipe.receive(wait)
         assert isinstance(self.stream, ObjectStream)
         if item is None:
             self.stream.feed_eof()
         else:
             self.stream.feed_object(item[0])
+            self.bytes_in += getattr(item[0], "size", 0)
 
     def _watch(self) -> Callable[[], None]:
         """What to call while the two ends look for each other elsewhere. It raises
@@ -298,7 +302,7 @@ class Driver:
             transport.close()
             self.transport, self.stream = handle, effect.stream
             self.bytes_in = self.bytes_out = 0  # on this one
-            self._objects = handle if isinstance(handle, InprocTransport) else None
+            self._objects = handle if isinstance(handle, ObjectTransport) else None
             return None
         if isinstance(effect, May | Claim):
             return self.judge(effect)

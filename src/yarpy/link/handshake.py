@@ -102,7 +102,7 @@ def greet(
     kind = find_carrier(route.spec)
     deadline = time.monotonic() + timeout
     secure = must_be_tls(contact.host) or route.spec.in_tls
-    if secure and not route.spec.in_tls:
+    if secure and not (route.spec.in_tls or kind.medium):
         route.spec = route.spec.plus(WORD)
     if secure and kind.connectionless:
         raise LocalProtocolError(f"TLS protects no datagrams: take tls, not {kind.name}")
@@ -110,9 +110,12 @@ def greet(
         raise LocalProtocolError(f"{kind.name} does not go through Zenoh: take tcp")
     carrier = kind(route)
     silence = _silence(route)
-    driver = call(contact, timeout, limit, group, secure)
+    if kind.medium:
+        driver = Driver(registry.media.load(kind.medium)(contact, route), limit)
+    else:
+        driver = call(contact, timeout, limit, group, secure)
     try:
-        if key and (not carrier.foreign or _speaks_first(driver)):
+        if key and not kind.medium and (not carrier.foreign or _speaks_first(driver)):
             driver.run(prove_initiator(driver.stream, key), time.monotonic() + PROVING)
         driver.run(carrier.greet(driver.stream), deadline)
         _limit_silence(driver, silence, route)

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from yarpy.contact import Contact, check_name, is_broker, parse_contact
+from yarpy.contact import Contact, check_name, is_broker, is_medium, parse_contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -42,7 +42,7 @@ def query(name: str, names: NameClient | None = None) -> Contact | None:
     Raises NoNameServer.
     """
     contact = parse_contact(name)
-    if contact.reachable:
+    if contact.placed:
         return contact
     return (names or DEFAULT.current()).query(contact.name)
 
@@ -99,8 +99,8 @@ class Pairing:
             self.spec = parse_carrier(carrier or "tcp")
             self.ask, self.peer, self.pull, self.open = "", "", False, False
             return
-        here = from_ if from_.reachable else find(from_.name, names)
-        there = to if to.reachable else find(to.name, names)
+        here = from_ if from_.placed else find(from_.name, names)
+        there = to if to.placed else find(to.name, names)
         constraint = ""
         for contact in (here, there):
             if not _competent(contact):
@@ -114,7 +114,8 @@ class Pairing:
             if self.spec.base != fixed.base:
                 raise LocalProtocolError(f"conflict between {self.spec} and {fixed}")
             self.spec = fixed.plus(*(one for one in self.spec.tokens if one not in fixed.tokens))
-        if is_broker(from_.carrier) and "sub" not in self.spec.tokens:
+        heard = is_broker(from_.carrier) or is_medium(from_.carrier)
+        if heard and "sub" not in self.spec.tokens:
             self.spec = self.spec.plus("sub")
         self.pull = _pulls(self.spec)
         self.here, self.there = here, there
@@ -235,7 +236,7 @@ def _pulls(spec: CarrierSpec) -> bool:
 
 
 _PULLED = frozenset({"h264"})
-_FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http", "zmq", "mqtt"})
+_FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http", "zmq", "mqtt", "ros2"})
 
 
 def join(

@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Final
 
 from yarpy.carriers.base import Carrier
-from yarpy.contact import Contact, parse_contact
+from yarpy.contact import Contact, is_medium, parse_contact
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import (
@@ -78,7 +78,8 @@ def _told(hub: Hub, wanted: Contact, target: str, error: YarpError) -> YarpError
     """The error with what it was about in front."""
     if isinstance(error, UnknownPlugin):
         return error
-    if isinstance(error, UnknownName) and not isinstance(error, WrongPort):
+    told = isinstance(error, WrongPort) or is_medium(wanted.carrier)
+    if isinstance(error, UnknownName) and not told:
         return unknown(target, hub.service())
     if isinstance(error, LoginRefused):
         return LoginRefused(f'"{hub.name}" is not admitted to "{target}": {error}')
@@ -120,6 +121,9 @@ def joined(dest: str, carrier: str) -> str:
 def subscribe(hub: Hub, source: str, carrier: str) -> None:
     """Ask the port `source` to send to `hub`; see BasePort.listen_to."""
     contact = parse_contact(source)
+    if is_medium(contact.carrier):
+        connect(hub, str(replace(contact, carrier=f"{contact.carrier}+sub")), "", None)
+        return
     if not contact.reachable:
         names = hub.service()
         found = names.query(contact.name) if names is not None else None
@@ -166,6 +170,8 @@ def dial(
             f'"{hub.name}" cannot be connected to itself: a write waits until it is read, and both '
             "would be done here; a BufferedPort() or a callback reads meanwhile"
         )
+    if (hub.rpc or not hub.admits_outputs) and is_medium(spec.base):
+        spec = spec.plus("srv")  # questions go to services
     if probe.is_of_ros(contact) and spec.base == "tcp":
         spec = replace(parse_carrier(contact.carrier), own=own)  # it speaks nothing else
     kind = find_carrier(spec)

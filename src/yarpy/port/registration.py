@@ -174,7 +174,7 @@ class Registration:
     def locate(self, wanted: Contact) -> Contact | None:
         """Where a destination is; None if no name service knows. Raises NoNameServer if none
         answers."""
-        if wanted.reachable:
+        if wanted.placed:
             return wanted
         names = self.service() if wanted.name.startswith("/") else None
         return None if names is None else names.query(wanted.name)

@@ -12,7 +12,7 @@ import socket
 import struct
 import sys
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
 from yarpy.wire.stream import Buffer
 
@@ -85,6 +85,66 @@ class Answerable(Transport, Protocol):
 
     def peek(self) -> int:
         """The first byte that comes, left unread; -1 for the end."""
+
+
+class ObjectTransport:
+    """What all transports have in common that carry whole Python objects instead of bytes: within
+    a process, or over a library that has sockets of its own. `send` gets objects, too."""
+
+    port = 0
+
+    @property
+    def local(self) -> Address:
+        return "", 0
+
+    @property
+    def remote(self) -> Address:
+        return "", 0
+
+    def ready(self, look: Callable[[], object] | None = None) -> None:
+        """Nobody else needs to come."""
+
+    def receive(self, wait: bool = True) -> tuple[object] | None:
+        """The next object in a one-element tuple; None is the end. Raises BlockingIOError when a
+        time limit is over, or there is none and nobody is to wait."""
+        raise NotImplementedError
+
+    def send(self, buffers: Sequence[Any]) -> None:
+        raise NotImplementedError
+
+    def recv_into(self, view: memoryview) -> int:
+        raise TypeError("it carries objects, not bytes")
+
+    def try_recv_into(self, view: memoryview) -> int:
+        return -1
+
+    def try_send(self, buffers: Sequence[Any]) -> list[Any]:
+        self.send(buffers)
+        return []
+
+    def wait_writable(self, seconds: float) -> bool:
+        return True
+
+    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
+        raise NotImplementedError
+
+    def set_dscp(self, tos: int) -> None:
+        """No packets of its own, no priority."""
+
+    def tos(self) -> int:
+        return 0
+
+    def ended(self) -> bool:
+        raise NotImplementedError
+
+    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
+        return None
+
+    def interrupt(self) -> None:
+        raise NotImplementedError
+
+    def close(self) -> None:
+        raise NotImplementedError
 
 
 class SocketTransport:

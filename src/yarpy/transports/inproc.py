@@ -13,7 +13,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from yarpy.errors import RemoteProtocolError
-from yarpy.transports.base import Address
+from yarpy.transports.base import Address, ObjectTransport
 
 PATIENCE = 5.0  # seconds for the two ends to meet
 LOOK = 0.01  # seconds between checks whether the other end will still come
@@ -41,18 +41,25 @@ class Meeting:
 MEETING = Meeting()
 
 
-class InprocTransport:
+class InprocTransport(ObjectTransport):
     """One end of a pipe of objects."""
 
     def __init__(self, local: Address, remote: Address) -> None:
-        self.local = local
-        self.remote = remote
-        self.port = 0
+        self._local = local
+        self._remote = remote
         self._inbox: SimpleQueue[object] = SimpleQueue()
         self._peer: InprocTransport | None = None
         self._timeout: float | None = None
         self._ended = False
         self._joined = threading.Event()
+
+    @property
+    def local(self) -> Address:
+        return self._local
+
+    @property
+    def remote(self) -> Address:
+        return self._remote
 
     def join(self, peer: InprocTransport) -> None:
         """Become the two ends of one pipe."""
@@ -76,7 +83,6 @@ class InprocTransport:
             raise
 
     def receive(self, wait: bool = True) -> tuple[object] | None:
-        """The next object in a one-element tuple; () is never sent; None is the end."""
         try:
             item = self._inbox.get(wait, self._timeout)
         except Empty:
@@ -86,40 +92,18 @@ class InprocTransport:
             return None
         return (item,)
 
-    def recv_into(self, view: memoryview) -> int:
-        raise TypeError("an in-process pipe carries objects, not bytes")
-
-    def try_recv_into(self, view: memoryview) -> int:
-        return -1
-
-    def send(self, buffers: Sequence[object]) -> None:
+    def send(self, buffers: Sequence[Any]) -> None:
         peer = self._peer
         if peer is None or peer._ended or self._ended:
             raise BrokenPipeError("the other end is closed")
         for item in buffers:
             peer._inbox.put(item)
 
-    def try_send(self, buffers: Sequence[Any]) -> list[Any]:
-        self.send(buffers)
-        return []
-
-    def wait_writable(self, seconds: float) -> bool:
-        return True
-
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         self._timeout = seconds
 
-    def set_dscp(self, tos: int) -> None:
-        """No packets, no priority."""
-
-    def tos(self) -> int:
-        return 0
-
     def ended(self) -> bool:
         return self._peer is not None and self._peer._ended
-
-    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        return None
 
     def interrupt(self) -> None:
         self._inbox.put(_END)

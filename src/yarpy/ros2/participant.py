@@ -1,0 +1,156 @@
+"""Participants: our part in the graph of a domain, shared by all ports of this process.
+
+Rules: a Zenoh session each, which is given back when the last of its topics is. A node is there as
+long as one of its endpoints; its token goes with the last. The router is where
+ZENOH_SESSION_CONFIG_URI or YARPY_ZENOH say, else on this computer.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from yarpy.errors import UnknownPlugin
+from yarpy.log import logger
+from yarpy.ros2.graph import Graph
+from yarpy.ros2.key import Key
+from yarpy.ros2.name import Node
+from yarpy.ros2.qos import Qos
+from yarpy.ros2.token import NODE, Token
+from yarpy.transports.zenoh import Lease, share
+
+log = logger("yarpy.ros2")
+
+CONFIGURATION: Final = "ZENOH_SESSION_CONFIG_URI"
+
+
+@dataclass(eq=False)
+class _Node:
+    """A node of ours: its token, and how many endpoints it has."""
+
+    nid: int
+    token: Any
+    users: int = 0
+
+
+@dataclass(eq=False)
+class Declared:
+    """An endpoint that others see; `close` takes it back."""
+
+    token: Token
+    text: str
+    _handle: Any
+    _participant: Participant
+
+    def close(self) -> None:
+        """Idempotent."""
+        handle, self._handle = self._handle, None
+        if handle is not None:
+            handle.undeclare()
+            self._participant.leave(self.token.node)
+
+
+@dataclass(eq=False)
+class Participant:
+    """What all topics of a domain share. `close` for each `take_part`."""
+
+    lease: Lease
+    graph: Graph
+    users: int = 0
+    _hearing: Any = None
+    _count: int = 0
+    _nodes: dict[Node, _Node] = field(default_factory=dict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    @property
+    def session(self) -> Any:
+        """The Zenoh session."""
+        return self.lease.session
+
+    def _number(self) -> int:
+        """The next number of what we declare."""
+        found, self._count = self._count, self._count + 1
+        return found
+
+    def declare(self, kind: str, node: Node, key: Key, qos: Qos, extra: str = "") -> Declared:
+        """Show an endpoint of a node to the graph, and the node with its first one."""
+        liveliness = self.session.liveliness()
+        with self._lock:
+            ours = self._nodes.get(node)
+            if ours is None:
+                nid = self._number()
+                token = Token(key.domain, self.lease.zid, nid, nid, NODE, node)
+                ours = self._nodes[node] = _Node(nid, liveliness.declare_token(str(token)))
+            ours.users += 1
+            zid, id_ = self.lease.zid, self._number()
+        token = Token(key.domain, zid, ours.nid, id_, kind, node, key, qos, extra)
+        others = self.graph.nodes(node) - {token.whose}
+        if others and ours.users == 1:
+            log.warning(
+                "another node of ROS 2 is called %s already, and its tools take both for one: "
+                "+node.NAME gives ours another name",
+                node,
+            )
+        return Declared(token, str(token), liveliness.declare_token(str(token)), self)
+
+    def leave(self, node: Node) -> None:
+        """An endpoint of the node is gone."""
+        with self._lock:
+            ours = self._nodes[node]
+            ours.users -= 1
+            if ours.users:
+                return
+            del self._nodes[node]
+        ours.token.undeclare()
+
+    def close(self) -> None:
+        """One user less; the last one closes the session."""
+        _POOL.leave(self)
+
+
+class _Pool:
+    """The participants of this process, by domain and configuration."""
+
+    def __init__(self) -> None:
+        self._held: dict[tuple[int, str], Participant] = {}
+        self._lock = threading.Lock()  # held while a session opens: a second one must not
+
+    def take(self, domain: int) -> Participant:
+        where = os.environ.get(CONFIGURATION, "")
+        with self._lock:
+            found = self._held.get((domain, where))
+            if found is None or found.session.is_closed():
+                try:
+                    lease = share(where)
+                except UnknownPlugin as error:
+                    raise UnknownPlugin(f"{error}; for ROS 2: 'yarpy[ros2]'") from error
+                found = Participant(lease, Graph(domain))
+                found._hearing = found.graph.begin(lease.session)
+                self._held[domain, where] = found
+            found.users += 1
+            return found
+
+    def leave(self, participant: Participant) -> None:
+        with self._lock:
+            participant.users -= 1
+            if participant.users:
+                return
+            self._held = {key: item for key, item in self._held.items() if item is not participant}
+        participant._hearing.undeclare()
+        participant.lease.close()
+
+    def forget(self) -> None:
+        """In a forked process, which has no session."""
+        self._held, self._lock = {}, threading.Lock()
+
+
+_POOL: Final = _Pool()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_POOL.forget)
+
+
+def take_part(domain: int) -> Participant:
+    """Our part in a domain; `close` gives it back. Raises as `share` does."""
+    return _POOL.take(domain)

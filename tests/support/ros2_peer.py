@@ -1,0 +1,109 @@
+"""A node of ROS 2 by an independent implementation, as a program of its own; and the router.
+
+    python ros2_peer.py PORT hear TOPIC            prints what is published, as JSON
+    python ros2_peer.py PORT say TOPIC             publishes the lines of its input
+    python ros2_peer.py PORT serve NAME            adds two numbers for whoever asks
+    python ros2_peer.py PORT call NAME             asks for the sums of the lines of its input
+    python ros2_peer.py PORT list                  prints topics with their types, and nodes
+
+Rules: it is zenoh-ros2-sdk, with the definitions given as text, since it would download them. An
+option `hash=...` gives the type another hash, `latched=1` keeps the last message.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import socket
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+STRING = "string data"
+ADD = {"request_definition": "int64 a\nint64 b", "response_definition": "int64 sum"}
+ADD_TYPE = "example_interfaces/srv/AddTwoInts"
+ADD_HASH = "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
+LATCHED = ":1:,1:,:,:,,"
+
+
+@contextlib.contextmanager
+def ros2_router() -> Iterator[int]:
+    """A router of Zenoh on the loopback; its number."""
+    from yarpy.transports.zenoh import close, open_router
+
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port: int = free.getsockname()[1]
+    router = open_router([f"127.0.0.1:{port}"])
+    try:
+        yield port
+    finally:
+        close(router)
+
+
+def peer_command(port: int, *words: str) -> list[str]:
+    """The command line of the program."""
+    return [sys.executable, __file__, str(port), *words]
+
+
+def peer_environment(home: Path) -> dict[str, str]:
+    """Its environment: a client, since routers do not forward between peers."""
+    return {**os.environ, "HOME": str(home), "ZENOH_CONFIG_OVERRIDE": 'mode="client"'}
+
+
+def _say(item: Any) -> None:
+    print(json.dumps(item), flush=True)
+
+
+def main(port: int, verb: str, name: str, options: dict[str, str]) -> None:
+    import zenoh_ros2_sdk as sdk
+
+    where: dict[str, Any] = {"router_port": port, "node_name": f"sdk_{verb}"}
+    topic: dict[str, Any] = {**where, "msg_definition": STRING}
+    if "hash" in options:
+        topic["type_hash"] = options["hash"]
+    if "latched" in options:
+        topic["qos"] = LATCHED
+    kind = options.get("type", "std_msgs/msg/String")
+    if verb == "hear":
+        node = sdk.ROS2Subscriber(name, kind, lambda message: _say(message.data), **topic)
+        _say("ready")
+        sys.stdin.read()
+        node.close()
+    elif verb == "say":
+        publisher = sdk.ROS2Publisher(name, kind, **topic)
+        _say("ready")
+        for line in sys.stdin:
+            publisher.publish(data=line.rstrip("\n"))
+        publisher.close()
+    elif verb == "serve":
+        made: Any = None
+
+        def add(asked: Any) -> Any:
+            return made.response_msg_class(sum=asked.a + asked.b)
+
+        made = sdk.ROS2ServiceServer(name, ADD_TYPE, add, type_hash=ADD_HASH, **ADD, **where)
+        _say("ready")
+        sys.stdin.read()
+        made.close()
+    elif verb == "call":
+        client = sdk.ROS2ServiceClient(name, ADD_TYPE, type_hash=ADD_HASH, **ADD, **where)
+        _say("ready")
+        for line in sys.stdin:
+            a, b = map(int, line.split())
+            answer = client.call(a=a, b=b)
+            _say(None if answer is None else int(answer.sum))
+        client.close()
+    elif verb == "list":
+        from zenoh_ros2_sdk.discovery import get_topic_names_and_types
+
+        _say(get_topic_names_and_types(router_port=port))
+    os._exit(0)  # its session has threads that outlive it
+
+
+if __name__ == "__main__":
+    given = dict(word.split("=", 1) for word in sys.argv[3:] if "=" in word)
+    names = [word for word in sys.argv[3:] if "=" not in word]
+    main(int(sys.argv[1]), sys.argv[2], names[0] if names else "", given)
