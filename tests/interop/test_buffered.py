@@ -11,6 +11,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy import Message, Stamp
+from yarpy.network.peek import Peek
 
 COUNT = 200
 
@@ -193,3 +194,19 @@ def test_interrupt_and_resume(peer: CppProgram) -> None:
         peer.begin("bottle = yarp.Bottle(); port.read(bottle); bottle.toString()")
         port.write(["after"])
         assert peer.end() == "after"
+
+
+def test_a_look_at_what_they_write(peer: CppProgram) -> None:
+    peer.do("port = yarp.BufferedPortBottle(); assert port.open('/cpp')")
+    contact = yarpy.query("/cpp")
+    assert contact is not None
+    with Peek(contact) as peek:
+        wait_until(lambda: peer.do("port.getOutputCount()") == 1)
+        peer.do(
+            f"for n in range({COUNT}):\n"
+            "    bottle = port.prepare(); bottle.clear(); bottle.addInt32(n); port.writeStrict()\n"
+            "port.waitForWrite()"
+        )
+        wait_until(lambda: peek.count == COUNT)
+        assert peek.newest is not None
+        assert peek.newest.value == yarpy.Bottle([COUNT - 1])
