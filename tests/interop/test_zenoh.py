@@ -8,7 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from support import tls
-from support.port import free_port
+from support.cpp import CppYarp
+from support.port import free_block, free_port
 from support.wait import wait_until
 
 import yarpy
@@ -187,3 +188,35 @@ def test_where_tls_is_required_the_links_of_zenoh_are(
     others.close()
     close(router)
     wait_until(lambda: not [one for one in threading.enumerate() if ".zenoh" in one.name])
+
+
+@pytest.mark.parametrize("direct_way", [True, False])
+def test_cpp_programs_take_part(
+    cpp: CppYarp, monkeypatch: pytest.MonkeyPatch, direct_way: bool
+) -> None:
+    """Through a server beside the names; where there is no direct way, through its gateway."""
+    if direct_way:
+        monkeypatch.setattr(direct.Ways, "to", lambda self, entry: entry.contact)
+    where = f"127.0.0.1:{free_port()}"
+    router = open_router([where])
+    names = ZenohNames(where.replace("127.0.0.1", "localhost"))
+    with (
+        yarpy.NameServer(free_block(200), zenoh=where) as server,
+        cpp.at("127.0.0.1", server.port) as programs,
+        yarpy.BufferedPort("/ours/in", names=names, strict=True) as in_,
+        yarpy.RpcServer("/ours/rpc", lambda message: ["echo", *message.value], names=names),
+        yarpy.Port("/ours/out", names=names) as out,
+        programs.popen("read", "/cpp/in") as reader,
+    ):
+        wait_until(lambda: names.query("/cpp/in") and server.client.query("/ours/rpc"))
+        assert programs.run("exists", "/ours/in").returncode == 0
+        written = programs.run("write", "/cpp/out", "/ours/in", input="1 2 (a b)\n")
+        assert written.returncode == 0
+        assert in_.read(timeout=20).value == [1, 2, ["a", "b"]]
+        answer = programs.run("rpc", "/ours/rpc", input="hello\n").stdout
+        assert "Response: echo hello" in answer
+        out.connect("/cpp/in")
+        out.write(["from", "Zenoh", 3])
+        reader.wait_line("from Zenoh 3")
+    names.close()
+    close(router)

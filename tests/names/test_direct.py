@@ -15,7 +15,7 @@ from yarpy.names import direct
 from yarpy.names.direct import Ways, candidates, machine, reachable
 from yarpy.names.zenoh_key import Entry
 
-FAR = Entry(Contact("tcp", "/far", "127.0.0.1", 1), "ab", 1, "0123", ("198.51.100.7",))
+FAR = Entry(Contact("tcp", "/far", "127.0.0.1", 1), "ab", 1, "0123", 1, ("198.51.100.7",))
 
 
 @pytest.fixture

@@ -14,17 +14,17 @@ from yarpy.names import zenoh_key as key
 from yarpy.names.zenoh_key import Entry
 
 HEAD = Entry(
-    Contact("tcp", "/icub/head", "10.0.0.1", 10002), "a1b2", 255, "c3", ("10.0.0.1", "::2")
+    Contact("tcp", "/icub/head", "10.0.0.1", 10002), "a1b2", 255, "c3", 7, ("10.0.0.1", "::2")
 )
 LINES = (
     b"registration name /icub/head ip 10.0.0.1 port 10002 type tcp\n"
-    b"session a1b2 ff c3\n"
+    b"session a1b2 ff c3 7\n"
     b"addresses 10.0.0.1 ::2"
 )
 
 
 def named(name: str) -> Entry:
-    return Entry(Contact("tcp", name, "10.0.0.1", 1), "ab", 1, "c")
+    return Entry(Contact("tcp", name, "10.0.0.1", 1), "ab", 1, "c", 1)
 
 
 def is_name(text: str) -> bool:
@@ -42,7 +42,7 @@ def test_golden() -> None:
     assert key.encode([HEAD]) == LINES
     assert key.decode(LINES + b"\n" + LINES) == [HEAD, HEAD]
     assert key.decode(b"") == []
-    assert HEAD.through == Contact("tcp", "/icub/head", "a1b2.zenoh", 10002)
+    assert HEAD.through == Contact("tcp", "/icub/head", "a1b2.zenoh", 7)
 
 
 @given(st.text(string.printable + "é*$?#@%\u2028", min_size=1, max_size=20).map("/".__add__))
@@ -122,8 +122,8 @@ def test_mutants_are_refused_or_read(piece: bytes, place: int) -> None:
 
 
 def test_the_newer_port_has_the_name() -> None:
-    older, newer = named("/x"), Entry(Contact("tcp", "/x", "h", 2), "aa", 2, "c")
-    greater = Entry(Contact("tcp", "/x", "h", 3), "ff", 1, "c")
+    older, newer = named("/x"), Entry(Contact("tcp", "/x", "h", 2), "aa", 2, "c", 1)
+    greater = Entry(Contact("tcp", "/x", "h", 3), "ff", 1, "c", 1)
     assert key.newest([older, newer, named("/y")], "/x") is newer
     assert key.newest([greater, older], "/x") is greater
     assert key.newest([], "/x") is None

@@ -28,6 +28,7 @@ PATIENCE: Final = (
     0.4  # seconds to reach a port directly: networks where it takes longer have routers
 )
 KEEP: Final = 10.0  # seconds for which what was found is believed
+ANYWHERE: Final = "0"  # instead of what tells a computer, where that is not known
 _MOST: Final = 10_000  # programs that are remembered
 _LINE: Final = 4096  # bytes of an answer that are looked at
 
@@ -61,21 +62,22 @@ class Ways:
         """The port's address, as this computer should dial it."""
         if entry.machine == machine() or entry.contact.carrier != "tcp":
             return entry.contact
+        key = entry.zid if entry.machine != ANYWHERE else f"{entry.zid} {entry.contact.host}"
         now = time.monotonic()
         with self._lock:
-            host, until = self._hosts.get(entry.zid, ("", 0.0))
+            host, until = self._hosts.get(key, ("", 0.0))
         if now >= until:
             host = reachable(candidates(entry), entry.port, entry.contact.name)
             with self._lock:
                 if len(self._hosts) >= _MOST:
                     self._hosts.clear()
-                self._hosts[entry.zid] = host, time.monotonic() + KEEP
+                self._hosts[key] = host, time.monotonic() + KEEP
         return replace(entry.contact, host=host) if host else entry.through
 
 
 def candidates(entry: Entry) -> list[str]:
     """Where the port may be dialled from another computer: not at what is our own address too."""
-    own = set(local_addresses())
+    own = set() if entry.machine == ANYWHERE else set(local_addresses())
     every = dict.fromkeys([entry.contact.host, *entry.addresses])
     return [
         host

@@ -26,7 +26,7 @@ from yarpy.log import logger
 from yarpy.names import zenoh_key
 from yarpy.names.address import is_loopback, local_addresses, outward_address
 from yarpy.names.base import Contacts, Strings
-from yarpy.names.direct import Ways, machine
+from yarpy.names.direct import ANYWHERE, Ways, machine
 from yarpy.names.zenoh_key import Entry, name_key, newest, port_token
 from yarpy.transports.bind import listening_host
 from yarpy.transports.zenoh import Lease, load, share
@@ -54,6 +54,12 @@ class _Own:
     type: str = ""
     properties: dict[str, list[str]] = field(default_factory=dict)
     declared: list[Any] = field(default_factory=list)
+    stop: Callable[[], None] = lambda: None
+
+    def end(self) -> None:
+        """Tell of it no more."""
+        self.stop()
+        _undeclare(self.declared)
 
 
 class ZenohNames:
@@ -71,6 +77,7 @@ class ZenohNames:
         self._own: dict[str, _Own] = {}
         self._node: list[Any] = []  # what was declared for the whole program
         self._exchange: Exchange | None = None  # of connections through Zenoh
+        self.on_lost: Callable[[str], object] = lambda name: None  # in a thread of its own
         self._ways = Ways()
         self._lock = threading.RLock()  # guards the above; never held while an answer is awaited
 
@@ -100,11 +107,10 @@ class ZenohNames:
             lease.zid,
             time.time_ns(),
             machine(),
+            port,
             tuple(one for one in reached if not is_loopback(one))[: zenoh_key.ADDRESSES],
         )
-        self._calls(lease)  # nobody who finds the name may find nobody there
-        self._announce(lease.session, _Own(entry, port_type or ""))
-        self._claim(lease.session, entry)
+        self._announce(lease, _Own(entry, port_type or ""))
         return entry.contact
 
     def unregister(self, name: str) -> None:
@@ -112,7 +118,7 @@ class ZenohNames:
         with self._lock:
             own = self._own.pop(name, None)
         if own is not None:
-            _undeclare(own.declared)
+            own.end()
 
     def query(self, name: str) -> Contact | None:
         """Where `name` is. Raises NoNameServer (no router), Timeout (its program is stopped)."""
@@ -183,11 +189,23 @@ class ZenohNames:
         if lease is None or self._process != os.getpid():
             return
         for one in own.values():
-            _undeclare(one.declared)
+            one.end()
         _undeclare(node)
         if exchange is not None:
             leave(exchange)
         lease.close()
+
+    def adopt(self, contact: Contact, welcome: Welcome, here: bool) -> None:
+        """Tell of a port of a program that does not speak Zenoh. `welcome` gets those who come to
+        it through Zenoh; `here`: it is of this computer. `on_lost` hears when it is told of by
+        another program."""
+        lease = self._open()
+        number = 1 + next(_numbers) % 65535
+        place = machine() if here else ANYWHERE
+        entry = Entry(contact, lease.zid, time.time_ns(), place, number)
+        own = _Own(entry)
+        own.stop = self._calls(lease).listen(number, welcome)
+        self._announce(lease, own)
 
     def listen(self, port: int, welcome: Welcome) -> Callable[[], None]:
         """Let a port that listens on that number be called through Zenoh, too; see `Medium`."""
@@ -198,6 +216,10 @@ class ZenohNames:
             if self._exchange is None:
                 self._exchange = join(lease)
             return self._exchange
+
+    def open(self) -> None:
+        """Open the session now. Raises NoNameServer."""
+        self._open()
 
     # -- what others may need ---------------------------------------------------------------------
 
@@ -230,8 +252,10 @@ class ZenohNames:
 
     # -- what this program tells ------------------------------------------------------------------
 
-    def _announce(self, session: zenoh.Session, own: _Own) -> None:
+    def _announce(self, lease: Lease, own: _Own) -> None:
+        session = lease.session
         name = own.entry.contact.name
+        self._calls(lease)  # nobody who finds the name may find nobody there
         self.unregister(name)
         key = name_key(self.base, name)
         callback = load().handlers.Callback(
@@ -241,6 +265,7 @@ class ZenohNames:
         own.declared.append(session.liveliness().declare_token(port_token(self.base, own.entry)))
         with self._lock:
             self._own[name] = own
+        self._claim(session, own.entry)
 
     def _answer(self, own: _Own, key: str, query: Any) -> None:
         """Somebody asks for a port of ours. Runs in a thread of Zenoh."""
@@ -287,7 +312,11 @@ class ZenohNames:
                 return
             del self._own[name]
         log.warning("%s: another port has taken this name, at %s", name, entry.contact.address)
-        threading.Thread(target=_undeclare, args=(own.declared,), daemon=True).start()
+        threading.Thread(target=self._let_go, args=(own,), daemon=True).start()
+
+    def _let_go(self, own: _Own) -> None:
+        own.end()
+        self.on_lost(own.entry.contact.name)
 
     # -- asking -----------------------------------------------------------------------------------
 

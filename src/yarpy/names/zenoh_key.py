@@ -7,7 +7,7 @@
 A port is told of in three lines, those of a program one after the other:
 
     registration name /robot/head ip 127.0.0.1 port 10002 type tcp
-    session ZID START MACHINE
+    session ZID START MACHINE INSIDE
     addresses 192.168.1.7 10.0.0.1
 
 Rules: pure. `root` is the namespace. What comes from the network is checked and limited here; what
@@ -33,7 +33,7 @@ MOST: Final = 1 << 23  # bytes of what one program says of all its ports
 ADDRESSES: Final = 32  # of one port
 
 _SAFE: Final = "!&'()+,;=:~-._[]{}^|<>\"\\`"  # all but what Zenoh gives a meaning: % * $ ? # @ /
-_SESSION = re.compile(r"session ([0-9a-f]{1,32}) ([0-9a-f]{1,16}) ([0-9a-f]{1,32})")
+_SESSION = re.compile(r"session ([0-9a-f]{1,32}) ([0-9a-f]{1,16}) ([0-9a-f]{1,32}) (\d{1,5})")
 _ADDRESS = re.compile(r"[0-9A-Za-z.:_-]{1,255}")
 _PROPERTY = re.compile(r"[0-9A-Za-z_.-]{1,100}")
 
@@ -44,13 +44,15 @@ class Entry:
 
     contact: where it listens, as it was registered. zid: its program's session. start: when it was
     registered, in ns since 1970. machine: tells its computer, or container, from others.
-    addresses: those of that computer by which others reach it.
+    inside: its number for those who come through Zenoh. addresses: those of that computer by which
+    others reach it.
     """
 
     contact: Contact
     zid: str
     start: int
     machine: str
+    inside: int
     addresses: tuple[str, ...] = ()
 
     @property
@@ -61,7 +63,7 @@ class Entry:
     @property
     def through(self) -> Contact:
         """The port's address inside Zenoh."""
-        return Contact(self.contact.carrier, self.contact.name, zid_host(self.zid), self.port)
+        return Contact(self.contact.carrier, self.contact.name, zid_host(self.zid), self.inside)
 
     @property
     def port(self) -> int:
@@ -123,7 +125,7 @@ def encode(entries: Iterable[Entry]) -> bytes:
     lines: list[str] = []
     for entry in entries:
         lines.append(registration_line(replace(entry.contact, name=_word(entry.contact.name))))
-        lines.append(f"session {entry.zid} {entry.start:x} {entry.machine}")
+        lines.append(f"session {entry.zid} {entry.start:x} {entry.machine} {entry.inside}")
         lines.append(f"addresses {' '.join(entry.addresses[:ADDRESSES])}".rstrip())
     return "\n".join(lines).encode("utf-8", "surrogateescape")
 
@@ -152,9 +154,9 @@ def _entry(first: str, second: str, third: str) -> Entry:
         name = check_name(unquote(contact.name, errors="strict"))
     except (AddressError, UnicodeDecodeError) as error:
         raise DecodeError(str(error)) from error
-    zid, start, machine = session.groups()
+    zid, start, machine, inside = session.groups()
     contact = replace(contact, name=name)
-    return Entry(contact, zid, int(start, 16), machine, tuple(addresses))
+    return Entry(contact, zid, int(start, 16), machine, int(inside), tuple(addresses))
 
 
 def newest(entries: Iterable[Entry], name: str) -> Entry | None:

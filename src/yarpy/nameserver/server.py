@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from yarpy.names.discovery import Responder
     from yarpy.nameserver.database import Database
     from yarpy.nameserver.ros_delegate import RosDelegate
+    from yarpy.nameserver.zenoh_delegate import ZenohDelegate
 
 log = logger("yarpy.name_server")
 
@@ -89,8 +90,10 @@ class NameServer:
     host: the address to tell others; the server listens on all. portdb, subdb: SQLite files for
     registrations and for subscriptions; without, nothing survives the server. discoverable: answer
     multicast searches (`yarpy detect`). web: a directory whose files browsers see at `/web/`. ros:
-    the address of a ROS master, which is told of topics and services, and asked for names.
-    Raises AddressError if the port number is taken, or there is no such directory.
+    the address of a ROS master, which is told of topics and services, and asked for names. zenoh:
+    a router of Zenoh, "" for the usual one, where names are told and asked for, too.
+    Raises AddressError if the port number is taken, or there is no such directory; NoNameServer if
+    there is no such router.
     """
 
     def __init__(
@@ -105,6 +108,7 @@ class NameServer:
         discoverable: bool = False,
         web: str | Path | None = None,
         ros: str = "",
+        zenoh: str | None = None,
     ) -> None:
         folder = Folder(web) if web is not None else None
         desk = _Desk()
@@ -133,6 +137,7 @@ class NameServer:
         self._responder: Responder | None = None
         self._collector: Collector | None = None
         self._ros: RosDelegate | None = None
+        self._zenoh: ZenohDelegate | None = None
         self._queues: list[SimpleQueue[Action | None]] = [SimpleQueue() for _ in range(WORKERS)]
         self._events: SimpleQueue[Bottle | None] = SimpleQueue()
         self.on_command: Callable[[str, str], None] | None = None
@@ -142,6 +147,8 @@ class NameServer:
             self._register_self()
             if ros:
                 self._join_ros(ros)
+            if zenoh is not None:
+                self._join_zenoh(zenoh)
             for queue in self._queues:
                 self._start(lambda queue=queue: self._work(queue), "wiring")  # type: ignore[misc]
             self._start(self._tell, "events")
@@ -256,6 +263,8 @@ class NameServer:
         for event in reply.events:
             if self._ros is not None and event[0] == Vocab("del"):
                 self._ros.gone(str(event[1]))
+            if self._zenoh is not None and event[0] in (Vocab("add"), Vocab("del")):
+                self._zenoh.changed(str(event[1]))
             if self._hub.outputs and self._events.qsize() < MAX_EVENTS:
                 self._events.put(event)
         for action in reply.actions:
@@ -278,6 +287,19 @@ class NameServer:
 
         self._ros = RosDelegate(RosMaster(uri), self.service)
         self.service.elsewhere = self._ros.query
+
+    def _join_zenoh(self, where: str) -> None:
+        from yarpy.names.zenoh import ZenohNames
+        from yarpy.nameserver.zenoh_delegate import ZenohDelegate
+
+        names = ZenohNames(where, self.name)
+        names.open()
+        delegate = self._zenoh = ZenohDelegate(names, self.service, self._obey, self.host)
+        before = self.service.elsewhere
+        self.service.elsewhere = lambda name: (before and before(name)) or delegate.query(name)
+        for contact in self._contacts():  # of a database
+            if contact.name != self.name and contact.carrier != "mcast":
+                delegate.changed(contact.name)
 
     def _open_database(
         self, portdb: str | Path | None, subdb: str | Path | None, cautious: bool
@@ -350,6 +372,9 @@ class NameServer:
         if self._ros is not None:
             self._ros.close()
             self._ros = None
+        if self._zenoh is not None:
+            self._zenoh.close()
+            self._zenoh = None
         self._hub.close()
         for queue in self._queues:
             queue.put(None)

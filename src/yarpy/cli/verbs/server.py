@@ -5,6 +5,7 @@
     --write                  replace the address that is stored in the address file
     --read                   use the stored address even if it is not one of this computer
     --web DIR                show the files of a directory to browsers, at /web/
+    --zenoh [ROUTER]         tell names on Zenoh, and ask there for names: C++ programs take part
     --ros                    tell the ROS master of ROS_MASTER_URI of topics and services, and ask
                              it for names; YARP_USE_ROS in the environment means the same
 
@@ -215,6 +216,13 @@ def _parts(text: str) -> tuple[str, str, str]:
     help="Show the files of a directory at /web/.",
 )
 @click.option("--ros", is_flag=True, help="Tell the ROS master of topics, ask it for names.")
+@click.option(
+    "--zenoh",
+    is_flag=False,
+    flag_value="",
+    metavar="ROUTER",
+    help="Tell names on Zenoh, and ask there; with a router, or the usual one.",
+)
 @click.option("--local", is_flag=True, help="Let nobody but this computer reach it.")
 @click.option("--silent", is_flag=True, help="Print warnings and errors only.")
 @click.option("--verbose", is_flag=True, help="Print all that is logged.")
@@ -228,6 +236,7 @@ def command(
     read: bool,
     web: str | None,
     ros: bool,
+    zenoh: str | None,
     local: bool,
     silent: bool,
     verbose: bool,
@@ -251,7 +260,7 @@ def command(
     if master:
         say(f"Using ROS with ROS_MASTER_URI={master}")
     try:
-        _serve(found, place, portdb, subdb, cautious, web, master, say)
+        _serve(found, place, portdb, subdb, cautious, web, master, zenoh, say)
     except Interrupted:
         say("Name server ends.")
     return 0
@@ -265,6 +274,7 @@ def _serve(
     cautious: bool,
     web: str | None,
     ros: str,
+    zenoh: str | None,
     say: object,
 ) -> None:
     """Serve until a signal comes."""
@@ -290,6 +300,7 @@ def _serve(
             discoverable=not is_loopback(listening_host()),
             web=web,
             ros=ros,
+            zenoh=zenoh,
         )
     except AddressError as error:
         raise _explained(server, error) from error
