@@ -65,6 +65,7 @@ PEERS = (
     Peer("cpp-latency-test", "peer_latency_test.py", "cpp", (), ("stream", "rpc")),
     Peer("yarpy-tcp", "peer_yarpy.py", "yarpy", ("--carrier", "tcp")),
     Peer("yarpy-fast_tcp", "peer_yarpy.py", "yarpy", ("--carrier", "fast_tcp")),
+    Peer("yarpy-memory", "peer_yarpy.py", "yarpy", ("--carrier", "memory")),
     Peer(
         "yarpy-tls",
         "peer_yarpy.py",

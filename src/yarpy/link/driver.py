@@ -7,7 +7,6 @@ One thread at a time uses a driver; the link decides which. No protocol is known
 from __future__ import annotations
 
 import errno
-import os
 import time
 from collections.abc import Callable
 from typing import Any, Final, TypeVar
@@ -15,6 +14,7 @@ from typing import Any, Final, TypeVar
 from yarpy.contact import host_zid
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.admission import Admission
+from yarpy.link.cores import cores
 from yarpy.link.intake import Intake
 from yarpy.transports.base import ObjectTransport, Transport
 from yarpy.transports.datagram import open_mcast, open_udp
@@ -36,7 +36,6 @@ FIRST_PENALTY: Final = 32
 LAST_PENALTY: Final = 512
 # C++ hangs up before it comes to the meeting place of the two ends.
 LATE: Final = 0.5  # seconds for it to come after that
-_CORES: Final = os.cpu_count() or 1
 
 
 class Driver:
@@ -53,7 +52,7 @@ class Driver:
         self.stream = ByteStream(limit) if self._objects is None else ObjectStream()
         self.admission = Admission()  # what the peer may do with our port
         self.silence = ""  # why nobody can hear what our port writes: it never writes
-        self.eager = _CORES > 1  # whether polling may beat sleeping
+        self.eager = cores() > 1  # whether polling may beat sleeping
         self._looks = False  # poll for the next bytes instead of sleeping
         self._skip = 0  # waits to pass before polling is tried again
         self._penalty = FIRST_PENALTY
