@@ -1,4 +1,4 @@
-"""Cores: bindings and the shares of containers count, not what the computer has."""
+"""Cores: the shares of containers count, bindings do not."""
 
 from __future__ import annotations
 
@@ -54,17 +54,17 @@ def test_less_than_one_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="no bindings here")
-def test_bindings_of_now(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A program may bind itself after its start, even where the computer has more."""
+def test_who_is_bound_to_a_processor_polls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its peers may have others."""
     monkeypatch.setattr(module, "share", lambda root, own: math.inf)
     monkeypatch.setattr(os, "cpu_count", lambda: 64)
     before = os.sched_getaffinity(0)
-    assert cores() == len(before)
     listener = TcpListener()
     try:
         os.sched_setaffinity(0, {min(before)})
-        assert cores() == 1
         transport: TcpTransport = dial("127.0.0.1", listener.port)
+        assert Driver(transport).eager
+        monkeypatch.setattr(module, "share", lambda root, own: 0.5)
         assert not Driver(transport).eager
         transport.close()
     finally:

@@ -1,8 +1,8 @@
-"""Cores: how many processors this process may use at the same time.
+"""Cores: how many processors this process and its peers have at the same time.
 
-Rules: not how many the computer has. A process may be bound to some of them, and the share of a
-container (cgroup) may be less than one. The share is read once, the binding whenever a connection
-begins: a program may bind itself at any time.
+Rules: a container's share (cgroup) counts, which may be less than one: to poll there eats the time
+that would be needed afterwards. What the process is bound to does not: a control loop that has a
+processor for itself polls to advantage, since its peers have others.
 """
 
 from __future__ import annotations
@@ -17,12 +17,8 @@ OWN = Path("/proc/self/cgroup")
 
 
 def cores() -> int:
-    """Processors for this process; at least 1."""
-    if hasattr(os, "sched_getaffinity"):
-        bound = len(os.sched_getaffinity(0))
-    else:
-        bound = os.cpu_count() or 1
-    return max(1, math.ceil(min(bound, share(ROOT, OWN))))
+    """Processors that there are, or as many as our share of them comes to; at least 1."""
+    return max(1, math.ceil(min(os.cpu_count() or 1, share(ROOT, OWN))))
 
 
 @cache
