@@ -11,10 +11,12 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Final, TypeVarTuple
 
+from yarpy.contact import parse_contact
 from yarpy.data.stamp import Stamp
 from yarpy.errors import LinkClosed, PortClosed, Timeout, YarpError
 from yarpy.link.outbound import Outbound, Rest
 from yarpy.names.base import NameClient
+from yarpy.port import probe
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
 from yarpy.port.connection import ConnectionEvent
@@ -102,6 +104,32 @@ class MessagePort(BasePort):
                 return 0
             packet = passed
         return self._send_all(packet, outputs, wait, timeout)
+
+    @property
+    def links(self) -> tuple[Outbound, ...]:
+        """The connections out of it, for `Audience`."""
+        hub = self._hub
+        if hub.closing or hub.interrupted:
+            self._check_open()
+        return hub.outputs
+
+    def is_yarp4(self, target: str) -> bool:
+        """Whether a port that this one is connected to is of C++ YARP 4. Raises LinkClosed,
+        Timeout, RemoteProtocolError, NoNameServer."""
+        contact = self._hub.registration.locate(parse_contact(target))
+        return contact is not None and probe.is_yarp4(contact, secret_=self._hub.key)
+
+    def send(self, packet: Packet, links: tuple[Outbound, ...]) -> int:
+        """Send a packet over some of the connections; as `write`."""
+        output = self._hub.monitoring.output
+        if output is not None:
+            passed = output.send(packet)
+            if passed is None:
+                for link in links:
+                    link.counter.drops += 1
+                return 0
+            packet = passed
+        return self._send_all(packet, links, False, None)
 
     def _send_all(
         self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool, timeout: float | None

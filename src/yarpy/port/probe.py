@@ -180,6 +180,12 @@ def is_ours(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = 
     return not reply or reply[0] != Vocab("fail")
 
 
+def is_yarp4(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = None) -> bool:
+    """Whether a port is of C++ YARP 4, which has no commands of ROS any more. Raises as `ask`."""
+    reply = ask(contact, [Vocab("bus")], timeout=timeout, secret_=secret_)
+    return reply == [Vocab("fail"), "send [help] for list of valid commands"]
+
+
 def _told(contact: Contact, command: str, timeout: float, secret_: bytes | None) -> list[str]:
     """Tell the port called `contact.name`, and no other, to do something."""
     with _text_line(contact, "admin", timeout, secret_) as driver:

@@ -49,9 +49,19 @@ def relayed(head, names):
         yield relayed
 
 
-@pytest.fixture(params=["near", "relayed"])
+@pytest.fixture
+def newer(device, names, monkeypatch):
+    """A client that finds the functions of YARP 4 only, and is taken for a program of it."""
+    monkeypatch.setattr("yarpy.port.port.MessagePort.is_yarp4", lambda port, target: True)
+    with ControlBoardServer("/newer", device, 0.005, names=names):
+        names.unregister("/newer/rpc:i")
+        with ControlBoard("/newer", timeout=PATIENCE, names=names) as newer:
+            yield newer
+
+
+@pytest.fixture(params=["head", "relayed", "newer"])
 def board(request):
-    return request.getfixturevalue("head" if request.param == "near" else "relayed")
+    return request.getfixturevalue(request.param)
 
 
 def test_five_lines(device, head):

@@ -1,9 +1,11 @@
 import math
 
 import pytest
+from support.yarp4 import recorded
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Float32, Vocab
+from yarpy.data.yarp4 import to_yarp4
 from yarpy.devices.control_board.command import HEADS, make, read
 from yarpy.devices.control_board.grammar import Form
 from yarpy.devices.refusal import Refused
@@ -68,6 +70,21 @@ def test_what_is_made_is_read(method, joints):
     assert [value for _, _, vs in found for value in vs] == values
     in_groups = any(row == (method, Form.SOME) for row in HEADS.values())
     assert len(messages) == (1 if len(joints) in (1, 4) or in_groups else len(joints))
+
+
+def test_words_of_yarp_4():
+    """As controlBoard_nwc_yarp sends them: with the word of an interface in front."""
+    assert heard("([ivel] [vmo] 1) (8.0)") == ("velocity_move", [1], [8.0])
+    assert heard("([ipod] [dpog] 2 (2 1)) (8.0 9.0)") == ("position_direct", [2, 1], [8.0, 9.0])
+    assert heard("([itrq] [dtqs]) (1.0 2.0)", 2) == ("apply_torques", [0, 1], [1.0, 2.0])
+    assert heard("([ipos] [poss]) (1.0 2.0)", 2) == ("position_move", [0, 1], [1.0, 2.0])
+    sent = [bytes.fromhex(r["message"]) for r in recorded("board")["client"] if "message" in r]
+    calls = (("velocity_move", 0, 5.5), ("position_direct", 1, 3.25), ("apply_torques", 0, 1.5))
+    for data, (method, joint, value) in zip(sent, calls, strict=True):
+        [message] = make(method, [joint], [value], 3, newer=True)
+        assert to_yarp4(message.to_bytes()) == data
+    [message] = make("apply_currents", [0, 1], [1.0, 2.0], 2, newer=True)
+    assert message[0] == ["icur", "refs"]
 
 
 def test_one_joint_is_one_joint():

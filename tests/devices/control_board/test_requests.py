@@ -2,41 +2,8 @@
 
 import pytest
 
-import yarpy
-from yarpy import Bottle
-from yarpy.devices.control_board.requests import RemotePids, RemoteVariables, Requests
+from yarpy.devices.control_board.requests import Requests
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, UnknownName
-
-
-class Parrot:
-    """A board with the answers a test gives it, and a memory for requests."""
-
-    def __init__(self, names):
-        self.heard = []
-        self.answers = {}
-        self.server = yarpy.RpcServer("/head/rpc:i", self.answer, names=names)
-
-    def answer(self, message):
-        text = message.as_(Bottle).to_text()
-        self.heard.append(text)
-        return Bottle.from_text(self.answers.get(text, "[ok]"))
-
-
-@pytest.fixture
-def parrot(names):
-    parrot = Parrot(names)
-    with parrot.server:
-        yield parrot
-
-
-@pytest.fixture
-def ask(parrot, names):
-    with Requests("/head", "/me", names) as requests:
-        parrot.answers["[get] [axes]"] = "[is] [axes] 3 [tsta] 0 1.0 [ok]"
-        assert requests.count_axes() == 3
-        parrot.heard.clear()
-        yield requests
-
 
 # member, reply to the request(s) that it becomes, values
 READ = [
@@ -102,58 +69,6 @@ WRITTEN = [
 def test_writing(parrot, ask, member, joints, values, asked):
     ask.write(member, joints, values)
     assert parrot.heard == asked
-
-
-def test_controllers(parrot, ask):
-    pids = RemotePids(ask, "vel")
-    numbers = " ".join(f"{value}.0" for value in range(10))
-    parrot.answers |= {
-        "[get] [pid] [pids] [vel]": f"[is] [pid] (({numbers}) ({numbers}) ({numbers})) [ok]",
-        "[get] [pid] [errs] [vel]": "[is] [pid] (1.0 2.0 3.0) [ok]",
-        "[get] [pid] [outs] [vel]": "[is] [pid] (1.0 2.0 3.0) [ok]",
-        "[get] [pid] [ena] [vel] 0": "[is] [pid] 1 [ok]",
-        "[get] [pid] [ena] [vel] 1": "[is] [pid] 0 [ok]",
-        "[get] [pid] [ena] [vel] 2": "[is] [pid] 0 [ok]",
-    }
-    assert pids.gains[2].ki == 2.0 and pids.offsets == (5.0, 5.0, 5.0)
-    assert pids.errors() == pids.outputs() == [1.0, 2.0, 3.0]
-    assert pids.enabled == (True, False, False)
-    parrot.heard.clear()
-    pids.enabled = (False, True, True)
-    pids.targets = (1.0, 2.0, 3.0)
-    pids.offsets = (1.0, 2.0, 3.0)
-    pids.reset([1])
-    pids.gains = [range(10)] * 3
-    assert parrot.heard == [
-        "[set] [pid] [dis] [vel] 0",
-        "[set] [pid] [ena] [vel] 1",
-        "[set] [pid] [ena] [vel] 2",
-        "[set] [pid] [refs] [vel] (1.0 2.0 3.0)",
-        "[set] [pid] [off] [vel] 0 1.0",
-        "[set] [pid] [off] [vel] 1 2.0",
-        "[set] [pid] [off] [vel] 2 3.0",
-        "[set] [pid] [res] [vel] 1",
-        "[set] [pid] [pids] [vel] ((0 1 2 3 4 5 6 7 8 9) (0 1 2 3 4 5 6 7 8 9) "
-        "(0 1 2 3 4 5 6 7 8 9))",
-    ]
-
-
-def test_variables(parrot, ask):
-    variables = RemoteVariables(ask)
-    parrot.answers |= {
-        "[get] [ivar] [lvar]": "[is] [ivar] (gain limit) [ok]",
-        "[get] [ivar] [mvar] gain": "[is] [ivar] (1.5 low) [ok]",
-        "[get] [ivar] [mvar] none": "[fail]",
-    }
-    assert [*variables] == ["gain", "limit"] and len(variables) == 2
-    assert variables["gain"] == [1.5, "low"]
-    assert variables.get("none") is None
-    parrot.heard.clear()
-    variables["gain"] = [2, "high"]
-    variables["limit"] = 7.5
-    assert parrot.heard == ["[set] [ivar] [mvar] gain 2 high", "[set] [ivar] [mvar] limit 7.5"]
-    with pytest.raises(TypeError):
-        del variables["gain"]
 
 
 def test_calibration(parrot, ask):

@@ -2,12 +2,15 @@ import pytest
 from support.board import Bare, FakeBoard
 from support.capture import load_capture
 from support.replay import messages_of
+from support.yarp4 import recorded
 
+from yarpy.data import codec
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
+from yarpy.data.yarp4 import to_yarp4
 from yarpy.devices.control_board.board import Board
-from yarpy.devices.control_board.state import FIELDS, State
+from yarpy.devices.control_board.state import FIELDS, NEWER, State
 from yarpy.errors import DecodeError
 
 
@@ -36,6 +39,19 @@ def test_reading_what_cpp_sends():
     assert state.values["currents"] == [3300.0, 3400.0, 3500.0]
     assert state.values["control_modes"] == ["pos", "pos", "pos"]
     assert list(state.values) == [name for name, _ in FIELDS]
+
+
+def test_bytes_of_yarp_4():
+    data = bytes.fromhex(recorded("board")["state"])
+    state = State.from_bottle(codec.decode_as(data, Bottle))
+    assert [name for name, _ in NEWER] == [*state.values]
+    assert state.values["encoders"] == [5.5, 6.5, 7.5]
+    assert state.values["motor_temperatures"] == [37.5, 38.5, 39.5]
+    assert state.values["duty_cycles"] == [33.0, 34.0, 35.0]
+    ours = state.to_bottle(newer=True)
+    ours[20] = Bottle([0, Vocab("comp").code, 0])  # two of its modes were no words
+    assert to_yarp4(ours.to_bytes()) == data
+    assert len(state_of(Bare()).to_bottle(newer=True)) == 24
 
 
 def test_what_is_missing_has_its_place():

@@ -11,28 +11,39 @@ device and can be served again. Measurements come from the board's stateExt:o, s
 to its command:i, everything else is a request. Joints are given by index or name, one or several; a
 single value applies to all of them.
 
-Source: remote_controlboard of YARP 3.x, protocol 1.9.0.
+A board of YARP 4 is asked at nws/rpc:i, in its functions, and is told commands in its words.
+
+Source: remote_controlboard of YARP 3.x, protocol 1.9.0; controlBoard_nwc_yarp of 4.0.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from operator import index
 from typing import Any, Final, TypeAlias
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.yarp4 import to_yarp4
 from yarpy.devices.adjustable import Adjustable
 from yarpy.devices.closeable import Closeable, local_prefix, prefix
 from yarpy.devices.control_board import command, grammar
 from yarpy.devices.control_board.interface import MotorTorqueParameters
-from yarpy.devices.control_board.requests import RemotePids, RemoteVariables, Requests
+from yarpy.devices.control_board.remote_parts import Asks, RemotePids, RemoteVariables
+from yarpy.devices.control_board.requests import Requests
 from yarpy.devices.control_board.state import State
 from yarpy.devices.latest_message import LatestMessage
-from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
+from yarpy.errors import (
+    LinkClosed,
+    LocalProtocolError,
+    RemoteProtocolError,
+    Timeout,
+    UnknownName,
+)
 from yarpy.names.base import NameClient
 from yarpy.port.port import Port
+from yarpy.wire.message import Encoded
 
 #: One joint or several, by index or by name.
 Which: TypeAlias = int | str | Sequence[int | str]
@@ -66,7 +77,7 @@ class ControlBoard(Closeable):
         local = local_prefix(local, remote)
         self._carrier = carrier
         with ExitStack() as resources:
-            self._ask = resources.enter_context(Requests(remote, f"{local}/rpc:o", names))
+            self._ask: Asks = resources.enter_context(closing(_requests(remote, local, names)))
             self._command = resources.enter_context(
                 Port(f"{local}/command:o", names=names, callback=lambda message: None)
             )
@@ -87,6 +98,8 @@ class ControlBoard(Closeable):
             self._resources = resources.pop_all()
 
     def _check_version(self) -> None:
+        if self._ask.newer:
+            return  # its functions are those of one version
         version = self._ask.version()
         if version[:2] != grammar.VERSION[:2]:
             spoken = ".".join(map(str, version)) or "none"
@@ -369,11 +382,28 @@ class ControlBoard(Closeable):
     def _stream(self, method: str, which: Which, values: Values) -> None:
         joints = self._joints(which)
         numbers = [float(value) for value in _spread(values, len(joints))]
-        for message in command.make(method, joints, numbers, self.axes):
+        for bottle in command.make(method, joints, numbers, self.axes, self._ask.newer):
+            message: object = bottle
+            if self._ask.newer:
+                message = Encoded(to_yarp4(bottle.to_bytes()))
             if not self._command.outputs:
                 self._command.connect(f"{self.remote}/command:i", self._carrier)
             if not self._command.write(message):
                 raise LinkClosed(f'"{self.remote}/command:i" is gone: is the robot running?')
+
+
+def _requests(remote: str, local: str, names: NameClient | None) -> Asks:
+    """Who asks the board at `remote`: in the words of YARP 3, or, where nobody listens for those,
+    in the functions of YARP 4. Raises UnknownName, LinkClosed."""
+    try:
+        return Requests(remote, f"{local}/rpc:o", names)
+    except UnknownName as unknown:
+        from yarpy.devices.control_board.function_requests import FunctionRequests
+
+        try:
+            return FunctionRequests(remote, f"{local}/nwc/rpc:o", names)
+        except UnknownName:
+            raise unknown from None
 
 
 def _spread(values: Any, count: int) -> list[Any]:

@@ -5,6 +5,8 @@
     ([dtqg] 2 (0 2)) (0.1 0.2)      apply_torques of some
     ([icur] [ref] 2) (0.5)          interfaces with a word of their own
 
+    ([ivel] [vmo] 2) (10.5)         YARP 4 has one for each: ivel, ipod, itrq, ipos
+
 Rules: the vector holds only float64, one for each joint in the head, all finite. Anything else is
 refused as a whole. (C++ reads past the end of vectors that are too short.)
 
@@ -40,7 +42,19 @@ HEADS: Final[dict[tuple[str, ...], tuple[str, Form]]] = {
     ("ipwm", "refs"): ("apply_duty_cycles", Form.ALL),
     ("poss",): ("position_move", Form.ALL),
 }
+#: what YARP 4 has in front of the words
+_INTERFACES: Final = {
+    "velocity_move": "ivel",
+    "position_direct": "ipod",
+    "apply_torques": "itrq",
+    "position_move": "ipos",
+}
 _WORDS: Final = {found: words for words, found in HEADS.items()}
+_NEWER: Final = {
+    (method, form): (*([_INTERFACES[method]] if method in _INTERFACES else ()), *words)
+    for words, (method, form) in HEADS.items()
+}
+_HEADS: Final = HEADS | {words: found for found, words in _NEWER.items()}
 
 
 def read(message: object, count: int, exact: bool = True) -> tuple[str, list[int], list[float]]:
@@ -51,7 +65,7 @@ def read(message: object, count: int, exact: bool = True) -> tuple[str, list[int
     head, body = items(message, 2)
     head, body = items(head), items(body)
     words = tuple(word(element) for element in head[:2])
-    found = HEADS.get(words[:1]) or HEADS.get(words)
+    found = _HEADS.get(words[:1]) or _HEADS.get(words)
     if found is None:
         raise Refused(f"{Bottle(head).to_text()[:80]!r} is not a command")
     method, form = found
@@ -64,21 +78,24 @@ def read(message: object, count: int, exact: bool = True) -> tuple[str, list[int
     return method, joints, [number(value) for value in body]
 
 
-def make(method: str, joints: Sequence[int], values: Sequence[float], count: int) -> list[Bottle]:
-    """The messages for this command: a single one where the protocol has a word for it."""
+def make(
+    method: str, joints: Sequence[int], values: Sequence[float], count: int, newer: bool = False
+) -> list[Bottle]:
+    """The messages for this command: a single one where the protocol has a word for it. `newer`:
+    with the words of YARP 4."""
+    words = _NEWER if newer else _WORDS
+
+    def message(form: Form, rest: Sequence[Any], values: Sequence[float]) -> Bottle:
+        head = Bottle([*map(Vocab, words[method, form]), *rest])
+        return Bottle([head, Bottle(map(float, values))])
+
     if [*joints] == [*range(count)] and count > 1:
-        return [_message(method, Form.ALL, (), values)]
-    if len(joints) > 1 and (method, Form.SOME) in _WORDS:
-        return [_message(method, Form.SOME, (len(joints), Bottle(joints)), values)]
+        return [message(Form.ALL, (), values)]
+    if len(joints) > 1 and (method, Form.SOME) in words:
+        return [message(Form.SOME, (len(joints), Bottle(joints)), values)]
     return [
-        _message(method, Form.ONE, (joint,), [value])
-        for joint, value in zip(joints, values, strict=True)
+        message(Form.ONE, (joint,), [value]) for joint, value in zip(joints, values, strict=True)
     ]
-
-
-def _message(method: str, form: Form, rest: Sequence[Any], values: Sequence[float]) -> Bottle:
-    words = (Vocab(text) for text in _WORDS[method, form])
-    return Bottle([Bottle([*words, *rest]), Bottle(map(float, values))])
 
 
 def _joints(form: Form, rest: Sequence[Any], count: int) -> list[int]:

@@ -7,17 +7,15 @@ shows the request.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, MutableMapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.devices.adjustable import Adjustable
 from yarpy.devices.closeable import Closeable
 from yarpy.devices.control_board import grammar
 from yarpy.devices.control_board.grammar import INTERFACES, PID, Form, Interface, Row
-from yarpy.devices.control_board.interface import Gains
 from yarpy.devices.kind import FLAG, NOTHING, PAIR, Fixed
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.names.base import NameClient
@@ -46,6 +44,8 @@ _PID_WRITE: Final = _by_member([PID], lambda interface: interface.set)
 
 class Requests(Closeable):
     """Sends requests to the board at `remote`."""
+
+    newer = False  # it is of YARP 3
 
     def __init__(self, remote: str, local: str, names: NameClient | None) -> None:
         self.remote = remote
@@ -187,6 +187,18 @@ class Requests(Closeable):
         for arguments in [[]] if form is Form.ALL else [[joint] for joint in joints]:
             self.send([Vocab("set"), Vocab("reca"), Vocab(word), *arguments], None)
 
+    def variable(self, name: str) -> Any:
+        """The value of a variable, as a list."""
+        return self.send([Vocab("get"), Vocab("ivar"), Vocab("mvar"), name])[2]
+
+    def store_variable(self, name: str, values: Sequence[Any]) -> None:
+        """Set it."""
+        self.send([Vocab("set"), Vocab("ivar"), Vocab("mvar"), name, *values])
+
+    def variable_names(self) -> list[str]:
+        """Which ones there are."""
+        return [*map(str, self.tell("get", "ivar", "lvar")[2])]
+
     def tell(self, *words: Any) -> list[Any]:
         """Send words (as vocabs) and numbers; returns the reply."""
         return self.send([Vocab(word) if type(word) is str else word for word in words])
@@ -208,80 +220,3 @@ class Requests(Closeable):
 
 def _prefix(interface: Interface) -> list[Vocab]:
     return [Vocab(interface.word)] if interface.word else []
-
-
-class _PidRequests:
-    """`Requests` for one kind of controllers."""
-
-    def __init__(self, requests: Requests, kind: str) -> None:
-        self.axes = requests.axes
-        self._requests = requests
-        self._kind = kind
-
-    def read(self, member: str) -> list[Any]:
-        return self._requests.read_pid(self._kind, member)
-
-    def write(self, member: str, joints: Sequence[int], values: Sequence[Any] | None) -> None:
-        self._requests.write_pid(self._kind, member, joints, values)
-
-
-class RemotePids:
-    """The controllers of one kind at a remote board, see `control_board.PidController`."""
-
-    gains = Adjustable[Gains]("`Gains`", Gains._make)
-    targets = Adjustable[float]("The targets of the controllers.")
-    error_limits = Adjustable[float]("Beyond these errors the controllers stop.")
-    enabled = Adjustable[bool]("Whether the controllers are active.")
-
-    def __init__(self, requests: Requests, kind: str) -> None:
-        self._ask = _PidRequests(requests, kind)
-
-    def errors(self) -> list[float]:
-        """Target minus measurement."""
-        return self._ask.read("errors")
-
-    def outputs(self) -> list[float]:
-        """The present outputs of the controllers."""
-        return self._ask.read("outputs")
-
-    def reset(self, joints: Sequence[int]) -> None:
-        """Reset the integral."""
-        self._ask.write("reset", joints, None)
-
-    @property
-    def offsets(self) -> tuple[float, ...]:
-        """Added to the outputs. The protocol sets them separately but reads them with the gains."""
-        return tuple(gains.offset for gains in self.gains)
-
-    @offsets.setter
-    def offsets(self, values: Sequence[float]) -> None:
-        self._ask.write("offsets", [*range(self._ask.axes)], [*values])
-
-
-class RemoteVariables(MutableMapping[str, Any]):
-    """Variables of a remote board. A value is the list of the elements after the name."""
-
-    def __init__(self, requests: Requests) -> None:
-        self._ask = requests
-
-    def __getitem__(self, key: str) -> Any:
-        try:
-            return self._ask.send([Vocab("get"), Vocab("ivar"), Vocab("mvar"), key])[2]
-        except LocalProtocolError as error:
-            raise KeyError(key) from error
-
-    def __setitem__(self, key: str, value: Any) -> None:
-        values = value if isinstance(value, (list, tuple)) else [value]
-        self._ask.send([Vocab("set"), Vocab("ivar"), Vocab("mvar"), key, *values])
-
-    def __delitem__(self, key: str) -> None:
-        raise TypeError("variables of a robot cannot be deleted")
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names())
-
-    def __len__(self) -> int:
-        return len(self._names())
-
-    def _names(self) -> list[str]:
-        return [*map(str, self._ask.tell("get", "ivar", "lvar")[2])]

@@ -1,13 +1,15 @@
 """ControlBoardServer: serve your device on the ports of a YARP control board.
 
     <name>/rpc:i        requests and replies (`responder`); people may type them
+    <name>/nws/rpc:i    the same for programs of YARP 4 (`function_server`)
     <name>/command:i    streamed commands (`command`), which are never answered
     <name>/stateExt:o   all measurements (`state`), every period
     <name>/state:o      positions only, for tools and older clients
 
 Both outputs are stamped with count and time of the encoders; nothing is read while nobody listens.
+Readers of YARP 4 get them as it spells them.
 
-Source: controlBoard_nws_yarp of YARP 3.x, protocol 1.9.0.
+Source: controlBoard_nws_yarp of YARP 3.x, protocol 1.9.0, and of 4.0.
 """
 
 from __future__ import annotations
@@ -17,9 +19,11 @@ from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
+from yarpy.data.yarp4 import to_yarp4
 from yarpy.devices.closeable import Closeable, prefix
 from yarpy.devices.control_board import command
 from yarpy.devices.control_board.board import Board
+from yarpy.devices.control_board.function_server import Functions
 from yarpy.devices.control_board.interface import Joints
 from yarpy.devices.control_board.responder import FAIL, Responder
 from yarpy.devices.control_board.state import State
@@ -28,9 +32,10 @@ from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError
 from yarpy.log import logger
 from yarpy.names.base import NameClient
+from yarpy.port.audience import Audience
 from yarpy.port.port import BufferedPort, Port
 from yarpy.port.rpc import RpcServer
-from yarpy.wire.message import Lines, Message
+from yarpy.wire.message import Encoded, Lines, Message
 
 log = logger("yarpy.devices")
 
@@ -65,6 +70,9 @@ class ControlBoardServer(Closeable):
             self._rpc = resources.enter_context(
                 RpcServer(f"{name}/rpc:i", self._answer, names=names)
             )
+            self._functions = resources.enter_context(
+                RpcServer(f"{name}/nws/rpc:i", Functions(self._board), names=names)
+            )
             self._command = resources.enter_context(
                 Port(f"{name}/command:i", callback=self._obey, names=names)
             )
@@ -72,6 +80,8 @@ class ControlBoardServer(Closeable):
                 BufferedPort(f"{name}/stateExt:o", names=names)
             )
             self._state = resources.enter_context(BufferedPort(f"{name}/state:o", names=names))
+            self._state_ext_readers = Audience(self._state_ext)
+            self._state_readers = Audience(self._state)
             self._publisher = Publisher(name, period, self._publish)
             resources.callback(self._publisher.close)
             self._resources = resources.pop_all()
@@ -108,18 +118,26 @@ class ControlBoardServer(Closeable):
             self._complain(f"command from {message.source}", error)
 
     def _publish(self) -> None:
-        if not (self._state_ext.outputs or self._state.outputs):
+        if not (self._state_ext_readers or self._state_readers):
             return
         board = self._board
-        state = State.of(board.count, board.values)
+        state = State.of(board.count, board.values, newer=True)
         times = board.timestamps()
         if any(abs(time - times[0]) > APART for time in times):
             raise Refused(f"the encoders were read more than {APART:g} s apart: not published")
         self._stamp = self._stamp.next(sum(times) / len(times))
-        self._state_ext.write(state.to_bottle(), self._stamp)
+        self._state_ext_readers.write(
+            state.to_bottle, lambda: _newer(state.to_bottle(newer=True)), self._stamp
+        )
         positions = state.values.get("encoders")
         if positions is not None:
-            self._state.write(Bottle(positions), self._stamp)
+            bottle = Bottle(positions)
+            self._state_readers.write(lambda: bottle, lambda: _newer(bottle), self._stamp)
+
+
+def _newer(bottle: Bottle) -> Encoded:
+    """A message as YARP 4 spells it."""
+    return Encoded(to_yarp4(bottle.to_bytes()))
 
 
 def _line(element: Any, plain: bool) -> str:

@@ -1,0 +1,74 @@
+"""Audience: writes to each reader of a port in its own way: to programs of YARP 3, and of YARP 4.
+
+Rules: a new reader is asked once, in a thread of its own, which of them it is; until it is known,
+others get messages and it gets none: a message of the other kind can end its connection for good.
+Readers over text, where both are alike, are not asked. Who does not answer is of YARP 3.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+from yarpy.data.stamp import Stamp
+from yarpy.errors import YarpError
+from yarpy.link.outbound import Outbound
+from yarpy.log import logger
+from yarpy.port.port import MessagePort, envelope_of
+from yarpy.wire.message import Packet
+
+log = logger("yarpy.port")
+
+Make = Callable[[], object]
+
+
+class _Reader:
+    """`yarp4`: of which YARP it is; None while it is being asked."""
+
+    def __init__(self, yarp4: bool | None) -> None:
+        self.yarp4 = yarp4
+
+
+class Audience:
+    """The readers of `port`."""
+
+    def __init__(self, port: MessagePort) -> None:
+        self._port = port
+        self._readers: dict[Outbound, _Reader] = {}
+
+    def __bool__(self) -> bool:
+        """Whether there is anybody of whom it is known."""
+        self._look()
+        return any(reader.yarp4 is not None for reader in self._readers.values())
+
+    def write(self, older: Make, newer: Make, stamp: Stamp | None = None) -> int:
+        """Write what `older` makes to readers of YARP 3, and what `newer` makes to those of YARP 4;
+        returns how many connections took it. Raises as `Port.write`."""
+        self._look()
+        envelope = b"" if stamp is None else envelope_of(stamp)
+        taken = 0
+        for yarp4, make in ((False, older), (True, newer)):
+            group = tuple(link for link, one in self._readers.items() if one.yarp4 is yarp4)
+            if group:
+                taken += self._port.send(Packet(make(), envelope), group)
+        return taken
+
+    def _look(self) -> None:
+        links, known = self._port.links, self._readers
+        if links or known:
+            self._readers = {link: known.get(link) or self._reader(link) for link in links}
+
+    def _reader(self, link: Outbound) -> _Reader:
+        if link.carrier.spelling != "binary" or link.carrier.broadcast:
+            return _Reader(False)
+        found = _Reader(None)
+        name = f"yarpy which YARP {link.route.target}"
+        threading.Thread(target=self._ask, args=(link, found), name=name, daemon=True).start()
+        return found
+
+    def _ask(self, link: Outbound, reader: _Reader) -> None:
+        try:
+            reader.yarp4 = self._port.is_yarp4(link.route.target)
+        except (YarpError, OSError) as error:
+            log.info("%s: which YARP is %s? %s", self._port.name, link.route.target, error)
+            reader.yarp4 = False

@@ -1,0 +1,37 @@
+"""What C++ YARP 4.0.0 was recorded to say (tests/golden/yarp4_*.json)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from yarpy.wire.message import CALL, Message
+
+_FOLDER = Path(__file__).parent.parent / "golden"
+
+
+def recorded(name: str) -> dict[str, Any]:
+    """The recording `board`: `client`, `server`, `state`."""
+    found: dict[str, Any] = json.loads((_FOLDER / f"yarp4_{name}.json").read_text())
+    return found
+
+
+class Replay:
+    """A port that answers as the C++ server did. What it was not asked then is a KeyError."""
+
+    def __init__(self, name: str) -> None:
+        self.answers: dict[str, list[str]] = {}
+        for row in recorded(name)["server"]:
+            self.answers.setdefault(row["request"], []).append(row["reply"])
+
+    def ask(self, question: Any, timeout: float | None) -> Message:
+        replies = self.answers[b"".join(question.to_wire()).hex()]
+        reply = replies.pop(0) if len(replies) > 1 else replies[0]
+        return Message(CALL, bytes.fromhex(reply))
+
+    def tell(self, statement: Any) -> None:
+        raise AssertionError("nothing is told")
+
+    def close(self) -> None:
+        """Nothing to do."""
