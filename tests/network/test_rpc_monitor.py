@@ -184,8 +184,9 @@ def test_calls_of_thrift(
     ):
         client._port.connect("/cam", "tcp+send.rpc_monitor+interface.camera")
         assert client.set_speed(1.5) is True
-        heard = [monitor.read(timeout=5) for _ in range(2)]
-        assert [message and message.value[3:] for message in heard] == [
+        heard = [monitor.read(timeout=5) for _ in range(4)]
+        assert heard[0] is not None and heard[0].value[7][0] == "getRemoteProtocolVersion"
+        assert [message and message.value[3:] for message in heard[2:]] == [
             ["command", "client", "Camera", ["set_speed"], [1.5], []],
             ["reply", "rpc client", "Camera", ["set_speed"], [], ["ok"]],
         ]

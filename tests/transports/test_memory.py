@@ -85,12 +85,14 @@ def test_packets_of_no_network_have_any_priority(
 
 def test_nothing_is_left_behind() -> None:
     before = len(os.listdir("/proc/self/fd"))
-    for one in met():
-        one.close()
-    del one
+    sending, reading = met()
+    name = f"yarpy-memory-{sending.port:016x}"
+    sending.close()
+    reading.close()
+    del sending, reading
     assert len(os.listdir("/proc/self/fd")) == before
     with open("/proc/net/unix") as sockets:
-        assert "yarpy-memory" not in sockets.read()
+        assert name not in sockets.read()
 
 
 def test_a_number_that_nobody_waits_at() -> None:
