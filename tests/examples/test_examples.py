@@ -7,9 +7,11 @@ import shutil
 import signal
 import sys
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from support.patience import patience
 from support.process import Process
 
 import yarpy
@@ -49,7 +51,10 @@ ALONE = {
     "stamps_and_drops.py": [r"were skipped", r"^written +1000$", r"dropped by the reader \d+"],
 }
 TOGETHER = {
+    "channelling.py",
+    "forwarding.py",
     "listener.py",
+    "mirroring.py",
     "module.py",
     "netcat.sh",
     "rpc_client.py",
@@ -160,6 +165,43 @@ def test_module(server: yarpy.NameServer):
             assert client.call("rate", 0)[0] == "fail"
         interrupt(module)
         assert yarpy.query("/tock/out") is None
+
+
+@pytest.mark.parametrize(
+    ("name", "background", "last", "pattern"),
+    [
+        (
+            "mirroring.py",
+            [["publish", "hello"]],
+            ["listen"],
+            r"^\{'said by': 'publish', 'text': 'hello'\}$",
+        ),
+        (
+            "mirroring.py",
+            [["serve"]],
+            ["call", "hello"],
+            r"^\{'said by': 'serve', 'text': 'HELLO'\}$",
+        ),
+        ("forwarding.py", [["start"], ["middle"]], ["end"], r"^message \d+, handed on$"),
+        (
+            "channelling.py",
+            [["publish"]],
+            ["listen"],
+            r"^\(48, 64, 3\) Sound\(1 channels, 1600 samples, .*\) \{'elbow': \d",
+        ),
+    ],
+)
+def test_decorators(
+    server: yarpy.NameServer, name: str, background: list[list[str]], last: list[str], pattern: str
+):
+    assert len((EXAMPLES / name).read_text().splitlines()) <= 40
+    with ExitStack() as stack:
+        for arguments in background:
+            stack.enter_context(start(name, *arguments, **server.environment))
+        with start(name, *last, **server.environment) as process:
+            assert process.wait(patience(25)) == 0, process.stderr
+            assert re.search(pattern, process.stdout, re.M), process.stdout
+            assert process.stderr == ""
 
 
 @needs_netcat

@@ -66,6 +66,12 @@ from yarpy.wire.datagram import Assembler
 from yarpy.wire.message import DATA, Answer, Message, Packet
 from yarpy.wire.shared_stream import SharedStream
 from yarpy.wire.stream import DatagramStream
+from yarpy.wrap.frame import Frame, from_bytes, to_bytes
+from yarpy.wrap.hint import shape_of
+from yarpy.wrap.middleware import question_of
+from yarpy.wrap.npy import from_npy, to_npy
+from yarpy.wrap.payload import asked, unpack
+from yarpy.wrap.tree import to_text
 
 try:
     import cv2
@@ -353,6 +359,15 @@ def _ros(name: str, library: Library | Library2 | None = None) -> Target:
     return Target(read, (*seeds, *(b"".join(message.to_wire()) for message in full)))
 
 
+def _unpacked(data: bytes) -> None:
+    """A payload, as each kind of listener takes it."""
+    for shape in map(shape_of, (Any, dict, str, np.ndarray, list[int])):
+        with suppress(DecodeError):
+            unpack(data, shape)
+    with suppress(DecodeError):
+        question_of(asked(data))
+
+
 def _served(data: bytes) -> None:
     """What a service is asked; it answers whatever comes, and what it answers can be sent."""
     for spelling in ("binary", "text"):
@@ -457,6 +472,13 @@ _DEVICES = (
     State(2, {}).to_bottle(),
     yarpy.Bottle([[[[["name", "frame"]]] for _ in KINDS]]),
 )
+_FRAMES = (Frame({"a": np.arange(3.0), "b": [b"x", (1, {2})]}, 1, 2.0, "/x"), Frame([None, 1j]))
+_PAYLOADS = (
+    *(to_text({"t": (1, {2}), "a": np.arange(2)}).encode(), b'[[1], {"a": "x"}]', b"text"),
+    *(b"".join(to_bytes(frame)) for frame in _FRAMES),
+    b'{"timestamp": 1.5, "shape": [2, 3], "dtype": "uint8"}\n123456',
+    b'\0\0\0\x16{"timestamp": 1795.25}' + jpeg.encode(Image(_PIXELS)),
+)
 _PASSIVE = ("simulated_network_delay", "throttleDown", "stats_monitor")  # read nothing of it
 
 TARGETS = {
@@ -481,6 +503,9 @@ TARGETS = {
     "sniff": Target(_sniffed, _MESSAGES),
     "thrift requests": Target(_served, (*_THRIFT_SAID, b"help add", b"r_nest 1 2 () () () ()")),
     "thrift answers": Target(_answered, (*_THRIFT_SAID, *_THRIFT_STRUCTS)),
+    "frames": Target(lambda data: from_bytes(data), tuple(b"".join(to_bytes(f)) for f in _FRAMES)),
+    "payloads": Target(_unpacked, _PAYLOADS),
+    "npy": Target(from_npy, tuple(map(to_npy, (np.eye(2), np.arange(3, dtype="u1"))))),
     "walker": Target(_walk, _MESSAGES),
     "yarp 4": Target(_yarp4, tuple(bytes(yarp4.to_yarp4(each)) for each in binaries())),
     "jpeg": Target(

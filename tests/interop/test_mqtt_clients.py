@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import socket
 import subprocess
 import threading
 from collections.abc import Iterator
@@ -13,6 +11,7 @@ from typing import Any
 import pytest
 from support import tls
 from support.access import allow
+from support.broker import Broker, needs_mosquitto
 from support.patience import patience
 from support.port import free_port
 from support.process import Process
@@ -22,40 +21,7 @@ import yarpy
 from yarpy.carriers import mqtt_broker
 
 WAIT = patience(5.0)
-for _program in ("mosquitto", "mosquitto_sub"):
-    if not (shutil.which(_program) or Path(f"/usr/sbin/{_program}").exists()):
-        pytest.skip("needs mosquitto and mosquitto-clients", allow_module_level=True)
-
-
-class Broker:
-    """A broker of mosquitto, to be stopped and started."""
-
-    def __init__(self, folder: Path, *settings: str) -> None:
-        self.port = free_port()
-        self._config = folder / "mosquitto.conf"
-        lines = (f"listener {self.port} 127.0.0.1", "allow_anonymous true", *settings)
-        self._config.write_text("\n".join(lines) + "\n")
-        self.process: Any = None
-        self.start()
-
-    def start(self) -> None:
-        program = shutil.which("mosquitto") or "/usr/sbin/mosquitto"
-        self.process = Process([program, "-c", str(self._config)])
-        self.process.__enter__()
-        wait_until(self.answers)
-
-    def stop(self) -> None:
-        self.process.__exit__(None, None, None)
-
-    def answers(self) -> bool:
-        try:
-            socket.create_connection(("127.0.0.1", self.port), 1.0).close()
-        except OSError:
-            return False
-        return True
-
-    def topic(self, name: str, added: str = "") -> str:
-        return f"mqtt{added}://127.0.0.1:{self.port}/{name}"
+needs_mosquitto()
 
 
 @pytest.fixture

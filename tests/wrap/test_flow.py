@@ -30,7 +30,7 @@ class Air:
     def check(self, way: Way) -> None:
         pass
 
-    def publisher(self, way: Way) -> Any:
+    def publisher(self, way: Way, shape: Any) -> Any:
         return Voice(way)
 
     def listener(self, way: Way, shape: Any) -> Any:

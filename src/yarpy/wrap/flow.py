@@ -38,11 +38,11 @@ class Outlets:
         self._waited = not method.wait
         self._source = outputs[0].topic
         try:
-            for output in outputs:
+            for output, shape in zip(outputs, self._shapes, strict=True):
                 row: list[Publisher] = []
                 self._publishers.append(row)
                 for way in output.ways(output.topic):
-                    row.append(middleware_of(way).publisher(way))
+                    row.append(middleware_of(way).publisher(way, shape))
         except BaseException:
             self.close()
             raise

@@ -3,7 +3,7 @@
     class Pigeons:
         name = "pigeons"
         def check(self, way): ...                        ValueError for what it cannot do
-        def publisher(self, way): ...                    a Publisher
+        def publisher(self, way, shape): ...             a Publisher
         def listener(self, way, shape): ...              a Listener
         def server(self, way, answer): ...               something to close
         def client(self, way, shape): ...                a Client
@@ -176,7 +176,7 @@ class Middleware(Protocol):
 
     def check(self, way: Way) -> None: ...
 
-    def publisher(self, way: Way) -> Publisher: ...
+    def publisher(self, way: Way, shape: Shape) -> Publisher: ...
 
     def listener(self, way: Way, shape: Shape) -> Listener: ...
 

@@ -90,8 +90,8 @@ class Scalar(Shape):
         )
         if self.kind is float and isinstance(value, int) and not isinstance(value, bool):
             fitting = True
-        if not fitting and type(value).__module__ == "numpy" and hasattr(value, "item"):
-            return self.dump(value.item())
+        if not fitting and getattr(value, "shape", None) == () and hasattr(value, "item"):
+            return self.dump(value.item())  # a number of numpy
         if self.kind is bytes and isinstance(value, (bytearray, memoryview)):
             fitting = True
         if not fitting:
@@ -101,7 +101,7 @@ class Scalar(Shape):
     def load(self, plain: Any) -> Any:
         try:
             return self.dump(plain)
-        except TypeError as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise DecodeError(str(error)) from None
 
     def native(self, plain: Any) -> Any:

@@ -45,7 +45,7 @@ class Yarp:
         if not way.topic.startswith("/"):
             raise ValueError(f'"{way.topic}" is no name of a port: it begins with a slash')
 
-    def publisher(self, way: Way) -> PortPublisher:
+    def publisher(self, way: Way, shape: Shape) -> PortPublisher:
         port = BufferedPort(way.topic, strict=way.keep == "all")
         if way.qos is not None:
             _give(port, way.qos)

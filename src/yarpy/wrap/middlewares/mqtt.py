@@ -1,0 +1,149 @@
+"""MQTT: the topics of a broker, "mqtt://broker:1883". No library is needed.
+
+Rules: payloads are those of `payload.py`, topics stand at the broker as they are written. A broker
+that goes away is dialled again until it is back. `reliable` is QoS 1; what else the carrier takes
+(`retain`, `user.NAME+password.WORD`, `tls`) is said by `carrier=`. Questions need MQTT 5.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+from yarpy.errors import LinkClosed, Timeout, UnknownName, YarpError
+from yarpy.port.base import BasePort
+from yarpy.port.port import BufferedPort
+from yarpy.port.rpc import RpcClient, RpcServer
+from yarpy.wire.message import Message
+from yarpy.wrap import payload, spelling
+from yarpy.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.wrap.shape import Shape
+
+
+class Mqtt:
+    """The middleware `mqtt`."""
+
+    name = "mqtt"
+
+    def check(self, way: Way) -> None:
+        if not way.place:
+            raise ValueError('mqtt needs a broker: "mqtt://HOST", or "mqtt://HOST:PORT"')
+        if way.keep not in ("latest", "all"):
+            raise ValueError('a port keeps "latest" or "all" of what comes')
+        way.refuse(qos="what leads to a broker has no thread and no priority of its own")
+
+    def publisher(self, way: Way, shape: Shape) -> MqttPublisher:
+        return MqttPublisher(way)
+
+    def listener(self, way: Way, shape: Shape) -> MqttListener:
+        return MqttListener(way, shape)
+
+    def server(self, way: Way, name: str, answer: Answer) -> RpcServer:
+        server = RpcServer("", MqttServer(answer, way), register=False)
+        return _connected(server, _target(way, "sub", "rpc"))
+
+    def client(self, way: Way, shape: Shape) -> MqttClient:
+        return MqttClient(way, shape)
+
+
+def _target(way: Way, *words: str) -> str:
+    """The topic as something to connect to."""
+    added = [*words, *filter(None, way.carrier.split("+"))]
+    if way.reliable and "rpc" not in words:
+        added.append("qos.1")
+    return f"{'+'.join(('mqtt', *added))}://{way.place}/{way.topic}"
+
+
+P = TypeVar("P", bound=BasePort)
+
+
+def _connected(port: P, target: str) -> P:
+    try:
+        port.connect(target)
+    except YarpError:
+        port.close()
+        raise
+    return port
+
+
+class MqttPublisher:
+    def __init__(self, way: Way) -> None:
+        self._encoding = way.encoding
+        self._port = _connected(BufferedPort("", strict=way.keep == "all"), _target(way))
+
+    def publish(self, item: Item) -> int:
+        data = item.form(f"bytes {self._encoding}", lambda one: payload.joined(one, self._encoding))
+        return self._port.write(data)
+
+    def wait(self, timeout: float | None) -> bool:
+        """Only the broker can be waited for: it does not say who has subscribed."""
+        return self._port.wait_for_outputs(1, timeout)
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        return self._port.stats
+
+    def close(self) -> None:
+        self._port.close()
+
+
+class MqttListener:
+    def __init__(self, way: Way, shape: Shape) -> None:
+        self._way = way
+        self._shape = shape
+        port = BufferedPort("", strict=way.keep == "all")
+        self._port = _connected(port, _target(way, "sub"))
+
+    def listen(self, timeout: float | None) -> Received:
+        try:
+            message = self._port.read(timeout)
+        except Timeout:
+            raise Timeout(f'nothing came from "{self._way.topic}" within {timeout:.3g} s') from None
+        found = payload.unpack(message.as_(bytes), self._shape)
+        found.middleware = self._way.middleware
+        return found
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        return self._port.stats
+
+    def close(self) -> None:
+        self._port.close()
+
+
+class MqttServer:
+    """What an RpcServer calls: from a payload to arguments, and from the value to a payload."""
+
+    def __init__(self, answer: Answer, way: Way) -> None:
+        self._answer = answer
+        self._encoding = way.encoding
+
+    def __call__(self, message: Message) -> bytes:
+        found = self._answer(*question_of(payload.asked(message.as_(bytes))))
+        if isinstance(found, Failure):
+            return payload.failure(found)
+        return payload.joined(found, self._encoding)
+
+
+class MqttClient:
+    def __init__(self, way: Way, shape: Shape) -> None:
+        self._way = way
+        self._shape = shape
+        self._client = _connected(RpcClient(), _target(way, "rpc"))
+
+    def call(
+        self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
+    ) -> Any:
+        message = self._client.ask(payload.question(args, kwargs), timeout)
+        if message is None:
+            raise LinkClosed(f'"{self._way.topic}" gave no answer')
+        refused = spelling.failure_of(message) if message.spelling == "binary" else None
+        if refused is not None:  # by the broker: nobody has subscribed
+            raise UnknownName(refused.text)
+        data = message.as_(bytes)
+        failed = payload.failure_of(data)
+        if failed is not None:
+            raise failed.error()
+        return payload.unpack(data, self._shape).value
+
+    def close(self) -> None:
+        self._client.close()

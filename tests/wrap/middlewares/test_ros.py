@@ -1,0 +1,81 @@
+"""Topics of ROS 1 from hints, beside rostopic; types without a master."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import pytest
+from support.patience import patience
+from support.ros_graph import RosGraph
+from support.wait import wait_until
+
+import yarpy
+from yarpy import wrap
+from yarpy.wrap.hint import shape_of
+from yarpy.wrap.middlewares.ros import type_of
+
+PATIENCE = patience(10.0)
+Picture = Annotated[np.ndarray, wrap.Image("bgr")]
+
+
+class Robot:
+    @wrap.on("/camera", "ros")
+    @wrap.on("/state", "ros")
+    @wrap.on("/word", "ros")
+    def see(self) -> tuple[Picture, dict, str]:
+        return np.full((2, 4, 3), (1, 2, 3), "u1"), {"t": (1, None)}, "hello"
+
+    @wrap.on("/ask", "ros")
+    def ask(self) -> str:
+        return ""
+
+
+@pytest.mark.parametrize(
+    ("hint", "type_"),
+    [
+        *[(str, "String"), (int, "Int64"), (float, "Float64"), (bool, "Bool"), (dict, "String")],
+        *[(bytes, "String"), (Any, "String"), (yarpy.Vector, "String"), (np.ndarray, "String")],
+    ],
+)
+def test_types_of_hints(hint: Any, type_: str) -> None:
+    assert type_of(shape_of(hint)) == f"std_msgs/{type_}"
+
+
+def test_types_of_sensors() -> None:
+    assert type_of(shape_of(Picture)) == "sensor_msgs/Image"
+    jpeg = Annotated[np.ndarray, wrap.Image("bgr", jpeg=90)]
+    assert type_of(shape_of(jpeg)) == "sensor_msgs/CompressedImage"
+    assert type_of(shape_of(yarpy.PointCloud)) == "sensor_msgs/PointCloud2"
+
+
+def test_services_are_refused() -> None:
+    for mode in (wrap.serve, wrap.call):
+        with pytest.raises(yarpy.LocalProtocolError, match="a service of ROS has a type"):
+            mode(Robot().ask)
+    for wrong in ({"carrier": "udp"}, {"keep": 3}, {"qos": yarpy.Qos(packets="HIGH")}):
+        with pytest.raises(ValueError):
+            wrap.on("/x", "ros", **wrong)(lambda: 1)  # type: ignore[arg-type]
+
+
+@pytest.mark.usefixtures("names")
+def test_topics(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_IP", "127.0.0.1")
+    graph = RosGraph(tmp_path)
+    try:
+        here, there, place = Robot(), Robot(), f"ros://127.0.0.1:{graph.port}"
+        wrap.listen(there.see, middleware=place)
+        with wrap.publish(here.see, middleware=place) as out:
+            echo = graph.run("rostopic", "echo", "-n", "1", "/word")
+            wait_until(lambda: len(out.stats[2]["outputs"]) == 2, patience(20.0))
+            wait_until(lambda: all(one["outputs"] for one in out.stats))
+            here.see()
+            picture, state, word = there.see(timeout=PATIENCE)
+            assert picture.tolist() == here.see()[0].tolist()
+            assert (state, word) == ({"t": (1, None)}, "hello")
+            assert wrap.last(there.see)[0].stamp.count == 0
+            echo.wait_line('data: "hello"', timeout=PATIENCE)
+    finally:
+        wrap.off(there.see).close()
+        graph.close()
