@@ -16,7 +16,7 @@ from types import TracebackType
 from typing import Final, Self
 
 from yarpy.carriers.auth import prove_initiator
-from yarpy.contact import Contact
+from yarpy.contact import Contact, is_medium
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -262,6 +262,8 @@ class Caller:
     ) -> None:
         if is_of_ros(contact) and not (admin and contact.carrier == "xmlrpc"):
             carrier = contact.carrier  # nodes of YARP are administered as any port
+        elif is_medium(carrier):
+            carrier = f"{carrier}+srv"  # questions go to services
         if not find_carrier(parse_carrier(carrier)).replies:
             raise LocalProtocolError(f'"{carrier}" carries no replies; call over tcp')
         route = Route(name, contact.name or f"/{contact.address}", carrier, contact.port)

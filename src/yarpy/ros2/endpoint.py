@@ -92,7 +92,7 @@ class Endpoint(ObjectTransport):
         DecodeError; what Zenoh raises."""
         graph = self.participant.graph
         kinds_ = (self.role, *self.peers)
-        seen = graph.wait(self.name, *kinds_, timeout=0.0 if type_ else patience)
+        seen = graph.wait(self.name, *kinds_, timeout=patience)
         with self._opening:
             if type_:
                 self.open(kinds.named(type_, self.what, seen, old), old)

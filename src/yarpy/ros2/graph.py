@@ -20,6 +20,7 @@ from yarpy.ros2.token import SPACE, Token, parse_token
 log = logger("yarpy.ros2")
 
 MOST: Final = 100_000  # tokens
+SETTLED: Final = 1.0  # seconds for a router to tell of what was there before
 
 Watcher = Callable[[Token, bool], None]  # a token, and whether it has come
 
@@ -40,7 +41,14 @@ class Graph:
 
         space = f"{SPACE}/{self.domain}/**"
         hear = Callback(self._heard, indirect=False)
-        return session.liveliness().declare_subscriber(space, hear, history=True)
+        hearing = session.liveliness().declare_subscriber(space, hear, history=True)
+        # What was there before comes by the same way as the end of a question that is asked now;
+        # its answers are of no use, since Zenoh loses some.
+        settled = threading.Event()
+        ignore: Any = Callback(lambda reply: None, settled.set, indirect=False)
+        session.liveliness().get(space, ignore, timeout=SETTLED)
+        settled.wait(SETTLED)
+        return hearing
 
     def _heard(self, sample: Any) -> None:
         from zenoh import SampleKind

@@ -22,7 +22,7 @@ from yarpy.route import CarrierSpec, Route
 
 log = logger("yarpy.ros2")
 
-PATIENCE: Final = 1.0  # seconds for the graph to say which type a topic has
+PATIENCE: Final = 1.0  # seconds for a service to appear
 HUMBLE: Final = "humble"
 
 _KINDS: Final[dict[tuple[bool, bool], type[Endpoint]]] = {
@@ -55,7 +55,7 @@ def open_medium(contact: Contact, route: Route) -> Endpoint:
         participant.close()
         raise
     try:
-        endpoint.begin(type_, old, PATIENCE if not type_ else 0.0)
+        endpoint.begin(type_, old, PATIENCE if serves and not type_ else 0.0)
         if endpoint.kind is None and serves:
             raise UnknownName(
                 f"nobody serves {topic} in domain {participant.graph.domain} of ROS 2: is its node "

@@ -4,8 +4,9 @@
     set NAME KEY VALUE...   get NAME KEY   check NAME KEY VALUE   route A B   runners   gc   help
     bot ...   topic ...   subscribe ...   and whatever else a server understands
 
-Where a ROS master is configured, its nodes, topics and services are listed too. With names on
-Zenoh there is no server: `list`, `query` and `get` ask the ports.
+Where a ROS master is configured, its nodes, topics and services are listed too; and those of ROS 2
+where RMW_IMPLEMENTATION, ZENOH_SESSION_CONFIG_URI or YARPY_ZENOH say that it goes over Zenoh. With
+names on Zenoh there is no server: `list`, `query` and `get` ask the ports.
 
 Arguments are values of Bottle text. `register` takes any address, a camera's for example; the word
 `...` leaves a part to the server.
@@ -18,6 +19,7 @@ Exit codes: 0 answered; 1 `query` finds nothing, the server knows no such comman
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -84,7 +86,8 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
         if as_json:
             print_json(lines)
         else:
-            for line in (*lines, *_lines_of(graphs, arguments), END):
+            ros2 = _lines_of_ros2(arguments) if verb == "list" else []
+            for line in (*lines, *_lines_of(graphs, arguments), *ros2, END):
                 print_line(line)
     return 0
 
@@ -103,7 +106,7 @@ def _answer_for_zenoh(
         if as_json:
             print_json([as_dict(contact) for contact in contacts])
         else:
-            for line in (*map(registration_line, contacts), END):
+            for line in (*map(registration_line, contacts), *_lines_of_ros2(arguments), END):
                 print_line(line)
     elif verb == "get" and len(arguments) == 2:
         values = names.get(*arguments)
@@ -146,7 +149,7 @@ def _answer_for_ros(
         asked = getattr(names, "clients", [names])
         print_json([as_dict(item) for client in asked for item in client.list(*arguments[:1])])
     else:
-        for line in (*_lines_of(graphs, arguments), END):
+        for line in (*_lines_of(graphs, arguments), *_lines_of_ros2(arguments), END):
             print_line(line)
     return True
 
@@ -159,6 +162,19 @@ def _lines_of(graphs: list[RosNames], arguments: tuple[str, ...]) -> list[str]:
         for graph in graphs
         for item in graph.list(*arguments[:1])
     ]
+
+
+def _lines_of_ros2(arguments: tuple[str, ...]) -> list[str]:
+    """Nodes, topics and services of ROS 2, by what they are connected to, if there is any."""
+    from yarpy.ros2.listing import is_used, listing
+
+    if not is_used(os.environ):
+        return []
+    try:
+        return [f'{item.kind} "{item.target}"' for item in listing("".join(arguments[:1]))]
+    except yarpy.YarpError as error:
+        complain(f"ROS 2 is not listed: {error}")
+        return []
 
 
 def parse_address(words: tuple[str, ...]) -> list[Any]:
