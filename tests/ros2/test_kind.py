@@ -49,8 +49,9 @@ def test_what_the_graph_says() -> None:
 
 def test_what_is_written() -> None:
     assert chosen("hi") is chosen(yarpy.Bottle(["hi"])) is String
-    assert chosen(yarpy.Vector([1.0])) is ros2.load("std_msgs/Float64MultiArray")
-    for value in (yarpy.Bottle([1, 2]), yarpy.Bottle(), {"a": 1}, None):
+    for numbers in (yarpy.Vector([1.0]), yarpy.Bottle([1.0, 2.5]), [1, 2]):
+        assert chosen(numbers) is ros2.load("std_msgs/Float64MultiArray")
+    for value in (yarpy.Bottle([1, "a"]), yarpy.Bottle(), {"a": 1}, None):
         with pytest.raises(DecodeError, match="ros2://TOPIC~package/msg/Type"):
             chosen(value)
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Sequence
+from queue import Empty, SimpleQueue
 from typing import Any, ClassVar, Final
 
 from yarpy.carriers.ros2 import Incoming, Outgoing
@@ -37,7 +37,7 @@ MOST_TOLD: Final = 100  # peers of other types that the log names
 ANSWER: Final = 600.0  # seconds for an answer, as ROS 2
 BACKENDS: Final = "backends:cpu:"  # what Lyrical wants to know of readers of bytes
 BESIDE: Final = "/_buf_cpu"  # ... and where it may send them then
-_END: Final = object()
+_END: Final = Incoming(b"")  # only wakes who waits
 
 
 class Endpoint(ObjectTransport):
@@ -66,9 +66,10 @@ class Endpoint(ObjectTransport):
         self._closed = False
         self._told: set[tuple[Node, Key]] = set()
         self._greeted = False
-        self._inbox: deque[Any] = deque()
-        self._bytes = 0
-        self._arrived = threading.Condition()
+        self._inbox: SimpleQueue[Any] = SimpleQueue()
+        self._bytes = 0  # of what waits there
+        self._over = False
+        self._counting = threading.Lock()
         self._timeout: float | None = None
         self._opening = threading.Lock()  # the type is settled once
 
@@ -174,39 +175,40 @@ class Endpoint(ObjectTransport):
 
     def put(self, item: Any, most: int) -> None:
         """Something came; the oldest go where there are too many. In a thread of Zenoh."""
-        with self._arrived:
-            self._inbox.append(item)
+        inbox = self._inbox
+        with self._counting:
             self._bytes += item.size
-            while len(self._inbox) > most or self._bytes > MOST_BYTES:
-                self._bytes -= self._inbox.popleft().size
+            while inbox.qsize() >= most or self._bytes > MOST_BYTES:
+                try:
+                    self._bytes -= inbox.get_nowait().size
+                except Empty:
+                    break
                 self.dropped += 1
-            self._arrived.notify()
+        inbox.put(item)
 
     def receive(self, wait: bool = True) -> tuple[object] | None:
         if not self._greeted:
             self._greeted = True
             return (self,)  # what `greet` reads
-        with self._arrived:
-            if not self._inbox and wait:
-                self._arrived.wait_for(lambda: self._inbox, self._timeout)
-            if not self._inbox:
-                raise BlockingIOError("nothing has come")
-            item = self._inbox[0]
-            if item is _END:
-                return None
-            self._inbox.popleft()
+        if self._over:
+            return None
+        try:
+            item = self._inbox.get(wait, self._timeout)
+        except Empty:
+            raise BlockingIOError("nothing has come") from None
+        if self._over:
+            return None
+        with self._counting:
             self._bytes -= item.size
-            return (item,)
+        return (item,)
 
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         self._timeout = seconds
 
     def interrupt(self) -> None:
-        with self._arrived:
-            self._inbox.clear()
-            self._bytes = 0
-            self._inbox.append(_END)
-            self._arrived.notify_all()
+        self._over = True
+        self._inbox.put(_END)
+        self._inbox.put(_END)  # a reader and the thread of the connection may wait
 
     # -- the end ----------------------------------------------------------------------------------
 
@@ -427,7 +429,7 @@ class Server(Endpoint):
             self.dropped += 1
             query.reply_err(str(error).encode())
             return
-        if len(self._inbox) >= MOST_QUESTIONS:
+        if self._inbox.qsize() >= MOST_QUESTIONS:
             self.dropped += 1
             query.reply_err(b"too many questions are waiting")
             return

@@ -11,13 +11,14 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any, Final
 
+from yarpy.data.vector import Vector
 from yarpy.errors import DecodeError, UnknownType, YarpError
 from yarpy.idl.ros2msg.hash import dds_name, full_name, is_hash, ros_name
 from yarpy.idl.ros2msg.library import Library, default_library, hash_of
 from yarpy.idl.ros2msg.source import Rosbags, Standard, installed
 from yarpy.idl.rosmsg.library import Service
 from yarpy.idl.rosmsg.message import Message
-from yarpy.idl.rosmsg.native import type_for
+from yarpy.idl.rosmsg.native import are_numbers, type_for
 from yarpy.ros2.key import NO_HASH, Key
 from yarpy.ros2.token import Token
 
@@ -76,7 +77,7 @@ def chosen(value: object) -> type[Message]:
     DecodeError."""
     while isinstance(value, list) and len(value) == 1:
         value = value[0]
-    name = type_for(value)
+    name = type_for(Vector([*value]) if are_numbers(value) else value)  # type: ignore[misc]
     if name is None:
         raise DecodeError(
             f"{type(value).__name__} may become many types of ROS 2, and nobody subscribes yet who "

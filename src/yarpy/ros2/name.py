@@ -44,7 +44,7 @@ def node_of(port: str) -> Node:
     '/icub/head/state_o'
     """
     parts = [re.sub(r"[^A-Za-z0-9_]", "_", part) for part in port.split("/") if part] or ["yarpy"]
-    whole = [f"_{part}" if part[0].isdigit() else part for part in parts]
+    whole = [part if part[0].isalpha() else f"n{part}" for part in parts]  # with `_` it is hidden
     return Node("/" + "/".join(whole[:-1]), whole[-1])
 
 

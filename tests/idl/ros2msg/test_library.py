@@ -86,6 +86,10 @@ def test_types_of_yarp() -> None:
         if name.startswith("sensor_msgs"):
             assert again.header.frame_id == "base"  # type: ignore[attr-defined]
             assert stamp_of(again) == yarpy.Stamp(0, 12.5)
+    for numbers in ([1.0, 2.5], yarpy.Bottle([1.0, 2.5])):  # as ports send the angles of joints
+        for name in ("std_msgs/Float64MultiArray", "sensor_msgs/JointState"):
+            message = to_message(numbers, LIBRARY.message(name))
+            assert to_value(message, yarpy.Vector) == yarpy.Vector([1.0, 2.5])
     header = to_message(stamp, LIBRARY.message("std_msgs/Header"))
     assert (header.stamp.sec, header.stamp.nanosec) == (12, 500_000_000)  # type: ignore[attr-defined]
     cloud = yarpy.PointCloud(np.zeros((4, 3)))

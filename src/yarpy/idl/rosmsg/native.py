@@ -2,7 +2,8 @@
 topic, for a reader.
 
     Image               sensor_msgs/Image, sensor_msgs/CompressedImage (JPEG)
-    Vector, Matrix      std_msgs/Float64MultiArray and its kin; a Vector sensor_msgs/JointState too
+    Vector, Matrix      std_msgs/Float64MultiArray and its kin; a Vector sensor_msgs/JointState too,
+                        and a list of numbers where one of these is wanted
     PointCloud          sensor_msgs/PointCloud2
     Sound               audio_common_msgs/AudioData: 16 bits, channels in turns
     Stamp               std_msgs/Header
@@ -72,6 +73,8 @@ def to_message(
         return compressed_message(value, cls, _header(cls, stamp, frame_id))
     if isinstance(value, PointCloud) and name == "sensor_msgs/PointCloud2":
         return cloud_message(value, cls, _header(cls, stamp, frame_id))
+    if (name == "sensor_msgs/JointState" or _is_multi_array(cls)) and are_numbers(value):
+        value = Vector([*value])
     if isinstance(value, (Vector, Matrix)) and _is_multi_array(cls):
         return _multi_array(value, cls)
     if isinstance(value, Vector) and name == "sensor_msgs/JointState":
@@ -112,6 +115,13 @@ def to_value(message: Any, kind: Any = object) -> Any:
         if found is not None:
             return found
     return codec.decode_as(message.to_bottle().to_bytes(), kind)
+
+
+def are_numbers(value: object) -> bool:
+    """Whether it is a list of nothing but numbers, as ports send the angles of joints."""
+    if not isinstance(value, (list, tuple)) or not value:
+        return False
+    return all(isinstance(item, (int, float)) for item in value)
 
 
 def stamp_of(message: Any) -> Stamp | None:

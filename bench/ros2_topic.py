@@ -1,0 +1,194 @@
+"""Topics of ROS 2: a port against eclipse-zenoh alone, with the same bytes over the same router.
+
+Round trips between two programs, by turns: `bare` puts CDR and an attachment with eclipse-zenoh and
+hears by a callback; `port` writes a value to a port and reads an object of the type from another.
+Then a flood of small messages to a program that counts them.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import statistics
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+import yarpy
+from yarpy import ros2
+from yarpy.names.default import DEFAULT
+from yarpy.ros2.attachment import Attachment
+from yarpy.ros2.kind import key_of
+from yarpy.transports.zenoh import close, open_router, share
+
+TURNS = 5
+FLOOD = 20_000
+TYPES = {"text": "std_msgs/msg/String", "picture": "sensor_msgs/msg/Image"}
+
+
+def value_of(what: str) -> Any:
+    if what == "text":
+        return "x" * 16
+    return yarpy.Image(np.zeros((480, 640, 3), "u1"))
+
+
+def body_of(what: str) -> bytes:
+    kind = ros2.load(TYPES[what])
+    if what == "text":
+        return b"".join(kind(data="x" * 16).to_ros())
+    pixels = np.zeros(480 * 640 * 3, "u1")
+    blocks = kind(height=480, width=640, encoding="rgb8", step=1920, data=pixels).to_ros()
+    return b"".join(blocks)
+
+
+def key(way: str, what: str) -> str:
+    return str(key_of(0, f"/{way}_{what}", ros2.load(TYPES[what]), False))
+
+
+@contextlib.contextmanager
+def bare(what: str, answers: bool) -> Iterator[Callable[[], None]]:
+    """One side by eclipse-zenoh alone; what is returned makes a round trip."""
+    from zenoh.handlers import Callback
+
+    out, into = ("back", "there") if answers else ("there", "back")
+    come = threading.Semaphore(0)
+    body, attached = body_of(what), bytes(Attachment(1, 1, bytes(16)))
+    with share() as lease:
+        publisher = lease.session.declare_publisher(key(out, what))
+
+        def heard(sample: Any) -> None:
+            data = bytes(sample.payload)
+            if answers:
+                publisher.put(data, attachment=attached)
+            else:
+                come.release()
+
+        hears = lease.session.declare_subscriber(key(into, what), Callback(heard, indirect=False))
+
+        def turn() -> None:
+            publisher.put(body, attachment=attached)
+            come.acquire()
+
+        yield turn
+        hears.undeclare()
+        publisher.undeclare()
+
+
+@contextlib.contextmanager
+def port(what: str, answers: bool) -> Iterator[Callable[[], None]]:
+    """One side by ports."""
+    out, into = ("back", "there") if answers else ("there", "back")
+    with yarpy.Port("/answer" if answers else "/out") as writer:
+        writer.connect(f"ros2://{out}_{what}~{TYPES[what]}")
+        if answers:
+            # What came is decoded, as an object of its type, and that is sent.
+            heard = lambda message: writer.write(message.ros)  # noqa: E731
+            with yarpy.Port("/answers", callback=heard) as reader:
+                reader.listen_to(f"ros2://{into}_{what}~{TYPES[what]}")
+                yield lambda: None
+            return
+        value = value_of(what)
+        with yarpy.BufferedPort("/in", strict=True) as reader2:
+            reader2.listen_to(f"ros2://{into}_{what}~{TYPES[what]}")
+
+            def turn() -> None:
+                writer.write(value)
+                _ = reader2.read(timeout=10).ros
+
+            yield turn
+
+
+WAYS = {"bare": bare, "port": port}
+
+
+def answer(way: str, what: str) -> None:
+    """The other program."""
+    with WAYS[way](what, True):
+        print("ready", flush=True)
+        sys.stdin.read()
+
+
+def measure(what: str, count: int) -> None:
+    found: dict[str, list[float]] = {way: [] for way in WAYS}
+    for _ in range(TURNS):
+        for way, made in WAYS.items():
+            command = [sys.executable, __file__, way, what]
+            pipe = subprocess.PIPE
+            with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as other:
+                assert other.stdout is not None
+                other.stdout.readline()
+                with made(what, False) as turn:
+                    time.sleep(0.3)
+                    turn(), turn()
+                    times = []
+                    for _ in range(count):
+                        started = time.perf_counter()
+                        turn()
+                        times.append(time.perf_counter() - started)
+                other.stdin.close()  # type: ignore[union-attr]
+            found[way].append(statistics.median(times) * 1e6)
+    median = {way: statistics.median(times) for way, times in found.items()}
+    print(
+        f"{what:8} there and back: bare {median['bare']:8.0f} us   port {median['port']:8.0f} us   "
+        f"{median['port'] / median['bare']:.2f} times"
+    )
+
+
+def flood() -> None:
+    """How many small messages a second leave, and arrive, in this program."""
+    from zenoh.handlers import Callback
+
+    body, attached = body_of("text"), bytes(Attachment(1, 1, bytes(16)))
+    with share() as lease:
+        count = 0
+
+        def heard(sample: Any) -> None:
+            nonlocal count
+            bytes(sample.payload)
+            count += 1
+
+        hears = lease.session.declare_subscriber(
+            key("flood", "text"), Callback(heard, indirect=False)
+        )
+        publisher = lease.session.declare_publisher(key("flood", "text"))
+        started = time.perf_counter()
+        for _ in range(FLOOD):
+            publisher.put(body, attachment=attached)
+        first = FLOOD / (time.perf_counter() - started)
+        publisher.undeclare()
+        kind = ros2.load(TYPES["text"])
+        with yarpy.Port("/flood") as writer:
+            writer.connect(f"ros2://flood_text~{TYPES['text']}")
+            value = kind(data="x" * 16)
+            started = time.perf_counter()
+            for _ in range(FLOOD):
+                writer.write(value)
+            second = FLOOD / (time.perf_counter() - started)
+        hears.undeclare()
+    print(f"text     written: bare {first:.0f}/s   port {second:.0f}/s   ({count} heard)")
+
+
+def main() -> None:
+    DEFAULT.push(yarpy.LocalNames())
+    if len(sys.argv) > 2:
+        answer(sys.argv[1], sys.argv[2])
+        return
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        number = free.getsockname()[1]
+    router = open_router([f"127.0.0.1:{number}"])
+    os.environ["YARPY_ZENOH"] = f"127.0.0.1:{number}"
+    measure("text", 300)
+    measure("picture", 60)
+    flood()
+    close(router)
+
+
+if __name__ == "__main__":
+    main()
