@@ -105,3 +105,20 @@ def test_system_without_scheduling(monkeypatch: pytest.MonkeyPatch) -> None:
     assert scheduled(0) == Sched()
     with pytest.raises(LocalProtocolError, match="does not let"):
         schedule(0, Sched(1, 5))
+
+
+def test_when_messages_should_come() -> None:
+    assert repr(qos.Qos("fifo", 3, rate=5)) == (
+        "Qos(policy='SCHED_FIFO', priority=3, packets=None, rate=5)"
+    )
+    assert qos.Qos(late="drop").timed
+    assert not qos.Qos("fifo", 3, "HIGH").timed
+
+
+WRONG = [{"deadline": -1}, {"deadline": float("nan")}, {"rate": 1e7}, {"rate": "5"}, {"late": "x"}]
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_what_is_no_expectation(wrong: dict[str, object]) -> None:
+    with pytest.raises(ValueError, match=r"a number from 0|drop"):
+        qos.Qos(**wrong)  # type: ignore[arg-type]

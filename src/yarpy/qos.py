@@ -22,6 +22,8 @@ DSCP: Final[dict[str, int]] = {
     "EF": 46,
 }
 LEVELS: Final[dict[str, int]] = {"LOW": 10, "NORM": 0, "HIGH": 36, "CRIT": 44}
+LONGEST: Final = 86400.0  # seconds of a deadline
+FASTEST: Final = 1e6  # messages per second
 POLICIES: Final[dict[str, int]] = {"SCHED_OTHER": 0, "SCHED_FIFO": 1, "SCHED_RR": 2}
 
 
@@ -35,19 +37,27 @@ class Sched:
 
 @dataclass(frozen=True, slots=True)
 class Qos:
-    """What a connection is given, or has: its thread's scheduling and its packets' priority.
+    """What a connection is given, or has: its thread's scheduling, its packets' priority, and when
+    its messages should come.
 
     `policy` is SCHED_OTHER, SCHED_FIFO or SCHED_RR, `priority` 1..99 for the last two, `packets` a
-    level (LOW, NORM, HIGH, CRIT), a DSCP class (AF42) or a DSCP number. What is None is left as it
-    is. Raises ValueError.
+    level (LOW, NORM, HIGH, CRIT), a DSCP class (AF42) or a DSCP number. `deadline` is how many
+    seconds a message may take from its stamp to its arrival, `rate` how many should come in a
+    second, `late` what becomes of those that are late: "drop" or "keep". What is None is left as it
+    is; a deadline or a rate of 0 ends it. Raises ValueError.
 
         >>> Qos("fifo", 30, "HIGH")
         Qos(policy='SCHED_FIFO', priority=30, packets='AF42')
+        >>> Qos(deadline=0.02, rate=50)
+        Qos(deadline=0.02, rate=50)
     """
 
     policy: str | None = None
     priority: int | None = None
     packets: str | int | None = None
+    deadline: float | None = None
+    rate: float | None = None
+    late: str | None = None
 
     def __post_init__(self) -> None:
         if self.policy is not None:
@@ -56,6 +66,24 @@ class Qos:
             check(Sched(number, -1 if self.priority is None else self.priority))
         if self.packets is not None:
             object.__setattr__(self, "packets", packets_name(tos_of(self.packets)))
+        for key, most in (("deadline", LONGEST), ("rate", FASTEST)):
+            value = getattr(self, key)
+            if value is not None and not (isinstance(value, int | float) and 0 <= value <= most):
+                raise ValueError(f"a {key} is a number from 0 to {most:g}, not {value!r:.40}")
+        if self.late not in (None, "drop", "keep"):
+            raise ValueError(f'what is late is "drop" or "keep", not {self.late!r:.40}')
+
+    def __repr__(self) -> str:
+        timing = ("deadline", "rate", "late")
+        shown = [key for key in timing if getattr(self, key) is not None]
+        if not shown or (self.policy, self.priority, self.packets) != (None, None, None):
+            shown = ["policy", "priority", "packets", *shown]
+        return f"Qos({', '.join(f'{key}={getattr(self, key)!r}' for key in shown)})"
+
+    @property
+    def timed(self) -> bool:
+        """Whether it says when messages should come."""
+        return not (self.deadline is None and self.rate is None and self.late is None)
 
     @classmethod
     def of(cls, sched: Sched, tos: int) -> Qos:

@@ -44,7 +44,7 @@ def test_few_columns_by_default_and_numbers_aligned(here, ports):
 
 
 LONG = ("/robot/left_arm/very/long/name/state:o", "/logger/of/everything/left_arm/state:i", "tcp",
-        "1234567", "1000.0", "81.25", "12", "0", "0", "0.10", "0.52", "FIFO 30", "AF42",
+        "1234567", "1000.0", "81.25", "12", "3", "0", "0", "0.10", "0.52", "FIFO 30", "AF42",
         "")  # fmt: skip
 
 

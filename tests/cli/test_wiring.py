@@ -19,7 +19,7 @@ sender (qos HIGH)
 from /wiring/out
 to /wiring/other
 sender (sched FIFO 30) (qos AF12)
-receiver (sched OTHER)
+receiver (sched OTHER) (deadline 0.02) (rate 50) (late drop)
 """
 
 
@@ -39,7 +39,7 @@ def test_read(file):
     assert (second.carrier, second.target) == ("tcp", "/wiring/other")
     assert (second.sender, second.receiver) == (
         Qos("SCHED_FIFO", 30, "AF12"),
-        Qos("SCHED_OTHER"),
+        Qos("SCHED_OTHER", deadline=0.02, rate=50, late="drop"),
     )
 
 

@@ -61,3 +61,25 @@ def test_answers_of_cpp() -> None:
     text = "(sched ((policy -1) (priority -1) (tid -1))) (qos ((tos 0)))"
     assert qos.read(Bottle.from_text(text)) == Qos(packets="CS0")
     assert qos.read(Bottle()) == Qos()
+
+
+def test_when_messages_should_come(names: yarpy.LocalNames) -> None:
+    wanted = Qos(deadline=0.02, rate=50, late="drop")
+    qos.grant("/out", "/in", sender=wanted, receiver=wanted, names=names)
+    for found in qos.granted("/out", "/in", names):
+        assert (found.deadline, found.rate, found.late) == (0.02, 50, "drop")
+    qos.grant("/out", "/in", receiver=Qos(deadline=0, rate=0), names=names)
+    assert not qos.granted("/out", "/in", names)[1].timed
+
+
+def test_ports_that_know_no_deadlines_are_not_believed(
+    names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("yarpy.link.inbound.Inbound.expect", lambda self, wanted: None)
+    with pytest.raises(yarpy.LocalProtocolError, match=r'"/in" is no port of yarpy'):
+        qos.grant("/out", "/in", receiver=Qos(deadline=1), names=names)
+
+
+def test_nonsense_about_deadlines_is_none() -> None:
+    text = '(sched ((policy 0))) (timing ((deadline "soon") (rate -3) (late never)))'
+    assert qos.read(Bottle.from_text(text)) == Qos("SCHED_OTHER")

@@ -1,270 +1,187 @@
-"""Write deadlines: who does not read keeps his writer waiting for a time, and nobody else."""
+"""Deadlines between two ports: counted, told, and kept from being sent too late."""
 
 from __future__ import annotations
 
-import logging
-import socket
-import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import closing
 
-import numpy as np
 import pytest
-from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
-from yarpy.link import outbound
-from yarpy.link.write_timeout import STRANGERS
-from yarpy.nameserver.local import LocalNames
-from yarpy.port.port import MessagePort
-
-BIG = "x" * 3_000_000  # more than the kernel takes for a reader that does not read
-
-REQUESTS = {
-    "text": b"CONNECT stuck\r\nr\r\n",
-    "mjpeg": b"GET /?action=stream HTTP/1.0\r\n\r\n",
-    "events": b"GET /r HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n",
-    "websocket": (
-        b"GET /?ws&read HTTP/1.1\r\nHost: h\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-        b"Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n"
-    ),
-}
+from yarpy.network import qos
+from yarpy.network.sampling import flow
+from yarpy.port.deadline import DeadlineEvent
+from yarpy.qos import Qos
 
 
 @pytest.fixture
-def short(monkeypatch: pytest.MonkeyPatch) -> float:
-    """Strangers are waited for half a second."""
-    monkeypatch.setattr(outbound, "STRANGERS", 0.5)
-    return 0.5
+def names() -> yarpy.LocalNames:
+    return yarpy.LocalNames()
 
 
-def stranger(port: MessagePort, request: bytes, room: int = 4096) -> socket.socket:
-    """Somebody who asked to read, and does not."""
-    before = len(port.outputs)
-    sock = socket.socket()
-    sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, room)
-    sock.connect(("127.0.0.1", port.contact.port))
-    sock.sendall(request)
-    assert port.wait_for_outputs(before + 1, timeout=5)
-    return sock
-
-
-def test_ten_seconds_for_strangers() -> None:
-    assert STRANGERS == 10.0
-
-
-@pytest.mark.parametrize("kind", [yarpy.Port, yarpy.BufferedPort])
-def test_stranger_that_stops_reading_is_cut_and_counted(
-    kind: type[MessagePort],
-    short: float,
-    names: LocalNames,
-    caplog: pytest.LogCaptureFixture,
-) -> None:
-    with (
-        caplog.at_level(logging.WARNING, "yarpy"),
-        kind("/out", names=names) as out,  # type: ignore[call-arg]
-        closing(stranger(out, REQUESTS["text"])),
-    ):
-        written = 0
-        until = time.monotonic() + patience(20.0)
-        while out.outputs and time.monotonic() < until:
-            out.write([BIG])
-            written += 1
-            time.sleep(0.01)
-        assert not out.outputs
-        past = out.stats["past"]["outputs"]
-        counted = past["messages"] + past["drops"] + past["unconfirmed"]
-        assert counted + out.stats["unconnected"] == written
-        assert past["drops"]
-        assert caplog.text.count("does not read") == 1
-
-
-@pytest.mark.parametrize("request_", ["mjpeg", "events", "websocket"])
-def test_pages_that_take_nothing_are_cut_too(
-    request_: str, short: float, names: LocalNames
-) -> None:
-    noise = np.random.default_rng(1).integers(0, 256, (1000, 1000, 3), np.uint8)
-    value = noise if request_ == "mjpeg" else [BIG]
+@pytest.fixture
+def ends(names: yarpy.LocalNames) -> Iterator[tuple[yarpy.Port, yarpy.BufferedPort]]:
     with (
         yarpy.Port("/out", names=names) as out,
-        closing(stranger(out, REQUESTS[request_])),
+        yarpy.BufferedPort("/in", names=names, strict=True) as in_,
     ):
-        until = time.monotonic() + patience(30.0)
-        longest = 0.0
-        while out.outputs and time.monotonic() < until:
-            out.write(value)
+        out.connect("/in")
+        assert in_.wait_for_inputs(timeout=5)
+        yield out, in_
+
+
+Ends = tuple[yarpy.Port, yarpy.BufferedPort]
+
+
+def late(seconds: float) -> yarpy.Stamp:
+    return yarpy.Stamp(1, time.time() - seconds)
+
+
+def test_late_messages_are_counted_and_told(ends: Ends, names: yarpy.LocalNames) -> None:
+    out, in_ = ends
+    heard: list[DeadlineEvent] = []
+    in_.on_deadline(heard.append)
+    qos.grant("/out", "/in", receiver=Qos(deadline=60), names=names)
+    assert qos.granted("/out", "/in", names)[1].deadline == 60
+    for age in (0, 100, 0, 200):
+        out.write([age], late(age))
+        assert in_.read(timeout=5).value == [age]
+    assert [event.silent for event in heard] == [False, False]
+    assert (heard[1].source, heard[1].target, heard[1].missed) == ("/out", "/in", 2)
+    assert 140 <= heard[1].lateness < 200
+    assert "ms after the deadline (missed: 2)" in str(heard[1])
+    assert in_.inputs[0].stats["missed"] == 2
+    assert flow("/out", "/in", names).missed == 2
+    in_.inputs[0].qos = Qos(deadline=0)
+    assert in_._hub.inputs[0].chain is None
+    assert "missed" not in in_.inputs[0].stats
+
+
+def test_late_messages_are_dropped_at_the_receiver(ends: Ends) -> None:
+    out, in_ = ends
+    in_.inputs[0].qos = Qos(deadline=60, late="drop")
+    for age in (0, 100, 0):
+        out.write([age], late(age))
+    assert [in_.read(timeout=5).value for _ in range(2)] == [[0], [0]]
+    stats = in_.inputs[0].stats
+    assert (stats["missed"], stats["drops"]) == (1, 1)
+
+
+def test_what_is_late_already_is_not_sent(ends: Ends, names: yarpy.LocalNames) -> None:
+    out, in_ = ends
+    out.outputs[0].qos = Qos(deadline=60, late="drop")
+    assert out.outputs[0].qos == Qos(packets="CS0", deadline=60, late="drop")
+    assert [out.write([age], late(age)) for age in (0, 100)] == [1, 0]
+    out._hub.outputs[0].start_background()
+    assert [out.write([age], late(age)) for age in (0, 100)] == [1, 0]
+    assert [in_.read(timeout=5).value for _ in range(2)] == [[0], [0]]
+    assert out.outputs[0].stats["drops"] == 2
+    found = flow("/out", "/in", names)
+    assert found.sender is not None
+    assert found.sender.timing["dropped"] == 2
+
+
+@pytest.mark.parametrize("others", [0, 1])
+def test_a_queue_does_not_send_what_has_become_late_in_it(
+    names: yarpy.LocalNames, others: int
+) -> None:
+    """The reader holds the sender up until what waits is too late."""
+    go, came = threading.Event(), []
+
+    def read(message: yarpy.Message) -> None:
+        came.append(message.value[0])
+        go.wait(30)
+
+    with (
+        yarpy.Port("/out", names=names) as out,
+        yarpy.Port("/in", names=names, callback=read) as in_,
+        yarpy.BufferedPort("/other", names=names),
+    ):
+        out.connect("/in")
+        if others:
+            out.connect("/other")
+        assert in_.wait_for_inputs(timeout=5)
+        try:
+            out.write([0])
+            wait_until(lambda: came)
+            link = out._hub.outputs[0]
+            link.start_background()
+            link.expect(Qos(deadline=0.2, late="drop"))
             started = time.monotonic()
-            out.write([1])
-            longest = max(longest, time.monotonic() - started)
-            time.sleep(0.05)
-        assert not out.outputs
-        assert longest < short  # they never held the writer up
-
-
-def test_stranger_that_reads_slowly_stays(short: float, names: LocalNames) -> None:
-    with (
-        yarpy.Port("/out", names=names) as out,
-        closing(stranger(out, REQUESTS["text"], 1 << 20)) as sock,
-    ):
-        ended = threading.Event()
-
-        def read() -> None:
-            while not ended.wait(0.01):
-                sock.recv(100_000)
-
-        thread = threading.Thread(target=read)
-        thread.start()
-        started = time.monotonic()
-        while time.monotonic() < started + 4 * short:
-            assert out.write(["x" * 300_000]) == 1
-        assert out.outputs
-        ended.set()
-        thread.join(5)
-
-
-# ---------------------------------------------------------------------------------- siblings
-
-
-@pytest.fixture
-def stuck(names: LocalNames) -> Iterator[yarpy.Port]:
-    """A port that nobody reads."""
-    with yarpy.Port("/a_stuck", names=names) as port:
-        yield port
-
-
-@pytest.mark.parametrize("payload", ["x" * 20_000, BIG])
-@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text"])
-def test_siblings_of_a_stopped_reader_get_what_is_written(
-    carrier: str, payload: str, names: LocalNames, stuck: yarpy.Port
-) -> None:
-    """Though it was connected first, and its writer waits for it."""
-    heard: list[int] = []
-    with (
-        yarpy.Port("/out", names=names) as out,
-        yarpy.Port("/b", names=names, callback=lambda m: heard.append(m.value[0])),
-        yarpy.Port("/c", names=names, callback=lambda m: heard.append(m.value[0])),
-    ):
-        for name in ("/a_stuck", "/b", "/c"):
-            out.connect(name, carrier)
-        written: list[int] = []
-
-        def write() -> None:
-            for number in range(100_000):
-                written.append(number)
-                out.write([number, payload])
-
-        thread = threading.Thread(target=lambda: _until_closed(write))
-        thread.start()
-        last = -1
-        until = time.monotonic() + patience(20.0)
-        while time.monotonic() < until:  # until the writer stands still
+            thread = threading.Thread(
+                target=lambda: [out.write([number, b"x" * 100_000]) for number in range(1, 40)]
+            )
+            thread.start()
             time.sleep(0.5)
-            if written and written[-1] == last:
-                break
-            last = written[-1]
-        assert written[-1] == last
-        wait_until(lambda: heard.count(last) == 2)
-        assert sorted(heard) == sorted([*range(last + 1)] * 2)
-        out.interrupt()
-        stuck.close()
-        thread.join(patience(10.0))
-        assert not thread.is_alive()
+            wait_until(lambda: link.late)  # what waited for 0.2 s is too late
+        finally:
+            go.set()
+        thread.join(30)
+        assert out.flush(20)
+        wait_until(lambda: in_.inputs[0].stats["messages"] == link.counter.messages)
+        assert link.counter.messages + link.counter.drops == 40
+        assert link.counter.drops == link.late
+        assert time.monotonic() - started < 60
 
 
-def _until_closed(write: object) -> None:
-    try:
-        write()  # type: ignore[operator]
-    except yarpy.PortClosed:
-        pass
+def test_a_silence_is_told_once(ends: Ends) -> None:
+    out, in_ = ends
+    heard: list[DeadlineEvent] = []
+    in_.on_deadline(heard.append)
+    in_.inputs[0].qos = Qos(rate=20)
+    out.write([1])
+    wait_until(lambda: heard)
+    assert heard[0].silent
+    assert "nothing came from /out" in str(heard[0])
+    assert in_.inputs[0].stats["missed"] == 1
+    watch = in_._hub.callbacks.watch
+    in_.close()
+    assert watch is not None and watch._stopped.is_set()
 
 
-# ---------------------------------------------------------------------------------- timeout=
+def test_a_callback_that_fails_costs_nothing(ends: Ends, caplog: pytest.LogCaptureFixture) -> None:
+    out, in_ = ends
+
+    def fail(event: DeadlineEvent) -> None:
+        raise ZeroDivisionError
+
+    in_.on_deadline(fail)
+    in_.inputs[0].qos = Qos(deadline=60)
+    out.write([1], late(100))
+    assert in_.read(timeout=5).value == [1]
+    assert "the deadline callback failed" in caplog.text
 
 
-@pytest.mark.parametrize("strict", [None, True])
-@pytest.mark.parametrize("siblings", [0, 1])
-@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp"])
-def test_write_with_a_timeout_drops_and_counts(
-    strict: bool | None, siblings: int, carrier: str, names: LocalNames, stuck: yarpy.Port
-) -> None:
-    heard: list[int] = []
-    with (
-        yarpy.Port("/out", names=names)
-        if strict is None
-        else yarpy.BufferedPort("/out", strict=strict, names=names) as out,
-        yarpy.Port("/b", names=names, callback=lambda m: heard.append(m.value[0])),
-    ):
-        out.connect("/a_stuck", carrier)
-        if siblings:
-            out.connect("/b", carrier)
-        found = []
-        for number in range(12):
-            started = time.monotonic()
-            found.append(out.write([number, BIG], timeout=0.1))
-            assert time.monotonic() - started < patience(2.0)
-        assert found[0] == 1 + siblings
-        assert found[-1] == siblings
-        stats = next(o.stats for o in out.outputs if o.target == "/a_stuck")
-        assert stats["messages"] + stats["drops"] == 12
-        assert stats["drops"] == found.count(siblings)
-        assert stats["messages"]
-        if siblings:
-            wait_until(lambda: heard == [*range(12)])
+WRONG = ["(deadline -1)", "(deadline soon)", "(rate nan)", "(late never)", "(rate (1 2))"]
 
 
-@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "unix_stream"])
-def test_message_that_was_halfway_arrives_as_it_was_written(
-    carrier: str, names: LocalNames
-) -> None:
-    """Whatever becomes of the array when `write` has returned, and though nothing is written
-    after it."""
-    image = np.full((3000, 3000), 7, np.uint8)
-    with yarpy.Port("/out", names=names) as out, yarpy.Port("/in", names=names) as in_:
-        out.connect("/in", carrier)
-        taken = 0
-        for number in range(10):
-            image[:] = number
-            took = out.write(image, timeout=0.2)
-            image[:] = 255
-            if not took:
-                break
-            taken += 1
-        assert 1 <= taken < 10
-        for number in range(taken):
-            array = in_.read(timeout=5).value.array
-            assert array.min() == array.max() == number
-        assert out.write(["next"]) == 1
-        assert in_.read(timeout=5).value == ["next"]
-        assert out.outputs[0].stats["drops"] == 1
+@pytest.mark.parametrize("text", WRONG)
+def test_what_is_no_deadline_is_refused(ends: Ends, names: yarpy.LocalNames, text: str) -> None:
+    from yarpy import network
+
+    asked = yarpy.Bottle.from_text(f"(timing ({text}))")
+    reply = network.admin("/in", "prop", "set", "/out", *asked, names=names)
+    assert str(reply[0]) == "fail"
+    assert ends[1]._hub.inputs[0].timing is None
 
 
-def test_timeout_and_wait(names: LocalNames, stuck: yarpy.Port) -> None:
-    """Who has not taken the message by then is not among those that are told of."""
+def test_monitors_still_see_what_comes(names: yarpy.LocalNames) -> None:
     with (
         yarpy.Port("/out", names=names) as out,
-        yarpy.Port("/b", names=names, callback=lambda m: None),
+        yarpy.BufferedPort("/in", names=names, strict=True) as in_,
     ):
-        out.connect("/a_stuck")
-        out.connect("/b")
-        assert out.write([1], wait=True, timeout=0.2) == 1
-        assert len(out.outputs) == 2
-        assert stuck.read(timeout=5).value == [1]
-        assert out.flush(timeout=5)
-        assert all(o.stats["drops"] == 0 for o in out.outputs)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="an option of Linux")
-def test_answer_that_nobody_takes_ends_its_connection(
-    names: LocalNames, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("YARPY_PEER_TIMEOUT", "1")
-    with (
-        yarpy.RpcServer("/server", lambda message: [BIG, BIG, BIG], names=names) as server,
-        closing(socket.create_connection(("127.0.0.1", server.contact.port))) as sock,
-    ):
-        sock.sendall(b"CONNACK /asker\r\nd\r\nask\r\n")
-        assert server.wait_for_inputs(1, timeout=5)
-        wait_until(lambda: not server.inputs, patience(20.0))
+        out.connect("/in", "tcp+recv.throttleDown+period_ms.100000")
+        assert in_.wait_for_inputs(timeout=5)
+        in_.inputs[0].qos = Qos(deadline=60, late="drop")
+        in_.attach("in", {"monitor": "throttleDown", "period_ms": 0})
+        for age in (100, 0, 0):
+            out.write([age], late(age))
+        assert in_.read(timeout=5).value == [0]
+        [link] = [one for one in in_._hub.inputs if one.route.source == "/out"]
+        assert link.own_chain is not None
+        wait_until(lambda: link.own_chain.dropped == [1])
+        assert link.timing is not None and link.timing.missed == 1
+        in_.inputs[0].qos = Qos(deadline=0)
+        assert link.chain is not None

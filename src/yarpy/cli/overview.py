@@ -43,6 +43,7 @@ COLUMNS: Final = (
     Column("msg/s", 1, numeric=True),
     Column("MB/s", 3, numeric=True),
     Column("drops", 0, numeric=True),
+    Column("missed", 0, numeric=True, wide=True),
     Column("unconfirmed", 0, numeric=True, wide=True),
     Column("unconnected", 0, numeric=True, wide=True),
     Column("jitter ms", 0, numeric=True, wide=True),
@@ -90,6 +91,7 @@ class Overview:
             _number(flow.rate, 1),
             _number(flow.speed, 2, 1e-6),
             _number(flow.drops, 0),
+            _number(flow.missed, 0),
             _number(flow.sender.unconfirmed if flow.sender else None, 0),
             _number(flow.sender.unconnected if flow.sender else None, 0),
             _number(flow.measured("jitter"), 2, 1e3),
@@ -111,6 +113,7 @@ class Overview:
                     "messages_per_second": flow.rate,
                     "bytes_per_second": flow.speed,
                     "drops": flow.drops,
+                    "missed": flow.missed,
                     "sender": flow.sender and asdict(flow.sender),
                     "receiver": flow.receiver and asdict(flow.receiver),
                 }

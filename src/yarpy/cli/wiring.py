@@ -5,7 +5,7 @@
     to       /view
     carrier  fast_tcp
     sender   (qos HIGH)
-    receiver (sched FIFO 30) (qos LOW)
+    receiver (sched FIFO 30) (qos LOW) (deadline 0.02) (rate 50) (late drop)
 
 Rules: a group per connection, `from` and `to` are needed, `carrier` is tcp unless given. `sender`
 and `receiver` are what `yarpy qos` and `yarpy sched` set. Everything is read and checked before
@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import yarpy
 from yarpy.config.ini import read_ini
@@ -86,14 +87,18 @@ def _qos(group: Property, key: str) -> Qos | None:
     if found is None:
         return None
     policy = priority = packets = None
+    timing: dict[str, Any] = {}
     for item in found[1:]:
         words = list(item) if isinstance(item, Bottle) else [item]
         if words[:1] == ["qos"] and len(words) == 2:
             packets = words[1]
         elif words[:1] == ["sched"] and len(words) in (2, 3):
             policy, priority = words[1], words[2] if len(words) == 3 else None
+        elif words[:1] and words[0] in ("deadline", "rate", "late") and len(words) == 2:
+            timing[words[0]] = words[1]
         else:
             raise LocalProtocolError(
-                f"{key} takes (sched POLICY PRIORITY) and (qos LEVEL), not {Bottle([item])}"
+                f"{key} takes (sched POLICY PRIORITY), (qos LEVEL), (deadline SECONDS), (rate HZ) "
+                f"and (late drop), not {Bottle([item])}"
             )
-    return Qos(policy, priority, packets)
+    return Qos(policy, priority, packets, **timing)

@@ -11,30 +11,31 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Final
+from typing import Final, Generic, TypeVar
 
 from yarpy.errors import YarpError
 from yarpy.link.counter import Counter
-from yarpy.wire.message import Packet
+
+T = TypeVar("T")  # a packet, as the link puts it
 
 GATHER_SECONDS: Final = 200e-6  # how long a burst's message may wait for others
 
 
-class Background:
+class Background(Generic[T]):
     """The queue and loop of a link's own sending thread: one message in flight, one waiting.
 
     What is dropped is counted in `counter`.
     """
 
-    def __init__(self, send: Callable[[Packet], object], counter: Counter) -> None:
-        self._send = send
+    def __init__(self, send: Callable[[T], object], counter: Counter) -> None:
+        self.send = send  # may be another one, for those that come later
         self._counter = counter
-        self._waiting: deque[Packet] = deque()
+        self._waiting: deque[T] = deque()
         self._busy = False
         self._stopped = False
         self._changed = threading.Condition()  # writer and sender pass packets
 
-    def put(self, packet: Packet, backlog: int = 0) -> bool:
+    def put(self, packet: T, backlog: int = 0) -> bool:
         """Take the packet if the link is idle, or if fewer than `backlog` wait; else count a
         drop."""
         with self._changed:
@@ -56,7 +57,7 @@ class Background:
         """Whether nothing is taken any more."""
         return self._stopped
 
-    def wait_put(self, packet: Packet, deadline: float | None = None) -> bool:
+    def wait_put(self, packet: T, deadline: float | None = None) -> bool:
         """Take the packet, once an earlier one has begun to leave. False, and counted, if the queue
         was stopped, or that takes until `deadline` (of time.monotonic).
         """
@@ -98,7 +99,7 @@ class Background:
                 packet = self._waiting.popleft()
                 self._changed.notify_all()
             try:
-                self._send(packet)
+                self.send(packet)
             except YarpError:
                 self.stop()
             except BaseException:  # a defect: nobody may wait for this thread

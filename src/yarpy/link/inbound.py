@@ -15,9 +15,10 @@ from yarpy.data.bottle import Bottle
 from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.driver import Driver
 from yarpy.link.receiver import Receiver
+from yarpy.link.timing import Timing, chain_of, expected
 from yarpy.link.turn import SILENCE, Turn
 from yarpy.log import logger
-from yarpy.qos import NOTHING_ASKED, Sched
+from yarpy.qos import NOTHING_ASKED, Qos, Sched
 from yarpy.wire.message import CALL, DATA, QUIT, Message
 
 if TYPE_CHECKING:
@@ -50,6 +51,9 @@ class Owner(Protocol):
     def input_ended(self, link: Inbound, reason: str, quit_: bool) -> None:
         """The link has ended; in good order if `quit_`."""
 
+    def deadline_missed(self, link: Inbound, lateness: float, silent: bool) -> None:
+        """A message came that many seconds after its deadline, or (`silent`) has not come yet."""
+
 
 class Inbound:
     """One connection into a port."""
@@ -69,7 +73,9 @@ class Inbound:
         self.tos = 0
         self.asked = NOTHING_ASKED  # priorities, granted or not
         self.own_chain: Chain | None = None  # the monitors that ride on it
-        self.chain: Chain | None = None  # those, and the port's
+        self.port_chain: Chain | None = None  # those of the port
+        self.timing: Timing | None = None  # when messages should come
+        self.chain: Chain | None = None  # all of these
         self.failure = ""  # why the program could not use a message, the last time
         self._closing = False
         self._quit = False
@@ -80,6 +86,31 @@ class Inbound:
     def closing(self) -> bool:
         """Whether it is our side that ends the connection."""
         return self._closing
+
+    # -- what messages pass through ----------------------------------------------------------------
+
+    def join(self, port_chain: Chain | None) -> None:
+        """Let messages pass through the port's monitors, too, behind our own."""
+        self.port_chain = port_chain
+        chain = None if self.timing is None else chain_of(self.timing, str(self.route))
+        for part in (self.own_chain, port_chain):
+            if part is not None:
+                chain = part if chain is None else chain.followed_by(part)
+        self.chain = chain
+
+    def expect(self, wanted: Qos) -> None:
+        """From now on messages should come like that; see `Timing`."""
+        qos = expected(self.wanted, wanted)
+        self.timing = Timing(qos, self._missed) if qos.deadline or qos.rate else None
+        self.join(self.port_chain)
+
+    @property
+    def wanted(self) -> Qos | None:
+        """When messages should come, None if nothing was said."""
+        return None if self.timing is None else self.timing.wanted
+
+    def _missed(self, lateness: float, silent: bool) -> None:
+        self.owner.deadline_missed(self, lateness, silent)
 
     # -- the thread -------------------------------------------------------------------------------
 
@@ -315,4 +346,6 @@ class Inbound:
         """Counters as plain numbers, with the protocol's and the kernel's own losses in `drops`."""
         found: dict[str, Any] = self.counter.as_dict()
         found["drops"] += self.lost
+        if self.timing is not None:
+            found["missed"] = self.timing.as_dict()["missed"]
         return found

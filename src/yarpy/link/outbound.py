@@ -14,9 +14,10 @@ from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout, YarpE
 from yarpy.link.background import Background
 from yarpy.link.intake import Intake
 from yarpy.link.sender import Sender, interrupts, seconds
+from yarpy.link.timing import Dated, expected, time_left
 from yarpy.link.write_timeout import ALL, NOTHING, PART, STRANGERS
 from yarpy.log import logger
-from yarpy.qos import NOTHING_ASKED, Sched, schedule
+from yarpy.qos import NOTHING_ASKED, Qos, Sched, schedule
 from yarpy.transports.base import SocketTransport
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import CALL, Message, Packet
@@ -43,6 +44,7 @@ class Rest(NamedTuple):
 
     packet: Packet | None
     passed: bool = False  # the monitors have seen it
+    due: float | None = None  # when it is too late (time.monotonic)
 
 
 class Outbound:
@@ -67,9 +69,12 @@ class Outbound:
         self.log = carrier.route.spec.log is not None  # gets what the port receives, not writes
         self.active = True  # of the multicast links of a port only one sends
         self.thread: threading.Thread | None = None
+        self.wanted: Qos | None = None  # when messages should come
+        self.limit: float | None = None  # seconds after which a message is not sent any more
+        self.late = 0  # messages that were not sent for that
         self._due = 0.0  # when the carrier's interval is over
         self._listening: Steps[None] | None = carrier.listen(driver.stream)
-        self._queue: Background | None = None
+        self._queue: Background[Any] | None = None
 
     @property
     def broken(self) -> bool:
@@ -92,6 +97,12 @@ class Outbound:
         time.monotonic). What has, follows by itself. `passed`: monitors have seen it. Raises
         LinkClosed.
         """
+        due = None
+        if self.limit is not None:
+            due = time.monotonic() + time_left(packet, self.limit)
+            if not self._is_in_time(due):
+                return False
+            deadline = due if deadline is None else min(deadline, due)
         if self.carrier.delivery.lossy:
             if self.sender.broken:
                 raise self.sender.gone()
@@ -105,14 +116,16 @@ class Outbound:
             packet = seen
         if self._queue is not None:
             packet.snapshot(self.carrier.spelling)  # what cannot be sent is the writer's error
-            if self._queue.wait_put(packet, deadline):
+            if self._queue.wait_put(self._dated(packet), deadline):
                 return True
             if self._queue.stopped:
                 raise self.sender.gone()
+            self.late += due is not None
             return False
         if deadline is None:
             self.sender.send(packet)
         elif self.sender.send(packet, deadline, copies=True) is NOTHING:
+            self.late += due is not None
             self.counter.drops += 1
             return False
         return True
@@ -128,9 +141,15 @@ class Outbound:
 
         With `copies`, a message of which a part has left follows by itself.
         """
-        packet, passed = rest
+        packet, passed, due = rest
         if packet is None:
             return self.sender.finish(0.0) or rest
+        if self.limit is not None:
+            if due is None:
+                due = time.monotonic() + time_left(packet, self.limit)
+                rest = Rest(packet, passed, due)
+            if not self._is_in_time(due):
+                return False
         if self.carrier.delivery.lossy:
             return self.send(packet)
         if self._queue is not None:
@@ -145,11 +164,13 @@ class Outbound:
         sent = self.sender.send(packet, 0.0, copies)
         if sent is ALL or (copies and sent is PART):
             return True
-        return Rest(packet if sent is NOTHING else None, passed=True)
+        return Rest(packet if sent is NOTHING else None, passed=True, due=due)
 
     def finish(self, rest: Rest, deadline: float | None = None) -> bool:
         """Do what `begin` left to do; as `send`."""
         if rest.packet is not None:
+            if rest.due is not None:
+                deadline = rest.due if deadline is None else min(deadline, rest.due)
             return self.send(rest.packet, deadline, rest.passed)
         self.sender.finish(deadline)
         return True
@@ -164,6 +185,10 @@ class Outbound:
             return False
         queue, carrier, delivery = self._queue, self.carrier, self.carrier.delivery
         assert queue is not None
+        if self.limit is not None and not self._is_in_time(
+            time.monotonic() + time_left(packet, self.limit)
+        ):
+            return False
         if not queue.has_room(delivery.backlog) or (delivery.lossy and not self._timely()):
             self.counter.drops += 1  # before any work on a message that will not be sent
             return False
@@ -175,7 +200,7 @@ class Outbound:
         if not carrier.prepare(packet):
             self.counter.drops += 1
             return False
-        return queue.put(packet, delivery.backlog)
+        return queue.put(self._dated(packet), delivery.backlog)
 
     def _send_at_once(self, packet: Packet) -> bool:
         """Send what leaves without waiting. What has begun follows by itself, and nothing else
@@ -197,6 +222,42 @@ class Outbound:
             self.counter.drops += 1
         return passed
 
+    def expect(self, wanted: Qos) -> None:
+        """From now on messages should arrive like that. The receiver counts; we do not send what is
+        late already, if late messages are to be dropped."""
+        qos = expected(self.wanted, wanted)
+        self.wanted = qos if qos.deadline or qos.rate else None
+        if qos.deadline and qos.late == "drop":
+            if self._queue is not None:
+                self._queue.send = self._send_queued
+            self.limit = qos.deadline
+        else:
+            self.limit = None
+
+    def _is_in_time(self, due: float) -> bool:
+        """Whether there is time left until `due`; if not, the message is dropped, and counted."""
+        if time.monotonic() < due:
+            return True
+        self.late += 1
+        self.counter.drops += 1
+        return False
+
+    def _dated(self, packet: Packet) -> Packet | Dated:
+        """A packet for the queue: one that may become too late there says when."""
+        if self.limit is None:
+            return packet
+        return Dated(packet, time.monotonic() + time_left(packet, self.limit))
+
+    def _send_queued(self, queued: Packet | Dated) -> None:
+        """Send what was in the queue, unless it is too late by now."""
+        if isinstance(queued, Packet):
+            self.sender.send(queued)
+        elif self._is_in_time(queued.due) and (
+            self.sender.send(queued.packet, queued.due, copies=True) is NOTHING
+        ):
+            self.late += 1
+            self.counter.drops += 1
+
     def _timely(self) -> bool:
         """Whether the carrier's interval is over. On the average, so that no beat is missed."""
         now = time.perf_counter()
@@ -212,13 +273,14 @@ class Outbound:
                 transport = self.driver.transport
                 if self.carrier.delivery.lossy and isinstance(transport, TcpTransport):
                     transport.limit_unsent(UNSENT)  # else the kernel's buffer is the growing queue
-                self._queue = Background(self.sender.send, self.counter)
+                send = self.sender.send if self.limit is None else self._send_queued
+                self._queue = Background(send, self.counter)
                 self.thread = threading.Thread(
                     target=self._run, args=(self._queue,), name=f"yarpy {self.route}", daemon=True
                 )
                 self.thread.start()
 
-    def _run(self, queue: Background) -> None:
+    def _run(self, queue: Background[Any]) -> None:
         if self.sched.policy >= 0:
             try:
                 schedule(0, self.sched)

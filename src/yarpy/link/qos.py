@@ -64,13 +64,19 @@ def grant(link: Inbound | Outbound, qos: Qos) -> None:
         grant_sched(link, qos.sched)
     if qos.packets is not None:
         grant_tos(link, qos.tos)
+    if qos.timed:
+        link.expect(qos)
 
 
 def effective(link: Inbound | Outbound) -> Qos:
     """What the system really does for a connection; without a thread of its own, no scheduling."""
     thread = thread_of(link)
     sched = scheduled(thread) if thread >= 0 else Sched()
-    return Qos.of(sched, link.driver.transport.tos())
+    found = Qos.of(sched, link.driver.transport.tos())
+    wanted = link.wanted
+    if wanted is None:
+        return found
+    return replace(found, deadline=wanted.deadline, rate=wanted.rate, late=wanted.late)
 
 
 def thread_of(link: Inbound | Outbound) -> int:

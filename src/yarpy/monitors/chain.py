@@ -158,7 +158,8 @@ class Chain:
 
     def followed_by(self, other: Chain) -> Chain:
         """A chain of both; their owners close them."""
-        both = Chain((*self.monitors, *other.monitors), self._where, self._group)
+        group = self._group or other._group
+        both = Chain((*self.monitors, *other.monitors), self._where, group)
         both._steps = self._steps + other._steps
         return both
 

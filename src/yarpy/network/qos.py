@@ -6,6 +6,9 @@ end has its own settings. Settings that a side should keep are left out.
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -43,6 +46,17 @@ def grant(
             if not (reply and plain_text(reply[0]) == "ok"):
                 reason = plain_text(reply[1]) if len(reply) > 1 else "the system refuses it"
                 raise LocalProtocolError(f'"{port}" does not set this for "{peer}": {reason}')
+            if qos.deadline or qos.rate:
+                _confirm(port, peer, names)
+
+
+def _confirm(port: str, peer: str, names: NameClient | None) -> None:
+    """A port of C++ says yes to words that it does not know."""
+    if not _granted(port, peer, names).timed:
+        raise LocalProtocolError(
+            f'"{port}" is no port of yarpy, and keeps no deadlines; ask the end of "{peer}", if '
+            "that is one"
+        )
 
 
 def _granted(port: str, peer: str, names: NameClient | None) -> Qos:
@@ -57,10 +71,15 @@ def _granted(port: str, peer: str, names: NameClient | None) -> Qos:
 def read(reply: Bottle) -> Qos:
     """The answer of a port to `prop get PEER`."""
     sched, packets = _group(reply, "sched"), _group(reply, "qos")
-    return Qos.of(
+    found = Qos.of(
         Sched(_number(sched.get("policy")), _number(sched.get("priority"))),
         _number(packets.get("tos")),
     )
+    timing = {key: _plain(value) for key, value in _group(reply, "timing").items()}
+    try:
+        return replace(found, **{key: timing.get(key) for key in ("deadline", "rate", "late")})
+    except ValueError:  # what no port of ours says
+        return found
 
 
 def _group(reply: Bottle, key: str) -> dict[str, object]:
@@ -68,6 +87,10 @@ def _group(reply: Bottle, key: str) -> dict[str, object]:
     value = reply.find(key)
     pairs = value.items() if isinstance(value, dict) else value or ()
     return {plain_text(key): value for key, value in pairs}
+
+
+def _plain(value: object) -> Any:
+    return plain_text(value) if isinstance(value, str) else value
 
 
 def _number(value: object) -> int:
@@ -87,4 +110,9 @@ def _groups(qos: Qos) -> list[object]:
         groups.append(["sched", sched])
     if qos.packets is not None:
         groups.append(["qos", [["tos", qos.tos]]])
+    if qos.timed:
+        told = {"deadline": qos.deadline, "rate": qos.rate, "late": qos.late}
+        groups.append(
+            ["timing", [[key, value] for key, value in told.items() if value is not None]]
+        )
     return groups

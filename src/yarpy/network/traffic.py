@@ -37,7 +37,8 @@ class End:
     sender: messages `unacknowledged` now. Of a receiver: messages `delivered` to the program,
     `waiting` for it now (of all connections), `lost` on the way; `failure`: why the program could
     not use one. `dropped`: by monitors, by their names, with their `failures`. `asked`: priorities
-    that are not what the system does.
+    that are not what the system does; `timing`: what is expected, and how many deadlines were
+    `missed`.
     """
 
     carrier: str = ""
@@ -56,6 +57,7 @@ class End:
     failure: str = ""
     qos: Qos = field(default_factory=Qos)
     asked: dict[str, Any] = field(default_factory=dict)
+    timing: dict[str, Any] = field(default_factory=dict)
     monitors: list[str] = field(default_factory=list)
     dropped: dict[str, int] = field(default_factory=dict)
     failures: dict[str, str] = field(default_factory=dict)
@@ -90,6 +92,11 @@ class Flow:
         """Messages that either side dropped."""
         counted = [e.drops for e in (self.sender, self.receiver) if e and e.drops is not None]
         return sum(counted) if counted else None
+
+    @property
+    def missed(self) -> int | None:
+        """Deadlines that were missed; None where there is none."""
+        return _count(self.receiver.timing.get("missed")) if self.receiver is not None else None
 
     def measured(self, key: str) -> Any:
         """`messages`, `bytes`, `rate`, `jitter` or `latency`, from the side that knows it."""
@@ -158,6 +165,7 @@ def read(told: Property) -> tuple[str, str, End]:
         failure=_text(told.get("failure", "")),
         qos=_qos(told),
         asked=_dict(told.get("asked")),
+        timing=_dict(told.get("timing")),
         monitors=names,
         parameters=_dict(told.get("parameters")),
         state=_dict(told.get("state")),

@@ -19,6 +19,7 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.port import connecting, disconnecting
 from yarpy.port.connection import ConnectionEvent, PortConnection
+from yarpy.port.deadline import DeadlineEvent, Watch
 from yarpy.port.hub import Hub
 from yarpy.port.monitoring import Side
 from yarpy.route import masked
@@ -111,6 +112,18 @@ class BasePort:
     def on_connection(self, callback: Callable[[ConnectionEvent], None] | None) -> None:
         """Call `callback` whenever a connection comes or goes."""
         self._hub.callbacks.on_connection = callback
+
+    def on_deadline(self, callback: Callable[[DeadlineEvent], None] | None) -> None:
+        """Call `callback` whenever a message comes after the deadline of its connection
+        (`Qos(deadline=...)`), or none comes that should (`Qos(rate=...)`).
+
+        It is called in the thread of the connection, before the message is handed on; for a
+        silence in a thread of the port.
+        """
+        callbacks, hub = self._hub.callbacks, self._hub
+        callbacks.on_deadline = callback
+        if callback is not None and callbacks.watch is None:
+            callbacks.watch = Watch(hub.name, lambda: hub.inputs)
 
     def on_admin(self, callback: Callable[[Message], object] | None) -> None:
         """Let `callback` answer administrative messages that the port itself does not know."""

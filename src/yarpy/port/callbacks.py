@@ -15,6 +15,7 @@ from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.log import logger
 from yarpy.port.connection import ConnectionEvent
+from yarpy.port.deadline import DeadlineEvent, Watch
 from yarpy.port.registration import Registration
 from yarpy.wire.message import Message
 
@@ -27,6 +28,8 @@ class Callbacks:
     def __init__(self, registration: Registration) -> None:
         self._registration = registration
         self.on_connection: Callable[[ConnectionEvent], None] | None = None
+        self.on_deadline: Callable[[DeadlineEvent], None] | None = None
+        self.watch: Watch | None = None  # looks for silence, for `on_deadline`
         self.on_admin: Callable[[Message], object] | None = None
         self.slave: Callable[[Bottle], Bottle | None] | None = None  # answers as a node of ROS
         self.on_page: Pages | None = None  # what the program shows to browsers
@@ -52,6 +55,22 @@ class Callbacks:
             self.on_connection(event)
         except Exception:
             log.exception("%s: the connection callback failed", self._registration.name)
+
+    def deadline(self, link: Inbound, lateness: float, silent: bool) -> None:
+        """Tell the program that a deadline was missed."""
+        if self.on_deadline is None or link.timing is None:
+            return
+        route, missed = link.route, link.timing.missed
+        event = DeadlineEvent(route.source, route.target, route.carrier, lateness, missed, silent)
+        try:
+            self.on_deadline(event)
+        except Exception:
+            log.exception("%s: the deadline callback failed", self._registration.name)
+
+    def close(self) -> None:
+        """The port closes."""
+        if self.watch is not None:
+            self.watch.stop()
 
     def page(self, path: str, fields: Mapping[str, str]) -> Page | None:
         """What the program shows at `path`, None if it leaves that to the port."""

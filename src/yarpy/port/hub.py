@@ -345,6 +345,9 @@ class Hub:
         if not (quit_ or link.closing or self.closing):
             self.crew.reconnect.input_lost(self, link.route)
 
+    def deadline_missed(self, link: Inbound, lateness: float, silent: bool) -> None:
+        self.callbacks.deadline(link, lateness, silent)
+
     def _forget_input(self, link: Inbound) -> bool:
         with self.lock:
             known = link in (*self.inputs, *self.leaving)
@@ -452,6 +455,7 @@ class Hub:
                 link.thread.join(max(0.0, deadline - time.monotonic()))
         self.reception.close()
         self.monitoring.close()
+        self.callbacks.close()
         try:
             if not answers:
                 raise NoNameServer("it did not answer just now")

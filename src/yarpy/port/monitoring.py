@@ -62,13 +62,13 @@ class Monitoring:
         """Give a new input its chain. Raises as `make`."""
         route = link.route
         if not route.spec.recv:
-            link.chain = self.input
+            link.join(self.input)
             return
         monitors = from_carrier(route.spec, self._place(route, sending=False))
         for monitor in monitors:
             self.group.add(monitor)
         link.own_chain = Chain(monitors, str(route), self.group)
-        link.chain = self._joined(link.own_chain)
+        link.join(self.input)
 
     def _place(self, route: Route, sending: bool) -> Place:
         group = Group() if sending else self.group
@@ -82,11 +82,6 @@ class Monitoring:
             look=_look,
             foreign=not route.spec.own,
         )
-
-    def _joined(self, own: Chain | None) -> Chain | None:
-        if own is None or self.input is None:
-            return own or self.input
-        return own.followed_by(self.input)
 
     # -- the port itself --------------------------------------------------------------------------
 
@@ -122,7 +117,7 @@ class Monitoring:
             return
         self.input = chain
         for link in self._port.inputs:
-            link.chain = self._joined(link.own_chain)
+            link.join(self.input)
 
     # -- parameters -------------------------------------------------------------------------------
 

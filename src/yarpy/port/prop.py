@@ -18,7 +18,7 @@ from yarpy.link.outbound import Outbound
 from yarpy.link.qos import grant_sched, grant_tos, thread_of
 from yarpy.monitors.chain import Chain
 from yarpy.port.hub import Hub
-from yarpy.qos import Sched, policy_of, schedule, scheduled, tos_of
+from yarpy.qos import Qos, Sched, policy_of, schedule, scheduled, tos_of
 
 
 def get_self(hub: Hub) -> Bottle:
@@ -68,6 +68,8 @@ def get_peer(hub: Hub, name: str) -> Bottle | None:
             Bottle(["sched", _dict(policy=sched.policy, priority=sched.priority, tid=thread)]),
             Bottle(["qos", _dict(tos=link.tos)]),
         ]
+        if link.wanted is not None:
+            reply.append(Bottle(["timing", _timing(link.wanted)]))
         if chain is not None:
             reply.append(Bottle(["monitor", chain.parameters()]))
             state = chain.state()
@@ -91,9 +93,10 @@ def set_self(hub: Hub, request: Bottle) -> bool:
 
 
 def set_peer(hub: Hub, name: str, request: Bottle) -> bool:
-    """`(sched ((priority N) (policy P))) (qos ((priority HIGH))) (monitor ((KEY VALUE)))` on the
-    first connection."""
-    wanted = [key for key in ("sched", "qos", "monitor") if request.group(key) is not None]
+    """`(sched ((priority N) (policy P))) (qos ((priority HIGH))) (timing ((deadline S) (rate HZ)
+    (late drop))) (monitor ((KEY VALUE)))` on the first connection."""
+    keys = ("sched", "qos", "timing", "monitor")
+    wanted = [key for key in keys if request.group(key) is not None]
     links = _links(hub, name)
     if not links:
         return not wanted
@@ -108,6 +111,12 @@ def set_peer(hub: Hub, name: str, request: Bottle) -> bool:
         if group is None:
             return False
         grant_tos(link, _tos(group))
+    if "timing" in wanted:
+        group = _group(request, "timing")
+        if group is None:
+            return False
+        told = {key: _plain(group.find(key)) for key in ("deadline", "rate", "late")}
+        link.expect(Qos(**told))
     if "monitor" in wanted:
         group, chain = _group(request, "monitor"), _chain(link)
         if group is None or chain is None or not chain.configure(Property.from_bottle(group)):
@@ -148,6 +157,15 @@ def _tos(group: Bottle) -> int:
     if isinstance(tos, int) and 0 <= tos < 256:
         return tos
     raise ValueError("a packet priority is a level, a DSCP class or a TOS byte")
+
+
+def _plain(value: Any) -> Any:
+    return str(value) if isinstance(value, str) else value
+
+
+def _timing(wanted: Qos) -> Property:
+    found = {"deadline": wanted.deadline, "rate": wanted.rate, "late": wanted.late}
+    return Property((key, value) for key, value in found.items() if value is not None)
 
 
 def _dict(**values: Any) -> Property:

@@ -9,11 +9,14 @@ of one connection.
 An input also tells what `yarpy doctor` asks for: `delivered` messages went on to the program,
 `waiting` of all inputs it has not taken yet, `lost` ones were lost on the way, `failure` is what it
 said last of one that it could not use; an output: how many messages are `unacknowledged`. `asked`
-are priorities that are not what the system does. Behind `monitors` stand what each has `dropped`,
+are priorities that are not what the system does, `timing` what is expected of the messages, and
+how often that was `missed`. Behind `monitors` stand what each has `dropped`,
 and their `failures`; `port_monitor` is the one of the port itself.
 """
 
 from __future__ import annotations
+
+from typing import Any
 
 from yarpy.data.bottle import Bottle, Property
 from yarpy.link.inbound import Inbound
@@ -67,6 +70,10 @@ def connection(hub: Hub, link: Inbound | Outbound) -> Property:
             found["failure"] = link.failure[:LONGEST]
     else:
         found["unacknowledged"] = stats["unacknowledged"]
+    if isinstance(link, Inbound) and link.timing is not None:
+        found["timing"] = Property(link.timing.as_dict())
+    elif isinstance(link, Outbound) and link.wanted is not None:
+        found["timing"] = Property(dropped=link.late, **_given(link.wanted))
     asked = _unfulfilled(link.asked, qos)
     if asked:
         found["asked"] = asked
@@ -84,6 +91,11 @@ def connection(hub: Hub, link: Inbound | Outbound) -> Property:
         found["port_monitor"] = type(own.monitors[0]).__name__
         found["port_dropped"], found["port_failures"] = own.dropped[0], _short(own.failures)
     return found
+
+
+def _given(wanted: Qos) -> dict[str, Any]:
+    told = {"deadline": wanted.deadline, "rate": wanted.rate, "late": wanted.late}
+    return {key: value for key, value in told.items() if value is not None}
 
 
 def _short(texts: list[str]) -> Bottle:

@@ -41,3 +41,13 @@ def test_who_is_not_there(here, ports):
 def test_describe(here):
     assert "HIGH  DSCP 36 TOS 144" in here("qos", "describe").out
     assert here("qos", "describe", "CRIT").out == "(tos 176) (dscp VA) (level CRITICAL)\n"
+
+
+def test_when_messages_should_come(here, ports):
+    assert here("qos", "time", *ports).out == '"/qos/in" expects nothing of "/qos/out"\n'
+    said = here("qos", "time", *ports, "--deadline", "0.02", "--rate", "50", "--late", "drop")
+    assert said.out.startswith("(deadline 0.02) (rate 50) (late drop) (missed ")
+    assert here("qos", "time", *ports, "--deadline", "0", "--rate", "0").code == 0
+    assert "expects nothing" in here("qos", "time", *ports).out
+    said = here("qos", "time", *ports, "--deadline", "-1")
+    assert (said.code, "from 0 to 86400" in said.err) == (1, True)

@@ -29,6 +29,8 @@ from support.process import Process
 from support.wait import wait_until
 
 import yarpy
+import yarpy.network.qos
+from yarpy import network
 from yarpy.data.value import Vocab
 from yarpy.network.doctor import process
 
@@ -294,6 +296,20 @@ def too_slow(world: World) -> Iterator[tuple[str, ...]]:
     talker.connect("/listener")
     world.again(lambda: talker.write([1.5]), 0.002)
     wait_until(lambda: listener.inputs and listener.inputs[0].stats["messages"] > 2)
+    yield ("/talker", "/listener")
+
+
+@fault("late", "messages are older than the deadline of their connection")
+def late(world: World) -> Iterator[tuple[str, ...]]:
+    talker = world.open("/talker")
+    listener = world.open("/listener", callback=lambda message: None)
+    talker.connect("/listener")
+    assert listener.wait_for_inputs(timeout=5)
+    network.qos.grant(
+        "/talker", "/listener", receiver=yarpy.Qos(deadline=0.02, rate=50), names=world.names
+    )
+    world.again(lambda: talker.write([1], yarpy.Stamp(1, time.time() - 0.1)))
+    wait_until(lambda: listener.inputs[0].stats["missed"])
     yield ("/talker", "/listener")
 
 

@@ -2,6 +2,8 @@
 
     qos get SOURCE TARGET [--src | --des] [--tos | --dscp | --level]
     qos set SOURCE TARGET [--src VALUE] [--des VALUE]
+    qos time SOURCE TARGET [--deadline S] [--rate HZ] [--late drop|keep]
+                                                 when messages should come; nothing given: show it
     qos describe [VALUE]                         the classes, or what VALUE means
 
 A VALUE is a level (LOW, NORM, HIGH, CRIT), a DSCP class (AF42) or a TOS byte (144); with a prefix
@@ -17,9 +19,12 @@ import click
 
 from yarpy.cli.ends import grant, of_a_connection, show
 from yarpy.cli.output import print_line
+from yarpy.cli.stderr import complain
+from yarpy.errors import LocalProtocolError
 from yarpy.qos import DSCP, LEVELS, Qos, packets_name, tos_of
 
 FORMS = ("tos", "dscp", "level")
+TIMING = ("deadline", "rate", "late", "missed", "dropped", "missing", "worst")
 
 
 @click.group()
@@ -81,6 +86,49 @@ def parse(text: str) -> str | int:
     except (ValueError, IndexError) as error:
         raise click.BadParameter(str(error)) from error
     raise click.BadParameter(f'"{kind}:" is none of LEVEL:, DSCP:, TOS:')
+
+
+@command.command("time", short_help="Show or set when messages should come.")
+@click.argument("source")
+@click.argument("target")
+@click.option("--deadline", type=float, metavar="S", help="Seconds a message may take; 0: any.")
+@click.option("--rate", type=float, metavar="HZ", help="Messages per second that should come.")
+@click.option("--late", type=click.Choice(["drop", "keep"]), help="What becomes of late ones.")
+def time_(
+    source: str, target: str, deadline: float | None, rate: float | None, late: str | None
+) -> int:
+    """Set by when and how often messages should come, and show how often they did not.
+
+    TARGET counts; with --late drop it drops what comes late, and SOURCE does not send what is late
+    already.
+    """
+    from yarpy.network import qos
+    from yarpy.network.sampling import flow
+
+    try:
+        wanted = Qos(deadline=deadline, rate=rate, late=late)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
+    if wanted.timed:
+        qos.grant(source, target, receiver=wanted)
+        try:
+            qos.grant(source, target, sender=wanted)
+        except LocalProtocolError as error:  # a port of C++; what counts is the receiver
+            complain(str(error))
+    end = flow(source, target).receiver
+    timing = end.timing if end is not None else {}
+    if not timing:
+        print_line(f'"{target}" expects nothing of "{source}"')
+    else:
+        shown = [key for key in TIMING if key in timing]
+        print_line(" ".join(f"({key} {_short(key, timing[key])})" for key in shown))
+    return 0
+
+
+def _short(key: str, value: object) -> str:
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:.4f}" if key == "worst" else f"{value:.4g}"
 
 
 @command.command()

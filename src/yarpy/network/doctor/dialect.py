@@ -19,6 +19,9 @@ def find(case: Case) -> Iterator[Finding]:
         for name in (pair.source, pair.target):
             if name not in spoken:
                 spoken[name] = case.dialect(name)
+        state = case.port(pair.target)
+        if state is not None and state.ours:
+            continue  # which reads both
         source, target = spoken[pair.source], spoken[pair.target]
         if source and target and source != target:
             new = pair.source if source == 4 else pair.target

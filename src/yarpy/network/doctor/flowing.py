@@ -10,7 +10,7 @@ from yarpy.network.doctor.finding import Finding
 
 
 def find(case: Case) -> Iterator[Finding]:
-    """writes-nothing, never-reads, held-up, too-slow."""
+    """writes-nothing, never-reads, held-up, too-slow, late."""
     for pair in case.pairs:
         if pair.before is None or not case.wanted or not _is_whole(case, pair):
             continue
@@ -18,6 +18,7 @@ def find(case: Case) -> Iterator[Finding]:
         yield from stuck
         if not stuck:
             yield from _sender(case, pair)
+            yield from _late(case, pair)
 
 
 def _is_whole(case: Case, pair: Pair) -> bool:
@@ -64,6 +65,31 @@ def _sender(case: Case, pair: Pair) -> Iterator[Finding]:
         f"look at the program of {pair.source}: it may wait for something itself (`yarpy doctor "
         f"{pair.source}` looks at what it reads); `yarpy read ... {pair.source}` shows what it "
         "writes",
+    )
+
+
+def _late(case: Case, pair: Pair) -> Iterator[Finding]:
+    """Deadlines that were missed between the looks."""
+    old, new = (flow.missed if flow is not None else None for flow in (pair.before, pair.now))
+    end = pair.end("receiver")
+    if end is None or old is None or new is None or new <= old:
+        return
+    worst = end.timing.get("worst")
+    beyond = f", by up to {worst * 1e3:.0f} ms" if isinstance(worst, float) else ""
+    wanted = ", ".join(
+        f"{key} {value:g} {unit}"
+        for key, unit in (("deadline", "s"), ("rate", "Hz"))
+        if isinstance(value := end.timing.get(key), int | float)
+    )
+    yield Finding(
+        "late",
+        pair.name,
+        f'messages of "{pair.source}" came after their deadline {new - old} times in '
+        f"{case.seconds:.1f} s ({wanted}){beyond}",
+        f"give the connection priority: `yarpy qos set {pair.source} {pair.target} --src HIGH "
+        f"--des HIGH`, `yarpy sched set {pair.source} {pair.target} --src FIFO:30 --des FIFO:30`; "
+        "docs/qos.md says which of the two helps when",
+        "warning",
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Final
 
+from yarpy.config.configuration import Server
 from yarpy.contact import Contact
 from yarpy.errors import YarpError
 from yarpy.names.default import secret
@@ -101,7 +102,7 @@ def _duplicates(case: Case) -> Iterator[Finding]:
         if one.listens and root < one.local < root + RANGE and one.local not in taken
     }
     for number, name in _named(sorted(numbers)[:MOST]):
-        if name in wanted:
+        if name in wanted and not _is_known_elsewhere(case, name, number, root):
             yield Finding(
                 "duplicate-name",
                 name,
@@ -112,6 +113,29 @@ def _duplicates(case: Case) -> Iterator[Finding]:
                 "end one of the programs, or give one a name of its own: `--name`, or "
                 "YARP_PORT_PREFIX",
             )
+
+
+def _is_known_elsewhere(case: Case, name: str, number: int, root: int) -> bool:
+    """Whether another name server of this computer has that port: then it is another network's."""
+    numbers = {
+        one.local
+        for one in process.sockets()
+        if one.listens and abs(one.local - root) < RANGE and one.local != root
+    }
+    servers = {"/root", *(one.namespace for one in case.servers)}
+    for place, server in _named(sorted(numbers)[:MOST]):
+        if server not in servers:
+            continue
+        client = case.server_of(Server("127.0.0.1", place))
+        try:
+            found = client.query(name)
+        except (YarpError, OSError):
+            continue
+        finally:
+            client.close()
+        if found is not None and found.port == number:
+            return True
+    return False
 
 
 def _root(case: Case) -> int:

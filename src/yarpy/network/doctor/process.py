@@ -64,12 +64,16 @@ def listener(port: int) -> int:
         return 0
     for folder in PROC.glob("[0-9]*/fd"):
         try:
-            for name in os.listdir(folder):
-                found = _SOCKET.fullmatch(os.readlink(folder / name))
-                if found and int(found[1]) in inodes:
-                    return int(folder.parent.name)
+            names = os.listdir(folder)
         except OSError:
             continue  # it has ended, or belongs to somebody else
+        for name in names:
+            try:
+                found = _SOCKET.fullmatch(os.readlink(folder / name))
+            except OSError:
+                continue  # closed meanwhile
+            if found and int(found[1]) in inodes:
+                return int(folder.parent.name)
     return 0
 
 
