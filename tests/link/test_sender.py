@@ -18,6 +18,7 @@ from yarpy.carriers.tcp import FastTcp, Tcp
 from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed
 from yarpy.link import window
+from yarpy.link.sender import BURST, LASTING
 from yarpy.wire import framing
 from yarpy.wire.message import Packet
 
@@ -64,6 +65,22 @@ def test_burst_is_gathered_and_nothing_is_left_behind() -> None:
     wait_until(lambda: len(transport.said) == count * size)
     assert transport.sends < count
     assert link.counter.messages == count
+    link.close()
+
+
+def test_flood_that_was_interrupted_goes_on_being_gathered() -> None:
+    link, _ = open_link(FastTcp)
+    sender = link.sender
+
+    def rush_after(pause: float) -> int:
+        """What is thought of a writer who was flooding and comes back after so many seconds."""
+        sender._rush, sender._left = BURST, time.perf_counter() - pause
+        link.send(Packet([1]))
+        return sender._rush
+
+    # A loaded machine may add to the pause, but not every time.
+    assert any(rush_after(LASTING / 4) == BURST - 1 for _ in range(1000))
+    assert rush_after(2 * LASTING) == 0
     link.close()
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 
 NativeBottle = yarpy.Bottle
+_blank = object.__new__  # as `Value._of`, without a call in between
 
 
 class Bottle(Portable, Searchable):
@@ -28,10 +29,12 @@ class Bottle(Portable, Searchable):
     _null: bool = False
 
     def __init__(self, text: str | Bottle = "") -> None:
-        if isinstance(text, Bottle):
+        if text == "":
+            self._native = NativeBottle()
+        elif isinstance(text, Bottle):
             self._native = copied(text._native)
         elif isinstance(text, str):
-            self._native = parsed(text) if text else NativeBottle()
+            self._native = parsed(text)
         else:
             raise TypeError(f"a Bottle is made of text or of another Bottle, not of {text!r}")
 
@@ -50,7 +53,7 @@ class Bottle(Portable, Searchable):
 
     @classmethod
     def _from(cls, message: yarpy.Message) -> Self:
-        self = cls.__new__(cls)
+        self = _blank(cls)
         self._native = message.as_(NativeBottle)
         return self
 
@@ -63,7 +66,9 @@ class Bottle(Portable, Searchable):
     def get(self, index: int) -> Value:
         """The element at an index; a null Value if there is none."""
         native = self._native
-        return Value._of(native[index] if 0 <= index < len(native) else MISSING)
+        value = _blank(Value)
+        value._native = native[index] if 0 <= index < len(native) else MISSING
+        return value
 
     def pop(self) -> Value:
         """The last element, which is taken off."""

@@ -42,6 +42,8 @@ class BufferedPort(Contactable, Generic[T]):
         self._prepared: T | None = None
         self._read: T | None = None
         self._replier: Any = None
+        self._heard: Any = None  # who was called last,
+        self._two = False  # and whether by two arguments
 
     def _make(self, name: str, tcp_port: int) -> Any:
         port = yarpy.BufferedPort(
@@ -63,17 +65,12 @@ class BufferedPort(Contactable, Generic[T]):
                 return None
             if message is None:
                 return None
-            found = self._decoded(message)
-            if found is not None:
-                self._last, self._read = message, found
-                return found
-
-    def _decoded(self, message: yarpy.Message) -> T | None:
-        try:
-            found: T = self.datum._from(message)
-        except yarpy.DecodeError:  # something else, which is not for this port
-            return None
-        return found
+            try:
+                found: T = self.datum._from(message)
+            except yarpy.DecodeError:  # something else, which is not for this port
+                continue
+            self._last, self._read = message, found
+            return found
 
     def lastRead(self) -> T | None:
         """What `read` returned last."""
@@ -155,13 +152,17 @@ class BufferedPort(Contactable, Generic[T]):
         if not hasattr(reader, "onRead") or reader is self._replier:
             super()._hand(reader, message)
             return
-        found = self._decoded(message)
-        if found is not None:
-            self._read = found
-            if _takes_two(reader.onRead):
-                reader.onRead(found, self)
-            else:
-                reader.onRead(found)
+        try:
+            found = self.datum._from(message)
+        except yarpy.DecodeError:
+            return
+        self._read = found
+        if self._heard is not reader:
+            self._heard, self._two = reader, _takes_two(reader.onRead)
+        if self._two:
+            reader.onRead(found, self)
+        else:
+            reader.onRead(found)
 
     def acquire(self) -> T | None:
         """What was read last, to keep it."""

@@ -172,6 +172,9 @@ class Value(Portable):
         return self._whole(16)
 
     def asInt32(self) -> int:
+        value = self._native
+        if type(value) is int and -0x80000000 <= value <= 0x7FFFFFFF:  # as most are
+            return value
         return self._whole(32)
 
     def asInt64(self) -> int:
@@ -182,6 +185,8 @@ class Value(Portable):
 
     def asFloat64(self) -> float:
         value = self._native
+        if type(value) is float:
+            return value
         if isinstance(value, float) or (isinstance(value, int) and not isinstance(value, bool)):
             return float(value)
         return float(self._code())

@@ -33,6 +33,7 @@ log = logger("yarpy.link")
 # times in a row, is flooding.
 RUSH: Final = 3.0
 BURST: Final = 16
+LASTING: Final = 2 * GATHER_SECONDS
 GATHER: Final = 64  # messages
 MOMENT: Final = 0.02  # seconds
 AT_A_TIME: Final = 0.1  # seconds of each wait until a reader takes more
@@ -215,8 +216,10 @@ class Sender:
                 return NOTHING  # before any work on it
             carrier.encode(driver.stream, packet)
             try:
-                if now - self._left > RUSH * self._cost:
-                    self._rush = 0
+                pause = now - self._left
+                if pause > RUSH * self._cost:
+                    # Who was flooding and paused for less than a burst lasts has been interrupted.
+                    self._rush = BURST - 1 if self._rush == BURST and pause < LASTING else 0
                     self._flush_at_once(now, until)
                 elif self._rush < BURST:
                     self._rush += 1
