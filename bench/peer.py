@@ -21,6 +21,21 @@ def ready(**address):
     print(json.dumps(address), flush=True)
 
 
+def start_router():
+    """The address of a router of Zenoh, in a process that ends with this one's group."""
+    import socket
+    import subprocess
+    import sys
+
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        where = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    command = [sys.executable, "-m", "yarpy", "router", where]
+    router = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert where in router.stdout.readline()
+    return where
+
+
 def main(functions):
     """Run one side; `functions` maps a workload's name to its (server, client) functions."""
     parser = argparse.ArgumentParser()
@@ -28,6 +43,7 @@ def main(functions):
     parser.add_argument("workload", choices=[*functions])
     parser.add_argument("--carrier", default="tcp")
     parser.add_argument("--spin", action="store_true", help="readers poll instead of sleeping")
+    parser.add_argument("--router", action="store_true", help="through a router of Zenoh")
     parser.add_argument("--at", type=json.loads, default={}, help="what the server printed")
     parser.add_argument("--warmup", type=int, default=100)
     parser.add_argument("--count", type=int, default=1000)

@@ -1,13 +1,15 @@
 """Peer: yarpy itself, `--carrier tcp` (acknowledged) or `fast_tcp`; `--spin` for spinning readers.
 
-The server's process also holds the name server. Writers are Ports, readers BufferedPorts.
+The server's process also holds the name server. Writers are Ports, readers BufferedPorts. With
+`--router` names are on Zenoh, and connections go through a router of it, as between programs that
+cannot dial each other.
 """
 
 import os
 import threading
 
 import numpy as np
-from peer import main, ready
+from peer import main, ready, start_router
 from workload import IMAGE_SIDE, KILOBYTE_TEXT, NUMBER, READERS
 
 import yarpy
@@ -15,16 +17,40 @@ import yarpy
 PREFIX = f"/bench{os.getpid()}"
 
 
-def serve_ports(**reading):
-    names = yarpy.NameServer().__enter__()
+def name_service(options):
+    """What a client's environment needs to find this process's ports."""
+    if not options.router:
+        return yarpy.NameServer().__enter__().environment
+    environment = {"YARPY_SERVER": "zenoh", "YARPY_ZENOH": start_router()}
+    os.environ.update(environment)
+    return environment
+
+
+def join(options):
+    """Use the name service of the server's process."""
+    os.environ.update(options.at["environment"])
+    take_no_short_cut(options)
+
+
+def take_no_short_cut(options):
+    """With a router: as if there were no other way."""
+    if options.router:
+        from yarpy.names import direct
+
+        direct.Ways.to = lambda self, entry: entry.through
+
+
+def serve_ports(options, **reading):
+    take_no_short_cut(options)
+    environment = name_service(options)
     inlet = yarpy.BufferedPort(PREFIX + "/there", **reading)
     outlet = yarpy.Port(PREFIX + "/back")
-    ready(environment=names.environment, inlet=inlet.name, outlet=outlet.name)
+    ready(environment=environment, inlet=inlet.name, outlet=outlet.name)
     return inlet, outlet
 
 
 def client_ports(options, **reading):
-    os.environ.update(options.at["environment"])
+    join(options)
     outlet = yarpy.Port(PREFIX + "/out")
     inlet = yarpy.BufferedPort(PREFIX + "/in", **reading)
     outlet.connect(options.at["inlet"], options.carrier)
@@ -33,7 +59,7 @@ def client_ports(options, **reading):
 
 
 def serve_stream(options):
-    inlet, outlet = serve_ports(spin=options.spin)
+    inlet, outlet = serve_ports(options, spin=options.spin)
     for message in inlet:
         outlet.write(message.value)
 
@@ -49,16 +75,14 @@ def stream(options):
 
 
 def serve_rpc(options):
-    with (
-        yarpy.NameServer() as names,
-        yarpy.RpcServer(PREFIX + "/service", lambda message: message.value) as service,
-    ):
-        ready(environment=names.environment, inlet=service.name)
+    environment = name_service(options)
+    with yarpy.RpcServer(PREFIX + "/service", lambda message: message.value) as service:
+        ready(environment=environment, inlet=service.name)
         threading.Event().wait()
 
 
 def rpc(options):
-    os.environ.update(options.at["environment"])
+    join(options)
     client = yarpy.RpcClient(options.at["inlet"], carrier=options.carrier)
 
     def exchange(index):
@@ -68,7 +92,7 @@ def rpc(options):
 
 
 def serve_large(options):
-    inlet, outlet = serve_ports()
+    inlet, outlet = serve_ports(options)
     for message in inlet:
         outlet.write(message.value)
 
@@ -85,7 +109,7 @@ def large(options):
 
 
 def serve_flood(options):
-    inlet, outlet = serve_ports(strict=True)
+    inlet, outlet = serve_ports(options, strict=True)
     for message in inlet:
         value = message.value
         if value[0] == 0:

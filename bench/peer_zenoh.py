@@ -1,4 +1,5 @@
 """Peer: eclipse-zenoh in peer mode over tcp, without scouting; readers take from a fifo channel.
+With `--router` both sides are clients of a router in a process of its own.
 
 Latency workloads send express messages (zenoh's own setting against batching delay), the flood does
 not, so that zenoh may batch; a full queue blocks the writer instead of losing messages.
@@ -11,7 +12,7 @@ import struct
 import time
 
 import zenoh
-from peer import main, ready
+from peer import main, ready, start_router
 from workload import IMAGE_SIDE, KILOBYTE_TEXT, NUMBER, READERS
 
 SMALL = struct.Struct("<id")
@@ -28,8 +29,17 @@ def configuration(listen=(), connect=()):
     return config
 
 
-def listening_session():
+def client(endpoints):
+    config = configuration(connect=endpoints)
+    config.insert_json5("mode", '"client"')
+    return zenoh.open(config)
+
+
+def listening_session(options):
     """A session on a free port, and its endpoint (zenoh does not tell which port 0 became)."""
+    if options.router:
+        where = start_router()
+        return client([where]), where
     while True:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
@@ -39,6 +49,8 @@ def listening_session():
 
 
 def connected_session(options):
+    if options.router:
+        return client(options.at["endpoints"])
     return zenoh.open(configuration(connect=options.at["endpoints"]))
 
 
@@ -55,9 +67,9 @@ def subscriber(opened, key):
     return opened.declare_subscriber(key, zenoh.handlers.FifoChannel(1024))
 
 
-def serve(echo):
+def serve(options, echo):
     """Give `echo` every payload of the stream there and a function that sends one back."""
-    opened, endpoint = listening_session()
+    opened, endpoint = listening_session(options)
     inlet, outlet = subscriber(opened, THERE), publisher(opened, BACK)
     ready(endpoints=[endpoint])
     for sample in inlet:
@@ -83,7 +95,7 @@ def serve_stream(options):
         index, number = SMALL.unpack(payload.to_bytes())
         put(SMALL.pack(index, number))
 
-    serve(echo)
+    serve(options, echo)
 
 
 def stream(options):
@@ -97,7 +109,7 @@ def stream(options):
 
 
 def serve_rpc(options):
-    opened, endpoint = listening_session()
+    opened, endpoint = listening_session(options)
     service = opened.declare_queryable(SERVICE, zenoh.handlers.FifoChannel(16))
     ready(endpoints=[endpoint])
     for query in service:
@@ -126,7 +138,7 @@ def rpc(options):
 
 def serve_large(options):
     # A picture is of use in one piece, which for zenoh is a copy.
-    serve(lambda payload, put: put(payload.to_bytes()))
+    serve(options, lambda payload, put: put(payload.to_bytes()))
 
 
 def large(options):
@@ -146,7 +158,7 @@ def serve_flood(options):
         if index == 0:
             put(SMALL.pack(index, number))
 
-    serve(echo)
+    serve(options, echo)
 
 
 def flood(options):
@@ -162,7 +174,7 @@ def flood(options):
 
 def serve_fan(options):
     # One session per reader: readers in one session would share one message on the wire.
-    opened, endpoints = zip(*(listening_session() for _ in range(READERS)), strict=True)
+    opened, endpoints = zip(*(listening_session(options) for _ in range(READERS)), strict=True)
     readers = [subscriber(one, THERE) for one in opened]
     outlet = publisher(opened[0], BACK)
     ready(endpoints=endpoints)

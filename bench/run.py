@@ -32,6 +32,7 @@ sys.path.insert(0, str(HERE.parent / "tests"))
 from support.cpp import CppYarp, MissingPeer  # noqa: E402
 from support.process import Process  # noqa: E402
 
+THROUGH = ("stream", "rpc", "large", "flood")
 EVERYTHING = ("stream", "rpc", "large", "flood", "fan")
 
 
@@ -57,6 +58,7 @@ PEERS = (
     Peer("raw", "peer_raw.py"),
     Peer("zmq", "peer_zmq.py", "zmq"),
     Peer("zenoh", "peer_zenoh.py", "zenoh"),
+    Peer("zenoh-router", "peer_zenoh.py", "zenoh", ("--router",), THROUGH),
     Peer("cpp-tcp", "peer_cpp.py", "cpp", ("--carrier", "tcp")),
     Peer("cpp-fast_tcp", "peer_cpp.py", "cpp", ("--carrier", "fast_tcp")),
     # The same program as for C++, with yarpy-compat as its `yarp`.
@@ -80,6 +82,7 @@ PEERS = (
         ("--carrier", "zmq+push"),
         ("stream", "flood"),
     ),
+    Peer("yarpy-zenoh", "peer_yarpy.py", "zenoh", ("--router",), THROUGH),
     Peer("yarpy-spin", "peer_yarpy.py", "yarpy", ("--spin",), ("stream",), needs_core=True),
 )
 
