@@ -35,6 +35,7 @@ def join(options):
 def take_no_short_cut(options):
     """With a router: as if there were no other way."""
     if options.router:
+        options.carrier = ""  # the one that is chosen then
         from yarpy.names import direct
 
         direct.Ways.to = lambda self, entry: entry.through

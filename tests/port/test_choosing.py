@@ -201,3 +201,7 @@ def test_killed_readers_leave_nothing(server: yarpy.NameServer) -> None:
                 os.kill(process.pid, signal.SIGKILL)
                 process.wait()
             wait_until(lambda: not out.outputs and arena.used == 0)
+
+
+def test_inside_zenoh_nothing_is_acknowledged_twice() -> None:
+    assert chosen(Contact("tcp", "/there", "a1b2.zenoh", 10002)) == "fast_tcp"

@@ -87,6 +87,15 @@ def test_large_messages_go_in_pieces_and_credit_comes_back() -> None:
     assert max(len(sent) for _, sent in wire.sent) == zenoh_pipe.PIECE + 5
 
 
+def test_a_sender_learns_what_was_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(zenoh_pipe, "SAY", 0.0)
+    wire = Wire()
+    wire.one.send([b"taken"])
+    assert wire.one.taken(5, 0) == (0, False)
+    read(wire.other, 5)
+    assert wire.one.taken(5, 0) == (5, False)
+
+
 def test_nobody_sends_more_than_is_wanted() -> None:
     wire = Wire()
     piece = bytes(zenoh_pipe.PIECE)

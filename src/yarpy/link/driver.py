@@ -52,7 +52,8 @@ class Driver:
         self.stream = ByteStream(limit) if self._objects is None else ObjectStream()
         self.admission = Admission()  # what the peer may do with our port
         self.silence = ""  # why nobody can hear what our port writes: it never writes
-        self.eager = cores() > 1  # whether polling may beat sleeping
+        # Whether polling may beat sleeping.
+        self.eager = cores() > 1 and getattr(transport, "eager", True)
         self._looks = False  # poll for the next bytes instead of sleeping
         self._skip = 0  # waits to pass before polling is tried again
         self._penalty = FIRST_PENALTY

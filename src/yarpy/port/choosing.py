@@ -13,7 +13,7 @@ import time
 from dataclasses import replace
 from typing import Final
 
-from yarpy.contact import Contact
+from yarpy.contact import Contact, host_zid
 from yarpy.errors import YarpError
 from yarpy.names.address import is_local
 from yarpy.names.base import NameClient
@@ -29,6 +29,8 @@ POLL: Final = 0.005
 def choose(contact: Contact, names: NameClient | None, own: bool) -> CarrierSpec:
     """What to connect to `contact` with; see CarrierSpec for `own`."""
     found = MEMORY if _is_neighbour(contact, names) else "tcp"
+    if host_zid(contact.host):
+        found = "fast_tcp"  # acknowledgements cost as much as messages there, and it has its own
     return replace(parse_carrier(found), own=own, chosen=True)
 
 

@@ -28,8 +28,9 @@ from yarpy.wire.stream import Buffer
 
 DATA, CREDIT, END, RESET, SYNC, SYNCED = range(6)
 WINDOW: Final = 1 << 23  # bytes on their way to a reader
-PIECE: Final = 1 << 20  # bytes of one message of Zenoh
-TOLD: Final = WINDOW // 4  # bytes that a reader takes before it says so
+PIECE: Final = 1 << 21  # bytes of one message of Zenoh
+TOLD: Final = WINDOW // 4  # bytes that a reader takes before it says so,
+SAY: Final = 0.1  # or the seconds after which it does
 CHANGE: Final = 5.0  # seconds for what is on its way to arrive before the priority changes
 
 _HEAD = struct.Struct("<BI")
@@ -55,8 +56,11 @@ def priority_of(tos: int) -> str:
 
 
 class ZenohPipe:
-    """One end of a pipe. `connect` says how to send to the other one: it is given a priority, and
+    """One end of a pipe. `eager`: it is no use to poll, since what comes is brought by another
+    thread. `connect` says how to send to the other one: it is given a priority, and
     returns what sends bytes and what ends that. `left` is called once, when it is closed."""
+
+    eager: Final = False
 
     def __init__(
         self,
@@ -82,10 +86,12 @@ class ZenohPipe:
         self._came = 0  # bytes
         self._taken = 0
         self._said = 0  # of those taken, how many the sender knows of
+        self._due = 0.0  # when it is told again
         # What goes.
         self._number = 0
         self._sent = 0  # bytes
         self._allowed = WINDOW
+        self._confirmed = 0  # bytes that the other end has taken
         self._changed = threading.Condition()  # of credit, and of the pipe's end
         self._sending = threading.Lock()  # messages leave in the order of their numbers
         self._synced = threading.Event()
@@ -110,8 +116,9 @@ class ZenohPipe:
             self._take(data)
         elif kind == CREDIT and len(data) == _COUNT.size:
             with self._changed:
-                taken = _COUNT.unpack(data)[1]
-                self._allowed = max(self._allowed, min(taken, self._sent) + WINDOW)
+                taken = min(_COUNT.unpack(data)[1], self._sent)
+                self._confirmed = max(self._confirmed, taken)
+                self._allowed = self._confirmed + WINDOW
                 self._changed.notify_all()
         elif kind == SYNC:
             # Not here: a thread of Zenoh may not wait until it can send.
@@ -191,8 +198,9 @@ class ZenohPipe:
         view[:count] = self._chunk[:count]
         self._chunk = self._chunk[count:]
         self._taken += count
-        if self._taken - self._said >= TOLD and not self._broken:
-            self._said = self._taken
+        now = time.monotonic()
+        if (self._taken - self._said >= TOLD or now > self._due) and not self._broken:
+            self._said, self._due = self._taken, now + SAY
             self._say(_COUNT.pack(CREDIT, self._taken))
         return count
 
@@ -270,7 +278,7 @@ class ZenohPipe:
         return self._ended
 
     def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        return None
+        return self._confirmed, False
 
     def interrupt(self) -> None:
         with self._changed:
