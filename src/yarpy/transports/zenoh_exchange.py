@@ -20,6 +20,7 @@ import os
 import re
 import secrets
 import threading
+import time
 from collections import OrderedDict
 from collections.abc import Callable
 from typing import Any, Final
@@ -32,6 +33,7 @@ from yarpy.transports.zenoh_pipe import DATA, RESET, ZenohPipe, open_publisher
 log = logger("yarpy.zenoh")
 
 MOST: Final = 1024  # pipes of a program that others opened
+LOOK: Final = 0.05  # seconds between looks whether it is still wanted
 SIGHT: Final = 5.0  # seconds for the token of a caller to come
 TOMBS: Final = 1000  # pipes that have ended, and whose senders may not know
 
@@ -139,7 +141,7 @@ class Exchange:
         except Exception as error:  # the session was closed, or the caller knows no good names
             log.debug("a call could not be answered: %s", error)
             return
-        if self._is_seen(zid, SIGHT):
+        if self._is_seen(zid, pipe, SIGHT):
             welcome(pipe)
         else:
             pipe.break_off("the caller was not seen")
@@ -153,7 +155,7 @@ class Exchange:
         pipe = self._make(zid, own, other, 0, port)
         try:
             self._ask(f"@yarp/open/{zid}/{port}", f"{self.zid} {own} {other}", timeout)
-            if not self._is_seen(zid, timeout):
+            if not self._is_seen(zid, pipe, timeout):
                 raise TimeoutError("it answers over Zenoh, but its token is not seen")
         except BaseException:
             pipe.break_off("it was never open")
@@ -247,10 +249,14 @@ class Exchange:
         except Exception as error:  # it is closed
             log.debug("a sender is not told of the end of its connection: %s", error)
 
-    def _is_seen(self, zid: str, timeout: float) -> bool:
-        """Whether the token of a program has come, waiting for it."""
+    def _is_seen(self, zid: str, pipe: ZenohPipe, timeout: float) -> bool:
+        """Whether the token of a program has come, waiting for it as long as the pipe stands."""
         peer = self._peers.get(zid)
-        return peer is not None and peer.seen.wait(timeout)
+        deadline = time.monotonic() + timeout
+        while peer is not None and not peer.seen.wait(LOOK):
+            if pipe.ended() or time.monotonic() > deadline:
+                return False
+        return peer is not None
 
     def _seen(self, peer: _Peer, sample: Any) -> None:
         """A program came or went. Runs in a thread of Zenoh."""
