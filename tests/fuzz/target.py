@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 from fuzz.grammar import GRAMMARS, REFUSALS
+from idl.ros2msg.test_description import description_of
 from monitors.test_shipped import CASES
 from support.capture import CAPTURES, load_capture
 from support.ros_link import AddTwoInts, String
@@ -43,7 +44,9 @@ from yarpy.devices.control_board.state import State
 from yarpy.devices.multi_sensor.client import read_names
 from yarpy.devices.multi_sensor.interface import KINDS
 from yarpy.errors import DecodeError, YarpError
+from yarpy.idl.ros2msg.description import type_of
 from yarpy.idl.ros2msg.library import Library as Library2
+from yarpy.idl.ros2msg.library import hash_of
 from yarpy.idl.ros2msg.source import Standard as Standard2
 from yarpy.idl.rosmsg.library import Library
 from yarpy.idl.rosmsg.native import to_value
@@ -336,6 +339,12 @@ def _sniffed(data: bytes) -> None:
     _ROS.message_of("p/Sniffed", sniff(data)).from_ros(data)
 
 
+def _described(data: bytes) -> None:
+    """What a node says of its types."""
+    said = _ROS_2.message("type_description_interfaces/TypeDescription").from_ros(data)
+    type_of(said, "sensor_msgs/Image", "msg", hash_of(_ROS_2.message("sensor_msgs/Image")))
+
+
 def _ros(name: str, library: Library | Library2 | None = None) -> Target:
     """What a peer of ROS sends, and what comes as that type on connections of YARP."""
     cls = (library or _ROS).message(name)
@@ -500,6 +509,9 @@ TARGETS = {
         f"ros 2 {name}": _ros(f"sensor_msgs/{name}", _ROS_2)
         for name in ("JointState", "PointCloud2", "Image")
     },
+    "ros 2 description": Target(
+        _described, (b"".join(description_of(_ROS_2.message("sensor_msgs/Image")).to_ros()),)
+    ),
     "sniff": Target(_sniffed, _MESSAGES),
     "thrift requests": Target(_served, (*_THRIFT_SAID, b"help add", b"r_nest 1 2 () () () ()")),
     "thrift answers": Target(_answered, (*_THRIFT_SAID, *_THRIFT_STRUCTS)),

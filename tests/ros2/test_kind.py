@@ -19,6 +19,10 @@ def token(type_: str, hash_: str) -> Token:
     return parse_token(f"@ros2_lv/0/abc/0/1/MP/%/%/node/%topic/{type_}/{hash_}/::,10:,:,:,,")
 
 
+def nobody(token: Token, name: str, kind: str) -> None:
+    raise UnknownType("its node says nothing")
+
+
 def test_what_the_user_says() -> None:
     assert named("std_msgs/msg/String", "msg") is String
     assert named("std_srvs/Trigger", "srv") is ros2.load("std_srvs/srv/Trigger")
@@ -30,21 +34,23 @@ def test_what_the_user_says() -> None:
 
 
 def test_what_the_graph_says() -> None:
-    assert learned([], "msg") is None
-    found = learned([token("sensor_msgs::msg::dds_::Range_", HUMBLE_RANGE)], "msg")
+    assert learned([], "msg", nobody) is None
+    found = learned([token("sensor_msgs::msg::dds_::Range_", HUMBLE_RANGE)], "msg", nobody)
     assert found is not None
     assert hash_of(found[0]) == HUMBLE_RANGE
-    old = learned([token("std_msgs::msg::dds_::String_", NO_HASH)], "msg")
+    old = learned([token("std_msgs::msg::dds_::String_", NO_HASH)], "msg", nobody)
     assert old is not None
     assert old[0] is humble().message("std_msgs/String")
     strange = token("std_msgs::msg::dds_::String_", "RIHS01_" + "0" * 64)
     good = token("std_msgs::msg::dds_::String_", hash_of(String))
-    assert learned([token("nonsense", "x"), strange, good], "msg") == (String, good.key)
-    assert learned([good], "srv") is None
+    assert learned([token("nonsense", "x"), strange, good], "msg", nobody) == (String, good.key)
+    assert learned([good], "srv", nobody) is None
     with pytest.raises(UnknownType, match="there and"):
-        learned([strange], "msg")
+        learned([strange], "msg", nobody)
+    found = learned([strange], "msg", lambda token, name, kind: (name, kind))
+    assert found == (("std_msgs/String", "msg"), strange.key)
     with pytest.raises(UnknownType, match="p/msg/T"):
-        learned([token("p::msg::dds_::T_", hash_of(String))], "msg")
+        learned([token("p::msg::dds_::T_", hash_of(String))], "msg", nobody)
 
 
 def test_what_is_written() -> None:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from queue import Empty, SimpleQueue
 from typing import Any, ClassVar, Final
 
@@ -21,6 +22,7 @@ from yarpy.errors import DecodeError, YarpError
 from yarpy.log import logger, readable
 from yarpy.ros2 import kind as kinds
 from yarpy.ros2.attachment import Attachment, parse_attachment
+from yarpy.ros2.description import describe
 from yarpy.ros2.key import NO_HASH, Key
 from yarpy.ros2.name import Node
 from yarpy.ros2.participant import Declared, Participant
@@ -107,7 +109,7 @@ class Endpoint(ObjectTransport):
         UnknownType."""
         graph = self.participant.graph
         seen = graph.endpoints(self.name, *self.peers) or graph.endpoints(self.name, self.role)
-        found = kinds.learned(seen, self.what)
+        found = kinds.learned(seen, self.what, partial(describe, self.participant))
         if found is None:
             return False
         kind, key = found

@@ -7,7 +7,7 @@ where nobody knows it, the error says both. Nodes of Humble have no hashes: ther
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any, Final
 
@@ -49,9 +49,11 @@ def named(name: str, kind: str, seen: Iterable[Token] = (), old: bool = False) -
     return ours
 
 
-def learned(seen: Iterable[Token], kind: str) -> tuple[Any, Key] | None:
-    """The type of the first token that one is known of, and its key; None without tokens. Raises
-    UnknownType if nobody here has any of their types."""
+def learned(
+    seen: Iterable[Token], kind: str, ask: Callable[[Token, str, str], Any]
+) -> tuple[Any, Key] | None:
+    """The type of the first token that one is known of, and its key; None without tokens. `ask`
+    asks its node. Raises UnknownType if neither knows any of their types."""
     problem: YarpError | None = None
     for token in seen:
         key = token.key
@@ -64,12 +66,24 @@ def learned(seen: Iterable[Token], kind: str) -> tuple[Any, Key] | None:
             if key.hash == NO_HASH:
                 return _load(humble(), name, kind), key
             if is_hash(key.hash):
-                return default_library().having(name, key.hash, kind), key
+                try:
+                    return default_library().having(name, key.hash, kind), key
+                except UnknownType as error:
+                    return _asked(ask, token, name, kind, error), key
         except (UnknownType, DecodeError) as error:
             problem = problem or error
     if problem is not None:
         raise problem
     return None
+
+
+def _asked(
+    ask: Callable[[Token, str, str], Any], token: Token, name: str, kind: str, before: UnknownType
+) -> Any:
+    try:
+        return ask(token, name, kind)
+    except UnknownType as error:
+        raise UnknownType(f"{before}; {error}") from before
 
 
 def chosen(value: object) -> type[Message]:

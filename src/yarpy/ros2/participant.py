@@ -19,7 +19,7 @@ from yarpy.ros2.key import Key
 from yarpy.ros2.name import Node
 from yarpy.ros2.qos import Qos
 from yarpy.ros2.token import NODE, Token
-from yarpy.transports.zenoh import Lease, share
+from yarpy.transports.zenoh import Lease, place, share
 
 log = logger("yarpy.ros2")
 
@@ -111,14 +111,14 @@ class Participant:
 
 
 class _Pool:
-    """The participants of this process, by domain and configuration."""
+    """The participants of this process, by domain and by where Zenoh is."""
 
     def __init__(self) -> None:
         self._held: dict[tuple[int, str], Participant] = {}
         self._lock = threading.Lock()  # held while a session opens: a second one must not
 
     def take(self, domain: int) -> Participant:
-        where = os.environ.get(CONFIGURATION, "")
+        where = str(place(os.environ.get(CONFIGURATION, "")))
         with self._lock:
             found = self._held.get((domain, where))
             if found is None or found.session.is_closed():

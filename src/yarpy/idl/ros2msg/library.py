@@ -49,6 +49,7 @@ class Library:
         self._services: dict[str, Service2] = {}
         self._classes: dict[tuple[str, str], type[Message]] = {}
         self._others: dict[str, Library] = {}
+        self._kept: dict[tuple[str, str], type[Message] | Service2] = {}
 
     def message(self, name: str) -> type[Message]:
         """The class of a message type. UnknownType, DecodeError."""
@@ -91,6 +92,9 @@ class Library:
     def having(self, name: str, hash_: str, kind: str = "msg") -> type[Message] | Service2:
         """The version of a type that a peer has, by its hash: ours, or that of another
         distribution. UnknownType says both hashes."""
+        kept = self._kept.get((type_name(name), hash_))
+        if kept is not None:
+            return kept
         load = Library.message if kind == "msg" else Library.service
         ours = ""
         for library in (self, *self._of_others()):
@@ -112,6 +116,13 @@ class Library:
             f"{full_name(type_name(name), kind)} is {hash_} there and {ours} here: the definitions "
             "differ; put that of the peer into a package of AMENT_PREFIX_PATH"
         )
+
+    def keep(self, found: type[Message] | Service2) -> None:
+        """Remember a type that a peer has described."""
+        name = found.name if isinstance(found, Service2) else found._type
+        self._kept[name, hash_of(found)] = found
+        while len(self._kept) > _MET:
+            self._kept.pop(next(iter(self._kept)), None)
 
     def _of_others(self) -> list[Library]:
         """The same library, with the types of other distributions before all others."""

@@ -128,11 +128,43 @@ uint8[] data
 bool is_dense
 """,
     "audio_common_msgs/AudioData": "uint8[] data\n",
+    # By which nodes are asked for types that nobody here knows.
+    "type_description_interfaces/FieldType": """\
+uint8 type_id 0
+uint64 capacity
+uint64 string_capacity
+string<=255 nested_type_name
+""",
+    "type_description_interfaces/Field": "string name\nFieldType type\nstring default_value\n",
+    "type_description_interfaces/IndividualTypeDescription": (
+        "string<=255 type_name\nField[] fields\n"
+    ),
+    "type_description_interfaces/TypeDescription": """\
+IndividualTypeDescription type_description
+IndividualTypeDescription[] referenced_type_descriptions
+""",
+    "type_description_interfaces/TypeSource": """\
+string type_name
+string encoding
+string raw_file_contents
+""",
+    "type_description_interfaces/KeyValue": "string key\nstring value\n",
 }
 
 SERVICES: Final = {
     "std_srvs/Empty": "---\n",
     "std_srvs/Trigger": "---\nbool success\nstring message\n",
     "std_srvs/SetBool": "bool data\n---\nbool success\nstring message\n",
+    "type_description_interfaces/GetTypeDescription": """\
+string type_name
+string type_hash
+bool include_type_sources true
+---
+bool successful
+string failure_reason
+TypeDescription type_description
+TypeSource[] type_sources
+KeyValue[] extra_information
+""",
     "example_interfaces/AddTwoInts": "int64 a\nint64 b\n---\nint64 sum\n",
 }
