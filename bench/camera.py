@@ -17,7 +17,7 @@ import numpy as np
 
 import yarpy
 
-CARRIERS = ("memory", "tcp", "fast_tcp")
+CARRIERS = ("memory", "tcp")
 READER = """
 import sys, yarpy
 port = yarpy.BufferedPort(sys.argv[1])

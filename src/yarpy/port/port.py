@@ -15,6 +15,7 @@ from yarpy.contact import parse_contact
 from yarpy.data.stamp import Stamp
 from yarpy.errors import LinkClosed, PortClosed, Timeout, YarpError
 from yarpy.link.outbound import Outbound, Rest
+from yarpy.link.readiness import wait_for_any
 from yarpy.names.base import NameClient
 from yarpy.port import probe
 from yarpy.port.assembly import open_hub
@@ -152,7 +153,7 @@ class MessagePort(BasePort):
         took: list[Outbound] = []
         whole = Rest(packet)
         todo = [(link, whole) for link in outputs]
-        pause = _SHORTEST
+        pause, ready, before = _SHORTEST, False, -1
         try:
             while todo:
                 slow: list[tuple[Outbound, Rest]] = []
@@ -163,8 +164,14 @@ class MessagePort(BasePort):
                     elif begun:
                         took.append(link)
                 if len(slow) == len(todo):
-                    time.sleep(pause)
-                    pause = min(2 * pause, _LONGEST)
+                    sent = sum(link.driver.bytes_out for link, _ in slow)
+                    if sent != before:
+                        pause, before = _SHORTEST, sent
+                    elif ready:  # something else is in the way
+                        time.sleep(pause)
+                        pause = min(2 * pause, _LONGEST)
+                    left = _LONGEST if deadline is None else deadline - time.monotonic()
+                    ready = wait_for_any((link for link, _ in slow), max(0.0, min(left, _LONGEST)))
                 todo = slow
                 if len(todo) == 1 or (deadline is not None and time.monotonic() >= deadline):
                     break
