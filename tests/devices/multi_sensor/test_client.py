@@ -1,6 +1,7 @@
 import pytest
 from support.patience import patience
 from support.wait import wait_until
+from support.yarp4 import recorded
 
 import yarpy
 from yarpy import Bottle
@@ -8,6 +9,7 @@ from yarpy.devices.multi_sensor.client import MultiSensor
 from yarpy.devices.multi_sensor.interface import KINDS, MultiSensorLike
 from yarpy.devices.multi_sensor.server import MultiSensorServer
 from yarpy.errors import DecodeError, RemoteProtocolError, Timeout, UnknownName
+from yarpy.wire.message import Encoded
 
 PATIENCE = patience(20.0)
 
@@ -90,6 +92,25 @@ def test_twelve_kinds_of_newer_programs(names):
         assert relayed.angular_accelerations() == {}
         assert relayed.gyroscopes()["right"] == (4.0, 5.0, 6.0)
         assert repr(client).endswith("1 orientations, 1 linear_velocities>")
+
+
+def test_what_cpp_4_sends(names):
+    recording = recorded("sensors")
+
+    def answer(message):
+        assert message.value == ["getMetadata"] or message.value == "getMetadata"
+        return Encoded(bytes.fromhex(recording["metadata"]))
+
+    with (
+        yarpy.RpcServer("/imu/rpc:o", answer, names=names),
+        yarpy.BufferedPort("/imu/measures:o", names=names) as source,
+        MultiSensor("/imu", timeout=PATIENCE, names=names) as client,
+    ):
+        source.write(Encoded(bytes.fromhex(recording["measures"])))
+        assert client.gyroscopes() == {"sensorName": (172.0, 172.0, 172.0)}
+        assert client.accelerometers()["sensorName"][1:] == (0.0, 9.71244071567254)
+        assert client.frames == {"sensorName": "frameName"}
+        assert client.angular_accelerations() == {}
 
 
 def test_silence(names):

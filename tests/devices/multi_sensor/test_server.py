@@ -7,6 +7,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy import Bottle
+from yarpy.data.yarp4 import is_yarp4 as is_yarp4_message
 from yarpy.devices.multi_sensor.server import MultiSensorServer
 
 PATIENCE = patience(20.0)
@@ -208,3 +209,26 @@ def test_closing_leaves_nothing(names):
     server.close()
     wait_until(lambda: {thread.name for thread in threading.enumerate()} <= before, PATIENCE)
     assert names.query("/imu/measures:o") is None
+
+
+def test_programs_of_yarp_4_get_all_kinds(server, names, monkeypatch):
+    asked = []
+
+    def is_yarp4(port, target):
+        asked.append(target)
+        return target == "/newer/measures:i"
+
+    monkeypatch.setattr("yarpy.port.port.MessagePort.is_yarp4", is_yarp4)
+    with (
+        yarpy.BufferedPort("/newer/measures:i", names=names) as newer,
+        yarpy.BufferedPort("/older/measures:i", names=names) as older,
+        yarpy.RpcClient("/imu/rpc:o", name="/newer/rpc:i", names=names) as asks,
+        yarpy.RpcClient("/imu/rpc:o", name="/older/rpc:i", names=names) as asks_too,
+    ):
+        newer.listen_to("/imu/measures:o")
+        older.listen_to("/imu/measures:o")
+        data = bytes(newer.read(PATIENCE).to_bytes())
+        assert data[:8] == bytes.fromhex("00010000 0c000000") and is_yarp4_message(data)
+        assert len(older.read(PATIENCE).as_(Bottle)) == 10
+        assert len(asks.call(["getMetadata"], timeout=PATIENCE)) == 12
+        assert len(asks_too.call(["getMetadata"], timeout=PATIENCE)) == 10

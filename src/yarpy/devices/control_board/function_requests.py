@@ -19,23 +19,12 @@ from yarpy.devices.control_board.function_table import Row
 from yarpy.devices.control_board.functions import ControlBoardMsgs, Status
 from yarpy.devices.control_board.grammar import Form
 from yarpy.devices.refusal import Refused
+from yarpy.devices.status import reason
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.names.base import NameClient
 
 #: Seconds to wait for an answer.
 PATIENCE: Final = 10.0
-
-#: What a board says instead of ok.
-REASONS: Final = {
-    "err1": "it failed",
-    "err2": "it cannot do this",
-    "err3": "it does not reach the robot",
-    "err4": "it does not do this any more",
-    "err5": "it cannot do this, or not with these values",
-    "err6": "it is not ready yet",
-    "err7": "a value is out of bounds",
-    "miss": "it says nothing",
-}
 
 _READ: Final = {row.member: row for row in reversed(table.READ)}
 _WRITE: Final = {row.member: row for row in table.WRITE}
@@ -188,9 +177,10 @@ class FunctionRequests(Closeable):
         status = found if isinstance(found, Status) else found.status
         code = str(status.code)
         if code != "ok":
-            reason = REASONS.get(code, f"it says {code}")
             shown = ", ".join(map(str, arguments))
-            raise LocalProtocolError(f'"{self.remote}" refuses {name}({shown[:80]}): {reason}')
+            raise LocalProtocolError(
+                f'"{self.remote}" refuses {name}({shown[:80]}): {reason(code)}'
+            )
         return [getattr(found, field) for field in found._attributes if found is not status][1:]
 
 

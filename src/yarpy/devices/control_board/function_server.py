@@ -26,13 +26,11 @@ from yarpy.devices.control_board.grammar import Form
 from yarpy.devices.control_board.interface import Gains
 from yarpy.devices.kind import FLOAT, number
 from yarpy.devices.refusal import Refused
+from yarpy.devices.status import FAILED, MISSING, OK
+from yarpy.idl.thrift.service import YARP_4
 from yarpy.log import logger
 
 log = logger("yarpy.devices")
-
-OK: Final = "ok"
-MISSING: Final = "err2"  # not implemented
-FAILED: Final = "err5"
 
 #: what makes a mode selectable
 _MODES: Final = {
@@ -52,6 +50,7 @@ class Functions(ControlBoardMsgs):
     """Answers the functions with one board. Any thread may call."""
 
     _only_yarp4: ClassVar[bool] = True
+    _yarp: ClassVar[tuple[int, int, int]] = YARP_4
 
     def __init__(self, board: Board) -> None:
         self._board = board

@@ -7,7 +7,9 @@
 Rules: it has every member listed in `yarpy.devices.frame_grabber.interface`, so it is itself a
 camera. The camera starts sending when the first image is requested. Old images are dropped.
 
-Source: frameGrabber_nwc_yarp of YARP 3.x.
+A camera of YARP 4 is asked the same as calls of its functions.
+
+Source: frameGrabber_nwc_yarp of YARP 3.x and 4.0.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ from yarpy.data.image import Image
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.devices.closeable import Closeable, local_prefix, prefix
+from yarpy.devices.frame_grabber.function_requests import FunctionRequests
 from yarpy.devices.frame_grabber.interface import FEATURES
 from yarpy.devices.frame_grabber.responder import BUSES, MODES
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout
@@ -54,6 +57,8 @@ class FrameGrabber(Closeable):
         self._local = local_prefix(local, remote)
         self._carrier = carrier
         self.stamp = Stamp()
+        self._functions: FunctionRequests | None = None
+        self._newer = False  # it is of YARP 4
         with ExitStack() as resources:
             self._rpc = resources.enter_context(
                 RpcClient(f"{remote}/rpc", name=f"{self._local}/rpc_client", names=names)
@@ -161,6 +166,12 @@ class FrameGrabber(Closeable):
 
     def _send(self, *words: Any) -> list[Any]:
         request = Bottle(Vocab(word) if type(word) is str else word for word in words)
+        if self._functions is None:
+            functions = FunctionRequests(self.remote, self._rpc, PATIENCE)
+            self._newer = functions.is_there()
+            self._functions = functions
+        if self._newer:
+            return self._functions.request(request)
         reply = self._rpc.call(request, timeout=PATIENCE)
         found = reply if isinstance(reply, list) else [reply]
         if found and found[0] == "fail":

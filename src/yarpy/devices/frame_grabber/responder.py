@@ -30,7 +30,7 @@ from yarpy.log import logger
 log = logger("yarpy.devices")
 
 BUSES: Final = ("unknown", "firewire", "usb")  # the index is the number
-MODES: Final = ("manual", "auto", "unknown")
+MODES: Final = ("unknown", "manual", "auto")
 
 _IS: Final = Vocab("is")
 _FAIL: Final = Vocab("fail")
@@ -51,19 +51,22 @@ class FrameGrabberResponder:
     def answer(self, request: Request) -> Bottle:
         """The reply to a request."""
         group = word(request[0]) if request else ""
-        groups = {"fgi": self._images, "fgir": self._images, "visr": self._lens, "fgc": self._knobs}
-        handler = groups.get(group)
-        if handler is None:
+        if group not in ("fgi", "fgir", "visr", "fgc"):
             return Bottle([_NAK])
-        verb, item = (word(e) for e in [*request[1:3], "", ""][:2])
         try:
-            return Bottle(handler(group, verb, item, request[3:]))
+            return self.carry_out(group, request)
         except Refused as refusal:
             log.info("%s: %s: %s", self._name, shown([*request]), refusal)
             return Bottle([_FAIL]) if group == "visr" else Bottle([_FAIL, str(refusal)])
         except Exception as error:
             log.exception("%s: %s", self._name, shown([*request]))
             return Bottle([_FAIL, str(error)])
+
+    def carry_out(self, group: str, request: Request) -> Bottle:
+        """The reply to a request for one of the groups. Raises Refused."""
+        groups = {"fgi": self._images, "fgir": self._images, "visr": self._lens, "fgc": self._knobs}
+        verb, item = (word(e) for e in [*request[1:3], "", ""][:2])
+        return Bottle(groups[group](group, verb, item, request[3:]))
 
     # -- images -------------------------------------------------------------------------------
 
@@ -223,8 +226,8 @@ class FrameGrabberResponder:
                 member, value = "feature_switches", _truth(_first(rest, 1)[0])
             case "mode":
                 mode = whole(_first(rest, 1)[0])
-                if not 0 <= mode < 2:
-                    raise Refused(f"a mode is 0 (manual) or 1 (auto), not {mode}")
+                if mode not in (1, 2):
+                    raise Refused(f"a mode is 1 (manual) or 2 (auto), not {mode}")
                 member, value = "feature_modes", MODES[mode]
             case "onep":
                 self._camera.ask("one_push", feature)

@@ -1,11 +1,11 @@
 """FrameGrabberServer: serve your camera on the ports of a YARP frame grabber.
 
     <name>          its images; RPC clients are answered here too
-    <name>/rpc      requests and replies (`responder`)
+    <name>/rpc      requests and replies (`responder`); those of YARP 4 too (`function_server`)
 
 Rules: no image is grabbed while nobody is watching. A slow receiver misses images.
 
-Source: frameGrabber_nws_yarp of YARP 3.x.
+Source: frameGrabber_nws_yarp of YARP 3.x and 4.0.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from __future__ import annotations
 import threading
 import time
 from contextlib import ExitStack
-from typing import Any
+from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.image import Image
@@ -21,6 +21,7 @@ from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.devices.access import Access
 from yarpy.devices.closeable import Closeable, prefix
+from yarpy.devices.frame_grabber.function_server import Functions
 from yarpy.devices.frame_grabber.interface import Camera
 from yarpy.devices.frame_grabber.responder import FrameGrabberResponder
 from yarpy.devices.publisher import Publisher
@@ -30,6 +31,9 @@ from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcServer
 from yarpy.wire.message import Message
+
+#: How a request of YARP 4 begins: the words of YARP 3 have four letters at most.
+_FUNCTION: Final = ("get", "set", "has")
 
 
 class FrameGrabberServer(Closeable):
@@ -56,6 +60,7 @@ class FrameGrabberServer(Closeable):
         if not self._camera.has("image"):
             raise ValueError(f"{name}: the device needs image(), which returns the next picture")
         self._responder = FrameGrabberResponder(self._camera, self._grab, name)
+        self._functions = Functions(self._responder, name)
         self._stamp = Stamp()
         with ExitStack() as resources:
             self._rpc = resources.enter_context(RpcServer(f"{name}/rpc", self._answer, names=names))
@@ -88,9 +93,12 @@ class FrameGrabberServer(Closeable):
 
     def _answer(self, message: Message) -> object:
         try:
-            return self._responder.answer(message.as_(Bottle))
+            request = message.as_(Bottle)
         except DecodeError:
             return Bottle([Vocab("fail")])
+        if request and str(request[0]).startswith(_FUNCTION) and len(request[0]) > 4:
+            return self._functions(message)
+        return self._responder.answer(request)
 
     def _reply(self, message: Message) -> None:
         if message.wants_reply:

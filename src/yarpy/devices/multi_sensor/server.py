@@ -4,12 +4,13 @@
     <name>/rpc:o        the names of the sensors, for clients that ask `getMetadata`
 
 Both list the first ten of `KINDS` in that order, or all twelve; kinds without sensors are empty
-lists. C++ YARP before 3.11 refuses twelve, later versions refuse ten.
+lists. C++ YARP before 3.11 refuses twelve, later versions refuse ten. Programs of YARP 4, who are
+known by asking them, get twelve, with floats as it spells them.
 
 Rules: nothing is read while nobody listens. Names and numbers of values are fixed when the server
 starts. A value list is never empty, and all numbers are float64: C++ drops anything else.
 
-Source: multipleanalogsensorsserver of YARP 3.x.
+Source: multipleanalogsensorsserver of YARP 3.x and 4.0.
 """
 
 from __future__ import annotations
@@ -17,11 +18,12 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
+from yarpy.data.yarp4 import to_yarp4
 from yarpy.devices.access import Access
 from yarpy.devices.closeable import Closeable, prefix
 from yarpy.devices.multi_sensor.interface import KINDS, NEWER, OLDER
@@ -32,9 +34,12 @@ from yarpy.devices.multi_sensor.metadata import (
 )
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
+from yarpy.errors import YarpError
 from yarpy.names.base import NameClient
+from yarpy.port.audience import Audience
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcServer
+from yarpy.wire.message import Encoded, Message
 
 #: Kinds without a frame in C++.
 _FRAMELESS: Final = frozenset(("contact_loads", "encoder_arrays", "skin_patches"))
@@ -68,15 +73,17 @@ class MultiSensorServer(Closeable):
         self._last: dict[str, dict[str, _Measurement]] = {}
         self._read_first()
         newer = newer or any(self._last.get(kind) for kind in [*KINDS][OLDER:])
-        self._kinds = [*KINDS][: NEWER if newer else OLDER]
+        self._count = NEWER if newer else OLDER
         self._stamp = Stamp()
+        self._opened = threading.Event()  # a client may be there before this constructor is done
         with ExitStack() as resources:
-            self._rpc = resources.enter_context(
-                RpcServer(f"{name}/rpc:o", self._describe(), names=names)
-            )
+            self._rpc = resources.enter_context(RpcServer(f"{name}/rpc:o", self._tell, names=names))
             self._measures = resources.enter_context(
                 BufferedPort(f"{name}/measures:o", names=names)
             )
+            self._rpc.on_page(self._describe(self._count).page)
+            self._readers = Audience(self._measures)
+            self._opened.set()
             self._publisher = Publisher(name, period, self._publish)
             resources.callback(self._publisher.close)
             self._resources = resources.pop_all()
@@ -107,18 +114,29 @@ class MultiSensorServer(Closeable):
         if not any(self._last.values()):
             raise ValueError(f"{self.name}: the device needs one of {', '.join(KINDS)}")
 
-    def _describe(self) -> MultipleAnalogSensorsMetadata:
+    def _tell(self, message: Message) -> object:
+        """The answer to a question: it depends on who asks how many kinds there are."""
+        self._opened.wait()
+        count = self._count
+        # C++ listens to the measures first. Its port that asks could not answer a question now.
+        listener = f"{message.source.removesuffix('/rpc:i')}/measures:i"
+        if count == OLDER and any(each.target == listener for each in self._measures.outputs):
+            with suppress(YarpError, OSError):  # who cannot be asked is of YARP 3
+                count = NEWER if self._measures.is_yarp4(listener) else OLDER
+        return self._describe(count)(message)
+
+    def _describe(self, count: int) -> MultipleAnalogSensorsMetadata:
         frames: Mapping[str, str] = {}
         if self._sensors.has("frames"):
             frames = self._sensors.ask("frames")
         listed = {}
-        for kind in self._kinds:
+        for kind in [*KINDS][:count]:
             names = [*self._last.get(kind, ())]
             usual = {name: "" if kind in _FRAMELESS else name for name in names}
             listed[kind] = [
                 SensorMetadata(name, str(frames.get(name, usual[name]))) for name in names
             ]
-        return metadata(listed, len(self._kinds) == NEWER)
+        return metadata(listed, count == NEWER)
 
     def _times(self) -> Mapping[str, float]:
         """When sensors were read, for those of which the device says so."""
@@ -152,15 +170,22 @@ class MultiSensorServer(Closeable):
     # -- ports --------------------------------------------------------------------------------
 
     def _publish(self) -> None:
-        if not self._measures.outputs:
+        if not self._readers:
             return
         self._read()
+        self._stamp = self._stamp.next(time.time())
+        self._readers.write(
+            lambda: self._message(self._count),
+            lambda: Encoded(to_yarp4(self._message(NEWER).to_bytes())),
+            self._stamp,
+        )
+
+    def _message(self, count: int) -> Bottle:
         message = Bottle()
-        for kind in self._kinds:
+        for kind in [*KINDS][:count]:
             sensors = self._last.get(kind, {}).values()
             message.append(Bottle(Bottle([Bottle(values), at]) for values, at in sensors))
-        self._stamp = self._stamp.next(time.time())
-        self._measures.write(message, self._stamp)
+        return message
 
 
 def _readings(kind: str, found: Any) -> dict[str, list[float]]:

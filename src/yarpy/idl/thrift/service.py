@@ -56,6 +56,8 @@ class Service:
     _namespace: ClassVar[Mapping[str, Any] | None] = None
     #: all clients are of YARP 4, as those of its devices
     _only_yarp4: ClassVar[bool] = False
+    #: what they are told the version of YARP is
+    _yarp: ClassVar[tuple[int, int, int]] = YARP_VERSION
     _failures: OrderedDict[str, str]
     _spellings: OrderedDict[str, bool]
 
@@ -170,7 +172,7 @@ class Service:
             asked = first_word(data, at)[0] if at < len(data) else ""
             return Payload(many(self.help(asked)))
         if at == len(data) and name == VERSION:
-            numbers = (self._version, *(YARP_4 if self._only_yarp4 else YARP_VERSION))
+            numbers = (self._version, *self._yarp)
             self._note(message.source, True)  # programs before 4.0 do not ask
             if message.spelling == "text":
                 return Bottle([Int16(number) for number in numbers])
