@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.data.image import Image
@@ -21,7 +22,7 @@ from yarpy.data.jpeg import decode as decode_jpeg
 from yarpy.errors import DecodeError
 from yarpy.wrap import frame
 from yarpy.wrap.middleware import Failure, Item, Received
-from yarpy.wrap.shape import Picture, Row, Scalar, Several, Shape
+from yarpy.wrap.shape import ANY, Picture, Row, Scalar, Several, Shape
 from yarpy.wrap.spelling import jpeg_of
 from yarpy.wrap.tree import TAG, Buffer, from_text, to_text
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 JPEG: Final = b"\xff\xd8\xff"
 MAX_HEADER: Final = 1 << 16  # bytes of a header of Wrapyfi
+_HEADER: Final = b'{"yarpy": 1,'  # how that of a frame begins
 _ERROR: Final = "error"  # the tag of an answer that tells of an exception
 
 
@@ -46,6 +48,19 @@ def pack(item: Item, encoding: str = "native") -> list[Buffer]:
             return [found]
     value = item.plain if jpeg is None else jpeg
     return frame.to_bytes(frame.Frame(value, item.count, item.time, item.source))
+
+
+def parts(item: Item, encoding: str = "native") -> list[Buffer]:
+    """The same for middlewares with messages of several parts: of a frame, header and buffers."""
+    jpeg = jpeg_of(item)
+    if encoding == "native" and jpeg is None:
+        found = _native(item)
+        if found is not None:
+            return [found]
+    elif encoding != "frame":
+        return pack(item, encoding)
+    value = item.plain if jpeg is None else jpeg
+    return frame.to_parts(frame.Frame(value, item.count, item.time, item.source))
 
 
 def joined(item: Item, encoding: str = "native") -> bytes:
@@ -84,6 +99,20 @@ def unpack(data: Buffer, shape: Shape) -> Received:
     if isinstance(shape, Scalar) and shape.kind is bytes:
         return Received(bytes(data))
     return Received(shape.load(value_of(data)))
+
+
+def of_parts(found: Sequence[Buffer], shape: Shape = ANY) -> Received:
+    """What the parts of a message stand for: `parts`, or those of Wrapyfi. Raises DecodeError."""
+    if not found:
+        raise DecodeError("a message without a payload")
+    if bytes(found[0][: len(_HEADER)]) == _HEADER:
+        made = frame.from_parts(found)
+        return Received(shape.load(made.value), made.count, made.time, made.source)
+    if len(found) == 2 and bytes(found[0][:10]) == b"{timestamp":  # of its pictures and sounds
+        found = found[1:]
+    if len(found) != 1:
+        raise DecodeError(f"a message of {len(found)} parts")
+    return unpack(found[0], shape)
 
 
 def value_of(data: Buffer) -> Any:
@@ -151,6 +180,14 @@ def question(args: list[Any], kwargs: dict[str, Any]) -> bytes:
     if _survives(asked):
         return json.dumps(asked).encode()
     return b"".join(frame.to_bytes(frame.Frame(asked)))
+
+
+def question_parts(args: list[Any], kwargs: dict[str, Any]) -> list[Buffer]:
+    """The same in parts."""
+    asked = [args, kwargs]
+    if _survives(asked):
+        return [json.dumps(asked).encode()]
+    return frame.to_parts(frame.Frame(asked))
 
 
 def asked(data: Buffer) -> Any:
