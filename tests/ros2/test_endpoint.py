@@ -2,6 +2,8 @@
 
 import json
 import logging
+import os
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -41,7 +43,7 @@ class Peer(Process):
         super().__init__(peer_command(router, *words), env=peer_environment(home))
 
     def ready(self) -> "Peer":
-        wait_until(lambda: self.said[:1] == ["ready"], patience(20.0), "the peer is ready")
+        wait_until(lambda: "ready" in self.said, patience(20.0), "the peer is ready")
         return self
 
     @property
@@ -224,6 +226,34 @@ def test_questions_that_are_none(part: Participant) -> None:
         assert service.Response.from_ros(ask(good, attached)).sum == 7
 
 
+def test_a_server_that_dies_in_the_middle(part: Participant) -> None:
+    """Its session ends while it should answer: the client is told, at once."""
+    key = key_of(0, "/dies", ros2.load(ADD), False)
+    asked = threading.Event()
+    held: list[object] = []
+
+    def hold(query: object) -> None:
+        held.append(query)
+        asked.set()
+
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", f'["tcp/{os.environ["YARPY_ZENOH"]}"]')
+    session = zenoh.open(config)
+    hear = zenoh.handlers.Callback(hold, indirect=False)
+    session.declare_queryable(str(key), hear, complete=True)
+    with yarpy.RpcClient(f"ros2://dies~{ADD}", name="/client") as client:
+        found: list[yarpy.Message | None] = []
+        asks = threading.Thread(target=lambda: found.append(client.ask([1, 2])))
+        asks.start()
+        assert asked.wait(patience(10.0))
+        session.close()  # type: ignore[no-untyped-call]
+        asks.join(patience(20.0))
+        assert found
+        assert found[0] is not None
+        assert "fail" in found[0].as_(yarpy.Bottle).to_text()
+
+
 # -- an independent implementation ----------------------------------------------------------------
 
 
@@ -255,6 +285,20 @@ def test_topics_of_an_independent_node(router: int, part: Participant, tmp_path:
             patience(20.0),
             "its tokens go with it",
         )
+
+
+def test_a_late_subscriber_of_an_independent_node(
+    router: int, part: Participant, tmp_path: Path
+) -> None:
+    with yarpy.Port("/out") as out:
+        out.connect("ros2+qos.latched://kept~std_msgs/msg/String")
+        out.write("before")
+        out.write("just before")
+        with Peer(router, tmp_path, "hear", "/kept", "latched=1") as hears:
+            hears.ready()
+            out.write("after")
+            wait_until(lambda: "after" in hears.said, patience(20.0))
+            assert [text for text in hears.said if text != "ready"] == ["just before", "after"]
 
 
 def test_services_of_an_independent_node(router: int, part: Participant, tmp_path: Path) -> None:

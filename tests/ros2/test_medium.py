@@ -5,6 +5,7 @@ from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
+from yarpy.cli.source import Source
 from yarpy.errors import AddressError, UnknownName, UnknownType
 from yarpy.ros2.participant import take_part
 
@@ -81,3 +82,12 @@ def test_servers_and_clients_speak_of_services(names: yarpy.LocalNames) -> None:
             yarpy.connect("/client", "ros2://count")
             assert client.stats["outputs"][0]["carrier"] == "ros2+srv"
             assert client.ask([1, 2]).value == 1  # type: ignore[union-attr]
+
+
+def test_commands_follow_a_topic(names: yarpy.LocalNames) -> None:
+    """`yarpy view --connect ros2://camera/image` and others."""
+    with yarpy.BufferedPort("/in") as reader:
+        source = Source(reader, "ros2://followed~std_msgs/msg/String")
+        assert source.connected
+        assert yarpy.disconnect("ros2://followed", "/in")
+        wait_until(lambda: not source.connected)

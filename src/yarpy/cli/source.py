@@ -56,8 +56,7 @@ class Source:
     @property
     def connected(self) -> bool:
         """Whether it sends to the port now."""
-        contact = self._contact
-        name = contact.name or f"/{contact.address}"
+        name = self._contact.label.rstrip("/")
         return any(link.source.rstrip("/") == name for link in self._port.inputs)
 
     def _follow(self) -> None:
@@ -74,7 +73,7 @@ class Source:
             self._wanted = False
         elif self._wanted:
             self._connect()
-        elif not self._contact.reachable and self._contact.carrier != "topic":
+        elif not self._contact.placed and self._contact.carrier != "topic":
             self._wanted = not yarpy.exists(self._contact.name)
 
     def _connect(self) -> None:
