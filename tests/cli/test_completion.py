@@ -33,7 +33,7 @@ def test_words_of_a_line_that_is_being_typed(line, words):
     [
         ("yarpy conn", ["connect"]),
         ("yarpy help qo", ["qos"]),
-        ("yarpy qos ", ["describe", "get", "set"]),
+        ("yarpy qos ", ["describe", "get", "set", "time"]),
         ("yarpy qos g", ["get"]),
         ("yarpy name un", ["unregister"]),
         ("yarpy connect /a /b fast", ["fast_tcp"]),
@@ -41,7 +41,7 @@ def test_words_of_a_line_that_is_being_typed(line, words):
         ("yarpy connect --file ", [FILES]),
         ("yarpy server --portdb /tmp/p", [FILES]),
         ("yarpy completion z", ["zsh"]),
-        ("yarpy stats --wa", ["--watch"]),
+        ("yarpy stats --wi", ["--wide"]),
         ("yarpy frobnicate ", []),
         ("yarpy where x", []),
     ],

@@ -1,29 +1,18 @@
-"""The table behind `yarpy stats`: every connection of the network, once or again and again.
+"""The table of connections and that of ports, which `yarpy stats` shows once and `yarpy top` live.
 
-Rules: rates between two looks are counted, not smoothed, so the first look takes them from the
-ports. Names are never cut or folded: on a narrow terminal the least important columns are left out
-instead, and `--wide` shows them all wherever they go. With `--json` there is no table.
+Rules: a table is made of a Snapshot and knows no terminal. On a narrow one the least important
+columns are left out, and `wide` shows them all. Whatever strangers say is made readable.
 """
 
 from __future__ import annotations
 
-import sys
-import time
-from collections.abc import Callable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, TypeAlias
 
-from yarpy.cli.output import print_json, print_line
-from yarpy.cli.signals import Interrupted
 from yarpy.log import readable
-from yarpy.network.sampling import Sampler
-from yarpy.network.traffic import End, Flow
+from yarpy.network.traffic import End, Flow, PortState, Snapshot
 from yarpy.route import parse_carrier
-
-if TYPE_CHECKING:
-    from rich.text import Text
-
-PERIOD: Final = 1.0  # seconds between looks
 
 
 class Column(NamedTuple):
@@ -52,160 +41,153 @@ COLUMNS: Final = (
     Column("packets", 0, wide=True),
     Column("monitors", 0, wide=True),
 )
+PORTS: Final = (
+    Column("port", 0),
+    Column("state", 0),
+    Column("in", 2, numeric=True),
+    Column("out", 2, numeric=True),
+    Column("in/s", 0, numeric=True),
+    Column("out/s", 0, numeric=True),
+    Column("waiting", 4, numeric=True),
+    Column("drops", 1, numeric=True),
+    Column("answer ms", 5, numeric=True),
+    Column("host", 3),
+    Column("pid", 6, numeric=True),
+    Column("program", 0, wide=True),
+)
 DROPS: Final = "drops"
 NOBODY: Final = "(past)"  # connections that have ended, and what was written without any
 GAP: Final = "  "
 
-
-class Overview:
-    """The connections at the last look."""
-
-    def __init__(self) -> None:
-        self.flows: list[Flow] = []
-        self._sampler = Sampler()
-
-    def look(self) -> None:
-        """Ask all ports."""
-        self.flows = list(self._sampler.look().flows.values())
-
-    def close(self) -> None:
-        """Hang up."""
-        self._sampler.close()
-
-    def rows(self, wide: bool) -> list[tuple[str, ...]]:
-        """What the table shows. That somebody writes while nobody listens is no trouble."""
-        return [self._row(flow) for flow in self.flows if wide or flow.target or flow.drops]
-
-    def _row(self, flow: Flow) -> tuple[str, ...]:
-        monitors = [
-            f"{one}{_state(end)}"
-            for end in (flow.sender, flow.receiver)
-            if end
-            for one in end.monitors
-        ]
-        return (
-            flow.source,
-            flow.target or NOBODY,
-            parse_carrier(flow.carrier).base if flow.target else "",
-            _number(flow.measured("messages"), 0),
-            _number(flow.rate, 1),
-            _number(flow.speed, 2, 1e-6),
-            _number(flow.drops, 0),
-            _number(flow.missed, 0),
-            _number(flow.sender.unconfirmed if flow.sender else None, 0),
-            _number(flow.sender.unconnected if flow.sender else None, 0),
-            _number(flow.measured("jitter"), 2, 1e3),
-            _number(flow.measured("latency"), 2, 1e3),
-            _pair(flow, _thread),
-            _pair(flow, _packets),
-            ", ".join(monitors),
-        )
-
-    def as_json(self) -> list[dict[str, Any]]:
-        """All that is known, for programs."""
-        found = []
-        for flow in self.flows:
-            found.append(
-                {
-                    "source": flow.source,
-                    "target": flow.target,
-                    "carrier": flow.carrier,
-                    "messages_per_second": flow.rate,
-                    "bytes_per_second": flow.speed,
-                    "drops": flow.drops,
-                    "missed": flow.missed,
-                    "sender": flow.sender and asdict(flow.sender),
-                    "receiver": flow.receiver and asdict(flow.receiver),
-                }
-            )
-        return found
+Row: TypeAlias = tuple[str, ...]
+Cells: TypeAlias = list[tuple[str, Column]]
 
 
-def show(watch: bool, as_json: bool, wide: bool) -> int:
-    """The command without PORT."""
-    overview = Overview()
-    try:
-        return _show(overview, watch, as_json, wide)
-    finally:
-        overview.close()
+# --- connections
 
 
-def _show(overview: Overview, watch: bool, as_json: bool, wide: bool) -> int:
-    overview.look()
-    if as_json:
-        return _repeat(overview, watch, lambda: print_json(overview.as_json()))
-    if not sys.stdout.isatty():
-        return _repeat(overview, watch, lambda: _print_lines(overview, wide))
-    from rich.console import Console
-    from rich.live import Live
-
-    console = Console()
-    if not watch:
-        console.print(_text(overview, console.width, wide), soft_wrap=True)
-        return 0
-    with Live(console=console, auto_refresh=False, screen=True) as live:
-        return _repeat(
-            overview, True, lambda: live.update(_text(overview, console.width, wide), refresh=True)
-        )
+def shown(snapshot: Snapshot, wide: bool) -> list[Flow]:
+    """The connections of the table. That somebody writes while nobody listens is no trouble."""
+    return [flow for flow in snapshot.flows.values() if wide or flow.target or flow.drops]
 
 
-def _repeat(overview: Overview, watch: bool, tell: Callable[[], None]) -> int:
-    try:
-        tell()
-        while watch:
-            time.sleep(PERIOD)
-            overview.look()
-            tell()
-    except Interrupted:
-        pass  # how watching ends
-    return 0
+def row(flow: Flow) -> Row:
+    """A connection, in all columns."""
+    monitors = [
+        f"{one}{_state(end)}" for end in (flow.sender, flow.receiver) if end for one in end.monitors
+    ]
+    return (
+        flow.source,
+        flow.target or NOBODY,
+        parse_carrier(flow.carrier).base if flow.target else "",
+        _number(flow.measured("messages"), 0),
+        _number(flow.rate, 1),
+        _number(flow.speed, 2, 1e-6),
+        _number(flow.drops, 0),
+        _number(flow.missed, 0),
+        _number(flow.sender.unconfirmed if flow.sender else None, 0),
+        _number(flow.sender.unconnected if flow.sender else None, 0),
+        _number(flow.measured("jitter"), 2, 1e3),
+        _number(flow.measured("latency"), 2, 1e3),
+        _pair(flow, _thread),
+        _pair(flow, _packets),
+        ", ".join(monitors),
+    )
 
 
-def _print_lines(overview: Overview, wide: bool) -> None:
-    for cells in layout(overview.rows(wide), None, wide):
-        print_line(GAP.join(text for text, _ in cells).rstrip())
+def connections_json(snapshot: Snapshot) -> list[dict[str, Any]]:
+    """All that is known of connections, for programs."""
+    return [
+        {
+            "source": flow.source,
+            "target": flow.target,
+            "carrier": flow.carrier,
+            "messages_per_second": flow.rate,
+            "bytes_per_second": flow.speed,
+            "drops": flow.drops,
+            "missed": flow.missed,
+            "sender": flow.sender and asdict(flow.sender),
+            "receiver": flow.receiver and asdict(flow.receiver),
+        }
+        for flow in snapshot.flows.values()
+    ]
+
+
+# --- ports
+
+
+def port_rows(snapshot: Snapshot, ports: Iterable[PortState]) -> list[Row]:
+    """Ports, in all columns."""
+    into: dict[str, list[Flow]] = {}
+    out: dict[str, list[Flow]] = {}
+    for flow in snapshot.flows.values():
+        if flow.target:
+            out.setdefault(flow.source, []).append(flow)
+            into.setdefault(flow.target, []).append(flow)
+    return [_port_row(port, into.get(port.name, []), out.get(port.name, [])) for port in ports]
+
+
+def _port_row(port: PortState, into: list[Flow], out: list[Flow]) -> Row:
+    waiting = [flow.receiver.waiting for flow in into if flow.receiver is not None]
+    drops = [flow.drops for flow in (*into, *out) if flow.drops is not None]
+    answers = port.state == "answers"
+    return (
+        port.name,
+        port.state,
+        str(len(into)) if answers else "",
+        str(len(out)) if answers else "",
+        _sum(into),
+        _sum(out),
+        _number(max((one for one in waiting if one is not None), default=None), 0),
+        _number(sum(drops) if drops else None, 0),
+        _number(port.answer_time if answers else None, 1, 1e3),
+        port.contact.host,
+        str(port.pid or ""),
+        port.program,
+    )
+
+
+def _sum(flows: list[Flow]) -> str:
+    rates = [flow.rate for flow in flows if flow.rate is not None]
+    return _number(sum(rates) if rates else None, 1)
+
+
+def ports_json(snapshot: Snapshot) -> list[dict[str, Any]]:
+    """All that is known of ports, for programs."""
+    return [{**asdict(port), "contact": str(port.contact)} for port in snapshot.ports.values()]
+
+
+# --- laying out
 
 
 def layout(
-    rows: list[tuple[str, ...]], width: int | None, wide: bool
-) -> list[list[tuple[str, Column]]]:
+    rows: Sequence[Row], width: int | None, wide: bool, columns: Sequence[Column] = COLUMNS
+) -> list[Cells]:
     """The title line and the rows, as cells padded to their columns.
 
     As many columns as `width` characters hold; all of them if it is None and `wide`.
     """
     rows = [tuple(map(readable, row)) for row in rows]
-    cells = [tuple(column.title for column in COLUMNS), *rows]
-    widths = [max(len(row[n]) for row in cells) for n in range(len(COLUMNS))]
-    shown = [n for n, column in enumerate(COLUMNS) if wide or not column.wide]
+    cells = [tuple(column.title for column in columns), *rows]
+    widths = [max(len(row[n]) for row in cells) for n in range(len(columns))]
+    left = [n for n, column in enumerate(columns) if wide or not column.wide]
     if width is not None and not wide:
-        for n in sorted(shown, key=lambda n: -COLUMNS[n].rank):
-            if sum(widths[m] + len(GAP) for m in shown) - len(GAP) <= width or not COLUMNS[n].rank:
+        for n in sorted(left, key=lambda n: -columns[n].rank):
+            if sum(widths[m] + len(GAP) for m in left) - len(GAP) <= width or not columns[n].rank:
                 break
-            shown.remove(n)
+            left.remove(n)
     return [
         [
-            (row[n].rjust(widths[n]) if COLUMNS[n].numeric else row[n].ljust(widths[n]), COLUMNS[n])
-            for n in shown
+            (row[n].rjust(widths[n]) if columns[n].numeric else row[n].ljust(widths[n]), columns[n])
+            for n in left
         ]
         for row in cells
     ]
 
 
-def _text(overview: Overview, width: int, wide: bool) -> Text:
-    """The table for a terminal: drops stand out."""
-    from rich.text import Text
-
-    whole = Text(no_wrap=True)
-    for number, cells in enumerate(layout(overview.rows(wide), width, wide)):
-        for text, column in cells:
-            dropped = number and column.title == DROPS and text.strip() not in ("", "0")
-            whole.append(text, "bold" if not number else "bold red" if dropped else "")
-            whole.append(GAP)
-        whole.append("\n")
-    if not overview.rows(wide):
-        whole.append("no connections\n")
-    whole.rstrip()
-    return whole
+def line(cells: Cells) -> str:
+    """Cells as a line of text."""
+    return GAP.join(text for text, _ in cells).rstrip()
 
 
 def _number(value: float | None, digits: int, scale: float = 1.0) -> str:

@@ -80,8 +80,10 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
         "split": Verb("send each element of a message to a port of its own", "split /state"),
     },
     "Measuring and the rest": {
+        "top": Verb("show how every connection is doing, live", "top /icub --sort drops"),
         "stats": Verb(
-            "show how every connection is doing, or measure what a port sends", "stats --watch"
+            "show every connection once, or measure what a port sends",
+            "stats --wide",
         ),
         "trafficgen": Verb(
             "send messages of a given size at a given rate",

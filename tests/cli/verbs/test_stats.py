@@ -7,6 +7,7 @@ import threading
 import time
 
 import pytest
+from support.wait import wait_until
 
 import yarpy
 from yarpy.cli.verbs.stats import Tally, size_of
@@ -85,3 +86,52 @@ def test_tally(monkeypatch):
 def test_size_of():
     assert size_of(yarpy.Message("D", b"12345")) == 5
     assert size_of(yarpy.Message("D", ["x"], spelling="object")) == 0
+
+
+@pytest.fixture(scope="module")
+def flowing(names):
+    with (
+        yarpy.Port("/over/in", names=names) as in_,
+        yarpy.BufferedPort("/over/[bold]out", names=names) as out,
+    ):
+        out.connect("/over/in")
+        out.outputs[0].qos = yarpy.Qos(packets="HIGH")
+        for number in range(5):
+            wait_until(lambda number=number: out.write([number]))
+            in_.read(timeout=5)
+        yield out, in_
+
+
+def test_all_connections(here, flowing):
+    lines = here("stats", "--wide").out.splitlines()
+    assert lines[0].split()[:4] == ["from", "to", "carrier", "messages"]
+    [line] = [line for line in lines if "/over/in" in line]
+    assert re.match(r"/over/\[bold\]out +/over/in +tcp +5 ", line)
+    assert "AF42 / CS0" in line
+
+
+def test_few_columns_by_default_and_numbers_aligned(here, flowing):
+    lines = here("stats").out.splitlines()
+    assert lines[0].split("  ")[0] == "from"
+    assert re.split(r"  +", lines[0]) == ["from", "to", "carrier", "msg/s", "MB/s", "drops",
+                                          "latency ms"]  # fmt: skip
+    end = lines[0].index("drops") + len("drops")
+    assert [line[:end].split()[-1].isdigit() for line in lines[1:]] == [True] * len(lines[1:])
+    assert all(line[end : end + 1] in ("", " ") for line in lines[1:])
+
+
+def test_what_is_written_to_nobody_is_no_trouble(here, flowing):
+    with yarpy.Port("/over/idle") as idle:
+        idle.write(["nobody"])
+        assert "/over/idle" not in here("stats").out
+        lines = here("stats", "--wide").out.splitlines()
+    [line] = [line for line in lines if "/over/idle" in line]
+    assert line.split()[:5] == ["/over/idle", "(past)", "0", "0", "0"]
+    assert "1" in line.split()
+
+
+def test_all_connections_for_programs(here, flowing):
+    [flow] = [one for one in json.loads(here("stats", "--json").out) if one["target"] == "/over/in"]
+    assert (flow["source"], flow["carrier"]) == ("/over/[bold]out", "tcp")
+    assert flow["sender"]["messages"] == flow["receiver"]["messages"] == 5
+    assert flow["sender"]["qos"]["packets"] == "AF42"

@@ -1,4 +1,4 @@
-"""`yarpy plugin [NAME]`: the carriers, types, monitors and commands that are installed.
+"""`yarpy plugin [NAME]`: the carriers, types, monitors, findings and commands that are installed.
 
 Without NAME lists them, one per line (`--list`: names only); with NAME tells what it is and whether
 it loads. Exit codes: 0; 1 there is no such plug-in, or it does not load.
@@ -42,7 +42,7 @@ def installed() -> Iterator[tuple[str, str]]:
     from yarpy import registry
     from yarpy.cli.verb_list import VERBS
 
-    for kind in (registry.carriers, registry.types, registry.monitors):
+    for kind in (registry.carriers, registry.types, registry.monitors, registry.findings):
         for name in kind.names():
             yield kind.kind.removesuffix("s"), name
     for name in sorted({*VERBS, *registry.commands.names()}):

@@ -1,9 +1,9 @@
 """`yarpy stats [PORT]`: how every connection of the network is doing, or what one port sends.
 
-    stats [--watch] [--wide] [--json]
-                                     all connections, as their ports count them: carrier, rates,
+    stats [--wide] [--json]          all connections, as their ports count them: carrier, rates,
                                      drops, latency, as much as the terminal has room for; --wide
-                                     adds messages, jitter, granted priorities and monitors
+                                     adds messages, jitter, granted priorities and monitors;
+                                     `yarpy top` shows it live
     stats PORT [--duration S] ...    measure PORT by reading from it: a line each second, and the
                                      totals at the end, or when interrupted
 
@@ -13,6 +13,8 @@ Exit codes: 0; 255 PORT cannot be connected.
 
 from __future__ import annotations
 
+import shutil
+import sys
 import time
 from dataclasses import dataclass, field
 from typing import Any
@@ -77,7 +79,6 @@ def size_of(message: yarpy.Message) -> int:
 
 @click.command()
 @click.argument("port", required=False)
-@click.option("--watch", is_flag=True, help="Without PORT: show it anew each second.")
 @click.option("--wide", is_flag=True, help="Without PORT: all columns, however long the lines.")
 @click.option(
     "--port_type", type=click.Choice(["BufferedPort", "Port"]), default="BufferedPort",
@@ -88,7 +89,6 @@ def size_of(message: yarpy.Message) -> int:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON objects.")
 def command(
     port: str | None,
-    watch: bool,
     wide: bool,
     port_type: str,
     duration: float | None,
@@ -97,9 +97,7 @@ def command(
 ) -> int:
     """Show how every connection is doing, or measure what PORT sends."""
     if port is None:
-        from yarpy.cli.overview import show
-
-        return show(watch, as_json, wide)
+        return _show_all(as_json, wide)
     kind: Any = yarpy.Port if port_type == "Port" else yarpy.BufferedPort
     options: dict[str, Any] = {} if port_type == "Port" else {"strict": True}
     with open_port(kind, ANY, **options) as reader:
@@ -115,6 +113,23 @@ def command(
         except Interrupted:
             pass  # the totals are what it was run for
         print_json({"total": whole.as_dict()}) if as_json else print_line(whole.total())
+    return 0
+
+
+def _show_all(as_json: bool, wide: bool) -> int:
+    """The command without PORT: the table of `yarpy top`, once."""
+    from yarpy.cli import overview
+    from yarpy.network.sampling import Sampler
+
+    with Sampler() as sampler:
+        snapshot = sampler.look()
+    if as_json:
+        print_json(overview.connections_json(snapshot))
+        return 0
+    rows = [overview.row(flow) for flow in overview.shown(snapshot, wide)]
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    for cells in overview.layout(rows, width, wide):
+        print_line(overview.line(cells))
     return 0
 
 
