@@ -42,6 +42,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "zmq": "yarpy.carriers.zmq:Zmq",
     },
     "monitors": {
+        "adaptive": f"{_STOCK}.adaptive:Adaptive",
         "bayer": f"{_STOCK}.bayer:Bayer",
         "bottle_compression_zlib": f"{_STOCK}.bottle_compression_zlib:BottleCompressionZlib",
         "depthimage_compression_zlib": f"{_STOCK}.depthimage_compression_zlib:DepthZlib",

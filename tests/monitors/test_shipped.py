@@ -36,6 +36,7 @@ CASES: list[tuple[str, str, Any, Any]] = [
     ("sound_marker", "either", yarpy.Sound(np.zeros((2, 10), "i2")), (2, 15)),
     ("soundfilter_resample+channel.1", "either", yarpy.Sound(np.zeros((2, 10), "i2")), (1, 10)),
     ("sensorMeasurements_to_vector", "either", STREAM, [4, 5, 6, 1, 2, 3]),
+    ("adaptive", "send", ["hi"], ["hi"]),
     ("bayer", "recv", np.zeros((8, 16), "u1"), (8, 16, 3)),
     ("stats_monitor", "send", ["hi"], ["hi"]),
 ]

@@ -53,6 +53,11 @@ class Background(Generic[T]):
         return not self._stopped and (waiting < backlog or not (waiting or self._busy))
 
     @property
+    def pending(self) -> int:
+        """Messages that wait, and the one that is being sent."""
+        return len(self._waiting) + self._busy
+
+    @property
     def stopped(self) -> bool:
         """Whether nothing is taken any more."""
         return self._stopped

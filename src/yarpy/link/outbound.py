@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.background import Background
+from yarpy.link.following import Following
 from yarpy.link.intake import Intake
 from yarpy.link.sender import Sender, interrupts, seconds
 from yarpy.link.timing import Dated, expected, time_left
@@ -75,6 +76,16 @@ class Outbound:
         self._due = 0.0  # when the carrier's interval is over
         self._listening: Steps[None] | None = carrier.listen(driver.stream)
         self._queue: Background[Any] | None = None
+        self._follow: Following | None = None
+
+    def ride(self, chain: Chain | None) -> None:
+        """Monitors get to see its messages. Raises LocalProtocolError for one that wants to know
+        when they are confirmed, over a carrier that cannot tell."""
+        self.chain = chain
+        if chain is not None and chain.watches:
+            self._follow = Following(self.sender, chain, self._send_queued)
+            self.start_background()
+            chain.watch(lambda: 0 if self._queue is None else self._queue.pending)
 
     @property
     def broken(self) -> bool:
@@ -228,7 +239,7 @@ class Outbound:
         qos = expected(self.wanted, wanted)
         self.wanted = qos if qos.deadline or qos.rate else None
         if qos.deadline and qos.late == "drop":
-            if self._queue is not None:
+            if self._queue is not None and self._follow is None:
                 self._queue.send = self._send_queued
             self.limit = qos.deadline
         else:
@@ -274,6 +285,8 @@ class Outbound:
                 if self.carrier.delivery.lossy and isinstance(transport, TcpTransport):
                     transport.limit_unsent(UNSENT)  # else the kernel's buffer is the growing queue
                 send = self.sender.send if self.limit is None else self._send_queued
+                if self._follow is not None:
+                    send = self._follow.send
                 self._queue = Background(send, self.counter)
                 self.thread = threading.Thread(
                     target=self._run, args=(self._queue,), name=f"yarpy {self.route}", daemon=True

@@ -12,13 +12,23 @@ A monitor is any object with some of these methods; those it lacks cost nothing:
     state() -> dict                    its status, for people: numbers and words
     close()                            the connection ends
 
+One at the sender's end may also learn how its messages fare (congestion control needs that):
+
+    watch(under_way)                   `under_way()` tells how many messages that it let pass are
+                                       not confirmed yet: one may be leaving, and one wait for that
+    confirmed(taken)                   the receiver has taken a message (see Taken)
+
+The connection then sends from a thread of its own, one message at a time, and waits for what
+confirms it; a carrier that confirms nothing is refused.
+
 The class, or any function that returns such an object, is called with its `Place` and is found by
 name (entry point group `yarpy.monitors`). If its parameters are wrong it raises one of yarpy's
 errors, and the connection is refused with that text.
 
 Rules: messages come one at a time, at the sender's end those of all writers, at the receiver's end
 those of one connection. `trigger`, `configure`, `parameters` and `state` are called from any thread
-at any time. If a method raises, the message is dropped and counted, and the error logged.
+at any time, `confirmed` from that of the connection. If a method raises, the message is dropped and
+counted, and the error logged.
 """
 
 from __future__ import annotations
@@ -156,6 +166,15 @@ class Place:
 
 
 _INF = float("inf")
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """A message of `size` bytes on the wire that was confirmed `seconds` after it began to leave:
+    by the receiving port where the carrier has acknowledgements, else by its system."""
+
+    size: int
+    seconds: float
 
 
 def read_token(token: str) -> tuple[str, str | Bottle]:

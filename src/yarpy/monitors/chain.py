@@ -9,7 +9,7 @@ nothing more.
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Final
 
@@ -18,7 +18,7 @@ from yarpy.data import codec
 from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.log import logger
-from yarpy.monitors.base import DROP, FAILURES, Group, Place
+from yarpy.monitors.base import DROP, FAILURES, Group, Place, Taken
 from yarpy.route import CarrierSpec
 from yarpy.wire.message import Message, Packet
 
@@ -84,6 +84,7 @@ class Chain:
             )
             for one, tally in zip(self.monitors, self._tallies, strict=True)
         )
+        self._watchers = tuple(one for one in monitors if hasattr(one, "confirmed"))
         self._replies = tuple(one.update_reply for one in monitors if hasattr(one, "update_reply"))
         self._lock = threading.Lock()  # several writers may use one connection
         self._told: set[str] = set()
@@ -149,6 +150,26 @@ class Chain:
         except FAILURES as error:
             self._complain(error)
         return message
+
+    # -- how they fare ----------------------------------------------------------------------------
+
+    @property
+    def watches(self) -> bool:
+        """Whether a monitor wants to know when messages are confirmed."""
+        return bool(self._watchers)
+
+    def watch(self, under_way: Callable[[], int]) -> None:
+        """The connection exists: `under_way` tells how many messages are not confirmed."""
+        for monitor in self._watchers:
+            getattr(monitor, "watch", lambda _: None)(under_way)
+
+    def confirmed(self, taken: Taken) -> None:
+        """The receiver has taken a message."""
+        try:
+            for monitor in self._watchers:
+                monitor.confirmed(taken)
+        except FAILURES as error:
+            self._complain(error)
 
     def _complain(self, error: BaseException) -> None:
         text = _told(error)

@@ -274,7 +274,7 @@ def _open_output(
         if speaker.broadcast or spec.recv:
             _wait_for_member(hub, contact, speaker.name)
         link = Outbound(driver, speaker)
-        link.chain = chain
+        link.ride(chain)
         if spec.recv and link.ended():
             monitors = ", ".join(name for name, _ in spec.recv)
             raise LocalProtocolError(

@@ -312,7 +312,7 @@ class Hub:
             return
         output = Outbound(driver, carrier, dialled=False)
         try:
-            output.chain = self.monitoring.outgoing(route)
+            output.ride(self.monitoring.outgoing(route))
         except YarpError as error:
             log.warning("%s: connection %s refused: %s", self.name, route, error)
             driver.transport.close()
