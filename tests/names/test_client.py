@@ -189,6 +189,19 @@ def test_a_server_that_hangs_up_after_each_reply() -> None:
             time.sleep(0.05)
 
 
+def test_both_kinds_of_connections_are_kept() -> None:
+    """Two threads that ask in one kind leave room for those that ask in the other."""
+    with serve_names() as server, YarpNameClient("127.0.0.1", server.port) as client:
+        lines = [client._open("lines") for _ in range(3)]
+        for line in lines:
+            client._give_back(line)
+        client.request(["bot", "get", "/x", "y"])
+        assert sorted(line.kind for line in client._idle) == ["acked", "lines", "lines"]
+        [acked] = [line for line in client._idle if line.kind == "acked"]
+        client.request(["bot", "get", "/x", "y"])
+        assert acked in client._idle
+
+
 def test_a_restarted_server_is_found_again() -> None:
     port = free_port()
     names = YarpNameClient("127.0.0.1", port, 5.0)

@@ -42,7 +42,8 @@ class Search:
 
     def find(self, name: str) -> Path | None:
         """The file called `name`, or None."""
-        return next((path for path in self.candidates(name) if path.is_file()), None)
+        # Every port looks for files that hardly anybody has: paths are made for those that exist.
+        return next((Path(path) for path in self._texts(name) if os.path.isfile(path)), None)
 
     def find_directory(self, name: str) -> Path | None:
         """The directory called `name`, or None."""
@@ -54,24 +55,27 @@ class Search:
 
     def candidates(self, name: str) -> Iterator[Path]:
         """Where `name` may be, in order, whether it exists or not."""
+        return map(Path, self._texts(name))
+
+    def _texts(self, name: str) -> Iterator[str]:
         value = self.values.get(name)
         if value is not None:
             name = plain_text(value)
         if not name:
             return
-        if Path(name).is_absolute():
-            yield Path(name)
+        if os.path.isabs(name):
+            yield name
             return
-        yield self.directory / name
+        yield os.path.join(self.directory, name)
         if self.near is not None:
-            yield self.near / name
-        bases = base_directories(self.environment)
+            yield os.path.join(self.near, name)
+        bases = [os.fspath(base) for base in base_directories(self.environment)]
         robot = self.robot or self.environment.get("YARP_ROBOT_NAME") or "default"
-        yield from (base / "robots" / robot / name for base in bases)
+        yield from (os.path.join(base, "robots", robot, name) for base in bases)
         if self.near is None:
             for context in self.contexts:
-                yield from (base / "contexts" / context / name for base in bases)
-        yield from (base / name for base in bases)
+                yield from (os.path.join(base, "contexts", context, name) for base in bases)
+        yield from (os.path.join(base, name) for base in bases)
 
 
 def find_file(

@@ -37,7 +37,7 @@ from yarpy.transports.tls_setting import required
 from yarpy.wire.framing import refused
 
 IDLE = 10.0  # seconds after which an unused connection is not trusted any more
-SPARE = 2  # connections kept for the next command
+SPARE = 2  # connections of each kind that are kept for the next command
 WHO = 1.0  # seconds to find out what listens there when it does not answer
 LARGEST = 64 << 20  # bytes of one whole reply
 
@@ -334,7 +334,8 @@ class YarpNameClient:
     def _give_back(self, line: _Line) -> None:
         line.used = time.monotonic()
         with self._lock:
-            if line.clean and len(self._idle) < SPARE:
+            alike = sum(other.kind == line.kind for other in self._idle)
+            if line.clean and alike < SPARE:
                 self._idle.append(line)
                 return
         line.close()

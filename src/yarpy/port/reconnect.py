@@ -117,14 +117,15 @@ class Reconnector:
                     target=self._run, name="yarpy reconnect", daemon=True
                 )
                 self._thread.start()
-        self._wake.set()
 
     def forget(self, hub: Hub) -> None:
         """The port closes."""
         with self._lock:
             self._hubs = [item for item in self._hubs if item is not hub]
             self._lost = [item for item in self._lost if item.hub is not hub]
-        self._wake.set()
+            last = not self._hubs
+        if last:
+            self._wake.set()
 
     def add(self, hub: Hub, route: Route, incoming: bool, gone: bool = False) -> None:
         """A connection failed; `gone`: the other end's program has ended, or lost it."""
