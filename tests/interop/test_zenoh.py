@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from support import tls
@@ -13,6 +14,7 @@ from support.port import free_block, free_port
 from support.wait import wait_until
 
 import yarpy
+from yarpy.config.authority import make
 from yarpy.errors import AccessRefused, LocalProtocolError, YarpError
 from yarpy.names import direct
 from yarpy.names.zenoh import ZenohNames
@@ -220,4 +222,37 @@ def test_cpp_programs_take_part(
         out.write(["from", "Zenoh", 3])
         reader.wait_line("from Zenoh 3")
     names.close()
+    close(router)
+
+
+def test_the_access_list_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A guest may ask where ports are, and no more."""
+    page = (Path(__file__).parents[2] / "docs" / "zenoh.md").read_text()
+    (tmp_path / "router.json5").write_text(page.partition("```json5\n")[2].partition("```")[0])
+    folder = tls.prepare(tmp_path / "tls", monkeypatch, "mutual")
+    where = f"127.0.0.1:{free_port()}"
+    router = open_router([where], file=str(tmp_path / "router.json5"))
+
+    def names(who: str, host: str) -> ZenohNames:
+        make(tmp_path / who, [who], folder)
+        monkeypatch.setenv("YARPY_TLS_DIR", str(tmp_path / who))
+        found = ZenohNames(f"tls/{where.replace('127.0.0.1', host)}")
+        found.open()
+        return found
+
+    robot, guest = names("robot.lab", "127.0.0.1"), names("guest", "localhost")
+    third = names("robot.lab", "127.0.0.1")
+    with yarpy.BufferedPort("/robot/in", names=robot) as in_:
+        wait_until(lambda: guest.query("/robot/in"))
+        assert [contact.name for contact in guest.list()] == ["/robot/in"]
+        with yarpy.Port("/guest/out", names=guest) as out:
+            assert robot.query("/guest/out") is None and len(robot.list()) == 1
+            with pytest.raises(YarpError, match="Zenoh"):
+                out.connect("/robot/in")
+        with yarpy.Port("/robot/out", names=third) as out:
+            out.connect("/robot/in")
+            out.write("from a robot")
+            assert in_.read(timeout=10).value == "from a robot"
+    for one in (robot, guest, third):
+        one.close()
     close(router)

@@ -253,6 +253,21 @@ def test_tls_both_ways(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         router.close()
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+def test_a_file_changes_what_it_mentions(tmp_path: Path) -> None:
+    port = free_port()
+    file = tmp_path / "router.json5"
+    file.write_text(f'{{listen: {{endpoints: ["tcp/127.0.0.1:{port}"]}}}}')
+    before = listening()
+    router = open_router(file=str(file))
+    assert len(listening() - before) == 1  # and nothing for scouting
+    zenoh.close(router)
+    router = open_router([f"tcp/127.0.0.1:{free_port()}"], file=str(file))
+    with pytest.raises(LinkClosed):
+        share(f"tcp/127.0.0.1:{port}")
+    zenoh.close(router)
+
+
 def test_a_router_without_a_certificate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("YARPY_TLS_DIR", str(tmp_path))
     with pytest.raises(MissingFile, match="yarpy cert"):

@@ -278,23 +278,24 @@ def open_router(
     """A router: it passes on what sessions say to each other. Close it when done.
 
     listen: where, the loopback by default. connect: other routers, which may come later. file: a
-    configuration file of Zenoh, that the others change. Raises as `share`, and LinkClosed if it
-    cannot listen there.
+    configuration file of Zenoh; what it says counts, and the rest is as without one. Raises as
+    `share`, and LinkClosed if it cannot listen there.
     """
-    config = _from_file(file) if file else load().Config()
+    config = load().Config()
     _set(config, "mode", "router")
     _set(config, "scouting/delay", 0)  # it does not wait for others before it begins
-    where = [endpoint(item) for item in listen or (() if file else (HERE,))]
-    others = [endpoint(item) for item in connect]
-    if where:
-        _set(config, "listen/endpoints", where)
-    if others:
-        _set(config, "connect/endpoints", others)
-        _set(config, "connect/retry", RETRY)
-    if not file:
-        _set(config, "scouting/multicast/enabled", False)
-        _set(config, "scouting/gossip/enabled", False)
-        _secure(config, where, others)
+    _set(config, "scouting/multicast/enabled", False)
+    _set(config, "scouting/gossip/enabled", False)
+    _set(config, "connect/retry", RETRY)
+    said = _said(_from_file(file)) if file else {}
+    where = [endpoint(item) for item in listen or said.get("listen/endpoints") or (HERE,)]
+    others = [endpoint(item) for item in connect or said.get("connect/endpoints") or ()]
+    _secure(config, where, others)
+    for key, value in said.items():
+        _set(config, key, value)
+    _set(config, "mode", "router")
+    _set(config, "listen/endpoints", where)
+    _set(config, "connect/endpoints", others)
     _override(config)
     for item in where:
         _check_free(item)
@@ -355,6 +356,28 @@ def _from_file(path: str) -> Any:
         return load().Config.from_file(path)
     except Exception as error:
         raise AddressError(f"{path} is no configuration of Zenoh: {_plain(error)}") from error
+
+
+def _said(config: Any) -> dict[str, Any]:
+    """What a configuration says beside the defaults, by keys; lists whole."""
+    found: dict[str, Any] = {}
+
+    def walk(key: str, value: Any, usual: Any) -> None:
+        if isinstance(value, dict) and isinstance(usual, dict):
+            for name, each in value.items():
+                walk(f"{key}/{name}" if key else name, each, usual.get(name))
+        elif value != usual:
+            found[key] = _without_nothing(value)
+
+    walk("", json.loads(str(config)), json.loads(str(load().Config())))
+    return found
+
+
+def _without_nothing(value: Any) -> Any:
+    """The same without keys that have no value: written back, some of them would not be read."""
+    if isinstance(value, dict):
+        return {key: _without_nothing(one) for key, one in value.items() if one is not None}
+    return [*map(_without_nothing, value)] if isinstance(value, list) else value
 
 
 def _set(config: Any, key: str, value: object) -> None:

@@ -4,7 +4,7 @@
     router tcp/0.0.0.0:7447                  for those of all networks
     router tls/0.0.0.0:7447                  with the certificates of `yarpy cert`
     router tcp/0.0.0.0:7447 --connect tcp/other.lab:7447      joined with another one
-    router --config router.json5             as a file of Zenoh says, access lists and all
+    router --config router.json5             with what a file of Zenoh says: access lists, for one
 
 Routers that are connected, one way or the other, are one: a program connects to the nearest.
 YARPY_TLS=require allows tls alone, and mutual only programs with a certificate of our authority.
