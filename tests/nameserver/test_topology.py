@@ -27,7 +27,7 @@ def everybody(name: str) -> bool:
     return True
 
 
-def connect(source: str, destination: str, carrier: str = "tcp") -> Action:
+def connect(source: str, destination: str, carrier: str = "") -> Action:
     return Action("connect", source, destination, carrier, source)
 
 
@@ -52,7 +52,7 @@ def test_a_rule_added_late_connects_at_once(topology: Topology) -> None:
 def test_the_carrier_is_the_destinations(topology: Topology) -> None:
     topology.announce("/a")
     topology.announce("/b")
-    assert topology.subscribe("udp://a", "/b", "", everybody) == [connect("/a", "/b", "tcp")]
+    assert topology.subscribe("udp://a", "/b", "", everybody) == [connect("/a", "/b")]
     modified = "fast_tcp+recv.priority://b"
     assert topology.subscribe("/a", modified, "", everybody) == [
         connect("/a", "/b", "fast_tcp+recv.priority")
@@ -65,7 +65,7 @@ def test_unregistering_breaks_and_asks_who_is_left(topology: Topology) -> None:
     topology.announce("/a")
     topology.announce("/b")
     (action,) = topology.vanish("/a")
-    assert action == Action("disconnect", "/a", "/b", "tcp", "/b")
+    assert action == Action("disconnect", "/a", "/b", "", "/b")
     assert action.peer == "/a"
     assert topology.vanish("/a") == [action], "whether it was live or not, nobody may wait for it"
     topology.announce("/a")

@@ -146,6 +146,18 @@ def test_pictures_to_two_programs(server: yarpy.NameServer) -> None:
         wait_until(lambda: arena_of("/out").used <= 1)  # what they looked at last
 
 
+def test_persistent_connections(server: yarpy.NameServer) -> None:
+    """Whatever the name server has to keep, the port chooses how."""
+    from yarpy.network.connection import ask_server
+
+    ask_server(None, ["subscribe", "/out", "/in"])
+    with yarpy.Port("/out") as out, reader("/in") as process:
+        assert out.wait_for_outputs(timeout=10)
+        assert out.outputs[0].carrier == "memory"
+        out.write(picture(1))
+        process.wait_line("^memory 1 False$")
+
+
 def test_tcp_on_request(server: yarpy.NameServer) -> None:
     with yarpy.Port("/out") as out, reader("/in") as process:
         made = yarpy.connect("/out", "/in", "tcp")

@@ -35,6 +35,8 @@ from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.topology import Action, Topology
 from yarpy.port import identity, probe
 from yarpy.port.assembly import open_hub
+from yarpy.port.choosing import MEMORY
+from yarpy.port.connecting import joined
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Mailbox
 from yarpy.registry import carriers
@@ -356,7 +358,10 @@ class NameServer:
             destination = self.service.store.query(action.destination)
             if destination is not None:
                 self._confirm(destination)
-            probe.ask(contact, [Vocab("add"), f"{action.carrier}:/{action.destination}"])
+            # Ports that know memory choose by themselves.
+            accepts = self.service.store.values(action.source, "accepts") or ()
+            way = action.carrier or ("" if MEMORY in accepts else "tcp")
+            probe.ask(contact, [Vocab("add"), joined(action.destination, way)])
 
     def _confirm(self, contact: Contact) -> None:
         """Raise WrongPort if the port that listens there is not the one of that name."""

@@ -77,12 +77,13 @@ class Subscription:
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """Something to do to two ports: `[add] "carrier://destination"` or `[del]` asked of `ask`."""
+    """Something to do to two ports: `[add] "carrier://destination"` or `[del]` asked of `ask`.
+    Without a carrier the one that seems best."""
 
     kind: Literal["connect", "disconnect"]
     source: str
     destination: str
-    carrier: str = "tcp"
+    carrier: str = ""
     ask: str = ""  # the port to be asked; on disconnect the one that is still there
 
     @property
@@ -135,7 +136,7 @@ class Topology:
         for source, destination, carrier in self._pairs(name):
             other = destination if source == name else source
             if other in self.live:
-                actions.append(Action("disconnect", source, destination, carrier or "tcp", other))
+                actions.append(Action("disconnect", source, destination, carrier, other))
         for rule in [*self._out.get(name, {}).values(), *self._in.get(name, {}).values()]:
             if (rule.mode, name) in (("from", rule.source), ("to", rule.destination)):
                 self.unsubscribe(rule.source, rule.destination)
@@ -307,4 +308,4 @@ def _check(name: str, structure: str = "") -> None:
 
 
 def _connect(source: str, destination: str, carrier: str) -> Action:
-    return Action("connect", source, destination, carrier or "tcp", source)
+    return Action("connect", source, destination, carrier, source)

@@ -40,7 +40,7 @@ class FrameGrabber(Closeable):
     """The camera whose images come from the port `remote`.
 
     local: name of the client's own port; generated if empty.
-    carrier: for the images, for example "mjpeg" where the network is slow.
+    carrier: for the images, for example "mjpeg" where the network is slow. As of `Port.connect`.
     names: a name client, None for the default.
     Raises UnknownName, LinkClosed. Later, LocalProtocolError means that the camera refuses.
     """
@@ -50,7 +50,7 @@ class FrameGrabber(Closeable):
         remote: str,
         local: str = "",
         *,
-        carrier: str = "tcp",
+        carrier: str = "",
         names: NameClient | None = None,
     ) -> None:
         self.remote = remote = prefix(remote)
