@@ -459,7 +459,8 @@ def not_granted(world: World) -> Iterator[tuple[str, ...]]:
     assert listener.wait_for_inputs(timeout=5)
     with contextlib.suppress(yarpy.LocalProtocolError):  # or it was not given in the first place
         listener.inputs[0].qos = yarpy.Qos("FIFO", 5)
-    thread = listener._hub.inputs[0].thread.native_id
+    [link] = [one for one in listener._hub.inputs if one.route.source == "/talker"]
+    thread = link.thread.native_id
     os.sched_setscheduler(thread, os.SCHED_OTHER, os.sched_param(0))
     world.again(lambda: talker.write([1]))
     yield ("/talker", "/listener")

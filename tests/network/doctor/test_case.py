@@ -41,6 +41,7 @@ def test_a_port_and_its_peers(names: yarpy.LocalNames) -> None:
     ):
         a.connect("/b")
         c.connect("/a")
+        c.connect("/b")
         wait_until(lambda: a.inputs)
         case = Case("/a", names=names, window=0.01)
         assert set(case.ports) == {"/a", "/b", "/c"}

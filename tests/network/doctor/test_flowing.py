@@ -1,6 +1,6 @@
 """Findings about the flow of messages; test_examination.py has the faults."""
 
-from support.doctor import made_up
+from support.doctor import answering, made_up
 
 from yarpy.network.doctor.flowing import find
 from yarpy.network.doctor.peek import Peek
@@ -29,7 +29,18 @@ def test_of_a_sender_that_does_not_count_a_look_decides() -> None:
     flow = Flow("/a", "/b", End("tcp"), End("tcp", messages=5))
     assert [*find(made_up(flow, peeks={"/a": Peek("Bottle", 8)}))] == []
     assert [finding.probe for finding in find(made_up(flow))] == ["writes-nothing"]
+    both = Flow("/a", "/b", End("tcp"), End("tcp"))  # C++ at either end
+    assert [finding.probe for finding in find(made_up(both))] == ["writes-nothing"]
+    assert [*find(made_up(both, peeks={"/a": Peek(error="you may not")}))] == []
 
 
 def test_a_network_at_rest_is_no_fault() -> None:
     assert [*find(made_up(Flow("/a", "/b", End(messages=5), End(messages=5)), wanted=()))] == []
+
+
+def test_who_writes_nothing_is_named_once_and_who_asks_never() -> None:
+    flows = [Flow("/a", f"/{n}", End(messages=5), End(messages=5)) for n in range(3)]
+    assert len([*find(made_up(*flows, wanted=("/a",)))]) == 1
+    for name in ("/a", "/0"):
+        asks = answering(name, is_rpc=True)
+        assert [*find(made_up(flows[0], wanted=("/a",), ports=(asks,)))] == []

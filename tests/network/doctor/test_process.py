@@ -21,6 +21,10 @@ def test_who_listens_and_what_lies_unread() -> None:
             assert process.unread(port) == 0
             peer.sendall(b"x" * 100)
             assert process.unread(port) == 100
+            assert accepted.recv(200)
+            peer.shutdown(socket.SHUT_WR)
+            assert accepted.recv(1) == b""
+            assert process.unread(port) == 0
             accepted.close()
     assert process.listener(port) == 0
 

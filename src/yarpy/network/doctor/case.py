@@ -11,6 +11,7 @@ import os
 import threading
 import time
 from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -35,7 +36,7 @@ from yarpy.names.discovery import search_all
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.network.doctor import process
 from yarpy.network.doctor.peek import Peek, peek
-from yarpy.network.sampling import Line, Sampler
+from yarpy.network.sampling import AT_ONCE, Line, Sampler
 from yarpy.network.traffic import End, Flow, PortState, Snapshot
 from yarpy.port import probe
 
@@ -150,7 +151,7 @@ class Case:
         if len(self.wanted) == 2:
             key = self.wanted[0], self.wanted[1]
             return [Pair(*key, before.get(key), now.get(key))]
-        found = [key for key in now if all(key)]
+        found = [key for key in now if all(key) and (not self.wanted or self.wanted[0] in key)]
         return [Pair(*key, before.get(key), now[key]) for key in found[:MOST]]
 
     def pair(self, source: str, target: str) -> Pair:
@@ -179,11 +180,17 @@ class Case:
         """What a port writes just now; once only. Nothing where not one port or two are wanted."""
         with self._lock:
             if name not in self._peeks:
-                state = self.port(name) if self.wanted else None
-                self._peeks[name] = (
-                    Peek(error="not asked") if state is None else peek(state.contact, self.window)
-                )
+                sources = {pair.source for pair in self.pairs if pair.now is not None}
+                asked = [one for one in {name, *sources} if one not in self._peeks]
+                with ThreadPoolExecutor(AT_ONCE) as pool:
+                    self._peeks.update(zip(asked, pool.map(self._peek, asked), strict=True))
             return self._peeks[name]
+
+    def _peek(self, name: str) -> Peek:
+        state = self.port(name) if self.wanted else None
+        if state is None:
+            return Peek(error="not asked")
+        return peek(state.contact, self.window)
 
     def ask(self, name: str, *words: object) -> Any:
         """What a port answers to an administrative question, None if it does not."""

@@ -11,13 +11,17 @@ from yarpy.network.doctor.finding import Finding
 
 def find(case: Case) -> Iterator[Finding]:
     """writes-nothing, never-reads, held-up, too-slow, late."""
+    quiet: set[str] = set()  # senders that write nothing are named once
     for pair in case.pairs:
         if pair.before is None or not case.wanted or not _is_whole(case, pair):
             continue
         stuck = list(_receiver(case, pair))
         yield from stuck
         if not stuck:
-            yield from _sender(case, pair)
+            for finding in _sender(case, pair):
+                if finding.probe != "writes-nothing" or pair.source not in quiet:
+                    yield finding
+                    quiet.add(pair.source)
             yield from _late(case, pair)
 
 
@@ -48,11 +52,12 @@ def _sender(case: Case, pair: Pair) -> Iterator[Finding]:
             "warning" if written else "fault",
         )
         return
-    silent = written == 0 if written is not None else arrived == 0
-    if not silent or dropped:
+    if written or arrived or dropped or _answers(case, pair):
         return
-    if written is None and case.peek(pair.source).kind:
-        return  # it writes, as we have seen ourselves
+    if written is None:
+        seen = case.peek(pair.source)
+        if seen.kind or seen.error:
+            return  # it writes, as we have seen ourselves; or nobody knows
     sender = pair.end("sender")
     so_far = ""
     if sender is not None and sender.messages is not None:
@@ -66,6 +71,12 @@ def _sender(case: Case, pair: Pair) -> Iterator[Finding]:
         f"{pair.source}` looks at what it reads); `yarpy read ... {pair.source}` shows what it "
         "writes",
     )
+
+
+def _answers(case: Case, pair: Pair) -> bool:
+    """Whether questions go that way: who asks now and then has nothing to write in between."""
+    states = case.port(pair.source), case.port(pair.target)
+    return any(state is not None and state.is_rpc for state in states)
 
 
 def _late(case: Case, pair: Pair) -> Iterator[Finding]:

@@ -16,6 +16,7 @@ from typing import Final
 
 PROC: Final = Path("/proc")
 _LISTEN: Final = "0A"
+_OPEN: Final = "01"  # in others the end counts as a byte
 _SOCKET = re.compile(r"socket:\[(\d+)\]")
 
 
@@ -79,7 +80,7 @@ def listener(port: int) -> int:
 
 def unread(port: int) -> int:
     """Bytes that lie unread in the connections to a listening port of this computer."""
-    return sum(one.unread for one in sockets() if one.local == port and not one.listens)
+    return sum(one.unread for one in sockets() if one.local == port and one.state == _OPEN)
 
 
 def state(pid: int) -> str:
