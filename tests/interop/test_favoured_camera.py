@@ -14,7 +14,7 @@ from support.patience import patience
 from support.wait import wait_until
 
 import yarpy
-from yarpy.network import traffic
+from yarpy.network import sampling
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
 PATIENCE = patience(30.0)
@@ -84,7 +84,7 @@ def test_rules_favour_one_and_a_message_flips_them(cli) -> None:
             reply = yarpy.admin("/view", "set", "in", "/blue", ["bs", 2.0])
             assert reply[0] == 0
             watcher.sees("blue")
-            flows = {flow.source: flow for flow in traffic.flows()}
+            flows = {flow.source: flow for flow in sampling.flows()}
             loser = flows["/red"].receiver
             assert loser is not None
             assert loser.monitors == ["priority"]

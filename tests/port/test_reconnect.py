@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import pytest
 from support.port import free_port
@@ -14,7 +15,7 @@ from support.process import Process
 from support.wait import wait_until
 
 import yarpy
-from yarpy.port import identity, probe, reconnect
+from yarpy.port import connecting, identity, probe, reconnect
 from yarpy.route import Route
 
 RECOVERY = 20.0  # generous on a busy machine; the goal is 2 s, and the benchmark tells
@@ -390,6 +391,26 @@ def test_senders_that_are_waited_for_are_limited(
             reconnect.input_lost(port._hub, Route("/fake17", "/in"))
         assert waited(port) == ["/camera", *(f"/fake{n}" for n in (15, 16, 18, 19, 17))]
         assert waited(other) == ["/first"]
+
+
+def test_what_breaks_while_it_is_made_is_not_forgotten(
+    names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A camera may end its stream before whoever asked for it has the answer."""
+    opened = connecting.open_output
+    monkeypatch.setattr(reconnect.Reconnector, "_dial", lambda self, lost: None)
+
+    def breaks(hub: Any, contact: Any, target: str, *others: Any) -> Any:
+        found = opened(hub, contact, target, *others)
+        reconnect.output_lost(hub, Route(hub.name, target, "tcp", peer=target))
+        return found
+
+    with yarpy.Port("/out", names=names) as port, yarpy.BufferedPort("/in", names=names):
+        reconnect.output_lost(port._hub, Route("/out", "/in", "fast_tcp", peer="/in"))
+        monkeypatch.setattr(connecting, "open_output", breaks)
+        port.connect("/in", "tcp")
+        [left] = reconnect.pending(port._hub)
+        assert str(left.spec) == "tcp"
 
 
 def test_pauses_grow(names: yarpy.LocalNames) -> None:

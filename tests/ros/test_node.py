@@ -290,7 +290,7 @@ def test_a_port_of_yarp_is_a_topic_too(graph: RosGraph) -> None:
             ):
                 node.attach(other, "~left", "sensor_msgs/Image")
             images = watcher.subscriber("/eyes/left", "sensor_msgs/Image")
-            wait_until(lambda: images.inputs, patience(10), "the subscriber has come")
+            wait_until(lambda: len(port.outputs) == 2, patience(10), "the subscriber has come")
             port.write(yarpy.Image(pixels), yarpy.Stamp(3, 12.5))
             image = images.take(timeout=patience(5))
             assert (image.encoding, image.header.seq) == ("mono8", 3)

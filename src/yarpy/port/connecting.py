@@ -189,8 +189,10 @@ def dial(
                 if old.route.target == target:
                     close_output(hub, old)
         _check(hub, kind, spec)
+        started = time.monotonic()
         spec = open_output(hub, contact, target, spec, lost, patience)
-        hub.crew.reconnect.give_up(hub, target)  # one that broke before is replaced
+        # One that broke before is replaced; this one may have broken already.
+        hub.crew.reconnect.give_up(hub, target, before=started)
     return spec
 
 

@@ -10,6 +10,7 @@ together.
 from __future__ import annotations
 
 import contextlib
+import math
 import threading
 import time
 from collections.abc import Callable
@@ -72,7 +73,9 @@ class Reconnect(Protocol):
     def wake(self) -> None:
         """There is a connection that gives no sign of its end."""
 
-    def give_up(self, hub: Hub, name: str, incoming: bool | None = None) -> bool:
+    def give_up(
+        self, hub: Hub, name: str, incoming: bool | None = None, before: float = math.inf
+    ) -> bool:
         """Somebody takes the connection to or from `name` in hand; whether it was tried again."""
 
 

@@ -11,6 +11,7 @@ sender, once that is back.
 
 from __future__ import annotations
 
+import math
 import random
 import threading
 import time
@@ -151,12 +152,16 @@ class Reconnector:
             over = {inputs[0]}
         self._lost = [item for item in self._lost if item not in over]
 
-    def give_up(self, hub: Hub, name: str, incoming: bool | None = None) -> bool:
+    def give_up(
+        self, hub: Hub, name: str, incoming: bool | None = None, before: float = math.inf
+    ) -> bool:
         """Somebody takes the connection to or from `name` in hand, or the one of these that
-        `incoming` tells; whether it was being tried again."""
+        `incoming` tells, if it was lost `before` that time (of time.monotonic); whether it was
+        being tried again."""
 
         def meant(item: _Lost) -> bool:
-            return item.hub is hub and _peer(item) == name and incoming in (None, item.incoming)
+            this = item.hub is hub and _peer(item) == name and item.since < before
+            return this and incoming in (None, item.incoming)
 
         with self._lock:
             left = [item for item in self._lost if not meant(item)]
