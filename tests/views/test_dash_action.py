@@ -8,6 +8,7 @@ import pytest
 from support.wait import wait_until
 
 import yarpy
+from yarpy.network import qos
 from yarpy.views.dash_action import KEPT, Actions
 
 
@@ -78,6 +79,15 @@ def test_a_priority_and_back(names: yarpy.LocalNames, out: yarpy.Port) -> None:
     assert out.outputs[0].qos.packets == "CS0"
 
 
+def test_a_deadline_and_back(names: yarpy.LocalNames, out: yarpy.Port) -> None:
+    actions = Actions(names)
+    out.connect("/in", "tcp")
+    assert actions.act(["deadline", "/out", "/in", "20"]) == ("/out → /in has a deadline of 20 ms")
+    assert qos.granted("/out", "/in", names)[1].deadline == 0.02
+    actions.act(["undo"])
+    assert not qos.granted("/out", "/in", names)[1].deadline
+
+
 @pytest.mark.parametrize(
     "words",
     [
@@ -91,6 +101,8 @@ def test_a_priority_and_back(names: yarpy.LocalNames, out: yarpy.Port) -> None:
         ["priority", "/out", "/in", "100", ""],
         ["priority", "/out", "/in", "many", ""],
         ["priority", "/out", "/in", "", "URGENT"],
+        ["deadline", "/out", "/in", "soon"],
+        ["deadline", "/out", "/in", "-1"],
     ],
 )
 def test_what_cannot_be_done_says_so(

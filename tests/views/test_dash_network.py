@@ -57,6 +57,7 @@ def test_numbers_of_a_connection() -> None:
             "tcp", messages=100, drops=drops, jitter=0.0012345, qos=Qos("fifo", 30, "HIGH")
         )
         receiver = End("tcp", messages=100, drops=2, monitors=["gate"])
+        receiver.timing = {"missed": 3}
         receiver.qos = Qos(None, None, "HIGH")
         return Flow("/a", "/b", sender, receiver, rate=50.0, speed=1234567.0)
 
@@ -64,13 +65,9 @@ def test_numbers_of_a_connection() -> None:
     view.take(snapshot(1.0, "/a", "/b", flows=(flow(0),)))
     view.take(snapshot(3.0, "/a", "/b", flows=(flow(10),)))
     [numbers] = told(view)["numbers"]
-    messages, rate, speed, latency, jitter, drops, dropped, late, thread, packets, monitors = (
-        numbers
-    )
-    assert (messages, rate, speed, latency, drops, dropped) == (100, 50.0, 1235000.0, None, 12, 5.0)
-    assert (thread, packets, monitors) == ("FIFO 30", "AF42", "gate")
-    assert jitter == 0.001234 or jitter == 0.001235
-    assert late is None
+    assert numbers[:4] == [100, 50.0, 1235000.0, None]
+    assert numbers[4] in (0.001234, 0.001235)
+    assert numbers[5:] == [12, 5.0, 3, "FIFO 30", "AF42", "gate"]
 
 
 def test_ends_that_are_not_registered_are_shown() -> None:

@@ -45,6 +45,8 @@ class Actions:
                     return self._change(source, target, carrier)
                 case ["priority", str(source), str(target), priority, str(packets)]:
                     return self._prioritise(source, target, str(priority), packets)
+                case ["deadline", str(source), str(target), str(milliseconds)]:
+                    return self._expect(source, target, float(milliseconds or 0) / 1000)
                 case ["undo"]:
                     return self._take_back()
         raise yarpy.LocalProtocolError("a page of another version: load it again")
@@ -106,6 +108,17 @@ class Actions:
             ),
         )
         return f"{source} → {target} has another priority"
+
+    def _expect(self, source: str, target: str, deadline: float) -> str:
+        before = qos.granted(source, target, self._names)[1].deadline or 0.0
+
+        def set_(seconds: float) -> None:
+            qos.grant(source, target, receiver=yarpy.Qos(deadline=seconds), names=self._names)
+
+        set_(deadline)
+        self._remember(f"the deadline of {source} → {target} as before", lambda: set_(before))
+        said = f"a deadline of {1000 * deadline:g} ms" if deadline else "no deadline"
+        return f"{source} → {target} has {said}"
 
     def _remember(self, text: str, act: Callable[[], object]) -> None:
         self._undo = [*self._undo[1 - KEPT :], (text, act)]

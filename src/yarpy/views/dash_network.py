@@ -160,7 +160,6 @@ def _state(state: PortState) -> tuple[int | None, str]:
 
 def _numbers(flow: Flow, dropped: float | None) -> list[Any]:
     ends = [end for end in (flow.sender, flow.receiver) if end is not None]
-    late = [getattr(end, "late", None) for end in ends]
     told = [
         flow.measured("messages"),
         flow.rate,
@@ -169,7 +168,7 @@ def _numbers(flow: Flow, dropped: float | None) -> list[Any]:
         flow.measured("jitter"),
         flow.drops,
         dropped,
-        max((one for one in late if one is not None), default=None),
+        flow.missed,
         _both(ends, _thread),
         _both(ends, lambda end: "" if end.qos.packets is None else str(end.qos.packets)),
         cut(", ".join(name for end in ends for name in end.monitors)),

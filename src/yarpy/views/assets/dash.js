@@ -34,8 +34,8 @@ class Network {
     }
     for (const [at, port] of [...this.ports.values()].entries()) [port.light, port.state] = told.states[at] ?? [null, ""];
     for (const [at, link] of [...this.links.values()].entries()) {
-      const [messages, rate, speed, latency, jitter, drops, dropped, late, thread, packets, monitors] = told.numbers[at];
-      Object.assign(link, {messages, rate, speed, latency, jitter, drops, late, thread, packets, monitors});
+      const [messages, rate, speed, latency, jitter, drops, dropped, missed, thread, packets, monitors] = told.numbers[at];
+      Object.assign(link, {messages, rate, speed, latency, jitter, drops, missed, thread, packets, monitors});
       link.dropping = dropped > 0;
       link.look = link.dropping ? "bad" : speed > BUSY ? "busy" : rate ? "live" : "idle";
       const kept = {rate, latency, drops: dropped};

@@ -76,7 +76,7 @@ export class Detail {
     set("latency", ms(found.latency));
     set("jitter", ms(found.jitter));
     set("drops", count(found.drops));
-    set("late", count(found.late));
+    set("deadlines missed", count(found.missed));
     set("thread", found.thread);
     set("packets", found.packets);
     set("monitors", found.monitors);
@@ -158,7 +158,7 @@ export class Detail {
 
   link(link) {
     this.sparks = ["rate", "latency", "drops"].map((key) => ({key, canvas: make("canvas", {class: "spark", "aria-hidden": "true"})}));
-    const names = ["messages", "rate", "latency", "jitter", "drops", "late", "thread", "packets", "monitors"];
+    const names = ["messages", "rate", "latency", "jitter", "drops", "deadlines missed", "thread", "packets", "monitors"];
     const ends = make("ul", {}, ...[link.source, link.target].map((name, at) => make("li", {}, make("button", {class: "peer", onclick: () => this.chosen("port", name)}, make("span", {}, name), make("span", {}, at ? "receives" : "sends")))));
     const parts = [this.title(`${link.source} → ${link.target}`), ends, make("dl", {}, make("dt", {}, "carrier"), make("dd", {}, link.carrier), ...names.flatMap((name) => this.fact(name)))];
     const told = {rate: "messages per second", latency: "latency", drops: "drops per second"};
@@ -171,6 +171,7 @@ export class Detail {
     const carrier = make("input", {list: "carriers", value: link.carrier, "aria-label": "Carrier"});
     const priority = make("input", {type: "number", min: 0, max: 99, placeholder: "thread 0-99", "aria-label": "Thread priority: 0 for none, 1 to 99 for real time"});
     const packets = make("select", {"aria-label": "Packet priority"}, make("option", {value: ""}, "packets"), ...["LOW", "NORM", "HIGH", "CRIT"].map((level) => make("option", {}, level)));
+    const deadline = make("input", {type: "number", min: 0, step: "any", placeholder: "deadline in ms", "aria-label": "Deadline in milliseconds, 0 for none"});
     const submit = (act) => (event) => {
       event.preventDefault();
       act();
@@ -178,6 +179,7 @@ export class Detail {
     return [
       make("form", {onsubmit: submit(() => this.act("carrier", link.source, link.target, carrier.value))}, carrier, make("button", {}, "Change carrier")),
       make("form", {onsubmit: submit(() => this.act("priority", link.source, link.target, priority.value, packets.value))}, priority, packets, make("button", {}, "Set priority")),
+      make("form", {onsubmit: submit(() => this.act("deadline", link.source, link.target, deadline.value))}, deadline, make("button", {}, "Set deadline")),
       make("form", {onsubmit: submit(() => this.act("disconnect", link.source, link.target))}, make("button", {}, "Disconnect")),
     ];
   }

@@ -15,6 +15,7 @@ const COLUMNS = [
   {title: "latency", of: (link) => link.latency, tell: ms, wide: true},
   {title: "jitter", of: (link) => link.jitter, tell: ms, wide: true},
   {title: "drops", of: (link) => link.drops, tell: count, warn: (link) => link.dropping},
+  {title: "missed", of: (link) => link.missed, tell: count, warn: (link) => link.missed > 0, wide: true},
   {title: "thread", of: (link) => link.thread, wide: true},
   {title: "packets", of: (link) => link.packets, wide: true},
 ];
