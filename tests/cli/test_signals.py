@@ -112,3 +112,25 @@ def test_a_signal_that_comes_where_python_drops_exceptions_is_not_lost():
     done = subprocess.run([sys.executable, "-c", LOST], capture_output=True, text=True, timeout=20)
     assert done.stdout.splitlines()[-1] == f"ended by {int(signal.SIGTERM)}"
     assert "Exception ignored" not in done.stderr
+
+
+ELSEWHERE = """
+import signal, threading, time
+from yarpy.cli import signals
+signals.watch()
+thread = threading.Thread(target=time.sleep, args=(30,), daemon=True)
+thread.start()
+threading.Timer(0.2, lambda: signal.pthread_kill(thread.ident, signal.SIGTERM)).start()
+try:
+    threading.Event().wait()
+except signals.Interrupted as signal_:
+    print("ended by", signal_.number, flush=True)
+"""
+
+
+def test_a_signal_that_another_thread_gets_wakes_the_main_thread():
+    """As happens while connections end: the main thread slept on, and ^C seemed to do nothing."""
+    done = subprocess.run(
+        [sys.executable, "-c", ELSEWHERE], capture_output=True, text=True, timeout=20
+    )
+    assert done.stdout.splitlines()[-1] == f"ended by {int(signal.SIGTERM)}"

@@ -4,6 +4,8 @@ Rules: the first signal is the exception `Interrupted` in the main thread, so `w
 their ports and names are given back; what comes within two seconds is the same person pressing
 twice, and what comes later ends the process at once. A hangup that `nohup` has us ignore stays
 ignored; SIGINT is obeyed also where a shell ignores it for its background jobs, as C++ does.
+The system may give a signal to any thread, and does where one is just ending; Python runs handlers
+in the main thread alone, which sleeps on: so a thread of ours hears of each signal and wakes it.
 """
 
 from __future__ import annotations
@@ -40,6 +42,13 @@ def watch() -> None:
             continue
         signal.signal(number, handler)
     sys.unraisablehook = handler.retry
+    if hasattr(signal, "pthread_kill"):
+        reading, writing = os.pipe()
+        os.set_blocking(writing, False)
+        signal.set_wakeup_fd(writing, warn_on_full_buffer=False)
+        threading.Thread(
+            target=handler.relay, args=(reading,), name="yarpy signals", daemon=True
+        ).start()
 
 
 @contextmanager
@@ -65,8 +74,10 @@ class _Handler:
         self.holding = False
         self.waiting: int | None = None
         self._first: float | None = None
+        self._calls = 0
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
+        self._calls += 1
         now = time.monotonic()
         if self._first is None:
             self._first = now
@@ -75,6 +86,15 @@ class _Handler:
             self.waiting = number
         elif now - self._first > PATIENCE:
             os._exit(128 + number)
+
+    def relay(self, reading: int) -> None:
+        """Wake the main thread for each signal that another thread got."""
+        while True:
+            before = self._calls
+            for number in os.read(reading, 64):
+                time.sleep(AGAIN)
+                if self._calls == before and signal.getsignal(number) is self:
+                    _wake_main_thread(number)
 
     def retry(self, lost: sys.UnraisableHookArgs) -> None:
         """Raise the signal again if Python dropped it: it had come while a finaliser or a callback
