@@ -150,3 +150,15 @@ def test_files_that_are_no_text(tmp_path: Path) -> None:
         read_interface(tmp_path / "a.thrift")
     with pytest.raises(FileNotFoundError):
         read_interface(tmp_path / "none.thrift")
+
+
+def test_an_annotation_in_the_wrong_place_is_told(caplog: pytest.LogCaptureFixture) -> None:
+    text_interface(
+        'struct A {\n 1: i32 (yarp.type = "size_t") a,\n 2: i32 b (yarp.type = "size_t") }\n'
+        'service S { void f(1: double c (yarp.type = "yarp::conf::float32_t")) }',
+        "x",
+    )
+    assert [record.getMessage().split(" does")[0] for record in caplog.records] == [
+        'x:3: yarp.type behind the name "b"',
+        'x:4: yarp.type behind the name "c"',
+    ]

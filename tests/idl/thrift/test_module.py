@@ -173,8 +173,11 @@ def test_the_linter_likes_it_and_types_are_right(tmp_path: Path) -> None:
     )
     (tmp_path / "pair.py").write_text(python(pair))
     (tmp_path / "pair.pyi").write_text(stubs(pair))
+    odd = text_interface(ODD, "odd")
+    (tmp_path / "odd.py").write_text(python(odd))
+    (tmp_path / "odd.pyi").write_text(stubs(odd))
     (tmp_path / "use.py").write_text(
-        "import capt\nimport pair\nimport robot\nfrom yarpy.idl import thrift\n\n"
+        "import capt\nimport odd\nimport pair\nimport robot\nfrom yarpy.idl import thrift\n\n"
         "line: robot.Line = robot.Line(robot.Point(x=1.0, list_=[1, 2]))\n"
         "good: bool = robot.connect('/r').go(line, speeds=[1.5, 2])\n"
         "total: int = capt.connect('/c').add(1, 2)\n"
@@ -188,6 +191,8 @@ def test_the_linter_likes_it_and_types_are_right(tmp_path: Path) -> None:
         "        return v * 2\n"
         "    def r_bool(self, v: int) -> str:  # type: ignore[override]\n"
         "        return ''\n"
+        "text: str = odd.str_(1, 'a').s\n"
+        "word: odd.str_ = odd.connect('/o').get(odd.float_(1.5), odd.dict_.B, {'a': 1}, {'b'})\n"
         "pair.B.connect('/x').f([1]).sum()\n"
         "number: int = pair.B.connect('/x').g()\n"
         "async def main() -> int:\n"
@@ -223,6 +228,20 @@ def test_names_that_would_hide_what_a_module_needs() -> None:
     )
     assert made.yarpy().t is made.thrift.A
     assert made.connect._methods["f"].prototype == "thrift f()"
+
+
+ODD = (
+    "struct str { 1: i32 x, 2: string s }\nstruct float { 1: double v, 2: list<i32> all }\n"
+    "enum dict { B }\nstruct tuple { 1: str s, 2: bool flag, 3: binary data }\n"
+    "service object { str get(1: float b, 2: dict c, 3: map<string, i32> m, 4: set<string> s) }"
+)
+
+
+def test_types_with_the_names_of_pythons() -> None:
+    made = loads(ODD, "odd")
+    assert made.str_(1, "a").to_text() == "1 a"
+    assert made.tuple_(made.str_(1, "a"), True, b"x").s == made.str_(1, "a")
+    assert made.object_._methods["get"].parts[1].kind is made.dict_
 
 
 def test_types_that_come_later() -> None:

@@ -24,7 +24,7 @@ from yarpy.idl.thrift.document import (
 )
 from yarpy.idl.thrift.interface import BASE, Interface, external
 from yarpy.idl.thrift.kind import ARRAYS, BINARY, BOOL, DOUBLE, TEXT, External, Scalar, size_of
-from yarpy.idl.thrift.word import ENUM, STRUCT, attribute
+from yarpy.idl.thrift.word import ENUM, STRUCT, TYPES, attribute
 
 _PLAIN: Final = {BOOL: "bool", DOUBLE: "float", TEXT: "str", BINARY: "bytes"}
 _WORD: Final = re.compile(r"(?<![\w.])[^\W\d]\w*")
@@ -123,8 +123,8 @@ class Code:
         """A name where it is used: in quotes, if it comes later."""
         where, found = self.interface.find(name, line)
         if where is not self.interface:
-            return f"{name.rpartition('.')[0]}.{attribute(found.name)}"
-        text = attribute(found.name)
+            return f"{name.rpartition('.')[0]}.{attribute(found.name, TYPES)}"
+        text = attribute(found.name, TYPES)
         return text if name in self.known or self.stubs else f'"{text}"'
 
     # -- values -----------------------------------------------------------------------------------
@@ -266,7 +266,7 @@ class Code:
         prefix = "" if where is self.interface else value.text.partition(".")[0] + "."
         if not prefix and value.text not in self.known:
             raise self.interface.wrong(line, f'the constant "{value.text}" comes later')
-        return prefix + attribute(found.name)
+        return prefix + attribute(found.name, TYPES)
 
     def literal(self, kind: Scalar, value: Any, line: int) -> str:
         if kind is BOOL:

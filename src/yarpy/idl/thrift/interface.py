@@ -30,6 +30,9 @@ from yarpy.idl.thrift.document import (
 from yarpy.idl.thrift.kind import BINARY, BOOL, DOUBLE, TEXT, External, Scalar
 from yarpy.idl.thrift.parse import parse
 from yarpy.idl.thrift.word import PYTHON
+from yarpy.log import logger
+
+log = logger("yarpy.idl")
 
 BASE: Final = {
     "bool": BOOL, "byte": kinds.I8, "i8": kinds.I8, "i16": kinds.I16, "i32": kinds.I32,
@@ -301,6 +304,19 @@ def _check_fields(interface: Interface, fields: tuple[FieldText, ...], where: st
                 )
             numbers[each.number] = each.name
         _check_type(interface, each.type)
+        _check_place(interface, each)
+
+
+def _check_place(interface: Interface, field: FieldText) -> None:
+    """Say which annotation does nothing where it stands: it belongs to the type."""
+    given = field.annotations.get("yarp.type")
+    if given:
+        log.warning(
+            '%s:%d: yarp.type behind the name "%s" does nothing, as in C++: write it behind the '
+            'type, %s (yarp.type = "%s") %s',
+            *(interface.document.file, field.line, field.name),
+            *(field.type.name, given, field.name),
+        )
 
 
 def _check_type(interface: Interface, type_: TypeText) -> None:

@@ -26,7 +26,7 @@ from yarpy.idl.thrift.document import (
     TypedefText,
 )
 from yarpy.idl.thrift.interface import Interface, enum_base, external
-from yarpy.idl.thrift.word import ENUM, SERVICE, STRUCT, attribute
+from yarpy.idl.thrift.word import ENUM, SERVICE, STRUCT, TYPES, attribute
 
 #: constants of this name say which version of an interface it is
 VERSION: Final = "protocol_version"
@@ -82,7 +82,7 @@ class _Module(Code):
             else:
                 self.members = {attribute(method.name, SERVICE) for method in each.methods}
                 blocks.append(self.service(each))
-                services.append(attribute(each.name))
+                services.append(attribute(each.name, TYPES))
             self.members = set()
             self.known.add(each.name)
         if len(services) == 1 and "connect" not in self.interface.names:
@@ -121,12 +121,12 @@ class _Module(Code):
     # -- declarations -----------------------------------------------------------------------------
 
     def typedef(self, each: TypedefText) -> str:
-        return f"{_comment(each.doc)}{attribute(each.name)} = {self.annotation(each.type)}"
+        return f"{_comment(each.doc)}{attribute(each.name, TYPES)} = {self.annotation(each.type)}"
 
     def const(self, each: ConstText) -> str:
         self.uses.add("Final")
         value = self.value(each.type, each.value, each.line)
-        name = attribute(each.name)
+        name = attribute(each.name, TYPES)
         if self.stubs:
             return f"{name}: Final[{self.annotation(each.type)}]"
         return f"{_comment(each.doc)}{name}: Final = {value}"
@@ -134,7 +134,7 @@ class _Module(Code):
     def enum(self, each: EnumText) -> str:
         base = enum_base(self.interface, each)
         given = "" if base is kinds.I32 else f", base={self.scalar(base)}"
-        lines = [f"class {attribute(each.name)}({self.thrift}.Enum{given}):"]
+        lines = [f"class {attribute(each.name, TYPES)}({self.thrift}.Enum{given}):"]
         lines += _docstring(each.doc, 1)
         if each.doc and each.values:
             lines.append("")
@@ -147,7 +147,7 @@ class _Module(Code):
         return "\n".join(lines)
 
     def struct(self, each: StructText) -> str:
-        name = attribute(each.name)
+        name = attribute(each.name, TYPES)
         outside = external(each)
         if outside is not None:
             return f"{_comment(each.doc)}{name} = {self.external(outside)}"
@@ -174,7 +174,7 @@ class _Module(Code):
         base = f"{self.thrift}.Service"
         if each.extends:
             base = self.mention(each.extends, each.line)
-        lines = [f"class {attribute(each.name)}({base}):", *_docstring(each.doc, 1)]
+        lines = [f"class {attribute(each.name, TYPES)}({base}):", *_docstring(each.doc, 1)]
         if each.doc and each.methods:
             lines.append("")
         version = self.interface.names.get(VERSION)
@@ -192,7 +192,7 @@ class _Module(Code):
     def clients(self, each: ServiceText, base: str) -> list[str]:
         """The stubs of what `connect` and `connect_async` give: they take lists for arrays."""
         self.uses.add("Any")
-        name = attribute(each.name)
+        name = attribute(each.name, TYPES)
         word, number = self.uncovered("str"), self.uncovered("float")
         version = self.uncovered("tuple[int, int, int, int]") + " | None"
         lines = []

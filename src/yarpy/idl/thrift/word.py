@@ -15,6 +15,11 @@ from typing import Final
 
 #: no name of a type, a constant or an argument
 PYTHON: Final = frozenset((*keyword.kwlist, "self"))
+#: no name of a type or a constant: what a module of classes is written with
+TYPES: Final = PYTHON | {
+    *("str", "int", "float", "bool", "bytes", "list", "dict", "set", "tuple", "type", "object"),
+    *("property", "classmethod", "staticmethod", "NotImplementedError"),
+}
 #: what structs have beside their fields
 STRUCT: Final = PYTHON | {
     *("to_wire", "from_wire", "to_bottle", "from_bottle", "to_dict", "to_text", "Editor"),
