@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import json
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from yarpy.wire.message import CALL, Message
+import yarpy
+from yarpy.wire.message import CALL, Encoded, Message
 
 _FOLDER = Path(__file__).parent.parent / "golden"
 
 
 def recorded(name: str) -> dict[str, Any]:
-    """The recording `board`: `client`, `server`, `state`."""
+    """A recording: what a `client` asked, a `server` answered, and what was sent."""
     found: dict[str, Any] = json.loads((_FOLDER / f"yarp4_{name}.json").read_text())
     return found
 
@@ -35,3 +39,30 @@ class Replay:
 
     def close(self) -> None:
         """Nothing to do."""
+
+
+@contextmanager
+def replay_device(name: str, rpc: str, stream: str, names: Any) -> Iterator[None]:
+    """Ports that answer, and send, as the C++ device did."""
+    port = Replay(name)
+
+    def answer(message: Message) -> object:
+        return Encoded(port.ask(Encoded(message.to_bytes()), None).to_bytes())
+
+    with (
+        yarpy.RpcServer(rpc, answer, names=names),
+        yarpy.BufferedPort(stream, names=names) as source,
+    ):
+        ended = threading.Event()
+
+        def send() -> None:
+            while not ended.wait(0.01):
+                source.write(Encoded(bytes.fromhex(recorded(name)["data"])))
+
+        thread = threading.Thread(target=send)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()

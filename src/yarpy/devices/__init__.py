@@ -3,6 +3,8 @@
     control_board       motors and encoders of joints
     frame_grabber       cameras
     multi_sensor        sensors, such as inertial units
+    battery             batteries
+    laser               laser scanners
 
 Each folder has `interface` (what your class may have), `server` (serves it on ports) and `client`
 (uses a remote one); next to the folders is what they share. The names below can be imported from
@@ -15,6 +17,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 _WHERE = {
+    "BATTERY": "battery.interface",
+    "Battery": "battery.client",
+    "BatteryServer": "battery.server",
     "ControlBoard": "control_board.client",
     "ControlBoardServer": "control_board.server",
     "ControlMode": "control_board.interface",
@@ -23,14 +28,20 @@ _WHERE = {
     "FrameGrabberServer": "frame_grabber.server",
     "Gains": "control_board.interface",
     "InteractionMode": "control_board.interface",
+    "Laser": "laser.client",
+    "LaserServer": "laser.server",
     "MotorTorqueParameters": "control_board.interface",
     "MultiSensor": "multi_sensor.client",
     "MultiSensorServer": "multi_sensor.server",
+    "Scan": "laser.interface",
 }
 
 __all__ = [*_WHERE]
 
 if TYPE_CHECKING:
+    from yarpy.devices.battery.client import Battery as Battery
+    from yarpy.devices.battery.interface import BATTERY as BATTERY
+    from yarpy.devices.battery.server import BatteryServer as BatteryServer
     from yarpy.devices.control_board.client import ControlBoard as ControlBoard
     from yarpy.devices.control_board.interface import ControlMode as ControlMode
     from yarpy.devices.control_board.interface import Gains as Gains
@@ -40,6 +51,9 @@ if TYPE_CHECKING:
     from yarpy.devices.frame_grabber.client import FrameGrabber as FrameGrabber
     from yarpy.devices.frame_grabber.interface import FEATURES as FEATURES
     from yarpy.devices.frame_grabber.server import FrameGrabberServer as FrameGrabberServer
+    from yarpy.devices.laser.client import Laser as Laser
+    from yarpy.devices.laser.interface import Scan as Scan
+    from yarpy.devices.laser.server import LaserServer as LaserServer
     from yarpy.devices.multi_sensor.client import MultiSensor as MultiSensor
     from yarpy.devices.multi_sensor.server import MultiSensorServer as MultiSensorServer
 

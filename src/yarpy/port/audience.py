@@ -53,6 +53,18 @@ class Audience:
                 taken += self._port.send(Packet(make(), envelope), group)
         return taken
 
+    def is_yarp4(self, target: str) -> bool:
+        """Whether the reader `target` is of YARP 4; False if there is none. For who asks something
+        from another port of the same program, which cannot be asked while it waits."""
+        for link in self._port.links:
+            if link.route.target == target:
+                reader = self._readers.get(link)
+                if reader is None or reader.yarp4 is None:
+                    reader = _Reader(None)
+                    self._ask(link, reader)
+                return bool(reader.yarp4)
+        return False
+
     def _look(self) -> None:
         links, known = self._port.links, self._readers
         if links or known:

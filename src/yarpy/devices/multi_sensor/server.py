@@ -18,7 +18,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Mapping
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
@@ -34,7 +34,6 @@ from yarpy.devices.multi_sensor.metadata import (
 )
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
-from yarpy.errors import YarpError
 from yarpy.names.base import NameClient
 from yarpy.port.audience import Audience
 from yarpy.port.port import BufferedPort
@@ -118,11 +117,10 @@ class MultiSensorServer(Closeable):
         """The answer to a question: it depends on who asks how many kinds there are."""
         self._opened.wait()
         count = self._count
-        # C++ listens to the measures first. Its port that asks could not answer a question now.
+        # C++ listens to the measures first.
         listener = f"{message.source.removesuffix('/rpc:i')}/measures:i"
-        if count == OLDER and any(each.target == listener for each in self._measures.outputs):
-            with suppress(YarpError, OSError):  # who cannot be asked is of YARP 3
-                count = NEWER if self._measures.is_yarp4(listener) else OLDER
+        if count == OLDER and self._readers.is_yarp4(listener):
+            count = NEWER
         return self._describe(count)(message)
 
     def _describe(self, count: int) -> MultipleAnalogSensorsMetadata:

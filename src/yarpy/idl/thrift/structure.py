@@ -81,7 +81,7 @@ class _EditorOf:
         return editor_of(owner)
 
 
-@dataclass_transform(eq_default=True, field_specifiers=(new,))
+@dataclass_transform(eq_default=True)
 class Struct:
     """The base of all structs."""
 
