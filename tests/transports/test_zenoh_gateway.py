@@ -5,10 +5,11 @@ from __future__ import annotations
 import contextlib
 import socket
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import pytest
 from support.wait import wait_until
+from support.zenoh import Wire
 
 from yarpy.transports import zenoh_gateway
 from yarpy.transports.zenoh_gateway import Gateway, bring
@@ -17,13 +18,8 @@ from yarpy.transports.zenoh_pipe import ZenohPipe
 
 def pipes() -> tuple[ZenohPipe, ZenohPipe]:
     """The two ends of a pipe."""
-    ends: list[ZenohPipe] = []
-
-    def to(number: int) -> Callable[[str], tuple[Callable[[bytes], None], Callable[[], None]]]:
-        return lambda priority: (lambda data: ends[number].deliver(data), lambda: None)
-
-    ends += [ZenohPipe(("a", 0), ("b", 1), to(1)), ZenohPipe(("b", 1), ("a", 0), to(0))]
-    return ends[0], ends[1]
+    wire = Wire()
+    return wire.one, wire.other
 
 
 def read(pipe: ZenohPipe) -> bytes:

@@ -3,41 +3,16 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.wait import wait_until
+from support.zenoh import Line, Wire
 
 from yarpy.qos import tos_of
 from yarpy.transports import zenoh_pipe
 from yarpy.transports.zenoh_pipe import ZenohPipe, priority_of
-
-
-class Wire:
-    """Two ends, and what was sent between them; `lose` says which messages do not arrive."""
-
-    def __init__(self, lose: Callable[[bytes], bool] = lambda data: False) -> None:
-        self.sent: list[tuple[str, bytes]] = []
-        self.left: list[str] = []
-        self.finished: list[str] = []
-        self.lose = lose
-        self.one = ZenohPipe(("a", 0), ("b", 7), self._to("b"), lambda: self.left.append("a"))
-        self.other = ZenohPipe(("b", 7), ("a", 0), self._to("a"), lambda: self.left.append("b"))
-
-    def _to(
-        self, name: str
-    ) -> Callable[[str], tuple[Callable[[bytes], object], Callable[[], object]]]:
-        def connect(priority: str) -> tuple[Callable[[bytes], object], Callable[[], object]]:
-            def put(data: bytes) -> None:
-                self.sent.append((priority, data))
-                if not self.lose(data):
-                    (self.other if name == "b" else self.one).deliver(data)
-
-            return put, lambda: self.finished.append(priority)
-
-        return connect
 
 
 def read(pipe: ZenohPipe, count: int) -> bytes:
@@ -58,11 +33,12 @@ def test_bytes_on_the_wire() -> None:
     assert wire.sent == [
         ("DATA", b"\0\0\0\0\0abc"),
         ("DATA", b"\0\1\0\0\0d"),
-        ("DATA", b"\2\2\0\0\0"),
+        ("DATA", b"\1\2\0\0\0"),
     ]
     assert read(wire.other, 4) == b"abcd"
     assert wire.other.recv_into(memoryview(bytearray(3))) == 0 and wire.other.ended()
-    assert wire.left == ["a"] and wire.finished == ["DATA"]
+    assert wire.said == [b"\4", b"\3" + b"\3" + bytes(7) + b"\1" + bytes(3)]
+    assert wire.lines[0].closed
 
 
 @given(st.lists(st.binary(max_size=300), max_size=20), st.integers(1, 200))
@@ -116,58 +92,109 @@ def test_nobody_sends_more_than_is_wanted() -> None:
 
 def test_a_sender_that_is_asked_for_too_much_is_not_believed() -> None:
     wire = Wire()
-    wire.one.deliver(b"\1" + b"\xff" * 8)
+    wire.one.told(b"\3" + b"\xff" * 12)
     for _ in range(zenoh_pipe.WINDOW // zenoh_pipe.PIECE):
         wire.one.send([bytes(zenoh_pipe.PIECE)])
     assert wire.one.try_send([b"x"]) == [b"x"]
 
 
-def test_what_is_lost_breaks_it() -> None:
+def test_small_messages_are_counted_too() -> None:
+    wire = Wire()
+    for _ in range(zenoh_pipe.MESSAGES):
+        assert wire.one.try_send([b"x"]) == []
+    assert wire.one.try_send([b"x"]) == [b"x"]
+    read(wire.other, zenoh_pipe.MESSAGES)
+    assert wire.one.try_send([b"x"]) == []
+
+
+def test_what_is_lost_breaks_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(zenoh_pipe, "GAP", 0.02)
     wire = Wire(lambda data: data[5:] == b"lost")
     for message in (b"came", b"lost", b"late"):
         wire.one.send([message])
     assert read(wire.other, 4) == b"came"
     assert wire.other.recv_into(memoryview(bytearray(1))) == 0
-    wait_until(wire.one.ended)
+    assert wire.one.ended() and wire.said[-1] == b"\5"
     with pytest.raises(BrokenPipeError, match="gone"):
         wire.one.send([b"x"])
 
 
-@pytest.mark.parametrize(
-    "strange",
-    [
-        b"",
-        b"\x09",
-        b"\0",
-        b"\0\0\0\0\0",
-        b"\0\7\0\0\0x",
-        b"\2\7\0\0\0",
-        b"\1\0",
-        b"\3",
-        b"\xff" * 40,
-    ],
-)
+def test_what_comes_too_early_waits() -> None:
+    wire = Wire()
+    for number in (2, 0, 1, 3):
+        wire.lines[1].inbox.put(b"\0" + bytes([number, 0, 0, 0]) + b"abcd"[number : number + 1])
+    assert read(wire.other, 4) == b"abcd"
+    wire.lines[1].inbox.put(b"\1\5\0\0\0")
+    wire.lines[1].inbox.put(b"\0\4\0\0\0e")
+    assert read(wire.other, 1) == b"e"
+    assert wire.other.recv_into(memoryview(bytearray(1))) == 0
+
+
+@pytest.mark.parametrize("strange", [b"\x09", b"\0", b"\0\0\0\0", b"\3\0\0\0\0x", b"\xff" * 9])
 def test_strange_messages_break_it(strange: bytes) -> None:
     wire = Wire()
-    wire.other.deliver(strange)
-    assert wire.other.ended()
+    wire.lines[1].inbox.put(strange)
+    assert wire.other.recv_into(memoryview(bytearray(1))) == 0 and wire.other.ended()
     with pytest.raises(BrokenPipeError):
         wire.other.send([b"x"])
 
 
-def test_too_much_breaks_it() -> None:
+@pytest.mark.parametrize("strange", [b"", b"\3\0", b"\0", b"\5", b"\xff" * 40])
+def test_strange_reports_break_it(strange: bytes) -> None:
     wire = Wire()
-    for number in range(zenoh_pipe.WINDOW // zenoh_pipe.PIECE + 1):
-        head = b"\0" + number.to_bytes(4, "little")
-        wire.other.deliver(head + bytes(zenoh_pipe.PIECE))
+    wire.other.told(strange)
+    assert wire.other.ended() and wire.other.recv_into(memoryview(bytearray(1))) == 0
+
+
+def test_too_much_that_does_not_follow_breaks_it() -> None:
+    wire = Wire()
+    for number in range(1, zenoh_pipe.MESSAGES + 3):
+        wire.lines[1].inbox.put(b"\0" + number.to_bytes(4, "little") + b"x")
+    assert wire.other.recv_into(memoryview(bytearray(1))) == 0
+
+
+def test_nobody_sends_to_who_has_hung_up() -> None:
+    wire = Wire()
+    wire.other.send([b"last words"])
+    wire.other.close()
+    assert wire.one.ended()
+    with pytest.raises(BrokenPipeError):
+        wire.one.send([b"x"])
+    assert read(wire.one, 10) == b"last words"
+
+
+def test_the_other_end_of_a_broken_pipe_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(zenoh_pipe, "AGAIN", 0.01)
+    wire = Wire()
+    wire.one.break_off("for a test")
+    wire.one.close()
     assert wire.other.ended()
+    wait_until(lambda: wire.said == [b"\5", b"\5"])
+
+
+def test_a_session_that_was_closed_ends_it() -> None:
+    class Closed(Line):
+        def put(self, data: bytes) -> None:
+            raise RuntimeError("closed")
+
+        def recv(self) -> bytes:
+            raise RuntimeError("closed")
+
+        tell = put
+
+    pipe = ZenohPipe(("a", 0), ("b", 1), Closed(Wire(), "a"))
+    assert pipe.recv_into(memoryview(bytearray(1))) == 0
+    with pytest.raises(BrokenPipeError, match="closed"):
+        pipe.send([b"x"])
+    pipe.close()
 
 
 def test_waiting_has_an_end() -> None:
     wire = Wire()
     wire.one.limit_waiting(0.01, sends=False)
-    with pytest.raises(BlockingIOError):
-        wire.one.recv_into(memoryview(bytearray(1)))
+    for _ in range(3):
+        with pytest.raises(BlockingIOError):
+            wire.one.recv_into(memoryview(bytearray(1)))
     wire.one.limit_waiting(None)
     woken: list[int] = []
     reader = threading.Thread(
@@ -212,13 +239,3 @@ def test_priorities(level: str, priority: str) -> None:
     assert priority_of(tos_of(level)) == wire.sent[-1][0] == priority
     assert wire.one.tos() == tos_of(level)
     assert read(wire.other, 2) == b"ab"
-
-
-def test_a_priority_does_not_change_while_messages_are_on_their_way(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(zenoh_pipe, "CHANGE", 0.01)
-    wire = Wire(lambda data: data[:1] == b"\4")
-    with pytest.raises(TimeoutError):
-        wire.one.set_dscp(tos_of("HIGH"))
-    assert wire.one.tos() == 0

@@ -2,7 +2,8 @@
 
     @yarp/here/ZID          token: the program of that session is there
     @yarp/open/ZID/PORT     question "MY-ZID MY-PIPE YOUR-PIPE": opens a pipe with these two ends
-    @yarp/pipe/ZID/PIPE     messages to that end (`zenoh_pipe`)
+    @yarp/pipe/ZID/PIPE     messages to the reader of that end (`zenoh_pipe`)
+    @yarp/ctl/ZID/PIPE      and to this exchange, of how they are taken
 
 `ZID.zenoh` is such a program as the host of an address, and PORT the number of one of its ports:
 `a1b2.zenoh:10002`. There is one exchange for a session.
@@ -23,23 +24,84 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.contact import ZENOH, host_zid, zid_host
 from yarpy.log import logger
 from yarpy.transports.zenoh import Lease, load, share
-from yarpy.transports.zenoh_pipe import DATA, RESET, ZenohPipe, open_publisher
+from yarpy.transports.zenoh_pipe import MESSAGES, WAKE, ZenohPipe
+
+if TYPE_CHECKING:
+    import zenoh
 
 log = logger("yarpy.zenoh")
 
 MOST: Final = 1024  # pipes of a program that others opened
 LOOK: Final = 0.05  # seconds between looks whether it is still wanted
 SIGHT: Final = 5.0  # seconds for the token of a caller to come
-TOMBS: Final = 1000  # pipes that have ended, and whose senders may not know
 
 _HELLO = re.compile(rb"([0-9a-f]{1,32}) ([0-9a-f]{16}) ([0-9a-f]{16})")
 
 Welcome = Callable[[ZenohPipe], object]
+
+
+class _Line:
+    """What a pipe needs of a session; `own` and `other` are its two ends, as ends of keys.
+
+    Nothing is dropped on the way, and nothing waits for more to come. `left` is called when the
+    pipe is closed.
+    """
+
+    def __init__(self, session: zenoh.Session, own: str, other: str) -> None:
+        library = self._library = load()
+        self._session = session
+        self._own = f"@yarp/pipe/{own}"
+        self._other = other
+        self.left: Callable[[], object] = lambda: None
+        # What would be too much is dropped, which is noticed: a thread of Zenoh must not wait.
+        self._subscriber = session.declare_subscriber(
+            self._own, library.handlers.RingChannel(MESSAGES + 16)
+        )
+        self._publisher: Any = None
+        self.prefer("DATA")
+
+    def prefer(self, priority: str) -> None:
+        before = self._publisher
+        self._publisher = self._session.declare_publisher(
+            f"@yarp/pipe/{self._other}",
+            congestion_control=self._library.CongestionControl.BLOCK,
+            priority=getattr(self._library.Priority, priority),
+            express=True,
+        )
+        self.put = self._publisher.put
+        if before is not None:
+            undeclare(before)
+
+    def tell(self, data: bytes) -> None:
+        self._session.put(
+            f"@yarp/ctl/{self._other}",
+            data,
+            congestion_control=self._library.CongestionControl.BLOCK,
+            express=True,
+        )
+
+    def wake(self) -> None:
+        self._session.put(
+            self._own, bytes([WAKE]), allowed_destination=self._library.Locality.SESSION_LOCAL
+        )
+
+    def recv(self) -> bytes:
+        data: bytes = self._subscriber.recv().payload.to_bytes()
+        return data
+
+    def try_recv(self) -> bytes | None:
+        sample = self._subscriber.try_recv()
+        return None if sample is None else sample.payload.to_bytes()
+
+    def close(self) -> None:
+        undeclare(self._subscriber)
+        undeclare(self._publisher)
+        self.left()
 
 
 class _Peer:
@@ -62,7 +124,6 @@ class Exchange:
         self._doors: dict[int, Welcome] = {}
         self._pipes: dict[str, ZenohPipe] = {}
         self._peers: dict[str, _Peer] = {}  # session -> that program
-        self._tombs: OrderedDict[str, str] = OrderedDict()  # ended pipe -> key of its other end
         self._lock = threading.Lock()
         self._declared: list[Any] = []
 
@@ -71,7 +132,7 @@ class Exchange:
         callback = load().handlers.Callback
         self._declared = [
             self.session.declare_subscriber(
-                f"@yarp/pipe/{self.zid}/*", callback(self._deliver, indirect=False)
+                f"@yarp/ctl/{self.zid}/*", callback(self._told, indirect=False)
             ),
             self.session.declare_queryable(
                 f"@yarp/open/{self.zid}/*", callback(self._called, indirect=False)
@@ -191,16 +252,12 @@ class Exchange:
 
     def _make(self, zid: str, own: str, other: str, port: int, far: int) -> ZenohPipe:
         """A pipe that is known by its name `own` here, and `other` there. Raises OSError."""
-        key = f"@yarp/pipe/{zid}/{other}"
-        pipe = ZenohPipe(
-            (zid_host(self.zid), port),
-            (zid_host(zid), far),
-            open_publisher(self.session, key),
-            lambda: self._forget(zid, own, key),
-        )
         with self._lock:
             if own in self._pipes:
                 raise OSError(errno.EADDRINUSE, "there is such a pipe")
+            line = _Line(self.session, f"{self.zid}/{own}", f"{zid}/{other}")
+            line.left = lambda: self._forget(zid, own)
+            pipe = ZenohPipe((zid_host(self.zid), port), (zid_host(zid), far), line)
             self._pipes[own] = pipe
             peer = self._peers.setdefault(zid, _Peer())
             peer.pipes.add(own)
@@ -217,12 +274,9 @@ class Exchange:
                 undeclare(peer.watcher)
         return pipe
 
-    def _forget(self, zid: str, own: str, key: str) -> None:
+    def _forget(self, zid: str, own: str) -> None:
         with self._lock:
             self._pipes.pop(own, None)
-            self._tombs[own] = key
-            if len(self._tombs) > TOMBS:
-                self._tombs.popitem(last=False)
             peer = self._peers.get(zid, _Peer())
             peer.pipes.discard(own)
             last = not peer.pipes
@@ -232,22 +286,11 @@ class Exchange:
             undeclare(peer.watcher)
         _leave(self)
 
-    def _deliver(self, sample: Any) -> None:
-        """A message for a pipe. Runs in a thread of Zenoh."""
-        own = str(sample.key_expr).rpartition("/")[2]
-        pipe = self._pipes.get(own)
+    def _told(self, sample: Any) -> None:
+        """Something about a pipe. Runs in a thread of Zenoh."""
+        pipe = self._pipes.get(str(sample.key_expr).rpartition("/")[2])
         if pipe is not None:
-            pipe.deliver(sample.payload.to_bytes())
-            return
-        key = self._tombs.pop(own, None)
-        if key is not None and sample.payload.to_bytes()[:1] == bytes([DATA]):
-            threading.Thread(target=self._tell_end, args=(key,), daemon=True).start()
-
-    def _tell_end(self, key: str) -> None:
-        try:
-            self.session.put(key, bytes([RESET]))
-        except Exception as error:  # it is closed
-            log.debug("a sender is not told of the end of its connection: %s", error)
+            pipe.told(sample.payload.to_bytes())
 
     def _is_seen(self, zid: str, pipe: ZenohPipe, timeout: float) -> bool:
         """Whether the token of a program has come, waiting for it as long as the pipe stands."""

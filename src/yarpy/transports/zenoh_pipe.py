@@ -2,16 +2,20 @@
 
     kind (1 byte)   what follows
     DATA            number of the message (uint32 LE), bytes
-    CREDIT          how many bytes the reader has taken, of all (uint64 LE)
     END             number of the message: nothing will come any more
-    RESET           something was lost, or is not wanted: the pipe is broken
-    SYNC, SYNCED    everything before this has come; said, and answered, where a priority changes
+    WAKE            nothing: a reader looks again what has changed; it is for one's own
+    CREDIT          bytes that the reader has taken, of all (uint64 LE), and messages (uint32 LE)
+    CLOSED          nothing: the other end has said END
+    RESET           nothing: something was lost, or is not wanted: the pipe is broken
 
-Rules: Zenoh keeps the order and loses nothing as long as all the links on the way stand. What is
-missing when one breaks is seen by the numbers, and breaks the pipe: the ports make a new connection
-then, and count what was lost. A sender has at most `WINDOW` bytes on their way, so a slow reader
-holds up its own sender alone, and nobody has to keep more. The reading threads wait here, never one
-of Zenoh. Errors are OSError, as everywhere in this room.
+The first three come to the reader, who waits in Zenoh itself, so that a message wakes one thread
+and not two; the others to the exchange, in a thread of Zenoh.
+
+Rules: Zenoh keeps the order and loses nothing as long as all the links on the way stand and the
+priority is the same. What comes too early waits for what is missing, for `GAP` seconds: then it was
+lost with a link, and the pipe is broken; the ports make a new connection, and count. A sender has
+at most `WINDOW` bytes and `MESSAGES` messages on their way, so that a slow reader holds up its own
+sender alone, and nobody has to keep more. Errors are OSError, as everywhere in this room.
 """
 
 from __future__ import annotations
@@ -19,27 +23,52 @@ from __future__ import annotations
 import struct
 import threading
 import time
-from collections.abc import Callable, Sequence
-from queue import Empty, SimpleQueue
-from typing import Any, Final
+from collections.abc import Sequence
+from typing import Final, Protocol
 
+from yarpy.transports.alarm import CLOCK
 from yarpy.transports.base import Address
 from yarpy.wire.stream import Buffer
 
-DATA, CREDIT, END, RESET, SYNC, SYNCED = range(6)
+DATA, END, WAKE, CREDIT, CLOSED, RESET = range(6)
 WINDOW: Final = 1 << 23  # bytes on their way to a reader
+MESSAGES: Final = 1024
 PIECE: Final = 1 << 21  # bytes of one message of Zenoh
-TOLD: Final = WINDOW // 4  # bytes that a reader takes before it says so,
-SAY: Final = 0.1  # or the seconds after which it does
-CHANGE: Final = 5.0  # seconds for what is on its way to arrive before the priority changes
+SAY: Final = 0.1  # seconds after which a reader says what it has taken, or a quarter of the above
+AGAIN: Final = 5.0  # seconds after which the other end is told once more of the end
+GAP: Final = 2.0  # seconds in which messages may overtake each other
 
 _HEAD = struct.Struct("<BI")
-_COUNT = struct.Struct("<BQ")
-_END: Final = memoryview(b"")
+_COUNT = struct.Struct("<BQI")
+_ALL: Final = 1 << 32
 
-Put = Callable[[bytes], object]
 # DSCP numbers below which a priority of Zenoh is the right one: YARP's LOW, NORM (0), HIGH, CRIT.
 _PRIORITIES: Final = ((8, "DATA"), (16, "DATA_LOW"), (24, "DATA_HIGH"), (32, "INTERACTIVE_LOW"))
+
+
+class Line(Protocol):
+    """What a pipe needs of Zenoh. `put`, `tell` and the like raise whatever Zenoh raises."""
+
+    def put(self, data: bytes) -> object:
+        """Send to the other end's reader."""
+
+    def tell(self, data: bytes) -> object:
+        """Send to the other end's exchange."""
+
+    def wake(self) -> object:
+        """Send WAKE to our own reader. Called in any thread."""
+
+    def recv(self) -> bytes:
+        """What comes next, waiting for it."""
+
+    def try_recv(self) -> bytes | None:
+        """What has come, or None."""
+
+    def prefer(self, priority: str) -> object:
+        """Send with that priority of Zenoh from now on."""
+
+    def close(self) -> object:
+        """The pipe is closed."""
 
 
 def priority_of(tos: int) -> str:
@@ -56,48 +85,36 @@ def priority_of(tos: int) -> str:
 
 
 class ZenohPipe:
-    """One end of a pipe. `eager`: it is no use to poll, since what comes is brought by another
-    thread. `connect` says how to send to the other one: it is given a priority, and
-    returns what sends bytes and what ends that. `left` is called once, when it is closed."""
+    """One end of a pipe. `eager`: it is no use to poll, Python's lock is in the way."""
 
     eager: Final = False
 
-    def __init__(
-        self,
-        local: Address,
-        remote: Address,
-        connect: Callable[[str], tuple[Put, Callable[[], object]]],
-        left: Callable[[], object] = lambda: None,
-    ) -> None:
+    def __init__(self, local: Address, remote: Address, line: Line) -> None:
         self.local = local
         self.remote = remote
         self.port = 0
-        self._connect = connect
-        self._left = left
-        self._put: Put
-        self._finish: Callable[[], object]
-        self._put, self._finish = connect(priority_of(0))
+        self._line = line
         self._tos = 0
-        # What has come.
-        self._inbox: SimpleQueue[memoryview] = SimpleQueue()
+        # What comes. Only the thread that reads changes it.
         self._chunk = memoryview(b"")
         self._over = False  # the reading side has seen the end
         self._next = 0  # number of the message that comes next
-        self._came = 0  # bytes
-        self._taken = 0
-        self._said = 0  # of those taken, how many the sender knows of
+        self._early: dict[int, bytes] = {}  # what has overtaken that
+        self._gap = 0.0  # until when it may come
+        self._taken = 0  # bytes
+        self._said = self._said_number = 0  # of those taken, how many the sender knows of
         self._due = 0.0  # when it is told again
+        self._alarm = 0.0  # when we are woken, 0: we are not
         # What goes.
         self._number = 0
         self._sent = 0  # bytes
-        self._allowed = WINDOW
-        self._confirmed = 0  # bytes that the other end has taken
+        self._confirmed = self._confirmed_number = 0  # what the other end has taken
         self._changed = threading.Condition()  # of credit, and of the pipe's end
         self._sending = threading.Lock()  # messages leave in the order of their numbers
-        self._synced = threading.Event()
         self._patience: float | None = None  # of receives
         self._send_patience: float | None = None
         self._ended = False  # the other end will say no more
+        self._deaf = False  # nor listen
         self._broken = ""  # why nothing goes any more
         self._interrupted = False
         self._closed = False
@@ -107,40 +124,24 @@ class ZenohPipe:
         """Whether nothing goes any more."""
         return bool(self._broken) or self._interrupted or self._closed
 
-    # -- what comes from Zenoh, in its threads ----------------------------------------------------
+    # -- what the exchange brings, in threads of Zenoh --------------------------------------------
 
-    def deliver(self, data: bytes) -> None:
-        """A message for this end."""
+    def told(self, data: bytes) -> None:
+        """What the other end's exchange says."""
         kind = data[0] if data else RESET
-        if kind == DATA and len(data) > _HEAD.size:
-            self._take(data)
-        elif kind == CREDIT and len(data) == _COUNT.size:
+        if kind == CREDIT and len(data) == _COUNT.size:
+            _, taken, number = _COUNT.unpack(data)
             with self._changed:
-                taken = min(_COUNT.unpack(data)[1], self._sent)
-                self._confirmed = max(self._confirmed, taken)
-                self._allowed = self._confirmed + WINDOW
+                self._confirmed = max(self._confirmed, min(taken, self._sent))
+                if (self._number - number) % _ALL < MESSAGES:
+                    self._confirmed_number = number
                 self._changed.notify_all()
-        elif kind == SYNC:
-            # Not here: a thread of Zenoh may not wait until it can send.
-            threading.Thread(target=self._say, args=(bytes([SYNCED]),), daemon=True).start()
-        elif kind == SYNCED:
-            self._synced.set()
-        elif kind == END and len(data) == _HEAD.size and _HEAD.unpack(data)[1] == self._next:
-            self._ended = True
-            self._inbox.put(_END)
+        elif kind == CLOSED:  # what it has sent before may come later
+            with self._changed:
+                self._ended = self._deaf = True
+                self._changed.notify_all()
         else:
             self.break_off("the other end of the connection is gone")
-
-    def _take(self, data: bytes) -> None:
-        number = _HEAD.unpack_from(data)[1]
-        size = len(data) - _HEAD.size
-        if number != self._next or self._came + size - self._taken > WINDOW:
-            self.break_off("something was lost on the way")
-            self._reset()
-            return
-        self._next = (number + 1) & 0xFFFFFFFF
-        self._came += size
-        self._inbox.put(memoryview(data)[_HEAD.size :])
 
     def break_off(self, reason: str) -> None:
         """Nothing will come or go any more; what has come can still be read."""
@@ -148,37 +149,90 @@ class ZenohPipe:
             self._broken = self._broken or reason
             self._ended = True
             self._changed.notify_all()
-        self._synced.set()
-        self._inbox.put(_END)
+        self._wake()
 
-    def _reset(self) -> None:
-        threading.Thread(target=self._say, args=(bytes([RESET]),), daemon=True).start()
-
-    def _say(self, data: bytes) -> None:
+    def _wake(self) -> None:
         try:
-            self._put(data)
-        except Exception:  # the session is closed, and the other end sees that, too
-            self.break_off("the session with Zenoh is closed")
+            self._line.wake()
+        except Exception:
+            pass  # the session is closed, which wakes everybody
 
-    # -- a transport ------------------------------------------------------------------------------
+    # -- receiving --------------------------------------------------------------------------------
 
-    def ready(self, look: Callable[[], object] | None = None) -> None:
+    def ready(self, look: object = None) -> None:
         """It is, once it was opened."""
 
     def _wait(self, wait: bool, patience: float | None) -> bool:
         """Have bytes at hand; False at the end. Raises BlockingIOError."""
-        if self._chunk:
-            return True
-        if self._over:
-            return False
+        deadline = None
+        while not self._chunk and not self._over:
+            data = self._early.pop(self._next, None) or self._come()
+            if data is None:
+                if self._silent:
+                    self._over = True
+                    break
+                if not wait:
+                    raise BlockingIOError("nothing has come")
+                if patience is not None:
+                    now = time.monotonic()
+                    deadline = now + patience if deadline is None else deadline
+                    if now >= deadline:
+                        raise BlockingIOError("nothing has come")
+                self._set_alarm(deadline)
+                data = self._come(wait=True)
+            self._accept(data)
+        return not self._over
+
+    def _come(self, wait: bool = False) -> bytes | None:
         try:
-            self._chunk = self._inbox.get(wait, patience)
-        except Empty:
-            raise BlockingIOError("nothing has come") from None
-        if self._chunk:
-            return True
+            return self._line.recv() if wait else self._line.try_recv()
+        except KeyboardInterrupt:
+            raise
+        except Exception:
+            with self._changed:
+                self._broken = self._broken or "the session with Zenoh is closed"
+                self._changed.notify_all()
+            return None
+
+    def _set_alarm(self, deadline: float | None) -> None:
+        """Be woken at that time, and when something is missing for too long."""
+        if self._early:
+            deadline = self._gap if deadline is None else min(deadline, self._gap)
+        if deadline is not None and not 0 < self._alarm <= deadline:
+            self._alarm = deadline
+            CLOCK.set(deadline, self._ring)
+
+    def _ring(self) -> None:
+        self._alarm = 0.0
+        self._wake()
+
+    def _accept(self, data: bytes | None) -> None:
+        if self._early and self._next not in self._early and time.monotonic() > self._gap:
+            self._lose("something was lost on the way")
+            return
+        if not data or data[0] == WAKE:
+            return
+        kind, number = _HEAD.unpack_from(data) if len(data) >= _HEAD.size else (RESET, 0)
+        if kind not in (DATA, END):
+            self._lose("what comes is no message")
+        elif number != self._next:
+            if not self._early:
+                self._gap = time.monotonic() + GAP
+            self._early[number] = data
+            if len(self._early) > MESSAGES:
+                self._lose("too much was lost on the way")
+        elif kind == END:
+            self._over = self._ended = True
+        else:
+            self._next = (number + 1) % _ALL
+            self._gap = time.monotonic() + GAP if self._early else 0.0
+            self._chunk = memoryview(data)[_HEAD.size :]
+
+    def _lose(self, reason: str) -> None:
         self._over = True
-        return False
+        self._early.clear()
+        self.break_off(reason)
+        self._tell(bytes([RESET]))
 
     def recv_into(self, view: memoryview) -> int:
         return self._copy(view) if self._wait(True, self._patience) else 0
@@ -194,15 +248,28 @@ class ZenohPipe:
         return self._chunk[0] if self._wait(True, self._patience) else -1
 
     def _copy(self, view: memoryview) -> int:
-        count = min(len(view), len(self._chunk))
-        view[:count] = self._chunk[:count]
-        self._chunk = self._chunk[count:]
+        chunk = self._chunk
+        count = min(len(view), len(chunk))
+        view[:count] = chunk[:count]
+        self._chunk = chunk[count:]
         self._taken += count
         now = time.monotonic()
-        if (self._taken - self._said >= TOLD or now > self._due) and not self._broken:
-            self._said, self._due = self._taken, now + SAY
-            self._say(_COUNT.pack(CREDIT, self._taken))
+        if (
+            now > self._due
+            or self._taken - self._said >= WINDOW // 4
+            or (self._next - self._said_number) % _ALL >= MESSAGES // 4
+        ) and not self._broken:
+            self._said, self._said_number, self._due = self._taken, self._next, now + SAY
+            self._tell(_COUNT.pack(CREDIT, self._taken, self._next))
         return count
+
+    def _tell(self, data: bytes) -> None:
+        try:
+            self._line.tell(data)
+        except Exception:  # the other end sees that, too
+            self._broken = self._broken or "the session with Zenoh is closed"
+
+    # -- sending ----------------------------------------------------------------------------------
 
     def send(self, buffers: Sequence[Buffer]) -> None:
         limit = self._send_patience
@@ -214,16 +281,22 @@ class ZenohPipe:
             self._wait_for_room(deadline)
             left = self.try_send(left)
 
+    def _room(self) -> int:
+        """How many bytes may go now."""
+        if (self._number - self._confirmed_number) % _ALL >= MESSAGES:
+            return 0
+        return max(0, self._confirmed + WINDOW - self._sent)
+
     def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
         left = [buffer for buffer in buffers if len(buffer)]
         with self._sending:
             while left:
-                room = min(self._allowed - self._sent, PIECE)
-                if self._silent:
+                if self._silent or self._deaf:
                     raise BrokenPipeError(self._broken or "the connection is closed")
+                room = min(self._room(), PIECE)
                 if not room:
                     return left
-                pieces: list[Buffer] = []
+                pieces: list[Buffer] = [b""]
                 while left and room:
                     piece = left[0]
                     if len(piece) > room:
@@ -233,22 +306,32 @@ class ZenohPipe:
                         left.pop(0)
                     pieces.append(piece)
                     room -= len(piece)
-                data = b"".join((_HEAD.pack(DATA, self._number), *pieces))
-                self._number = (self._number + 1) & 0xFFFFFFFF
+                pieces[0] = _HEAD.pack(DATA, self._number)
+                data = b"".join(pieces)
+                self._number = (self._number + 1) % _ALL
                 self._sent += len(data) - _HEAD.size
-                self._say(data)
+                self._put(data)
         return left
+
+    def _put(self, data: bytes) -> None:
+        try:
+            self._line.put(data)
+        except Exception as error:
+            self.break_off("the session with Zenoh is closed")
+            raise BrokenPipeError(self._broken) from error
 
     def _wait_for_room(self, deadline: float | None) -> None:
         with self._changed:
-            while self._allowed == self._sent and not self._silent:
+            while not (self._room() or self._silent or self._deaf):
                 left = None if deadline is None else deadline - time.monotonic()
                 if (left is not None and left <= 0) or not self._changed.wait(left):
                     return
 
     def wait_writable(self, seconds: float) -> bool:
         self._wait_for_room(time.monotonic() + seconds)
-        return self._allowed != self._sent or self._silent
+        return bool(self._room()) or self._silent or self._deaf
+
+    # -- the rest of a transport ------------------------------------------------------------------
 
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         self._patience = seconds
@@ -256,20 +339,10 @@ class ZenohPipe:
             self._send_patience = seconds
 
     def set_dscp(self, tos: int) -> None:
-        """Send with another priority from now on. Raises TimeoutError if what is on its way does
-        not arrive: what comes later may not overtake it."""
-        if priority_of(tos) == priority_of(self._tos):
-            self._tos = tos
-            return
         with self._sending:
-            self._synced.clear()
-            self._say(bytes([SYNC]))
-            if not self._synced.wait(CHANGE):
-                raise TimeoutError("the other end does not answer")
-            if not self._broken:
-                self._finish()
-                self._put, self._finish = self._connect(priority_of(tos))
-                self._tos = tos
+            if priority_of(tos) != priority_of(self._tos) and not self._silent:
+                self._line.prefer(priority_of(tos))
+            self._tos = tos
 
     def tos(self) -> int:
         return self._tos
@@ -284,7 +357,7 @@ class ZenohPipe:
         with self._changed:
             self._interrupted = True
             self._changed.notify_all()
-        self._inbox.put(_END)
+        self._wake()
 
     def close(self) -> None:
         with self._changed:
@@ -292,33 +365,16 @@ class ZenohPipe:
                 return
             self._closed = True
             self._changed.notify_all()
-        self._inbox.put(_END)
+        self._wake()
         with self._sending:
-            if not self._broken:
-                self._say(_HEAD.pack(END, self._number))
-            self._finish()
-        self._left()
-
-
-def open_publisher(session: Any, key: str) -> Callable[[str], tuple[Put, Callable[[], object]]]:
-    """How a pipe sends over a session: nothing is dropped, and nothing waits for more to come."""
-
-    def connect(priority: str) -> tuple[Put, Callable[[], object]]:
-        import zenoh
-
-        publisher = session.declare_publisher(
-            key,
-            congestion_control=zenoh.CongestionControl.BLOCK,
-            priority=getattr(zenoh.Priority, priority),
-            express=True,
-        )
-        return publisher.put, lambda: _forget(publisher)
-
-    return connect
-
-
-def _forget(publisher: Any) -> None:
-    try:
-        publisher.undeclare()
-    except Exception:
-        pass  # the session is closed
+            if self._broken:
+                self._tell(bytes([RESET]))
+                # Again, when a link may be back: it may not know.
+                CLOCK.set(time.monotonic() + AGAIN, lambda: self._tell(bytes([RESET])))
+            else:
+                try:
+                    self._line.put(_HEAD.pack(END, self._number))
+                except Exception:
+                    pass  # the session is closed
+                self._tell(bytes([CLOSED]))
+        self._line.close()
