@@ -88,11 +88,11 @@ def until(condition, limit: float = 60.0) -> float:
     return time.perf_counter() - begin
 
 
-def joining(options, observers) -> dict:
+def joining(options, observers, workers: list) -> dict:
     context = multiprocessing.get_context("spawn")
     ready, stop = context.Queue(), context.Event()
     before, start = traffic(), time.time() + 3.0
-    workers = [
+    workers += [
         context.Process(target=work, args=(n, options, start, ready, stop), daemon=True)
         for n in range(WORKERS)
     ]
@@ -227,12 +227,13 @@ def outage(options, observers, routers) -> dict:
 def measure(options: argparse.Namespace) -> None:
     routers = [router(number) for number in range(3)]
     observers = [ZenohNames(f"tcp/127.0.0.1:{FIRST + number}") for number in range(3)]
+    workers: list = []
     try:
-        print(json.dumps({"joining": joining(options, observers)}, indent=1), flush=True)
+        print(json.dumps({"joining": joining(options, observers, workers)}, indent=1), flush=True)
         print(json.dumps({"look-ups": lookups(options, observers)}, indent=1), flush=True)
         print(json.dumps({"outage": outage(options, observers, routers)}, indent=1), flush=True)
     finally:
-        for each in routers:
+        for each in (*routers, *workers):
             each.kill()
         os._exit(0)  # nothing here is worth a goodbye to 200 sessions
 
