@@ -134,7 +134,7 @@ def test_sessions_meet_at_a_router_and_open_no_socket(router: str, tmp_path: Pat
     with share(router) as one, share(str(file)) as other:
         assert one.zid != other.zid
         queryable = one.session.declare_queryable("a/b", lambda query: query.reply("a/b", b"yes"))
-        assert ask(other.session, "a/b") == [b"yes"]
+        wait_until(lambda: ask(other.session, "a/b") == [b"yes"])
         assert ask(other.session, "a/c") == []
         queryable.undeclare()
         assert listening() == before
