@@ -11,21 +11,19 @@ packet priorities, and with both, in turns; what is set is set from outside, as 
 """
 
 import argparse
-import contextlib
 import json
 import os
 import statistics
-import subprocess
 import sys
 import threading
 import time
 from pathlib import Path
 
-import yarpy
+from hosts import Hosts, ask, hogs, say, serve_names
 
-PORT = 10000  # of the name server
-SERVER = "10.78.1.1"
-HOSTS = {"switch": None, "pub": "10.78.1", "sub": "10.78.2"}
+import yarpy
+from yarpy.network import qos as remote
+
 LOOP = 100.0  # Hz
 PAYLOAD = "x" * 80  # with the number and the headers of a Bottle about 100 bytes
 THREAD = yarpy.Qos("SCHED_FIFO", 30)
@@ -68,19 +66,21 @@ def control() -> None:
                 due += 1 / LOOP
                 time.sleep(max(0.0, due - time.perf_counter()))
                 sent[number] = time.perf_counter()
-                out.write([number, PAYLOAD])
+                out.write([number, PAYLOAD], yarpy.Stamp(number, time.time()))
                 number += 1
             time.sleep(1.0)  # the last ones may still be on their way
-            found = [trips[n] for n in range(first, number) if n in trips]
-            print(json.dumps({"sent": count, "trips": found}), flush=True)
+            came = [n for n in range(first, number) if n in trips]
+            found = {"trips": [trips[n] for n in came], "at": [(n - first) / LOOP for n in came]}
+            print(json.dumps({"sent": count, **found}), flush=True)
 
 
 def echo() -> None:
-    """Sends back what comes."""
-    with (
-        yarpy.Port("/echo/out") as out,
-        yarpy.BufferedPort("/echo/in", callback=lambda message: out.write(message.value)),
-    ):
+    """Sends back what comes, with a stamp of its own."""
+
+    def answer(message: yarpy.Message) -> None:
+        out.write(message.value, yarpy.Stamp(message.value[0], time.time()))
+
+    with yarpy.Port("/echo/out") as out, yarpy.BufferedPort("/echo/in", callback=answer):
         print("ready", flush=True)
         sys.stdin.read()
 
@@ -110,103 +110,13 @@ def bulk(host: str) -> None:
             print(came[0], flush=True)
 
 
-def names() -> None:
-    with yarpy.NameServer(PORT, SERVER):
-        print("ready", flush=True)
-        sys.stdin.read()
-
-
 PROGRAMS = {
-    "names": names,
+    "names": serve_names,
     "control": control,
     "echo": echo,
     "bulk-pub": lambda: bulk("pub"),
     "bulk-sub": lambda: bulk("sub"),
 }
-
-# -- the hosts ------------------------------------------------------------------------------------
-
-
-class Hosts:
-    """The three namespaces, and the programs in them."""
-
-    def __init__(self, mbit: float) -> None:
-        self._stack = contextlib.ExitStack()
-        self._prefix = f"q{os.getpid() % 10000}"
-        self._mbit = mbit
-
-    def __enter__(self) -> "Hosts":
-        names = {host: f"{self._prefix}{host}" for host in HOSTS}
-        self._names = names
-        for name in names.values():
-            run("ip", "netns", "add", name)
-            self._stack.callback(run, "ip", "netns", "del", name, check=False)
-            run("ip", "-n", name, "link", "set", "lo", "up")
-        for host, network in HOSTS.items():
-            if network is None:
-                continue
-            near, far = f"{self._prefix}{host}s", f"{self._prefix}{host}h"
-            run("ip", "link", "add", near, "netns", names["switch"], "type", "veth",
-                "peer", "name", far, "netns", names[host])  # fmt: skip
-            for where, device, number in ((names["switch"], near, 1), (names[host], far, 2)):
-                run("ip", "-n", where, "addr", "add", f"{network}.{number}/24", "dev", device)
-                run("ip", "-n", where, "link", "set", device, "up")
-                self._shape(where, device)
-            run("ip", "-n", names[host], "route", "add", "default", "via", f"{network}.1")
-        self.inside("switch", "sysctl", "-q", "-w", "net.ipv4.ip_forward=1")
-        return self
-
-    def _shape(self, where: str, device: str) -> None:
-        """A slow link, with the queue that Linux has by default."""
-        tc = ("tc", "-n", where, "qdisc", "add", "dev", device)
-        rate = f"{self._mbit}mbit"
-        run(*tc, "root", "handle", "1:", "tbf", "rate", rate, "burst", "32kb", "latency", "200ms")
-        run(*tc, "parent", "1:1", "handle", "10:", "pfifo_fast")
-
-    def inside(self, host: str, *words: str) -> None:
-        run("ip", "netns", "exec", self._names[host], *words)
-
-    def start(self, host: str, program: str) -> subprocess.Popen:
-        process = subprocess.Popen(
-            ["ip", "netns", "exec", self._names[host], sys.executable, __file__, "--as", program],
-            env={**os.environ, "YARPY_SERVER": f"{SERVER}:{PORT}"},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        self._stack.callback(end, process)
-        if process.stdout.readline().strip() != "ready":
-            raise SystemExit(f"{program} did not start")
-        return process
-
-    def __exit__(self, *_: object) -> None:
-        self._stack.close()
-
-
-def run(*words: str, check: bool = True) -> None:
-    done = subprocess.run(words, capture_output=True, text=True, timeout=20)
-    if check and done.returncode:
-        raise SystemExit(f"{' '.join(words)}: {done.stderr.strip()} (this needs root and iproute2)")
-
-
-def end(process: subprocess.Popen) -> None:
-    process.terminate()
-    with contextlib.suppress(subprocess.TimeoutExpired):
-        process.wait(5)
-        return
-    process.kill()
-
-
-@contextlib.contextmanager
-def hogs(count: int):
-    """Processes that want the processor for themselves."""
-    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
-    try:
-        yield
-    finally:
-        for process in busy:
-            end(process)
-
 
 # -- the experiment -------------------------------------------------------------------------------
 
@@ -217,7 +127,7 @@ def measure(hosts: Hosts, options: argparse.Namespace) -> dict[str, dict]:
     hosts.start("sub", "echo")
     ends = [hosts.start(host, f"bulk-{host}") for host in ("pub", "sub")]
     found = {name: {"trips": [], "sent": 0, "bulk": []} for name in CONDITIONS}
-    with in_namespace(hosts):
+    with hosts.entered():
         for source, target in CONTROL:
             yarpy.connect(source, target)
         for number in range(options.rounds):
@@ -226,7 +136,7 @@ def measure(hosts: Hosts, options: argparse.Namespace) -> dict[str, dict]:
                 loaded = name != "unloaded"
                 for source, target in CONTROL:
                     qos = CONDITIONS[name]
-                    qos.grant(source, target, sender=qos, receiver=qos)
+                    remote.grant(source, target, sender=qos, receiver=qos)
                 with hogs(2 * (os.cpu_count() or 1) if loaded else 0):
                     for source, target in BULK:
                         (yarpy.connect if loaded else yarpy.disconnect)(source, target)
@@ -242,44 +152,10 @@ def measure(hosts: Hosts, options: argparse.Namespace) -> dict[str, dict]:
     return found
 
 
-@contextlib.contextmanager
-def in_namespace(hosts: Hosts):
-    """This thread on the switch, where the name server can be reached."""
-    home = os.open("/proc/self/ns/net", os.O_RDONLY)
-    there = os.open(f"/run/netns/{hosts._names['switch']}", os.O_RDONLY)
-    setns(there)
-    os.environ["YARPY_SERVER"] = f"{SERVER}:{PORT}"
-    try:
-        yield
-    finally:
-        setns(home)
-        os.close(there)
-        os.close(home)
-
-
-def setns(handle: int) -> None:
-    """`os.setns` is new in Python 3.12."""
-    import ctypes
-
-    libc = ctypes.CDLL(None, use_errno=True)
-    if libc.setns(handle, 0x40000000):
-        raise OSError(ctypes.get_errno(), "setns")
-
-
 def rotated(names, by: int) -> list[str]:
     order = [*names]
     by %= len(order)
     return order[by:] + order[:by]
-
-
-def ask(process: subprocess.Popen, what: object) -> str:
-    process.stdin.write(f"{what}\n")
-    process.stdin.flush()
-    return process.stdout.readline()
-
-
-def say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
 
 
 def summary(found: dict[str, dict]) -> dict[str, dict]:
@@ -347,7 +223,7 @@ def main() -> int:
     if options.program:
         PROGRAMS[options.program]()
         return 0
-    with Hosts(options.mbit) as hosts:
+    with Hosts(__file__, options.mbit) as hosts:
         found = measure(hosts, options)
     print("\n".join(table(summary(found))))
     if options.json:

@@ -52,6 +52,9 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
             "show or set the scheduling of a connection's thread",
             "sched set /talker /listener --des FIFO:30",
         ),
+        "autoqos": Verb(
+            "set priorities by what matters, while connections run", "autoqos rules.toml"
+        ),
         "exists": Verb("tell whether a port or a connection is alive", "exists /talker /listener"),
         "wait": Verb("wait for a port or a connection", "wait /talker --timeout 10"),
         "ping": Verb("ask a port about itself and its connections", "ping /talker"),

@@ -42,7 +42,7 @@ def grant(
     for qos, port, peer in ((sender, source, target), (receiver, target, source)):
         if qos is not None:
             _granted(port, peer, names)  # there is such a connection
-            reply = admin(port, "prop", "set", peer, *_groups(qos), names=names)
+            reply = admin(port, "prop", "set", peer, *groups(qos), names=names)
             if not (reply and plain_text(reply[0]) == "ok"):
                 reason = plain_text(reply[1]) if len(reply) > 1 else "the system refuses it"
                 raise LocalProtocolError(f'"{port}" does not set this for "{peer}": {reason}')
@@ -97,7 +97,7 @@ def _number(value: object) -> int:
     return value if isinstance(value, int) else -1
 
 
-def _groups(qos: Qos) -> list[object]:
+def groups(qos: Qos) -> list[object]:
     groups: list[object] = []
     if qos.policy is not None or qos.priority is not None:
         sched: list[object] = []

@@ -35,7 +35,7 @@ from yarpy.link.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
 from yarpy.network import qos
-from yarpy.network.connection import query
+from yarpy.network.connection import confirmed, query
 from yarpy.network.traffic import (
     MOST,
     End,
@@ -49,6 +49,7 @@ from yarpy.network.traffic import (
     side_of,
 )
 from yarpy.port import probe
+from yarpy.qos import tos_of
 from yarpy.route import Route
 from yarpy.wire.message import ADMIN, Packet
 
@@ -63,14 +64,19 @@ Told = tuple[str, str, str, End]  # side, source, target, counters
 class Line:
     """One connection to the administrative side of a port, dialled when made.
 
-    Raises LinkClosed, Timeout, RemoteProtocolError.
+    `urgent`: its packets and those of the answers come before all others, for whoever has to be
+    heard where a link is full; it is a word of its own for the port. Raises LinkClosed, Timeout,
+    RemoteProtocolError.
     """
 
-    def __init__(self, contact: Contact, timeout: float = PATIENCE) -> None:
+    def __init__(self, contact: Contact, timeout: float = PATIENCE, urgent: str = "") -> None:
         self.contact = contact
-        route = Route("admin", contact.name or f"/{contact.address}", "tcp")
+        route = Route(urgent or "admin", contact.name or f"/{contact.address}", "tcp")
         driver, carrier = greet(contact, route, key=secret(), limit=LARGEST, timeout=timeout)
         self._link = Outbound(driver, carrier)
+        if urgent:
+            driver.transport.set_dscp(tos_of("CRIT"))
+            self.ask("prop", "set", urgent, ["qos", [["tos", tos_of("CRIT")]]], timeout=timeout)
 
     def ask(self, *words: object, timeout: float = PATIENCE) -> Bottle:
         """The answer to an administrative question. Raises LinkClosed, Timeout, DecodeError."""
@@ -84,6 +90,7 @@ class Line:
 
 class Sampler:
     """Asks ports again and again. `only`: the names that matter, None for all that are registered.
+    `urgent`: as for a Line.
 
     Not for several threads at once.
     """
@@ -93,7 +100,9 @@ class Sampler:
         names: NameClient | None = None,
         only: Iterable[str] | None = None,
         patience: float = PATIENCE,
+        urgent: str = "",
     ) -> None:
+        self._urgent = urgent
         self._names = names
         self._only = None if only is None else list(dict.fromkeys(only))
         self._patience = patience
@@ -115,6 +124,20 @@ class Sampler:
         snapshot.flows = {key: snapshot.flows[key] for key in sorted(snapshot.flows)}
         self._count(snapshot)
         return snapshot
+
+    def ask(self, port: str, *words: object) -> Bottle:
+        """The answer of a port to any administrative question. Raises UnknownName, WrongPort,
+        LinkClosed, Timeout."""
+        line = self._lines.get(port)
+        if line is not None:
+            try:
+                return line.ask(*words, timeout=self._patience)
+            except LinkClosed:
+                self._lines.pop(port).close()
+        line = Line(confirmed(port, self._names, timeout=self._patience), self._patience,
+                    self._urgent)  # fmt: skip
+        self._lines[port] = line
+        return line.ask(*words, timeout=self._patience)
 
     def extend(self, names: Iterable[str]) -> None:
         """Ask these from now on as well, where not all are asked anyway."""
@@ -172,7 +195,7 @@ class Sampler:
                 return ends_of(line, state, self._patience)
             except LinkClosed:
                 line.close()
-        self._lines[state.name] = line = Line(state.contact, self._patience)
+        self._lines[state.name] = line = Line(state.contact, self._patience, self._urgent)
         reply = line.ask("prop", "get", state.name, timeout=self._patience)
         if reply and reply[0] == Vocab("fail"):  # as to any name that is not its own
             raise WrongPort(f'another port than "{state.name}" listens at {state.contact.address}')

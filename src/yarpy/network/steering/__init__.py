@@ -1,0 +1,1 @@
+"""Steering: an agent that sees how connections are doing and changes their priorities (autoqos)."""

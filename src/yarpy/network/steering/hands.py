@@ -1,0 +1,78 @@
+"""Hands: makes the changes that were decided, at the ports, by administrative messages.
+
+Rules: these are the messages of any tool, so C++ ports take them too. What a port refuses is a
+LocalProtocolError with its reason; one that says nothing a Timeout.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+from yarpy.errors import LocalProtocolError
+from yarpy.names.base import NameClient
+from yarpy.network.connection import join
+from yarpy.network.qos import groups
+from yarpy.network.steering.change import Change
+from yarpy.qos import Qos
+
+Ask = Callable[..., Bottle]  # the name of a port, then words
+
+
+class Hands:
+    """Makes changes. `ask` asks a port."""
+
+    def __init__(self, ask: Ask, names: NameClient | None = None) -> None:
+        self._ask = ask
+        self._names = names
+
+    def make(self, change: Change) -> None:
+        """Raises LocalProtocolError, LinkClosed, Timeout, UnknownName."""
+        if change.key == "carrier":
+            join(change.port, change.peer, str(change.value), names=self._names)
+        elif change.key == "limit":
+            self._limit(change)
+        else:
+            reply = self._ask(change.port, "prop", "set", change.peer, *groups(wanted(change)))
+            _check(change, reply)
+
+    def is_gone(self, change: Change) -> bool:
+        """Whether the connection that it is about no longer exists, and the setting with it."""
+        if change.port == change.peer:
+            return False
+        reply = self._ask(change.port, "prop", "get", change.peer)
+        return not reply or plain_text(reply[0]) == "fail"
+
+    def _limit(self, change: Change) -> None:
+        port, peer, mbit = change.port, change.peer, change.value
+        if port != peer or (mbit is not None and change.before is not None):
+            reply = self._ask(port, "set", "out", peer, ["mbit", float(mbit or 0.0)])
+        elif mbit is None:
+            reply = self._ask(port, "dtch", "out")
+        else:
+            reply = self._ask(port, "atch", "out", ["monitor", "adaptive"], ["mbit", float(mbit)])
+        _check(change, reply)
+
+
+def wanted(change: Change) -> Qos:
+    """What a change of a priority or deadline asks for. Raises ValueError."""
+    value: Any = change.value
+    if change.key == "packets":
+        return Qos(packets=value)
+    if change.key == "threads":
+        policy, priority = value
+        return Qos(policy, priority)
+    deadline, rate = value
+    return Qos(deadline=deadline, rate=rate)
+
+
+def _check(change: Change, reply: Bottle) -> None:
+    if reply and (reply[0] == 0 or reply[0] == Vocab("ok")):  # "set" and "prop" differ in that
+        return
+    reason = plain_text(reply[1])[:300] if len(reply) > 1 and isinstance(reply[1], str) else ""
+    raise LocalProtocolError(
+        f'"{change.port}" does not set {change.key} for "{change.peer}": {reason or "it refuses"}'
+    )

@@ -1,0 +1,86 @@
+"""The journal: what the agent has changed, on disk before it is done.
+
+Rules: whoever starts next finds what one that was killed has left, and undoes it. One agent at a
+time: the file is locked while it runs. A line is a change as JSON, with the value of the beginning
+in `before`; it is written and synced before the change is made. A damaged line (the last one of a
+crash) is passed over.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+from yarpy.config.resource import data_home
+from yarpy.errors import LocalProtocolError
+from yarpy.network.steering.change import Change
+
+NAME: Final = "autoqos.journal"
+LARGEST: Final = 1 << 24  # bytes
+
+
+def path() -> Path:
+    """Where the journal of this user is."""
+    return data_home(os.environ) / NAME
+
+
+class Journal:
+    """Open, and so locked. Raises LocalProtocolError if another agent has it."""
+
+    def __init__(self, where: Path) -> None:
+        self.where = where
+        try:
+            where.parent.mkdir(parents=True, exist_ok=True)
+            self._file = open(where, "a+b")  # noqa: SIM115
+        except OSError as error:
+            raise LocalProtocolError(f"{where} cannot be written: {error}") from error
+        try:
+            _lock(self._file.fileno())
+        except OSError as error:
+            self._file.close()
+            raise LocalProtocolError(
+                f"another autoqos is running: it has {where} (YARP_DATA_HOME says where that is)"
+            ) from error
+        self._first: dict[tuple[str, str, str], Change] = {}
+        self._file.seek(0)
+        for line in self._file.read(LARGEST).splitlines():
+            with suppress(ValueError, RecursionError):
+                change = Change.from_dict(json.loads(line))
+                self._first.setdefault(change.what, change)
+
+    def left(self) -> list[Change]:
+        """What undoes all that was changed, the last change first."""
+        return [change.undone for change in reversed(self._first.values())]
+
+    def write(self, change: Change) -> None:
+        """A change is about to be made. Only the first of each thing counts."""
+        if change.what in self._first:
+            return
+        self._first[change.what] = change
+        self._file.write(json.dumps(change.as_dict()).encode() + b"\n")
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def origin(self, change: Change) -> Change:
+        """The first change of the same thing, or this one."""
+        return self._first.get(change.what, change)
+
+    def clear(self) -> None:
+        """All has been undone."""
+        self._first.clear()
+        self._file.truncate(0)
+
+    def close(self) -> None:
+        """Let others have it."""
+        self._file.close()
+
+
+def _lock(handle: int) -> None:
+    try:
+        import fcntl
+    except ImportError:  # Windows: two agents are not found out
+        return
+    fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
