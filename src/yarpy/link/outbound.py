@@ -10,16 +10,16 @@ import threading
 import time
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout, YarpError
+from yarpy.errors import LocalProtocolError, Timeout, YarpError
 from yarpy.link.background import Background
 from yarpy.link.following import Following
 from yarpy.link.intake import Intake
+from yarpy.link.listener import Listener
 from yarpy.link.sender import Sender, interrupts, seconds
 from yarpy.link.timing import Dated, expected, time_left
 from yarpy.link.write_timeout import ALL, NOTHING, PART, STRANGERS
 from yarpy.log import logger
 from yarpy.qos import NOTHING_ASKED, Qos, Sched, schedule
-from yarpy.transports.base import SocketTransport
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.message import CALL, Message, Packet
 
@@ -29,14 +29,10 @@ if TYPE_CHECKING:
     from yarpy.link.driver import Driver
     from yarpy.monitors.chain import Chain
     from yarpy.route import Route
-    from yarpy.wire.steps import Steps
 
 log = logger("yarpy.link")
 
 UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may buffer
-LISTEN_MOST: Final = 64  # reads at a time of what a reader says
-ATTENTION: Final = 0.5  # seconds of each wait for a reader to say something
-LISTEN_PATIENCE: Final = 0.1  # seconds for an answer to what a reader says while we send
 CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
 
@@ -74,7 +70,8 @@ class Outbound:
         self.limit: float | None = None  # seconds after which a message is not sent any more
         self.late = 0  # messages that were not sent for that
         self._due = 0.0  # when the carrier's interval is over
-        self._listening: Steps[None] | None = carrier.listen(driver.stream)
+        steps = carrier.listen(driver.stream)
+        self._listener = None if steps is None else Listener(self.sender, steps)
         self._queue: Background[Any] | None = None
         self._follow: Following | None = None
 
@@ -414,8 +411,8 @@ class Outbound:
         """Whether the peer has hung up, found out without sending anything."""
         if self.sender.window.open:
             self.sender.caught_up()  # unread acknowledgements hide the end behind them
-        if self._listening is not None:
-            self._listen(self._listening)
+        if self._listener is not None:
+            self._listener.hear()
         transport = self.driver.transport
         if not self.broken and transport.ended():
             transport.interrupt()  # frees a thread that is stuck in sending
@@ -425,55 +422,8 @@ class Outbound:
 
     def attend(self) -> None:
         """Hear what the reader says as soon as it does, in this thread, until the end."""
-        transport = self.driver.transport
-        steps = self._listening
-        if steps is None or not isinstance(transport, SocketTransport):
-            return
-        self._listen(steps, ATTENTION)  # some of it may have come with the greeting
-        while not self.broken:
-            before = self.driver.bytes_in
-            if transport.wait_readable(ATTENTION):
-                self._listen(steps, ATTENTION)
-                if self.driver.bytes_in == before and not self.broken:
-                    time.sleep(LISTEN_PATIENCE)  # somebody is sending to a peer that takes nothing
-
-    def _listen(self, steps: Steps[None], timeout: float = 0.0) -> None:
-        """Let the protocol deal with what the reader said meanwhile, unless others are sending for
-        longer than that."""
-        if not self.sender.lock.acquire(timeout=timeout):
-            return  # next time
-        try:
-            if self.broken or self.sender.window.open:
-                return  # what comes then may be an acknowledgement
-            if self.sender.halfway:
-                return  # nobody is answered who does not take what was sent before
-            driver = self.driver
-            next(steps)
-            for _ in range(LISTEN_MOST):
-                if not driver.try_fill():
-                    break
-                next(steps)
-            if self.carrier.delivery.at_once:
-                self.sender.flush_at_once()
-                return
-            driver.transport.limit_waiting(LISTEN_PATIENCE)
-            driver.flush()
-            driver.transport.limit_waiting(None)
-        except (StopIteration, YarpError) as end:
-            if isinstance(end, RemoteProtocolError):
-                self.sender.reason = str(end)
-                log.warning("%s: %s is disconnected: %s", self.route.source, self.route.target, end)
-            self._say_last_words()
-            self.sender.give_up()
-        finally:
-            self.sender.lock.release()
-
-    def _say_last_words(self) -> None:
-        try:
-            self.driver.transport.limit_waiting(LISTEN_PATIENCE)
-            self.driver.flush()
-        except YarpError:
-            pass  # the peer has gone
+        if self._listener is not None:
+            self._listener.attend()
 
     def close(self, quit_: bool = True) -> None:
         """End the connection: say `q`, wait a moment for its acknowledgement, hang up."""
