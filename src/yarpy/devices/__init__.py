@@ -5,6 +5,7 @@
     multi_sensor        sensors, such as inertial units
     battery             batteries
     laser               laser scanners
+    transforms          frames, and where they are
 
 Each folder has `interface` (what your class may have), `server` (serves it on ports) and `client`
 (uses a remote one); next to the folders is what they share. The names below can be imported from
@@ -34,6 +35,8 @@ _WHERE = {
     "MultiSensor": "multi_sensor.client",
     "MultiSensorServer": "multi_sensor.server",
     "Scan": "laser.interface",
+    "TransformClient": "transforms.client",
+    "TransformServer": "transforms.server",
 }
 
 __all__ = [*_WHERE]
@@ -56,6 +59,8 @@ if TYPE_CHECKING:
     from yarpy.devices.laser.server import LaserServer as LaserServer
     from yarpy.devices.multi_sensor.client import MultiSensor as MultiSensor
     from yarpy.devices.multi_sensor.server import MultiSensorServer as MultiSensorServer
+    from yarpy.devices.transforms.client import TransformClient as TransformClient
+    from yarpy.devices.transforms.server import TransformServer as TransformServer
 
 
 def __getattr__(name: str) -> Any:
