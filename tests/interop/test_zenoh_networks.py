@@ -7,6 +7,7 @@ Needs root and iproute2.
 """
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -22,6 +23,7 @@ from support.wait import wait_until
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 
+SHOWN = re.compile(r'"frames": ?[1-9]')
 PREFIX = f"z{os.getpid() % 10000}"
 LAB, ROBOT = "10.79.1", "192.168.179"
 NAT = f"""
@@ -96,6 +98,13 @@ class Programs:
             input=input, capture_output=True, timeout=patience(30),
         )  # fmt: skip
         return done.stdout
+
+    def fetch(self, host: str, url: str) -> str:
+        """What a browser gets there."""
+        code = f"import urllib.request as u; print(u.urlopen({url!r}, timeout=10).read().decode())"
+        return subprocess.run(
+            self._inside(host, "-c", code), text=True, capture_output=True, timeout=patience(30)
+        ).stdout
 
     def python(self, host: str, code: str) -> Process:
         """A program there that says `ready`."""
@@ -172,6 +181,9 @@ def test_a_robot_that_nobody_can_dial_is_reached_and_comes_back(programs: Progra
         assert "Response: at home now" in programs.run("lab", "rpc", "/robot/rpc", input="now\n")
         with programs.start("lab", "read", "/lab/in", "/robot/cam") as reader:
             reader.wait_line(r"\[mat\]|rgb|{", timeout=patience(20))
+        with programs.start("lab", "view", "--no-browser", "--connect", "/robot/cam") as view:
+            url = view.wait_line(r"http://\S+/", timeout=patience(20))[0]
+            wait_until(lambda: SHOWN.search(programs.fetch("lab", f"{url}status")), patience(20))
         with programs.python("lab", LAB_PROGRAM) as lab:
             robot.wait_line("got 20$", timeout=patience(20))
             hub.signal(signal.SIGKILL)
