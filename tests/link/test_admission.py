@@ -38,3 +38,9 @@ def test_a_peer_is_shown_with_what_it_proved() -> None:
     assert str(peer_of("127.0.0.1", "127.0.0.1", ["operator"])) == "this computer (tls:operator)"
     assert str(Peer("10.0.0.1", token="panel")) == "10.0.0.1 (token:panel)"
     assert str(Peer()) == "somebody"
+
+
+def test_inside_zenoh_nobody_is_of_this_computer() -> None:
+    """A peer there says itself who it is, and could say that it is we."""
+    assert not same_computer("a1b2.zenoh", "a1b2.zenoh")
+    assert same_computer("10.0.0.1", "10.0.0.1") and not same_computer("", "")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from support.port import free_port
 from support.wait import wait_until
 
 import yarpy
-from yarpy.errors import NoNameServer
+from yarpy.errors import NoNameServer, YarpError
 from yarpy.names import direct
 from yarpy.names.zenoh import ZenohNames
 from yarpy.transports.zenoh import close, open_router
@@ -98,3 +99,33 @@ def test_without_a_router_the_server_knows_its_own(where: str) -> None:
         close(router)
         wait_until(lambda: server.client.query("/nobody") is None)
         assert server.client.query("/x")
+
+
+def test_rules_hold_for_those_who_are_brought(
+    where: str, names: ZenohNames, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The port sees a connection of this computer, which may do what strangers may not."""
+    monkeypatch.setattr(direct.Ways, "to", lambda self, entry: entry.through)
+    rules = tmp_path / "access.toml"
+    rules.write_text('[[allow]]\nwho = ["loopback"]\nmay = ["all"]\n')
+    monkeypatch.setenv("YARPY_ACCESS", str(rules))
+    with (
+        yarpy.NameServer(zenoh=where) as server,
+        yarpy.BufferedPort("/classical", names=server.client) as classical,
+        yarpy.Port("/stranger", names=names) as stranger,
+    ):
+        wait_until(lambda: names.query("/classical"))
+        with pytest.raises(YarpError):
+            stranger.connect("/classical")
+    rules = tmp_path / "open.toml"  # programs read such a file once
+    rules.write_text('[[allow]]\nwho = ["anyone"]\nmay = ["all"]\n')
+    monkeypatch.setenv("YARPY_ACCESS", str(rules))
+    with (
+        yarpy.NameServer(zenoh=where) as server,
+        yarpy.BufferedPort("/classical", names=server.client) as classical,
+        yarpy.Port("/stranger", names=names) as stranger,
+    ):
+        wait_until(lambda: names.query("/classical"))
+        stranger.connect("/classical")
+        stranger.write("let in")
+        assert classical.read(timeout=10).value == "let in"

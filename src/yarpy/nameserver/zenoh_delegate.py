@@ -3,7 +3,8 @@
 Rules: so programs of C++ YARP take part, which know a name server alone. Who asks here for a name
 that nobody registered here is told where its port is; a port that cannot be dialled from this
 computer is told as a number of this one, which leads there (`transports/zenoh_gateway.py`). The
-other way round, those who cannot dial a port that was registered here reach it through this server.
+other way round, those who cannot dial a port that was registered here reach it through this server,
+if the rules of this computer (access.toml) let everybody do everything there.
 """
 
 from __future__ import annotations
@@ -14,14 +15,17 @@ from collections.abc import Callable
 from queue import SimpleQueue
 from typing import Final
 
+from yarpy.config import access_file
 from yarpy.contact import Contact, host_zid
 from yarpy.data.bottle import Bottle
 from yarpy.errors import NoNameServer, YarpError
+from yarpy.link.admission import peer_of
 from yarpy.log import logger
 from yarpy.names.address import is_local
 from yarpy.names.zenoh import ZenohNames
 from yarpy.nameserver.command import NameService
 from yarpy.transports.zenoh_gateway import Gateway, bring
+from yarpy.transports.zenoh_pipe import ZenohPipe
 
 log = logger("yarpy.name_server")
 
@@ -99,5 +103,18 @@ class ZenohDelegate:
             self.names.unregister(name)
             return
         self._told[name] = contact
-        host, port = contact.host, contact.port
-        self.names.adopt(contact, lambda pipe: bring(pipe, host, port), is_local(host))
+        self.names.adopt(contact, lambda pipe: self._bring(pipe, contact), is_local(contact.host))
+
+    def _bring(self, pipe: ZenohPipe, contact: Contact) -> None:
+        """Pass on somebody's connection. The port sees this computer at the other end, so its rules
+        are applied here: who may not do everything there stays outside."""
+        admission = access_file.gate(contact.name).admit(peer_of(pipe.remote[0], ""))
+        if not admission.everything:
+            log.warning(
+                "%s: %s is not let in through Zenoh, as no rule allows it everything there",
+                contact.name,
+                admission.peer,
+            )
+            pipe.close()
+            return
+        bring(pipe, contact.host, contact.port)
