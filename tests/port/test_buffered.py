@@ -107,6 +107,22 @@ def test_writer_does_not_wait_for_a_slow_reader(names):
         assert reader.read(timeout=5).value == [0]
 
 
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp"])
+def test_thread_of_a_connection_that_broke_ends(names, carrier):
+    """It used to wait for messages for ever, one for each reader that was killed."""
+    with (
+        yarpy.BufferedPort("/writer", names=names) as writer,
+        yarpy.BufferedPort("/reader", names=names) as reader,
+    ):
+        writer.connect("/reader", carrier)
+        writer.write([1])
+        assert reader.read(timeout=patience(5.0)).value == [1]
+        thread = writer._hub.outputs[0].thread
+        assert thread.is_alive()
+        reader._hub.inputs[0].driver.transport.interrupt()  # as when its process is killed
+        wait_until(lambda: writer.write([2]) + 1 and not thread.is_alive())
+
+
 def test_strict_writer_waits_and_loses_nothing(names):
     with (
         yarpy.BufferedPort("/writer", strict=True, names=names) as writer,

@@ -425,6 +425,11 @@ class Outbound:
         if self._listener is not None:
             self._listener.attend()
 
+    def retire(self) -> None:
+        """Nobody writes to it any more: if it has failed, its thread ends."""
+        if self.broken and self._queue is not None:
+            self._queue.stop()
+
     def close(self, quit_: bool = True) -> None:
         """End the connection: say `q`, wait a moment for its acknowledgement, hang up."""
         if not self.wait_sent(CLOSE_PATIENCE):

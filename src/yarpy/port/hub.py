@@ -390,6 +390,7 @@ class Hub:
         if known:
             self.past["outputs"].add(link.counter)
             link.intake.leave()
+            link.retire()
             if link.chain is not None:
                 link.chain.close()
             self.callbacks.report(link, created=False, reason=reason)
