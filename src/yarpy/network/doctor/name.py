@@ -108,10 +108,11 @@ def _duplicates(case: Case) -> Iterator[Finding]:
                 name,
                 f'two ports call themselves "{name}": one at {case.ports[name].contact.address}, '
                 f"which the name server knows, and one at 127.0.0.1:{number}{_owner(number)}, "
-                "which had the name before; whoever is connected to the older one does not hear "
-                "the newer",
+                "which it does not know (any more); whoever is connected to the one does not hear "
+                "the other",
                 "end one of the programs, or give one a name of its own: `--name`, or "
                 "YARP_PORT_PREFIX",
+                "warning",
             )
 
 
