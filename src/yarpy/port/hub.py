@@ -35,6 +35,7 @@ from yarpy.names.client import YarpNameClient
 from yarpy.port import farewell, guard
 from yarpy.port.callbacks import Callbacks
 from yarpy.port.dialling import Dialling
+from yarpy.port.kept import Kept
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.monitoring import Monitoring
 from yarpy.port.part import Seat
@@ -132,6 +133,7 @@ class Hub:
         self.lock = threading.Lock()  # replaces the tuples of links
         self._crowded = Episode(self.name, "others may read from here again")
         self.dialling = Dialling()
+        self.kept = Kept()
         self.seat: Seat | None = None  # in the graph of a node
         self.monitoring = Monitoring(self)
         silence = "" if admits_outputs else SILENT
@@ -242,6 +244,7 @@ class Hub:
                 farewell.ask_to_leave(self.registration, link.route.source)
             self._turn_away(link)
             raise PortClosed(f'"{self.name}" is closed')
+        self.kept.give(link)
         for old in older:
             old.close()
             stuck = old.receiver.question is not None
@@ -346,6 +349,7 @@ class Hub:
             return
         self.callbacks.report(link, created=False, reason=reason)
         if not (quit_ or link.closing or self.closing):
+            self.kept.keep(link)
             self.crew.reconnect.input_lost(self, link.route)
 
     def deadline_missed(self, link: Inbound, lateness: float, silent: bool) -> None:
@@ -374,6 +378,7 @@ class Hub:
             link.intake.budget = self.budget
             self.outputs = (*self.outputs, link)
             self._elect()
+        self.kept.give(link)
         self.callbacks.report(link, created=True)
         if link.carrier.connectionless:
             self.crew.reconnect.wake()
@@ -397,6 +402,7 @@ class Hub:
             if self.seat is not None:
                 self.seat.lost()
             if lost and link.dialled and not self.closing:
+                self.kept.keep(link)
                 self.crew.reconnect.output_lost(self, link.route)
         return known
 

@@ -427,6 +427,8 @@ def nothing_arrives(world: World) -> Iterator[tuple[str, ...]]:
     [link] = [one for one in listener._hub.inputs if one.carrier.name == "mcast"]
     transport = link.driver.transport
     group = socket.inet_aton(transport._group)
+    with contextlib.suppress(OSError):  # IP_MULTICAST_ALL: not what others here have joined, either
+        transport.sock.setsockopt(socket.IPPROTO_IP, 49, 0)
     for address in ("0.0.0.0", talker.contact.host):
         with contextlib.suppress(OSError):
             transport.sock.setsockopt(

@@ -83,7 +83,7 @@ def test_page_has_no_row_of_another_fault() -> None:
 
 def test_where_all_is_well_nothing_is_found(world: World) -> None:
     own = f"/well{os.getpid()}"  # others may have ports of usual names on this computer
-    talker = world.open(f"{own}/talker")
+    talker = world.open(f"{own}/talker", yarpy.Port)
     listener = world.open(f"{own}/listener", callback=lambda message: None)
     talker.connect(listener.name)
     world.again(lambda: talker.write([1.5], yarpy.Stamp(1, time.time())))
