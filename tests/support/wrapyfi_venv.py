@@ -19,13 +19,14 @@ if __name__ == "__main__":
 from support.cpp_venv import MissingPeer, environment_directory
 
 # Without OpenCV Wrapyfi falls back to nothing and says little about it.
-PACKAGES = ("wrapyfi==0.5.0", "opencv-python-headless>=4.10")
+PACKAGES = ("wrapyfi==0.5.0", "opencv-python-headless>=4.10", "pyzmq>=26")
 
 
 def directory() -> Path:
     """Where the environment is or would be made."""
     version = f"{sys.version_info[0]}.{sys.version_info[1]}"
-    return environment_directory().parent / f"{PACKAGES[0].replace('==', '-')}-python{version}"
+    name = f"{PACKAGES[0].replace('==', '-')}-python{version}-{len(PACKAGES)}"
+    return environment_directory().parent / name
 
 
 def prepare() -> Path:

@@ -178,7 +178,7 @@ _WRONG: Final = (ValueError, TypeError, LookupError, OverflowError, RecursionErr
 def from_text(text: str | bytes) -> Any:
     """The value of a JSON text with tags. Raises DecodeError."""
     try:
-        return json.loads(text, object_hook=_untag)
+        return json.loads(text, object_hook=untag)
     except DecodeError:
         raise
     except _WRONG as error:
@@ -200,11 +200,13 @@ def _harvest(tree: Any, buffers: Sequence[NDArray[Any]]) -> Any:
         return [_harvest(item, buffers) for item in tree]
     if type(tree) is dict:
         found = {key: _harvest(item, buffers) for key, item in tree.items()}
-        return _untag(found, buffers) if TAG in found else found
+        return untag(found, buffers) if TAG in found else found
     return tree
 
 
-def _untag(found: dict[str, Any], buffers: Sequence[NDArray[Any]] = ()) -> Any:
+def untag(found: dict[str, Any], buffers: Sequence[NDArray[Any]] = ()) -> Any:
+    """A dict as the value that its tag stands for; itself if it has none. Raises DecodeError, and
+    what Python raises for a tag that does not fit."""
     content = found.get(TAG)
     if type(content) is not list or len(found) != 1:
         return found

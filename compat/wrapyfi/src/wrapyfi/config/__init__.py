@@ -1,0 +1,1 @@
+"""Which class has which modes, from files."""

@@ -1,0 +1,116 @@
+"""Plug-ins that encode types of the user's, and singletons.
+
+    @PluginRegistrar.register(types=MyType.__mro__[:-1])
+    class MyPlugin(Plugin):
+        def encode(self, obj): return True, {"__wrapyfi__": ("MyPlugin", text)}
+        def decode(self, obj_type, obj_full): return True, MyType(obj_full[1])
+
+Rules: plug-ins are those that are registered, in whatever module, and those in the folders of
+WRAPYFI_PLUGIN_PATHS; nothing is executed from the current directory. Star imports bring `os`,
+`sys`, `Path`, `glob` and `threading` along, since plug-ins rely on it.
+"""
+
+from __future__ import annotations
+
+import glob
+import importlib
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, ClassVar
+
+__all__ = [
+    "Path",
+    "Plugin",
+    "PluginRegistrar",
+    "SingletonOptimized",
+    "dynamic_module_import",
+    "glob",
+    "os",
+    "scan_external",
+    "sys",
+    "threading",
+]
+
+
+class SingletonOptimized(type):
+    """A metaclass: the first object of a class is the only one."""
+
+    _instances: ClassVar[dict[type, Any]] = {}
+    _lock = threading.Lock()
+
+    def __call__(cls, *args: Any, **kwargs: Any) -> Any:
+        if cls not in cls._instances:
+            with cls._lock:
+                if cls not in cls._instances:
+                    cls._instances[cls] = super().__call__(*args, **kwargs)
+        return cls._instances[cls]
+
+
+class Plugin:
+    """Encodes and decodes a type that JSON does not know."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        pass
+
+    def encode(self, obj: Any, *args: Any, **kwargs: Any) -> tuple[bool, dict[str, Any]]:
+        raise NotImplementedError
+
+    def decode(self, obj_type: Any, obj_full: Any, *args: Any, **kwargs: Any) -> tuple[bool, Any]:
+        raise NotImplementedError
+
+
+class PluginRegistrar:
+    """All plug-ins: by type for encoding, by class name for decoding."""
+
+    encoder_registry: ClassVar[dict[Any, type[Plugin]]] = {}
+    decoder_registry: ClassVar[dict[str, type[Plugin]]] = {}
+
+    @staticmethod
+    def register(
+        cls: type[Plugin] | None = None, types: Iterable[Any] | None = None
+    ) -> Callable[[type[Plugin]], type[Plugin]] | type[Plugin]:
+        """A class decorator."""
+
+        def add(plugin: type[Plugin]) -> type[Plugin]:
+            for kind in types or ():
+                PluginRegistrar.encoder_registry[kind] = plugin
+            PluginRegistrar.decoder_registry[plugin.__name__] = plugin
+            return plugin
+
+        return add if cls is None else add(cls)
+
+    @staticmethod
+    def scan() -> None:
+        """Load the plug-ins of WRAPYFI_PLUGIN_PATHS."""
+        scan_external("WRAPYFI_PLUGIN_PATHS", "plugins")
+
+    @classmethod
+    def encoder(cls, value: Any) -> type[Plugin] | None:
+        """The plug-in for a value: of its class, or the nearest one above it."""
+        for kind in type(value).__mro__[:-1]:
+            found = cls.encoder_registry.get(kind)
+            if found is not None:
+                return found
+        return None
+
+
+def dynamic_module_import(modules: Iterable[str], globals_: dict[str, Any]) -> None:
+    """Import modules, by file name or dotted name; those that cannot be imported are left out."""
+    for module in modules:
+        name = module.removesuffix(".py").replace(os.sep, ".").strip(".")
+        try:
+            globals_[name.rpartition(".")[2]] = importlib.import_module(name)
+        except ImportError:
+            continue
+
+
+def scan_external(module_paths: str, component: str) -> None:
+    """Load `component/*.py` of every folder in the environment variable `module_paths`."""
+    from wrapyfi.connect._registry import load_file
+
+    for number, folder in enumerate(filter(None, os.environ.get(module_paths, "").split(":"))):
+        for path in sorted(Path(folder, component).glob("*.py")):
+            load_file(path, f"wrapyfi.extern{number}.{component}.{path.stem}")

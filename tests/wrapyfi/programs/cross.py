@@ -1,0 +1,121 @@
+"""Each type of Wrapyfi, sent or taken: `cross.py SIDE MIDDLEWARE TYPE...`, by either `wrapyfi`.
+
+A sender sends until its input ends. A taker prints a line of JSON for each type, and ends.
+"""
+
+import json
+import os
+import sys
+import threading
+import time
+
+import numpy as np
+
+from wrapyfi.connect.wrapper import MiddlewareCommunicator
+
+side, mware = sys.argv[1:3]
+types = sys.argv[3:]
+# Wrapyfi's publishers over ZeroMQ may never see that somebody listens, while others send.
+WAIT = os.environ.get("CROSS_WAIT") != "0"
+COLOUR = np.arange(24 * 32 * 3, dtype=np.uint8).reshape(24, 32, 3)
+PLAIN = np.full((24, 32, 3), (200, 10, 20), dtype=np.uint8)
+SOUND = np.sin(np.arange(200) / 10).astype(np.float32)
+
+
+class Cross(MiddlewareCommunicator):
+    @MiddlewareCommunicator.register("NativeObject", mware, "Cross", "/x/native", should_wait=WAIT)
+    def native(self):
+        return ({"t": (1, 2), "s": {1, None}, "a": np.arange(4.0), "n": [None, True, 2.5]},)
+
+    @MiddlewareCommunicator.register(
+        "Image", mware, "Cross", "/x/rgb", width=32, height=24, rgb=True, should_wait=WAIT
+    )
+    def rgb(self):
+        return (COLOUR,)
+
+    @MiddlewareCommunicator.register(
+        "Image", mware, "Cross", "/x/mono", width=32, height=24, rgb=False, should_wait=WAIT
+    )
+    def mono(self):
+        return (COLOUR[..., 0],)
+
+    @MiddlewareCommunicator.register(
+        "Image", mware, "Cross", "/x/fp", width=32, height=24, rgb=True, fp=True, should_wait=WAIT
+    )
+    def fp(self):
+        return (COLOUR.astype(np.float32) / 7,)
+
+    @MiddlewareCommunicator.register(
+        "Image", mware, "Cross", "/x/jpg", width=32, height=24, rgb=True, jpg=True, should_wait=WAIT
+    )
+    def jpg(self):
+        return (PLAIN,)
+
+    @MiddlewareCommunicator.register(
+        "AudioChunk",
+        mware,
+        "Cross",
+        "/x/sound",
+        rate=16000,
+        chunk=200,
+        channels=1,
+        should_wait=WAIT,
+    )
+    def sound(self):
+        return ((SOUND, 16000),)
+
+    @MiddlewareCommunicator.register("NativeObject", mware, "Cross", "/x/rpc", should_wait=WAIT)
+    def ask(self, *args, **kwargs):
+        return ({"args": list(args), "kwargs": kwargs},)
+
+
+def told(name, value):
+    """What came, as text that is the same for the same value."""
+    if name == "sound":
+        samples, rate = value
+        error = float(np.abs(np.ravel(samples) - SOUND).max())
+        return {"rate": rate, "near": error < 1e-3}
+    if name in ("rgb", "mono", "fp", "jpg"):
+        array = np.asarray(value)
+        expected = {"rgb": COLOUR, "mono": COLOUR[..., 0], "jpg": PLAIN}.get(name)
+        expected = COLOUR.astype(np.float32) / 7 if expected is None else expected
+        near = array.shape == expected.shape
+        near = near and float(np.abs(array.astype(float) - expected).max()) < (
+            9 if name == "jpg" else 1e-4
+        )
+        return {"shape": list(array.shape), "dtype": array.dtype.name, "near": bool(near)}
+    return repr(value)
+
+
+cross = Cross()
+for name in types:
+    mode = {"send": "publish", "take": "listen"}[side]
+    if name == "ask":
+        mode = {"send": "reply", "take": "request"}[side]
+    cross.activate_communication(name, mode)
+
+
+def send(names):
+    while True:
+        for name in names:
+            getattr(cross, name)()
+        time.sleep(0.05)
+
+
+if side == "send":
+    print("ready", flush=True)
+    for names in [[name] for name in types] if WAIT else []:
+        threading.Thread(target=send, args=(names,), daemon=True).start()
+    if not WAIT:
+        send(types)
+    sys.stdin.read()
+else:
+    for name in types:
+        if name == "ask":
+            (value,) = cross.ask((1, 2), [3], k={"z": (9,)})
+        else:
+            value = None
+            while value is None or (name == "sound" and value[0] is None):
+                (value,) = getattr(cross, name)()
+        print(json.dumps([name, told(name, value)]), flush=True)
+os._exit(0)

@@ -1,0 +1,156 @@
+"""Real Wrapyfi 0.5: its own tests with only the package exchanged, and each type both ways."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support.cpp_venv import MissingPeer
+from support.patience import patience
+from support.port import free_block
+from support.process import Process
+from support.wrapyfi_venv import prepare
+
+import yarpy
+
+pytest.importorskip("zmq")
+ROOT = Path(__file__).parents[2]
+OURS = ROOT / "compat" / "wrapyfi" / "src"
+CROSS = Path(__file__).parent / "programs" / "cross.py"
+TESTS = {
+    "test_wrapper.YarpTestWrapper": 3,
+    "test_wrapper.ZeroMQTestWrapper": 3,
+    "test_middleware.YarpTestMiddleware": 1,
+    "test_middleware.ZeroMQTestMiddleware": 1,
+}
+TYPES = ("native", "rgb", "mono", "fp", "sound")
+#: the other package's way of saving a JPEG file needs an older numpy
+SENT = {"ours": (*TYPES, "jpg"), "real": TYPES}
+
+
+@pytest.fixture(scope="module")
+def wrapyfi() -> Path:
+    try:
+        return prepare()
+    except MissingPeer as missing:
+        pytest.skip(str(missing))
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[yarpy.NameServer]:
+    with yarpy.NameServer(free_block(200)) as found:
+        yield found
+
+
+def environment(server: yarpy.NameServer, path: str, **more: str) -> Mapping[str, str]:
+    prefixes = ("YARP", "WRAPYFI", "XDG_", "PYTHON")
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(prefixes)}
+    number = free_block(2)
+    return {
+        **clean,
+        **server.environment,
+        "PYTHONPATH": path,
+        "WRAPYFI_ZEROMQ_SOCKET_PUB_PORT": str(number),
+        "WRAPYFI_ZEROMQ_SOCKET_SUB_PORT": str(number + 1),
+        **more,
+    }
+
+
+@pytest.fixture(scope="module")
+def own_tests(
+    wrapyfi: Path, server: yarpy.NameServer, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[dict[str, Process]]:
+    """All of them at the same time: they sleep most of it. Their topics have the same names."""
+    folder = tmp_path_factory.mktemp("exchanged")
+    shutil.copytree(OURS / "wrapyfi", folder / "wrapyfi")
+    theirs = next(wrapyfi.glob("lib/python*/site-packages/wrapyfi/tests"))
+    shutil.copytree(theirs, folder / "wrapyfi" / "tests")
+    with ExitStack() as stack:
+        yield {
+            name: stack.enter_context(
+                Process(
+                    [sys.executable, "-m", "unittest", "-v", f"wrapyfi.tests.{name}"],
+                    env={
+                        **environment(server, str(folder)),
+                        **stack.enter_context(yarpy.NameServer(free_block(200))).environment,
+                    },
+                    cwd=folder,
+                )
+            )
+            for name in TESTS
+        }
+
+
+@pytest.mark.parametrize("name", TESTS)
+def test_its_own_tests_pass_with_the_package_exchanged(
+    name: str, own_tests: dict[str, Process]
+) -> None:
+    process = own_tests[name]
+    assert process.wait(patience(50.0)) == 0, process.stderr
+    assert f"Ran {TESTS[name]} test" in process.stderr
+    assert "skipped" not in process.stderr
+    assert "nothing is sent" not in process.stderr
+
+
+@pytest.fixture(scope="module")
+def crossing(
+    wrapyfi: Path, server: yarpy.NameServer, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[dict[tuple[str, str], Process]]:
+    """Pairs of programs: who sends, and over what; the other side takes."""
+    folder = tmp_path_factory.mktemp("cross")
+    ours = sys.executable, str(OURS)
+    real = str(wrapyfi / "bin/python"), f"{ROOT / 'src'}{os.pathsep}{ROOT / 'compat/src'}"
+    with ExitStack() as stack:
+        takers = {}
+        for mware in ("yarp", "zeromq"):
+            for side, here, there in (("ours", ours, real), ("real", real, ours)):
+                # Its publishers over ZeroMQ do not see in time that somebody listens.
+                waits = "0" if (mware, side) == ("zeromq", "real") else "1"
+                types = [*SENT[side], *(["ask"] if mware == "yarp" else [])]
+                known = environment(server, "", CROSS_WAIT=waits)
+                names = environment(server, "")
+                if mware == "yarp":  # topics of their own at the name server
+                    own = stack.enter_context(yarpy.NameServer(free_block(200)))
+                    names = own.environment
+                else:
+                    names = {}
+                for word, (python, path) in (("send", here), ("take", there)):
+                    process = Process(
+                        [python, CROSS, word, mware, *types],
+                        env={**known, **names, "PYTHONPATH": path},
+                        cwd=folder,
+                    )
+                    stack.enter_context(process)
+                    takers[mware, side] = process
+        yield takers
+
+
+@pytest.mark.parametrize("side", ["ours", "real"])
+@pytest.mark.parametrize("mware", ["yarp", "zeromq"])
+def test_each_type_crosses(mware: str, side: str, crossing: dict[tuple[str, str], Process]) -> None:
+    """`side` sends; what the other one got is printed."""
+    process = crossing[mware, side]
+    found: dict[str, Any] = {}
+    for name in SENT[side]:
+        line = process.wait_line(rf'^\["{name}", .*\]$', timeout=patience(45.0), stream="out")
+        found.update([json.loads(line[0])])
+    native = "{'t': (1, 2), 's': {1, None}, 'a': array([0., 1., 2., 3.]), 'n': [None, True, 2.5]}"
+    assert found["native"] in (native, native.replace("{1, None}", "{None, 1}"))
+    assert found["rgb"] == {"shape": [24, 32, 3], "dtype": "uint8", "near": True}
+    assert found["mono"] == {"shape": [24, 32], "dtype": "uint8", "near": True}
+    assert found["fp"] == {"shape": [24, 32, 3], "dtype": "float32", "near": True}
+    assert found["sound"] == {"rate": 16000, "near": True}
+    if side == "ours":
+        assert found["jpg"] == {"shape": [24, 32, 3], "dtype": "uint8", "near": True}
+    if mware == "yarp":
+        line = process.wait_line(r'^\["ask", .*\]$', timeout=patience(20.0), stream="out")
+        first = "(1, 2)" if side == "real" else "[1, 2]"  # nested tuples are marked here
+        expected = f"{{'args': [{first}, [3]], 'kwargs': {{'k': {{'z': (9,)}}}}}}"
+        assert json.loads(line[0])[1] == expected
