@@ -63,8 +63,20 @@ class Follower:
     def _on_connection(self, event: ConnectionEvent) -> None:
         if event.incoming and not event.created:
             self._event.set()
+        elif event.incoming:
+            self._grant()
         with self._connected:
             self._connected.notify_all()
+
+    def _grant(self) -> None:
+        """Give the connection its priority."""
+        if self._qos is None:
+            return
+        for connection in self._port.inputs:
+            try:
+                connection.qos = self._qos
+            except YarpError as error:
+                log.warning("%s has no priority here: %s", self._topic, error)
 
     def _follow(self) -> None:
         pause = FIRST
@@ -90,9 +102,7 @@ class Follower:
             self._told = True
             return False
         self._told = False
-        if self._qos is not None:
-            for connection in self._port.inputs:
-                connection.qos = self._qos
+        self._grant()
         with self._connected:
             self._connected.notify_all()
         return True
