@@ -8,12 +8,13 @@ from types import ModuleType
 
 import pytest
 
-from yarpy.idl.rosmsg.library import Library
+from yarpy.idl.rosmsg.library import Library, default_library
 from yarpy.idl.rosmsg.source import Texts
 from yarpy.idl.rosmsg.stub import python, stubs
 
 
 def loaded(text: str) -> ModuleType:
+    default_library.cache_clear()  # other tests may have met other texts of these types
     module = ModuleType("written")
     exec(text, module.__dict__)
     return module
