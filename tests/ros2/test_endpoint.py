@@ -43,7 +43,12 @@ class Peer(Process):
         super().__init__(peer_command(router, *words), env=peer_environment(home))
 
     def ready(self) -> "Peer":
-        wait_until(lambda: "ready" in self.said, patience(20.0), "the peer is ready")
+        try:
+            wait_until(lambda: "ready" in self.said, patience(40.0))
+        except AssertionError:
+            raise AssertionError(
+                f"the peer is not ready: {self.returncode} {self.stderr}"
+            ) from None
         return self
 
     @property

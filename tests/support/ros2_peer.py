@@ -45,7 +45,7 @@ def ros2_router() -> Iterator[int]:
 
 def peer_command(port: int, *words: str) -> list[str]:
     """The command line of the program."""
-    return [sys.executable, __file__, str(port), *words]
+    return [sys.executable, "-P", __file__, str(port), *words]  # not what lies beside it
 
 
 def peer_environment(home: Path) -> dict[str, str]:

@@ -3,7 +3,7 @@
     Publisher, Subscriber      messages; Client, Server      questions and answers
 
 Rules: what carriers write comes here as `Outgoing`, what they read leaves as `Incoming`. Zenoh's
-threads put what comes into an inbox with a limit, the oldest go first, and are counted. An endpoint
+threads put what comes into the inbox. An endpoint
 whose type nobody knows yet joins the graph once somebody says it, or the first message does. The
 log names whoever has another type at the same topic: nothing else would say why nothing comes.
 """
@@ -12,9 +12,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Sequence
 from functools import partial
-from queue import Empty, SimpleQueue
 from typing import Any, ClassVar, Final
 
 from yarpy.carriers.ros2 import Incoming, Outgoing
@@ -23,26 +21,24 @@ from yarpy.log import logger, readable
 from yarpy.ros2 import kind as kinds
 from yarpy.ros2.attachment import Attachment, parse_attachment
 from yarpy.ros2.description import describe
+from yarpy.ros2.inbox import Inbox
 from yarpy.ros2.key import NO_HASH, Key
 from yarpy.ros2.name import Node
 from yarpy.ros2.participant import Declared, Participant
 from yarpy.ros2.qos import KEEP_ALL, Qos
 from yarpy.ros2.token import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Token, gid
-from yarpy.transports.base import ObjectTransport
 
 log = logger("yarpy.ros2")
 
-MOST_BYTES: Final = 1 << 28  # of messages that wait to be read
 MOST_QUESTIONS: Final = 100  # that wait for a server of ours
 MOST_PUBLISHERS: Final = 1000  # whose numbers are followed
 MOST_TOLD: Final = 100  # peers of other types that the log names
 ANSWER: Final = 600.0  # seconds for an answer, as ROS 2
 BACKENDS: Final = "backends:cpu:"  # what Lyrical wants to know of readers of bytes
 BESIDE: Final = "/_buf_cpu"  # ... and where it may send them then
-_END: Final = Incoming(b"")  # only wakes who waits
 
 
-class Endpoint(ObjectTransport):
+class Endpoint(Inbox):
     """What the four have in common."""
 
     role: ClassVar[str] = ""
@@ -52,6 +48,7 @@ class Endpoint(ObjectTransport):
     def __init__(
         self, participant: Participant, port: str, node: Node, name: str, qos: Qos | None
     ) -> None:
+        super().__init__()
         self.participant = participant
         self.port_name = port
         self.node = node
@@ -60,26 +57,15 @@ class Endpoint(ObjectTransport):
         self.given_qos = qos is not None
         self.kind: Any = None
         self.key: Key | None = None
-        self.dropped = 0
         self._old = False  # Humble: no hashes
         self._declared: Declared | None = None
         self._handles: list[Any] = []
         self._gid = b""
         self._closed = False
         self._told: set[tuple[Node, Key]] = set()
-        self._greeted = False
-        self._inbox: SimpleQueue[Any] = SimpleQueue()
-        self._bytes = 0  # of what waits there
-        self._over = False
-        self._counting = threading.Lock()
-        self._timeout: float | None = None
         self._opening = threading.Lock()  # the type is settled once
 
     # -- as the carrier sees it -------------------------------------------------------------------
-
-    @property
-    def clock(self) -> Callable[[], float]:
-        return time.time
 
     def settle(self, value: object) -> Any:
         """The class of its messages, chosen by the first value if nobody has said."""
@@ -173,45 +159,6 @@ class Endpoint(ObjectTransport):
             kinds.shown(ours),
         )
 
-    # -- the inbox --------------------------------------------------------------------------------
-
-    def put(self, item: Any, most: int) -> None:
-        """Something came; the oldest go where there are too many. In a thread of Zenoh."""
-        inbox = self._inbox
-        with self._counting:
-            self._bytes += item.size
-            while inbox.qsize() >= most or self._bytes > MOST_BYTES:
-                try:
-                    self._bytes -= inbox.get_nowait().size
-                except Empty:
-                    break
-                self.dropped += 1
-        inbox.put(item)
-
-    def receive(self, wait: bool = True) -> tuple[object] | None:
-        if not self._greeted:
-            self._greeted = True
-            return (self,)  # what `greet` reads
-        if self._over:
-            return None
-        try:
-            item = self._inbox.get(wait, self._timeout)
-        except Empty:
-            raise BlockingIOError("nothing has come") from None
-        if self._over:
-            return None
-        with self._counting:
-            self._bytes -= item.size
-        return (item,)
-
-    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
-        self._timeout = seconds
-
-    def interrupt(self) -> None:
-        self._over = True
-        self._inbox.put(_END)
-        self._inbox.put(_END)  # a reader and the thread of the connection may wait
-
     # -- the end ----------------------------------------------------------------------------------
 
     def ended(self) -> bool:
@@ -231,21 +178,6 @@ class Endpoint(ObjectTransport):
                 self._declared.close()
         self._handles.clear()
         self.participant.close()
-
-    def send(self, buffers: Sequence[Any]) -> None:
-        if self._closed:
-            raise BrokenPipeError("it is closed")
-        for item in buffers:
-            try:
-                self.give(item)
-            except YarpError:
-                raise
-            except Exception as error:
-                raise BrokenPipeError(f"Zenoh says: {error}") from error
-
-    def give(self, item: Outgoing) -> None:
-        """Send a message."""
-        raise NotImplementedError
 
 
 class Publisher(Endpoint):
@@ -431,7 +363,7 @@ class Server(Endpoint):
             self.dropped += 1
             query.reply_err(str(error).encode())
             return
-        if self._inbox.qsize() >= MOST_QUESTIONS:
+        if self.waiting >= MOST_QUESTIONS:
             self.dropped += 1
             query.reply_err(b"too many questions are waiting")
             return

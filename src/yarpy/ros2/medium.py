@@ -11,9 +11,11 @@ from typing import Final
 
 from yarpy.carriers.ros2 import LISTENS, SERVICE
 from yarpy.contact import Contact
-from yarpy.errors import AddressError, UnknownName
+from yarpy.errors import AddressError, LocalProtocolError, UnknownName
 from yarpy.log import logger
+from yarpy.ros2.dds import WORD, open_dds
 from yarpy.ros2.endpoint import Client, Endpoint, Publisher, Server, Subscriber
+from yarpy.ros2.inbox import Inbox
 from yarpy.ros2.key import domain
 from yarpy.ros2.name import check_node, check_topic, node_of
 from yarpy.ros2.participant import take_part
@@ -33,11 +35,12 @@ _KINDS: Final[dict[tuple[bool, bool], type[Endpoint]]] = {
 }
 
 
-def open_medium(contact: Contact, route: Route) -> Endpoint:
+def open_medium(contact: Contact, route: Route) -> Inbox:
     """The endpoint of a connection of the port `route.source`.
 
     Raises AddressError (a name, domain or QoS that is none), UnknownName (nobody serves it, and no
-    type is given), UnknownType, UnknownPlugin (the extra is not installed), LinkClosed (no router).
+    type is given), UnknownType, UnknownPlugin (the extra is not installed), LinkClosed (no router),
+    LocalProtocolError (a service over DDS).
     """
     spec = route.spec
     name, _, type_ = contact.name.partition("~")
@@ -47,6 +50,13 @@ def open_medium(contact: Contact, route: Route) -> Endpoint:
     node = node_of(route.source) if said is None else check_node(said)
     qos = None if spec.value("qos") is None else profile(spec.value("qos"))
     kind = _KINDS[serves, LISTENS in spec.tokens]
+    if WORD in spec.tokens:
+        if serves:
+            raise LocalProtocolError(
+                f"{topic} is a service: over DDS there are topics alone; nodes with "
+                "RMW_IMPLEMENTATION=rmw_zenoh_cpp are asked by ros2://..."
+            )
+        return open_dds(domain(spec.value("domain")), route.source, topic, type_, qos, kind.role)
     old = _is_old(spec)
     participant = take_part(domain(spec.value("domain")))
     try:

@@ -1,0 +1,97 @@
+"""The inbox of an endpoint: threads of a middleware put there what comes, a connection takes it.
+
+Rules: there is a limit, in messages and in bytes; the oldest go first, and are counted. What is
+read first is the endpoint itself, which the carrier is greeted with.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from queue import Empty, SimpleQueue
+from typing import Any, Final
+
+from yarpy.carriers.ros2 import Incoming, Outgoing
+from yarpy.errors import YarpError
+from yarpy.transports.base import ObjectTransport
+
+MOST_BYTES: Final = 1 << 28  # of messages that wait to be read
+_END: Final = Incoming(b"")  # only wakes who waits
+
+
+class Inbox(ObjectTransport):
+    """The half of an endpoint that all have in common. `dropped` counts what was lost."""
+
+    name = ""
+
+    def __init__(self) -> None:
+        self.dropped = 0
+        self._greeted = False
+        self._inbox: SimpleQueue[Any] = SimpleQueue()
+        self._bytes = 0  # of what waits there
+        self._over = False
+        self._counting = threading.Lock()
+        self._timeout: float | None = None
+
+    @property
+    def clock(self) -> Callable[[], float]:
+        """The time, in seconds."""
+        return time.time
+
+    @property
+    def waiting(self) -> int:
+        """How many messages wait to be read."""
+        return self._inbox.qsize()
+
+    def put(self, item: Any, most: int) -> None:
+        """Something came; the oldest go where there are too many. In a thread of the middleware."""
+        inbox = self._inbox
+        with self._counting:
+            self._bytes += item.size
+            while inbox.qsize() >= most or self._bytes > MOST_BYTES:
+                try:
+                    self._bytes -= inbox.get_nowait().size
+                except Empty:
+                    break
+                self.dropped += 1
+        inbox.put(item)
+
+    def receive(self, wait: bool = True) -> tuple[object] | None:
+        if not self._greeted:
+            self._greeted = True
+            return (self,)  # what `greet` reads
+        if self._over:
+            return None
+        try:
+            item = self._inbox.get(wait, self._timeout)
+        except Empty:
+            raise BlockingIOError("nothing has come") from None
+        if self._over:
+            return None
+        with self._counting:
+            self._bytes -= item.size
+        return (item,)
+
+    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
+        self._timeout = seconds
+
+    def interrupt(self) -> None:
+        self._over = True
+        self._inbox.put(_END)
+        self._inbox.put(_END)  # a reader and the thread of the connection may wait
+
+    def send(self, buffers: Sequence[Any]) -> None:
+        if self._over:
+            raise BrokenPipeError("it is closed")
+        for item in buffers:
+            try:
+                self.give(item)
+            except YarpError:
+                raise
+            except Exception as error:
+                raise BrokenPipeError(f"it cannot be sent: {error}") from error
+
+    def give(self, item: Outgoing) -> None:
+        """Send a message."""
+        raise NotImplementedError
