@@ -4,7 +4,9 @@ import pytest
 
 import yarpy
 from yarpy.cli.verbs.rpc import Target, commands_of, many, print_reply
+from yarpy.data.yarp4 import is_yarp4
 from yarpy.devices import ControlBoardServer
+from yarpy.port import admin
 
 
 @pytest.fixture(scope="module")
@@ -169,3 +171,23 @@ def test_nothing_is_asked_of_another_port(cli, names, server_port):
         assert (said.returncode, said.stdout) == (1, "")
         assert '"/rpc/server" listens' in said.stderr and 'not "/rpc/gone"' in said.stderr
     assert len(server_port.sources) == asked
+
+
+def test_a_port_of_yarp_4_gets_its_spelling(here, names, monkeypatch):
+    """It has no commands of ROS any more, by which it is known."""
+    heard = []
+
+    def answer(message):
+        heard.append(is_yarp4(message.payload))
+        return message.value
+
+    with yarpy.RpcServer("/rpc/newer", answer, names=names):
+        target = Target("/rpc/newer")
+        assert target.ask(yarpy.Bottle(["f", 1.5, [2.5]])) == ["f", 1.5, [2.5]]
+        target.close()
+        monkeypatch.delitem(admin._ROS_SHORT, "bus")
+        target = Target("/rpc/newer")
+        assert target.ask(yarpy.Bottle(["f", 1.5, [2.5]])) == ["f", 1.5, [2.5]]
+        assert target.ask(yarpy.Bottle(["f", 1])) == ["f", 1]
+        target.close()
+    assert heard == [False, True, None]

@@ -57,6 +57,7 @@ def test_what_is_not_connected(frames: Frames) -> None:
         (("a", "b", (0, 0)), "three numbers"), (("a", "b", (0, 0, 0), (0, 0, 1)), "three numbers"),
         (("a", "b", (float("nan"), 0, 0)), "finite"),
         (("a", "b", (0, 0, 0), (0, 0, 0, 0)), "not 0"),
+        (("a", "b", (0, 0, 0), (1e200, 1e308, 0, 0)), "not 0"),
         (("base", "eye"), "its own parent"),
     ],
 )  # fmt: skip

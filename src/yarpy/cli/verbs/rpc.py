@@ -7,7 +7,8 @@ for somebody to connect it to a server, and replies are printed bare.
 
 When the target goes away it is asked again, up to three times, a moment apart. `help` is asked of
 control boards as they want it asked, `[help] [all]`; at a terminal Tab offers what it lists. What a
-service of ROS cannot take is said, and the next line is asked.
+service of ROS cannot take is said, and the next line is asked. A port of YARP 4 gets fractions as
+it spells them.
 Exit codes: 0 at the end of input; 1 the target cannot be reached.
 """
 
@@ -36,6 +37,7 @@ from yarpy.errors import (
 from yarpy.wire.message import UNSENDABLE
 
 if TYPE_CHECKING:
+    from yarpy.contact import Contact
     from yarpy.port.probe import Caller
 
 PAUSES: Final = (0.2, 0.6, 1.2)  # seconds before each attempt to reach a target that went away
@@ -55,6 +57,8 @@ class Target:
         self._name = name
         self._admin = admin
         self._of_ros = False  # a node or service of ROS, or its master
+        self._contact: Contact | None = None  # where it was found
+        self._yarp4: bool | None = None  # whether it is of YARP 4; None: nobody asked yet
         self._caller: Caller | None = self._dial()
 
     def ask(self, question: Any) -> Any:
@@ -65,7 +69,7 @@ class Target:
             try:
                 if self._caller is None:
                     self._caller = self._dial()
-                reply = _bottle(self._caller.ask(question))
+                reply = _bottle(self._caller.ask(self._spelled(question)))
                 if self._admin and _ends_connection(question):
                     self._hang_up()  # the next question must not go where nobody reads it
                 return reply
@@ -91,6 +95,22 @@ class Target:
         """Hang up."""
         self._hang_up()
 
+    def _spelled(self, question: Any) -> Any:
+        """The question as the target reads it: YARP 4 has other tags for fractions."""
+        from yarpy.data.yarp4 import to_yarp4
+        from yarpy.port.probe import is_yarp4
+        from yarpy.wire.message import Encoded
+
+        data = yarpy.Bottle(question).to_bytes()
+        newer = to_yarp4(data)
+        if newer is data or self._of_ros or self._admin:
+            return question  # it is the same for all
+        if self._yarp4 is None:
+            self._yarp4 = False
+            with suppress(YarpError, OSError):
+                self._yarp4 = self._contact is not None and is_yarp4(self._contact)
+        return Encoded(newer) if self._yarp4 else question
+
     def _hang_up(self) -> None:
         caller, self._caller = self._caller, None
         if caller is not None:
@@ -104,7 +124,8 @@ class Target:
 
         carrier = parse_contact(self._port).carrier or "tcp"
         name = self._name or ANONYMOUS
-        found = confirmed(self._port, carrier=carrier)
+        found = self._contact = confirmed(self._port, carrier=carrier)
+        self._yarp4 = None
         self._of_ros = is_of_ros(found)
         if self._of_ros:
             with suppress(NoNameServer):

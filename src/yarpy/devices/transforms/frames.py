@@ -14,7 +14,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterable, Sequence
-from math import isfinite, sqrt
+from math import hypot, isfinite
 from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.devices.transforms.functions import Transform
@@ -113,7 +113,7 @@ def check(given: Transform) -> None:
     numbers = (given.time, given.x, given.y, given.z, given.qx, given.qy, given.qz, given.qw)
     if not all(isfinite(number) for number in numbers):
         raise ValueError("the numbers of a transform are finite")
-    if not _length(given) > 1e-9:
+    if not 1e-9 < _length(given) < 1e100:
         raise ValueError("a rotation is a quaternion, x y z w, that is not 0")
     if not given.source or not given.target or given.source == given.target:
         raise ValueError("a frame and its parent have two names")
@@ -176,4 +176,4 @@ def _path(known: dict[str, Transform], frame: str) -> list[Transform]:
 
 
 def _length(given: Transform) -> float:
-    return sqrt(given.qx**2 + given.qy**2 + given.qz**2 + given.qw**2)
+    return hypot(given.qx, given.qy, given.qz, given.qw)
