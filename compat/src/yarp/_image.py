@@ -51,11 +51,11 @@ class Image(Portable):
         return found.stride if found else 0
 
     def getQuantum(self) -> int:
-        return self._quantum or OWN_QUANTUM
+        return self._quantum or (OWN_QUANTUM if self._width else 0)
 
     def getRowSize(self) -> int:
         """Bytes of a row, with what pads it."""
-        quantum = self.getQuantum()
+        quantum = self.getQuantum() or OWN_QUANTUM
         return -(-self._width * self.getPixelSize() // quantum) * quantum
 
     def getPadding(self) -> int:
@@ -212,7 +212,8 @@ class Image(Portable):
         External memory is filled if it has that size.
         """
         if not alt._width or not alt._height:
-            return False
+            self.resize(0, 0)
+            return True
         source = alt._image()
         if w is not None and h is not None:
             source = _scaled(source, w, h)

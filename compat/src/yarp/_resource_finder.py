@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import yarpy
@@ -85,7 +86,7 @@ class ResourceFinder(Searchable):
         """Read the command line, such as `sys.argv`, and the configuration file.
 
         The length of the command line, or anything else before it, is passed over, as old programs
-        say it. False if the file of `--from` is nowhere.
+        say it. False if the file of `--from` is nowhere; the options are there in any case.
         """
         line: Sequence[str] = ()
         skip = True
@@ -95,17 +96,26 @@ class ResourceFinder(Searchable):
             elif isinstance(argument, bool):
                 skip = argument
         arguments = [*line][1 if skip else 0 :]
+        self._configured = True
+        asked = ""
         try:
-            self._finder = yarpy.ResourceFinder(
-                arguments, context=self._context, file=self._file, defaults=self._defaults
-            )
+            self._finder = self._made_of(arguments, self._file)
         except yarpy.MissingFile as error:
             say("ERROR", f"|yarp.os.ResourceFinder| {error}")
-            return False
-        if self._file and self._finder.path is None:
+            # The other options count all the same.
+            at = arguments.index("--from")
+            asked = arguments[at + 1]
+            self._finder = self._made_of([*arguments[:at], *arguments[at + 2 :]], "")
+        if self._file and not asked and self._finder.path is None:
             say("ERROR", f"|yarp.os.ResourceFinder| cannot find {self._file}")
-        self._configured = True
-        return True
+        if asked or self._file:
+            self._finder.values.setdefault("from", asked or self._file)
+        return not asked
+
+    def _made_of(self, arguments: Sequence[str], file: str) -> yarpy.ResourceFinder:
+        return yarpy.ResourceFinder(
+            arguments, context=self._context, file=file, defaults=self._defaults
+        )
 
     def isConfigured(self) -> bool:
         return self._configured
@@ -114,19 +124,19 @@ class ResourceFinder(Searchable):
 
     def findFile(self, name: str) -> str:
         """The path of a file, named by an option or by itself; "" if it is nowhere."""
-        return str(self._finder.file(name) or "")
+        return _text(self._finder.file(name))
 
     findFileByName = findFile
 
     def findPath(self, name: str = "") -> str:
         """The path of a file or directory; "" if it is nowhere."""
         if not name:
-            return str(self._finder.path.parent if self._finder.path else "")
-        return str(self._finder.file(name) or self._finder.directory(name) or "")
+            return _text(self._finder.path.parent if self._finder.path else None)
+        return _text(self._finder.file(name) or self._finder.directory(name))
 
     def findPaths(self, name: str) -> Bottle:
         """Every path of a file."""
-        return Bottle._of(yarpy.Bottle(str(path) for path in self._finder.files(name)))
+        return Bottle._of(yarpy.Bottle(map(_text, self._finder.files(name))))
 
     def readConfig(self, config: Any, key: str, options: Any = None) -> bool:
         """Read a configuration file into a Property."""
@@ -192,6 +202,11 @@ class ResourceFinder(Searchable):
 
 
 _singleton: ResourceFinder | None = None
+
+
+def _text(path: Path | None) -> str:
+    """A path from the root on, "" for none."""
+    return "" if path is None else os.path.abspath(path)
 
 
 def _made(path: Any) -> str:
