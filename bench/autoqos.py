@@ -5,7 +5,7 @@ both directions and busy processes, with nothing set, set by hand, and by the ag
 started before the load. `starvation`: a critical stream floods the link with the highest priority,
 beside a best-effort one with a stated minimum, without the agent and with it.
 
-    sudo .venv/bin/python bench/autoqos.py [control | starvation] [--seconds 10] [--rounds 2]
+    sudo .venv/bin/python bench/autoqos.py [control | starvation] [--plot FILE.svg]
 """
 
 import argparse
@@ -41,7 +41,7 @@ least = {LEAST}
 FLOOD = """
 [[critical]]
 connections = ["/bulk/pub/out"]
-deadline = 0.2
+deadline = 10.0
 
 [[best-effort]]
 connections = ["/small/*"]
@@ -126,6 +126,8 @@ def control(hosts: Hosts, options: argparse.Namespace) -> list[str]:
                 rows.setdefault(name, []).append(loaded(loop, ends, name, agent, options))
                 if agent is not None:
                     agent.end()
+    if options.plot:
+        plot_course({name: found[0]["course"] for name, found in rows.items()}, options.plot)
     lines = [
         "| | mean ms | 99 % ms | jitter ms | later than 20 ms | gain | under control after "
         "| bulk Mbit/s | changes |",
@@ -178,10 +180,30 @@ def loaded(loop, ends, name: str, agent: Steered | None, options: argparse.Names
     bad = [window for window, found in late.items() if statistics.fmean(found) > 0.05]
     return {
         "trips": [trip for at, trip in pairs if at >= 3.0],
+        "course": pairs,
         "after": (max(bad) + 1) * 0.5 if bad else 0.0,
         "bulk": bulk,
         "changes": agent.changes(began) if agent else 0,
     }
+
+
+def plot_course(found: dict[str, list[tuple[float, float]]], path: Path) -> None:
+    """Round trips of the first round, by the time since the load began."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+
+    plt.rcParams["svg.hashsalt"] = "autoqos"
+    figure, axes = plt.subplots(figsize=(7, 3.5))
+    for name, course in found.items():
+        some = course[::4]  # a drawing, not an archive
+        axes.plot([at for at, _ in some], [t * 1e3 for _, t in some], ".", ms=3, label=name)
+    axes.set(yscale="log", xlabel="s since the load began", ylabel="round trip, ms")
+    axes.grid(alpha=0.3, which="both")
+    axes.legend(loc="upper right")
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
 
 
 # -- who does not starve --------------------------------------------------------------------------
@@ -220,10 +242,12 @@ def starvation(hosts: Hosts, options: argparse.Namespace) -> list[str]:
                 f"| {agent.changes(began) if agent else ''} |"
             )
             say(lines[-1])
-            yarpy.disconnect(*flow)
+            hosts.shape(1000.0)  # else nobody hears that it is to end
             if agent is not None:
                 agent.end()
-            yarpy.disconnect(*SMALL)
+            for pair in (flow, SMALL):
+                yarpy.disconnect(*pair)
+            hosts.shape(options.mbit)
     return lines
 
 
@@ -237,6 +261,7 @@ def main() -> int:
     parser.add_argument("--as", dest="program", choices=PROGRAMS, help=argparse.SUPPRESS)
     parser.add_argument("--seconds", type=float, default=10.0, help="per condition and round")
     parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument("--plot", type=Path, metavar="FILE", help="draw `control` (matplotlib)")
     parser.add_argument("--mbit", type=float, default=50.0, help="of each link")
     options = parser.parse_args()
     if options.program:

@@ -45,7 +45,7 @@ class Late:
             time.sleep(0.005)
 
     def _steer(self) -> None:
-        agent = Agent(RULES, self.events.append, self.journal, self.names, period=0.1)
+        agent = Agent(RULES, self.events.append, self.journal, self.names, period=0.1, patience=1.0)
         agent.run(lambda: self.going)
 
     def __enter__(self) -> Late:

@@ -139,6 +139,27 @@ def test_best_effort_keeps_its_minimum_under_a_critical_flood() -> None:
     assert network.settings[("/control", "/control", "limit")] < 45
 
 
+def test_a_flood_is_not_helped_when_it_is_late_for_its_own_size() -> None:
+    network = Network()
+    network.run(2)
+    for port, peer in (LOOP, LOOP[::-1]):
+        network.settings[(port, peer, "packets")] = "AF42"
+    network.mbit.update({LOOP: 45.0, BULK: 0.2})
+    network.late = lambda: 0.9
+    network.run(6)
+    assert not network.has("packets")
+    network.mbit[BULK] = 20.0
+    assert count(network.run(40), "become") == 0
+    assert not network.has("packets") and not network.has("threads")
+
+
+def test_best_effort_near_its_minimum_keeps_its_class() -> None:
+    network = Network(RULES.replace("least = 2.0", "least = 35.0"))
+    network.late = lambda: 0.5
+    network.run(20)
+    assert count(network.steps, "become LOW") == 0
+
+
 def test_best_effort_that_has_nothing_to_send_does_not_starve() -> None:
     network = Network()
     network.held_up.clear()

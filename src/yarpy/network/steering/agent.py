@@ -24,6 +24,7 @@ from yarpy.network.steering.rules import Rules
 
 PERIOD: Final = 0.25  # seconds between looks
 VISITOR: Final = "autoqos"  # what its questions to ports are known by
+PATIENCE: Final = 2.5  # seconds for an answer: over a full link it takes a while
 AWAY: Final = 1.0  # seconds until a name server is asked again
 
 
@@ -47,8 +48,9 @@ class Agent:
         journal: Journal | None,
         names: NameClient | None = None,
         period: float = PERIOD,
+        patience: float = PATIENCE,
     ) -> None:
-        self._sampler = Sampler(names, urgent=VISITOR)
+        self._sampler = Sampler(names, patience=patience, urgent=VISITOR)
         self._hands = Hands(self._sampler.ask, names)
         self._governor = Governor(rules, trusting=journal is None)
         self._journal = journal

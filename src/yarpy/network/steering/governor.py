@@ -32,6 +32,8 @@ REST: Final = 60.0  # seconds until what did not help is tried again; then twice
 LONGEST_REST: Final = 3600.0
 CALM: Final = 15.0  # seconds without trouble before a limit grows
 GROW: Final = 1.5  # times a limit
+SPARE: Final = 1.5  # times its minimum: best effort that gets less keeps its packets' class
+FLOOD: Final = "flood"
 
 
 @dataclass(slots=True)
@@ -166,6 +168,8 @@ class Governor:
         since = max(now - LOOK_AT, self._changed)
         worst: tuple[float, Rule, list[Pair]] | None = None
         for rule, pairs in self._of("critical"):
+            if self._rest.get((rule.line, FLOOD), 0.0) > now:
+                continue  # it is late by its own doing
             missed = self._course.missed(pairs, since)
             if missed is None and not self._course.counts(pairs) and self._crowded(snapshot):
                 missed = 1.0  # nobody can tell: better to be careful
@@ -214,7 +218,11 @@ class Governor:
         if blind:
             return  # the others do not pay for what nobody can see
         for other, others in self._of("best-effort"):
-            bulk = [snapshot.flows[pair] for pair in others]
+            bulk = [
+                snapshot.flows[pair]
+                for pair in others
+                if (self._course.mbit(pair, now - CALM) or 0.0) >= SPARE * other.least
+            ]
             name = _names(others)
             yield (
                 f"bulk packets {other.line}",
@@ -274,7 +282,7 @@ class Governor:
             if trial.measure == "relax":
                 return None
             self._strikes.pop((trial.rule.line, trial.measure), None)
-            for key in [key for key in self._rest if key[0] == trial.rule.line]:
+            for key in [key for key in self._rest if key[0] == trial.rule.line and key[1] != FLOOD]:
                 del self._rest[key]  # together with this, what did not help may
             return Step(f"that helped: {trial.before:.0%} -> {missed:.0%} late on {_names(pairs)}")
         self._strike(trial.rule, trial.measure, now)
@@ -332,11 +340,12 @@ class Governor:
             flow = snapshot.flows[one]
             changes = measures.packets([flow], measures.NORMAL, False)
             if changes:
-                self._strike(critical, "packets", now)
+                self._strike(critical, FLOOD, now)
                 words = f"{_name(one)} floods ({speed:.3g} Mbit/s), its packets become NORM"
                 return Step(why + words, changes)
             limited = self._limited(snapshot, one, min(speed, self._limit_of(one) or speed), 0.0)
             if limited:
+                self._strike(critical, FLOOD, now)
                 words = f"{_name(one)} sends {limited[0].value:g} Mbit/s instead of {speed:.3g}"
                 return Step(why + words, limited)
         return None
