@@ -50,6 +50,24 @@ def test_what_does_not_help_is_taken_back_and_rests_for_longer_each_time() -> No
     assert {key for _, _, key in network.settings} <= {"timing", "limit", "packets", "threads"}
 
 
+def test_a_step_is_not_judged_before_something_came() -> None:
+    network = Network()
+    network.late = lambda: 0.6
+    while not network.has("packets"):
+        network.run(0.25)
+    network.rates[LOOP] = 0.0  # a stall
+    assert network.run(3) == []
+    network.rates[LOOP] = 100.0
+    network.late = lambda: 0.0
+    assert count(network.run(2), "that helped") == 1
+    network = Network()
+    network.late = lambda: 0.6
+    while not network.has("packets"):
+        network.run(0.25)
+    network.rates[LOOP] = 0.0  # for good: perhaps that was us
+    assert count(network.run(8), "did not help (nothing comes): it is as it was") == 1
+
+
 def test_one_thing_at_a_time() -> None:
     network = Network()
     seen: list[int] = []

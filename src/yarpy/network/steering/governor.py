@@ -25,6 +25,7 @@ from yarpy.network.traffic import Snapshot
 TOLERANCE: Final = 0.02  # of the messages may miss their deadline
 HELPED: Final = 0.8  # times what was missed before, or less
 SETTLE: Final = 0.5  # seconds until the effect of a step is looked at
+SILENT: Final = 5.0  # seconds without a message after which a step is thought to have done harm
 LOOK_AT: Final = 0.5  # seconds that trouble lasts before it is believed
 STARVING: Final = 1.5  # seconds, likewise
 ENOUGH: Final = 0.8  # of its minimum: less is starving
@@ -273,8 +274,8 @@ class Governor:
         if now - trial.since < 2 * SETTLE:
             return None
         missed = self._course.missed(pairs, trial.since + SETTLE)
-        if missed is None and now - trial.since < 4 * SETTLE and trial.before is not None:
-            return None  # nothing came yet
+        if missed is None and now - trial.since < SILENT and trial.before is not None:
+            return None  # nothing came yet, or nobody answered
         self._trial = None
         if trial.before is None:
             return None  # nobody can tell
