@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import random
+import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,6 +12,7 @@ from pathlib import Path
 import pytest
 from support import tls
 from support.cpp import CppYarp
+from support.patience import patience
 from support.port import free_block, free_port
 from support.wait import wait_until
 
@@ -155,6 +158,31 @@ def test_what_needs_a_direct_way_says_so(lab: Lab, monkeypatch: pytest.MonkeyPat
             assert in_.read(timeout=10).value == [carrier]
         with pytest.raises(LocalProtocolError, match="tls/HOST"):
             out.connect("/in", "tls")
+
+
+CARELESS = """
+import sys, yarpy
+from yarpy.names import direct
+direct.Ways.to = lambda self, entry: entry.through
+near, far = (yarpy.ZenohNames(f"{host}:{sys.argv[1]}") for host in ("127.0.0.1", "localhost"))
+out, in_ = yarpy.Port("...", names=near), yarpy.BufferedPort("...", names=far)
+out.connect(in_.name, timeout=10)
+for number in range(20):
+    out.write([number])
+in_.read(timeout=10)
+"""
+
+
+def test_a_program_that_closes_nothing_ends_by_itself() -> None:
+    """Threads that wait in a library when Python ends would abort the program."""
+    number = free_port()
+    router = open_router([f"127.0.0.1:{number}"])
+    command = [sys.executable, "-W", "ignore", "-c", CARELESS, str(number)]
+    programs = [subprocess.Popen(command, stderr=subprocess.PIPE, text=True) for _ in range(3)]
+    for program in programs:
+        _, said = program.communicate(timeout=patience(30))
+        assert program.returncode == 0, said
+    close(router)
 
 
 def test_rules_hold_for_those_who_come_through_zenoh(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -175,6 +176,27 @@ token = session.liveliness().declare_token("c")
 
 def test_a_program_ends_by_itself(router: str) -> None:
     subprocess.run([sys.executable, "-c", PROGRAM, router], check=True, timeout=30)
+
+
+def test_the_end_of_a_program_waits_for_those_who_wait_in_zenoh() -> None:
+    calls, woken = zenoh.Calls(), threading.Event()
+    inside = threading.Event()
+    calls.waking.append(woken.set)
+
+    def wait() -> None:
+        with calls:
+            inside.set()
+            woken.wait(20)
+
+    thread = threading.Thread(target=wait)
+    thread.start()
+    inside.wait(20)
+    calls.refuse()
+    calls.wait()
+    assert woken.is_set() and not calls._waiting
+    thread.join(20)
+    with pytest.raises(ConnectionAbortedError), calls:
+        raise AssertionError("it is over")
 
 
 FORKING = """

@@ -29,7 +29,7 @@ from yarpy.names.base import Contacts, Strings
 from yarpy.names.direct import ANYWHERE, Ways, machine
 from yarpy.names.zenoh_key import Entry, name_key, newest, port_token
 from yarpy.transports.bind import listening_host
-from yarpy.transports.zenoh import Lease, load, share
+from yarpy.transports.zenoh import CALLS, Lease, load, share
 from yarpy.transports.zenoh_exchange import Exchange, Welcome, join, know, leave, undeclare
 
 if TYPE_CHECKING:
@@ -349,26 +349,27 @@ class ZenohNames:
         zenoh = load()
         lease = self._open()
         self._check_router()  # a session without one would wait in vain
-        replies = lease.session.get(
-            selector,
-            zenoh.handlers.FifoChannel(ANSWERS),
-            target=zenoh.QueryTarget.ALL,
-            consolidation=zenoh.ConsolidationMode.NONE,
-            timeout=PATIENCE,
-        )
         found: list[bytes] = []
         silent = False
         size = 0
-        for reply in replies:
-            if reply.ok is None:
-                silent = True
-                continue
-            data = reply.ok.payload.to_bytes()
-            size += len(data)
-            if size > 8 * zenoh_key.MOST:
-                log.warning("too many answers to %s: the rest is left out", selector)
-                break
-            found.append(data)
+        with CALLS:
+            replies = lease.session.get(
+                selector,
+                zenoh.handlers.FifoChannel(ANSWERS),
+                target=zenoh.QueryTarget.ALL,
+                consolidation=zenoh.ConsolidationMode.NONE,
+                timeout=PATIENCE,
+            )
+            for reply in replies:
+                if reply.ok is None:
+                    silent = True
+                    continue
+                data = reply.ok.payload.to_bytes()
+                size += len(data)
+                if size > 8 * zenoh_key.MOST:
+                    log.warning("too many answers to %s: the rest is left out", selector)
+                    break
+                found.append(data)
         if silent and name and not found:
             raise Timeout(
                 f'the program of "{name}" does not answer just now, perhaps stopped or busy: '

@@ -20,6 +20,8 @@ checked against, `cert.pem` and `key.pem` are shown to a router that asks. Where
 TLS, a place without it is refused.
 
 Use `Callback(f, indirect=False)` of `zenoh.handlers` for subscribers: it needs no thread of Python.
+A thread that waits in the library when Python ends aborts the program: put `with CALLS:` around
+what waits in threads that may outlive the main one (`Subscriber.recv`, replies of `get`).
 A process that was forked from one with a session can have none: the library's threads are not
 there.
 """
@@ -32,7 +34,7 @@ import re
 import socket
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -58,6 +60,7 @@ LAN: Final = "lan"
 HERE: Final = f"127.0.0.1:{PORT}"
 
 LOOK: Final = 2.0  # seconds to find out why a router could not be reached
+FAREWELL: Final = 2.0  # seconds for threads to come back from Zenoh when the program ends
 REFUSAL: Final = 0.5  # seconds within which a router says that it refuses a certificate
 # How often a router that went away is looked for: milliseconds at first, at most, and the factor.
 RETRY: Final = {"period_init_ms": 500, "period_max_ms": 1000, "period_increase_factor": 1.5}
@@ -177,6 +180,47 @@ class _Held:
         self.users = 0
 
 
+class Calls:
+    """Threads that wait in Zenoh: the interpreter may not end meanwhile. To be used as `with
+    CALLS:` around what waits there. `waking` are called when the program ends."""
+
+    def __init__(self) -> None:
+        self.waking: list[Callable[[], object]] = []
+        self._waiting = 0
+        self._over = False
+        self._lock = threading.Lock()
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if self._over:
+                raise ConnectionAbortedError("the program ends")
+            self._waiting += 1
+
+    def __exit__(self, *details: object) -> None:
+        with self._lock:
+            self._waiting -= 1
+
+    def refuse(self) -> None:
+        """Nobody may wait any more."""
+        with self._lock:
+            self._over = True
+        for wake in self.waking:
+            wake()
+
+    def wait(self) -> None:
+        """Wait until everybody has come back, but not for ever."""
+        deadline = time.monotonic() + FAREWELL
+        while self._waiting and time.monotonic() < deadline:
+            time.sleep(0.001)
+
+    def start_over(self) -> None:
+        """In a forked process: those threads are not here."""
+        self._waiting, self._lock = 0, threading.Lock()
+
+
+CALLS: Final = Calls()
+
+
 class _Pool:
     """The sessions of this process."""
 
@@ -217,10 +261,13 @@ class _Pool:
         close(held.session)
 
     def close(self) -> None:
+        """The program ends."""
+        CALLS.refuse()
         with self._lock:
             all_, self._held = list(self._held.values()), {}
         for held in all_:
             close(held.session)
+        CALLS.wait()
 
     def forget(self) -> None:
         """In a forked process: the sessions' threads are not here, so nobody may even close
@@ -228,6 +275,7 @@ class _Pool:
         for held in self._held.values():
             _immortal(held.session)
         self._lost = self._lost or self._watching
+        CALLS.start_over()
         self._held, self._lock = {}, threading.Lock()
 
 

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.contact import ZENOH, host_zid, zid_host
 from yarpy.log import logger
-from yarpy.transports.zenoh import Lease, load, share
+from yarpy.transports.zenoh import CALLS, Lease, load, share
 from yarpy.transports.zenoh_pipe import MESSAGES, WAKE, ZenohPipe
 
 if TYPE_CHECKING:
@@ -73,29 +73,38 @@ class _Line:
             priority=getattr(self._library.Priority, priority),
             express=True,
         )
-        self.put = self._publisher.put
         if before is not None:
             undeclare(before)
 
+    def put(self, data: bytes) -> None:
+        with CALLS:
+            self._publisher.put(data)
+
     def tell(self, data: bytes) -> None:
-        self._session.put(
-            f"@yarp/ctl/{self._other}",
-            data,
-            congestion_control=self._library.CongestionControl.BLOCK,
-            express=True,
-        )
+        with CALLS:
+            self._session.put(
+                f"@yarp/ctl/{self._other}",
+                data,
+                congestion_control=self._library.CongestionControl.BLOCK,
+                express=True,
+            )
 
     def wake(self) -> None:
-        self._session.put(
-            self._own, bytes([WAKE]), allowed_destination=self._library.Locality.SESSION_LOCAL
-        )
+        local = self._library.Locality.SESSION_LOCAL
+        if threading.current_thread() is threading.main_thread():  # also when the program ends
+            self._session.put(self._own, bytes([WAKE]), allowed_destination=local)
+        else:
+            with CALLS:
+                self._session.put(self._own, bytes([WAKE]), allowed_destination=local)
 
     def recv(self) -> bytes:
-        data: bytes = self._subscriber.recv().payload.to_bytes()
+        with CALLS:
+            data: bytes = self._subscriber.recv().payload.to_bytes()
         return data
 
     def try_recv(self) -> bytes | None:
-        sample = self._subscriber.try_recv()
+        with CALLS:
+            sample = self._subscriber.try_recv()
         return None if sample is None else sample.payload.to_bytes()
 
     def close(self) -> None:
@@ -197,8 +206,9 @@ class Exchange:
     ) -> None:
         """Answer the only one of `queries`: the caller waits until nobody has it any more."""
         try:
-            pipe = self._make(zid, own, other, port, 0)
-            queries.pop().reply(answer, b"")
+            with CALLS:
+                pipe = self._make(zid, own, other, port, 0)
+                queries.pop().reply(answer, b"")
         except Exception as error:  # the session was closed, or the caller knows no good names
             log.debug("a call could not be answered: %s", error)
             return
@@ -213,7 +223,8 @@ class Exchange:
     def call(self, zid: str, port: int, timeout: float) -> ZenohPipe:
         """A pipe to a port of the program of that session. Raises OSError."""
         own, other = secrets.token_hex(8), secrets.token_hex(8)
-        pipe = self._make(zid, own, other, 0, port)
+        with CALLS:
+            pipe = self._make(zid, own, other, 0, port)
         try:
             self._ask(f"@yarp/open/{zid}/{port}", f"{self.zid} {own} {other}", timeout)
             if not self._is_seen(zid, pipe, timeout):
@@ -229,16 +240,17 @@ class Exchange:
         place = self.lease.place
         if place.routers and not self.session.info.routers_zid():
             raise OSError(errno.ENETUNREACH, f"the Zenoh router at {place} does not answer")
-        replies = [
-            *self.session.get(
-                key,
-                zenoh.handlers.FifoChannel(16),
-                payload=hello,
-                target=zenoh.QueryTarget.ALL,
-                consolidation=zenoh.ConsolidationMode.NONE,
-                timeout=timeout,
-            )
-        ]
+        with CALLS:
+            replies = [
+                *self.session.get(
+                    key,
+                    zenoh.handlers.FifoChannel(16),
+                    payload=hello,
+                    target=zenoh.QueryTarget.ALL,
+                    consolidation=zenoh.ConsolidationMode.NONE,
+                    timeout=timeout,
+                )
+            ]
         if any(reply.ok is not None for reply in replies):
             return
         if not replies:
@@ -371,10 +383,21 @@ def dial_inside(host: str, port: int, timeout: float) -> ZenohPipe:
             leave(exchange)
 
 
+def _wake_all() -> None:
+    """The program ends: nobody waits for what comes any more."""
+    for exchange in list(_open.values()):
+        for pipe in list(exchange._pipes.values()):
+            pipe.interrupt()
+
+
+CALLS.waking.append(_wake_all)
+
+
 def undeclare(thing: Any) -> None:
     """Take back what was declared; nothing, if the session is closed."""
     try:
-        thing.undeclare()
+        with CALLS:
+            thing.undeclare()
     except Exception as error:
         log.debug("not undeclared: %s", error)
 
