@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test pure links programs stress fuzz chaos soak check bench clean
+.PHONY: demo test pure links programs compiled wheel stress fuzz chaos soak check bench clean
 .NOTPARALLEL: # the stages, in their order
 
 # What yarpy itself needs, told while it comes.
@@ -29,6 +29,20 @@ test: pure links programs
 
 pure links programs: $(VENV)/.ready
 	$(PYTEST) --stage $@
+
+# Two wheels: pure Python, and one with a compiled core for this Python and computer.
+wheel: $(VENV)/.ready
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[build]'
+	$(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir dist .
+	YARPY_COMPILE=1 $(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir dist .
+	@ls dist
+
+# The tests of what is compiled, with the compiled one in place of the sources.
+compiled: wheel
+	rm -rf build/compiled
+	$(BIN)/python -m pip install --quiet --no-deps --no-index --find-links dist --target build/compiled yarpy
+	PYTHONPATH=build/compiled $(BIN)/python tests/support/build.py
+	PYTHONPATH=build/compiled $(PYTEST) tests/wire tests/data tests/link
 
 # The same on a loaded machine, with the patience that this takes.
 stress: $(VENV)/.ready

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from contextlib import suppress
+from typing import Any
 
 import pytest
 from support.outbound import connected, link_on, open_link, read_messages, total
@@ -390,14 +391,15 @@ def test_reader_of_a_lossy_carrier_gets_a_short_burst_whole() -> None:
         assert link.counter.drops == 2
 
 
-def interrupted(deadline: float | None = None) -> None:
+def interrupted(view: memoryview) -> int:
     """What Ctrl-C does to who waits."""
     raise KeyboardInterrupt
 
 
 def test_interrupted_question_does_not_leave_its_answer_to_the_next() -> None:
     with connected() as (link, _):
-        link.driver.fill = interrupted  # type: ignore[method-assign]
+        transport: Any = link.driver.transport
+        transport.recv_into = transport.try_recv_into = interrupted
         with pytest.raises(KeyboardInterrupt):
             link.call(Packet([1], key=CALL))
         assert link.broken

@@ -7,6 +7,7 @@ import threading
 import time
 
 import pytest
+from support.build import changes_a_constant
 from support.inbound import Owner, linked, message, served
 from support.patience import patience
 from support.transport import scripted
@@ -197,6 +198,7 @@ def test_message_cannot_ask_for_another_connection() -> None:
 # ------------------------------------------------------------------------------------- answers
 
 
+@changes_a_constant
 def test_who_does_not_read_its_answer_keeps_nobody_waiting(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:

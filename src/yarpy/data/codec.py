@@ -324,7 +324,7 @@ def _to_float(view: Buffer) -> float:
     raise _wrong("a number", value)
 
 
-def _narrow(view: Buffer, kind: type[int]) -> int:
+def _narrow(view: Buffer, kind: Any) -> object:  # as an `int`, compiled, it would be a plain one
     try:
         return kind(_to_int(view))
     except OverflowError as error:

@@ -238,20 +238,23 @@ def _signed(byte: int) -> int:
     return byte - 256 if byte > 127 else byte
 
 
-def _int8(value: int) -> Int8:
+# `object`: what is declared as `int` or `float` is a plain one once it is compiled.
+def _int8(value: int) -> object:
     return int.__new__(Int8, value)
 
 
-def _int16(value: int) -> Int16:
+def _int16(value: int) -> object:
     return int.__new__(Int16, value)
 
 
-def _int64(value: int) -> int:
+def _int64(value: int) -> object:
     # What needs 64 bits anyway may be a plain int: it is sent as 64 bits again.
-    return int.__new__(Int64, value) if -0x80000000 <= value <= 0x7FFFFFFF else value
+    if -0x80000000 <= value <= 0x7FFFFFFF:
+        return int.__new__(Int64, value)
+    return value
 
 
-def _float32(value: float) -> Float32:
+def _float32(value: float) -> object:
     return float.__new__(Float32, value)
 
 
