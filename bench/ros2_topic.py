@@ -124,7 +124,7 @@ def measure(what: str, count: int) -> None:
                 assert other.stdout is not None
                 other.stdout.readline()
                 with made(what, False) as turn:
-                    time.sleep(0.3)
+                    time.sleep(1.0)  # both ends find each other
                     turn(), turn()
                     times = []
                     for _ in range(count):
