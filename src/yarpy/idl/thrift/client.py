@@ -53,17 +53,21 @@ class _Client:
                 return None
             answer = message.to_bytes()
             if is_failure(answer, method, message.spelling == "text"):
-                why = reason(answer)
-                if not why:  # a server of yarpy can say more about the last failure
-                    message = yield Bottle([FAILURE]), True
-                    why = "" if message is None else told(message.to_bytes())
-                raise refused(method, why)
+                yield from self._refused(method, answer)
             return method.read_answer(answer)
         except YarpError as error:
             said = self._told(method.name, error)
             if said is error:
                 raise
             raise said from error
+
+    def _refused(self, method: Method, answer: Buffer) -> _Work:
+        """The server said no: find out why, and raise it."""
+        why = reason(answer)
+        if not why:  # a server of yarpy can say more about the last failure
+            message = yield Bottle([FAILURE]), True
+            why = "" if message is None else told(message.to_bytes())
+        raise refused(method, why)
 
     def _speaks_yarp4(self) -> _Work:
         """Whether the server is of YARP 4: it is asked before the first fraction is sent."""
@@ -90,7 +94,23 @@ class _Client:
 
 class _Sync(_Client):
     def _call(self, method: Method, values: tuple[Any, ...]) -> Any:
-        return self._run(self._work(method, values))
+        if method.oneway or (method.asks_floats and self._yarp4 is not False):
+            return self._run(self._work(method, values))
+        # The same in short, where there is nothing to find out first.
+        payload = Payload(method.ask(*values), method.ending)
+        try:
+            message = self._port.ask(payload, self.timeout)
+            if message is None:
+                return None
+            answer = message.to_bytes()
+            if is_failure(answer, method, message.spelling == "text"):
+                self._run(self._refused(method, answer))
+            return method.read_answer(answer)
+        except YarpError as error:
+            said = self._told(method.name, error)
+            if said is error:
+                raise
+            raise said from error
 
     def _run(self, work: _Work) -> Any:
         port = self._port

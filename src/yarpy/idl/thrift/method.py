@@ -136,18 +136,15 @@ class Method:
         """Whether there are fractions among the arguments: YARP 4.0 spells them otherwise."""
         return has_floats(part.kind for part in self.parts)
 
-    def arguments(self, data: Buffer, at: int) -> tuple[tuple[Any, ...], bool | None]:
-        """The arguments that begin at a place, and whether they are spelled as by YARP 4.0; None
-        where nobody could tell. DecodeError."""
+    def yarp4_arguments(self, data: Buffer, at: int, error: DecodeError) -> tuple[Any, ...]:
+        """The arguments that begin at a place, as YARP 4.0 spells them; `error` if they are not
+        that either."""
+        if not self.asks_floats:
+            raise error
         try:
-            return self.read_arguments(data, at), False if self.asks_floats else None
-        except DecodeError as error:
-            if not self.asks_floats:
-                raise
-            try:
-                return self.read_arguments(data, at, True), True
-            except DecodeError:
-                raise error from None
+            return self.read_arguments(data, at, True)
+        except DecodeError:
+            raise error from None
 
     # -- answers ----------------------------------------------------------------------------------
 

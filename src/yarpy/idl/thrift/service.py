@@ -59,7 +59,7 @@ class Service:
     #: what they are told the version of YARP is
     _yarp: ClassVar[tuple[int, int, int]] = YARP_VERSION
     _failures: OrderedDict[str, str]
-    _spellings: OrderedDict[str, bool]
+    _spellings: OrderedDict[str, bool] = OrderedDict()  # of nobody: never filled
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
@@ -85,9 +85,14 @@ class Service:
             method = self._methods.get(name)
             if method is None:
                 return self._extra(name, data, at, message)
-            values, yarp4 = method.arguments(data, at)
-            if yarp4 is not None:
-                self._note(message.source, yarp4)
+            try:
+                values = method.read_arguments(data, at)
+            except DecodeError as error:
+                values = method.yarp4_arguments(data, at, error)
+                self._note(message.source, True)
+            else:
+                if self._spellings and method.asks_floats:
+                    self._note(message.source, False)
             function = getattr(self, method.attribute)
             if method.oneway and message.wants_reply:
                 message.reply(Payload(_DONE))
@@ -121,11 +126,9 @@ class Service:
 
     def _note(self, source: str, yarp4: bool) -> None:
         """Remember how a client spells floats."""
-        known = self.__dict__.get("_spellings")
-        if known is None:
-            if not yarp4:
-                return  # as nearly always
-            known = self.__dict__.setdefault("_spellings", OrderedDict())
+        if "_spellings" not in self.__dict__:
+            self._spellings = OrderedDict()
+        known = self._spellings
         known.pop(source, None)
         if yarp4:
             known[source] = True
@@ -134,7 +137,7 @@ class Service:
 
     def _is_yarp4(self, source: str) -> bool:
         """Whether answers to a client are those of YARP 4.0."""
-        return self._only_yarp4 or source in self.__dict__.get("_spellings", ())
+        return self._only_yarp4 or source in self._spellings
 
     def _named(self, data: bytes) -> tuple[str, int, bool]:
         """The method that a request names, where its arguments begin, and whether it is spelled as
