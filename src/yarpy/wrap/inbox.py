@@ -76,6 +76,11 @@ class Inbox:
                 if not self._items and not self._closed:
                     self._changed.wait(left)
 
+    @property
+    def closed(self) -> bool:
+        """Whether nobody takes anything any more."""
+        return self._closed
+
     async def take_async(self, timeout: float | None) -> Received:
         """The same in an event loop."""
         loop = asyncio.get_running_loop()

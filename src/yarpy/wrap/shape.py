@@ -146,10 +146,10 @@ class Several(Shape):
         self._same = type(item) is Shape
 
     def dump(self, value: Any) -> Any:
-        if isinstance(value, (str, bytes, dict)) or not hasattr(value, "__iter__"):
-            raise TypeError(f"expected {self.name}, got {shown(value)}")
         if self._same and type(value) is self.kind:
             return value
+        if isinstance(value, (str, bytes, dict)) or not hasattr(value, "__iter__"):
+            raise TypeError(f"expected {self.name}, got {shown(value)}")
         dump = self.item.dump
         return self.kind(dump(item) for item in value)
 
@@ -203,10 +203,10 @@ class Table(Shape):
         self._same = type(key) is Shape and type(item) is Shape
 
     def dump(self, value: Any) -> Any:
-        if not isinstance(value, Mapping):
-            raise TypeError(f"expected {self.name}, got {shown(value)}")
         if self._same and type(value) is dict:
             return value
+        if not isinstance(value, Mapping):
+            raise TypeError(f"expected {self.name}, got {shown(value)}")
         return {self.key.dump(key): self.item.dump(item) for key, item in value.items()}
 
     def load(self, plain: Any) -> Any:

@@ -24,10 +24,10 @@ _WORD: Final = WORD.encode()
 
 def native(item: Item) -> Any:
     """What a port writes for an item. Raises TypeError, ValueError for what cannot be sent."""
-    jpeg = jpeg_of(item)
-    if jpeg is not None:
-        return bottle(frame.Frame(jpeg, item.count, item.time, item.source))
-    found = item.shape.native(item.plain)
+    shape = item.shape
+    if type(shape) is Picture and shape.image.jpeg is not None:
+        return framed(item)
+    found = shape.native(item.plain)
     return framed(item) if found is NOT_NATIVE else found
 
 

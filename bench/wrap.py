@@ -1,0 +1,137 @@
+"""Decorated methods beside what they stand for: a plain call, a bare `port.write`, Wrapyfi's JSON.
+
+The reader is a program of its own; the contenders take turns, so that a busy machine is as unkind
+to each, and the median over the rounds is compared. A decorated method stamps what it sends, so a
+bare write with a stamp is beside it, too.
+
+    python bench/wrap.py [--rounds 30]
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+import yarpy
+from yarpy import wrap
+from yarpy.wrap.frame import Frame, from_parts, to_parts
+from yarpy.wrap.tree import from_text, to_text
+
+SMALL = {"joint": 3, "angle": 45.0}
+PICTURE = np.random.default_rng(1).integers(0, 255, (480, 640, 3), "u1")
+
+READER = """
+import sys, yarpy
+ports = [yarpy.BufferedPort(f"/reader{n}", callback=lambda message: None) for n in range(2)]
+for port, source in zip(ports, ("/decorated", "/bare")):
+    yarpy.connect(source, port.name)
+print("ready", flush=True)
+sys.stdin.read()
+for port in ports:
+    port.close()
+"""
+
+
+class Arm:
+    """One method for each value."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    def plain(self) -> Any:
+        return self.value
+
+    @wrap.on("/decorated", keep="all")
+    def small(self) -> dict:
+        return self.value
+
+    @wrap.on("/decorated", keep="all")
+    def picture(self) -> np.ndarray:
+        return self.value
+
+
+def timed(act: Callable[[], object], count: int) -> float:
+    """Seconds of one call."""
+    begun = time.perf_counter()
+    for _ in range(count):
+        act()
+    return (time.perf_counter() - begun) / count
+
+
+def medians(acts: dict[str, Callable[[], object]], count: int, rounds: int) -> dict[str, float]:
+    """The median of each over the rounds, in microseconds."""
+    times: dict[str, list[float]] = {name: [] for name in acts}
+    for _ in range(rounds):
+        for name, act in acts.items():
+            times[name].append(timed(act, count) * 1e6)
+    return {name: statistics.median(found) for name, found in times.items()}
+
+
+@contextmanager
+def read(method: Any) -> Iterator[yarpy.BufferedPort]:
+    """The decorated method publishes, a bare port is open, and another program reads both."""
+    with (
+        yarpy.NameServer() as server,
+        wrap.publish(method),
+        yarpy.BufferedPort("/bare", strict=True) as bare,
+    ):
+        reader = subprocess.Popen(
+            [sys.executable, "-c", READER],
+            env=server.environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        )
+        assert reader.stdin is not None and reader.stdout is not None
+        reader.stdout.readline()
+        yield bare
+        reader.communicate()
+
+
+def stamped(port: yarpy.BufferedPort, value: Any) -> Callable[[], object]:
+    """A write with the next stamp."""
+    count = itertools.count()
+    return lambda: port.write(value, yarpy.Stamp(next(count), time.time()))
+
+
+def measure(rounds: int) -> dict[str, float]:
+    """Every number, in microseconds."""
+    found = {}
+    arm = Arm(SMALL)
+    calls = {"call plain": arm.plain, "call decorated, no mode": arm.small}
+    found |= medians(calls, 20_000, rounds)
+    for name, value, count in (("small", SMALL, 500), ("picture", PICTURE, 20)):
+        arm = Arm(value)
+        method = getattr(arm, name)
+        with read(method) as bare:
+            publishing = {
+                f"write {name}": lambda bare=bare, value=value: bare.write(value),
+                f"write {name}, stamped": stamped(bare, value),
+                f"publish {name}": method,
+            }
+            found |= medians(publishing, count, rounds)
+    encoding = {
+        "frame of a picture": lambda: from_parts(to_parts(Frame(PICTURE, 1, 2.0))),
+        "Wrapyfi's text of a picture": lambda: from_text(to_text(PICTURE)),
+    }
+    found |= medians(encoding, 3, rounds)
+    return found
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=30)
+    for name, value in measure(parser.parse_args().rounds).items():
+        print(f"{name:28} {value:10.2f} us")
+
+
+if __name__ == "__main__":
+    main()

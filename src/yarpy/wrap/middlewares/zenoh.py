@@ -1,0 +1,194 @@
+"""Zenoh: keys over routers, "zenoh://router:7447"; without a place what YARPY_ZENOH says.
+
+Rules: a topic is a key without slashes at its ends, and payloads are those of `payload.py`, as
+programs with Wrapyfi have it. Servers are queryables. One session for each place and process.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from yarpy.errors import LinkClosed, PortClosed, Timeout, UnknownName
+from yarpy.transports.zenoh import Lease, load, share
+from yarpy.wrap import payload
+from yarpy.wrap.inbox import Inbox
+from yarpy.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.wrap.shape import Shape
+
+_LONGEST = 3600.0  # seconds: of a question without a timeout
+
+
+class Zenoh:
+    """The middleware `zenoh`."""
+
+    name = "zenoh"
+
+    def check(self, way: Way) -> None:
+        key_of(way)
+        way.refuse(carrier="routers decide how", qos="its sessions have no threads of ours")
+
+    def publisher(self, way: Way, shape: Shape) -> ZenohPublisher:
+        return ZenohPublisher(way)
+
+    def listener(self, way: Way, shape: Shape) -> ZenohListener:
+        return ZenohListener(way, shape)
+
+    def server(self, way: Way, name: str, answer: Answer) -> ZenohServer:
+        return ZenohServer(way, answer)
+
+    def client(self, way: Way, shape: Shape) -> ZenohClient:
+        return ZenohClient(way, shape)
+
+
+def key_of(way: Way) -> str:
+    """The key expression of a topic. Raises ValueError for one that is none."""
+    key = way.topic.strip("/")
+    if not key or "//" in key or any(letter in key for letter in "*$#?"):
+        raise ValueError(f'"{way.topic}" is no key of Zenoh: words with a slash between them')
+    return key
+
+
+class ZenohPublisher:
+    def __init__(self, way: Way) -> None:
+        zenoh = load()
+        self.messages = 0
+        self._encoding = way.encoding
+        self._lease: Lease = share(way.place)
+        control = zenoh.CongestionControl.BLOCK if way.reliable else zenoh.CongestionControl.DROP
+        self._key = key_of(way)
+        self._publisher: Any = self._lease.session.declare_publisher(
+            self._key, congestion_control=control
+        )
+
+    def publish(self, item: Item) -> int:
+        data = item.form(f"bytes {self._encoding}", lambda one: payload.joined(one, self._encoding))
+        publisher = self._publisher
+        if publisher is None:
+            raise PortClosed(f'"{self._key}" was closed')
+        publisher.put(data)
+        self.messages += 1
+        return 1
+
+    def wait(self, timeout: float | None) -> bool:
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while not self._publisher.matching_status.matching:
+            if deadline is not None and time.monotonic() >= deadline:
+                return False
+            time.sleep(0.005)
+        return True
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        publisher = self._publisher
+        heard = publisher is not None and publisher.matching_status.matching
+        return {"messages": self.messages, "heard": heard}
+
+    def close(self) -> None:
+        if self._publisher is not None:
+            self._publisher.undeclare()
+            self._publisher = None
+            self._lease.close()
+
+
+class ZenohListener:
+    def __init__(self, way: Way, shape: Shape) -> None:
+        from zenoh.handlers import Callback
+
+        self.messages = 0
+        self._way = way
+        self._shape = shape
+        self._inbox = Inbox(way.keep)
+        self._lease: Lease | None = share(way.place)
+
+        def heard(sample: Any) -> None:
+            self.messages += 1
+            if not self._inbox.closed:
+                self._inbox.put(Received(sample.payload.to_bytes()))
+
+        self._subscriber: Any = self._lease.session.declare_subscriber(
+            key_of(way), Callback(heard, indirect=False)
+        )
+
+    def listen(self, timeout: float | None) -> Received:
+        try:
+            data = self._inbox.take(timeout).value
+        except Timeout:
+            raise Timeout(f'nothing came from "{self._way.topic}" within {timeout:.3g} s') from None
+        found = payload.unpack(data, self._shape)
+        found.middleware = self._way.middleware
+        return found
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        return {"messages": self.messages, "drops": self._inbox.drops}
+
+    def close(self) -> None:
+        self._inbox.close()
+        if self._lease is not None:
+            self._subscriber.undeclare()
+            self._lease.close()
+            self._lease = None
+
+
+class ZenohServer:
+    """Answers questions in a thread of its own for each, as the library has it."""
+
+    def __init__(self, way: Way, answer: Answer) -> None:
+        self._key = key_of(way)
+        self._answer = answer
+        self._encoding = way.encoding
+        self._lease: Lease | None = share(way.place)
+        self._queryable: Any = self._lease.session.declare_queryable(self._key, self._asked)
+
+    def _asked(self, query: Any) -> None:
+        try:
+            data = query.payload.to_bytes() if query.payload is not None else b"[[], {}]"
+            found = self._answer(*question_of(payload.asked(data)))
+            if isinstance(found, Failure):
+                said = payload.failure(found)
+            else:
+                said = payload.joined(found, self._encoding)
+        except Exception as error:
+            said = payload.failure(Failure.of(error))
+        query.reply(self._key, said)
+
+    def close(self) -> None:
+        if self._lease is not None:
+            self._queryable.undeclare()
+            self._lease.close()
+            self._lease = None
+
+
+class ZenohClient:
+    def __init__(self, way: Way, shape: Shape) -> None:
+        self._way = way
+        self._shape = shape
+        self._lease: Lease | None = share(way.place)
+
+    def call(
+        self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
+    ) -> Any:
+        if self._lease is None:
+            raise LinkClosed(f'"{self._way.topic}" was closed here')
+        begun = time.monotonic()
+        replies = self._lease.session.get(
+            key_of(self._way),
+            payload=payload.question(args, kwargs),
+            timeout=_LONGEST if timeout is None else timeout,
+        )
+        for reply in replies:
+            if reply.ok is not None:
+                data = reply.ok.payload.to_bytes()
+                failed = payload.failure_of(data)
+                if failed is not None:
+                    raise failed.error()
+                return payload.unpack(data, self._shape).value
+        if timeout is not None and time.monotonic() - begun >= timeout:
+            raise Timeout(f'"{self._way.topic}" did not answer within {timeout:.3g} s')
+        raise UnknownName(f'nobody serves "{self._way.topic}", or it went away during the call')
+
+    def close(self) -> None:
+        if self._lease is not None:
+            self._lease.close()
+            self._lease = None

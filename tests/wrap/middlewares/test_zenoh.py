@@ -1,0 +1,100 @@
+"""Decorated methods over a router of Zenoh, beside a program with eclipse-zenoh alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from support.patience import patience
+from support.port import free_port
+from support.wait import wait_until
+
+import yarpy
+from yarpy import wrap
+from yarpy.transports import zenoh as sessions
+from yarpy.wrap.middleware import Way
+from yarpy.wrap.middlewares.zenoh import key_of
+
+pytest.importorskip("zenoh")
+PATIENCE = patience(10.0)
+
+
+class Arm:
+    @wrap.on("/arm/state", "zenoh", wait=PATIENCE, keep="all")
+    def state(self) -> dict:
+        return {"angle": 45.0}
+
+    @wrap.on("/arm/camera", "zenoh", wait=PATIENCE)
+    def camera(self) -> np.ndarray:
+        return np.arange(24, dtype="u1").reshape(2, 4, 3)
+
+    @wrap.on("/arm/rpc", "zenoh")
+    def turn(self, angle: float, by: np.ndarray | None = None) -> float:
+        if angle > 90:
+            raise ValueError("too far")
+        return angle + (0.0 if by is None else float(by.sum()))
+
+
+@pytest.fixture(scope="module")
+def place() -> Iterator[str]:
+    where = f"tcp/127.0.0.1:{free_port()}"
+    router = sessions.open_router([where])
+    yield where
+    sessions.close(router)
+
+
+def test_values(place: str) -> None:
+    here, there, middleware = Arm(), Arm(), f"zenoh://{place}"
+    with wrap.listen(there.camera, middleware=middleware):
+        with pytest.raises(yarpy.Timeout):
+            there.camera(timeout=0.01)
+        with wrap.publish(here.camera, middleware=middleware) as handle:
+            sent = here.camera()
+            assert np.array_equal(there.camera(timeout=PATIENCE), sent)
+            assert handle.stats[0]["messages"] == 1
+
+
+def test_programs_without_decorators(place: str) -> None:
+    here, middleware = Arm(), f"zenoh://{place}"
+    with sessions.share(place) as lease, wrap.listen(here.state, middleware=middleware):
+
+        def sent() -> bool:
+            lease.session.put("arm/state", b'{"angle": 1}')
+            try:
+                return here.state(timeout=0.1) == {"angle": 1}
+            except yarpy.Timeout:
+                return False
+
+        wait_until(sent)
+        picture = b'{"timestamp": 1.5, "shape": [2, 2], "dtype": "uint8"}\n1234'  # as Wrapyfi
+        lease.session.put("arm/state", picture)
+        with pytest.raises(yarpy.DecodeError, match="expected a dict"):
+            for _ in range(100):
+                here.state(timeout=PATIENCE)
+
+
+def test_questions(place: str) -> None:
+    here, there, middleware = Arm(), Arm(), f"zenoh://{place}"
+    with wrap.call(there.turn, middleware=middleware):
+        with pytest.raises(yarpy.UnknownName, match="nobody serves"):
+            there.turn(1, timeout=PATIENCE)
+        with wrap.serve(here.turn, middleware=middleware):
+
+            def answered() -> bool:
+                try:
+                    return there.turn(1, timeout=PATIENCE) == 1
+                except yarpy.UnknownName:
+                    return False
+
+            wait_until(answered)
+            assert there.turn(1, np.ones(3)) == 4
+            with pytest.raises(wrap.RemoteError, match="ValueError: too far"):
+                there.turn(91)
+
+
+def test_keys() -> None:
+    assert key_of(Way("/arm/state/")) == "arm/state"
+    for wrong in ("/", "a//b", "a/*"):
+        with pytest.raises(ValueError, match="no key of Zenoh"):
+            key_of(Way(wrong))
