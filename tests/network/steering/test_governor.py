@@ -96,6 +96,25 @@ def test_bulk_pays_when_priorities_do_not_help_but_never_below_its_minimum() -> 
     assert 3 <= len(limits) <= 12
 
 
+def test_limits_shrink_on_where_the_first_ones_do_not_help() -> None:
+    network = Network()
+    key = ("/cam", "/cam", "limit")
+
+    def late(enough: float) -> float:
+        network.mbit[BULK] = min(40.0, network.settings.get(key, 40.0))
+        return 1.0 if network.mbit[BULK] > enough else 0.0
+
+    network.late = lambda: late(8.0)
+    network.run(25)
+    assert network.settings[key] < 8.0
+    assert count(network.steps, "that helped") == 1
+    network = Network()
+    network.late = lambda: late(0.0)  # nothing ever helps
+    network.run(40)
+    assert key not in network.settings  # and so it is as it was
+    assert count(network.steps, "instead of") == 6
+
+
 def test_limits_grow_again_when_it_is_calm_and_come_back_when_that_was_too_early() -> None:
     network = Network()
     key = ("/cam", "/cam", "limit")

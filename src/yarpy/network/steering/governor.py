@@ -286,13 +286,28 @@ class Governor:
             for key in [key for key in self._rest if key[0] == trial.rule.line and key[1] != FLOOD]:
                 del self._rest[key]  # together with this, what did not help may
             return Step(f"that helped: {trial.before:.0%} -> {missed:.0%} late on {_names(pairs)}")
+        if missed is not None and trial.measure.startswith("limit") and self._can_shrink(trial):
+            return None  # on the way: only at its minimum is it certain that it did not help
         self._strike(trial.rule, trial.measure, now)
         told = "nothing comes" if missed is None else f"{missed:.0%} late"
         back = tuple(change.undone for change in reversed(trial.changes))
         if trial.measure == "relax":
             self._calm = min(2 * self._calm, LONGEST_REST)
             return Step(f"too early ({told}): the limit is as it was", back)
+        if trial.measure.startswith("limit"):  # all of the way back
+            back = tuple(
+                Change(one.port, one.peer, one.key, self._made[one.what].before, one.value)
+                for one in trial.changes
+                if one.what in self._made
+            )
         return Step(f"that did not help ({told}): it is as it was", back)
+
+    def _can_shrink(self, trial: Trial) -> bool:
+        """Whether a limit is above the minimum that its connection keeps."""
+        [change] = trial.changes
+        least = [rule.least for rule, all_ in self._of("best-effort") for pair in all_
+                 if pair[0] == change.port]  # fmt: skip
+        return bool(change.value > max([measures.FLOOR, *least]))
 
     def _strike(self, rule: Rule, measure: str, now: float) -> None:
         """It did not help, or is refused: not again for a while."""
