@@ -76,7 +76,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
     # What methods are decorated with (`yarpy.wrap`).
     "middlewares": {
         name.lower(): f"yarpy.wrap.middlewares.{name.lower()}:{name}"
-        for name in ("Yarp", "Mqtt", "Ros", "WebSocket", "Zenoh", "ZeroMq")
+        for name in ("Yarp", "Mqtt", "Ros", "Ros2", "WebSocket", "Zenoh", "ZeroMq")
     },
     # What carriers go over that have no connections of their own.
     "media": {"ros2": "yarpy.ros2.medium:open_medium"},

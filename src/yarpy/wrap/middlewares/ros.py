@@ -79,7 +79,7 @@ def type_of(shape: Shape) -> Any:
     return "std_msgs/String"
 
 
-def _as_text(shape: Shape) -> bool:
+def as_text(shape: Shape) -> bool:
     """Whether a String holds JSON."""
     return type_of(shape) == "std_msgs/String" and not isinstance(shape, Scalar)
 
@@ -112,7 +112,7 @@ def _leave(way: Way, user: object) -> None:
 class RosPublisher:
     def __init__(self, way: Way, shape: Shape) -> None:
         self._way = way
-        self._texts = _as_text(shape)
+        self._texts = as_text(shape)
         self._node = _use(way, self)
         try:
             self._port = self._node.publisher(way.topic, type_of(shape))
@@ -141,7 +141,7 @@ class RosListener:
         self._way = way
         self._shape = shape
         self._kind = type_of(shape)
-        self._texts = _as_text(shape)
+        self._texts = as_text(shape)
         self._node = _use(way, self)
         try:
             self._port = self._node.subscriber(way.topic, self._kind, newest=way.keep == "latest")
