@@ -68,12 +68,12 @@ def test_programs_without_decorators(place: str) -> None:
             topic, text = sub.recv_multipart()
             assert topic == b"/arm/word" and json.loads(text) == {"angle": 45.0}
         out.connect(f"tcp://127.0.0.1:{number + 1}")
-        with wrap.listen(here.say, middleware=place):
-            while out.recv() != b"\1/arm/word":
+        with wrap.listen(here.say, topic="/arm/goal", middleware=place):
+            while out.recv() != b"\1/arm/goal":
                 pass
-            out.send_multipart([b"/arm/word", to_text({"t": (1,)}).encode()])  # as Wrapyfi
-            out.send_multipart([b"/arm/word", b"{timestamp:1.5}", b'{"a": 1}'])
-            out.send_multipart([b"/arm/word", b"a", b"b", b"c"])
+            out.send_multipart([b"/arm/goal", to_text({"t": (1,)}).encode()])  # as Wrapyfi
+            out.send_multipart([b"/arm/goal", b"{timestamp:1.5}", b'{"a": 1}'])
+            out.send_multipart([b"/arm/goal", b"a", b"b", b"c"])
             assert here.say(timeout=PATIENCE) == {"t": (1,)}
             assert here.say(timeout=PATIENCE) == {"a": 1}
             with pytest.raises(yarpy.DecodeError, match="3 parts"):
