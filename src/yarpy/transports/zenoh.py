@@ -60,6 +60,7 @@ LAN: Final = "lan"
 HERE: Final = f"127.0.0.1:{PORT}"
 
 LOOK: Final = 2.0  # seconds to find out why a router could not be reached
+LAST: Final = 0.05  # seconds in which callbacks that had begun come to their end
 FAREWELL: Final = 2.0  # seconds for threads to come back from Zenoh when the program ends
 REFUSAL: Final = 0.5  # seconds within which a router says that it refuses a certificate
 # How often a router that went away is looked for: milliseconds at first, at most, and the factor.
@@ -268,6 +269,8 @@ class _Pool:
         for held in all_:
             close(held.session)
         CALLS.wait()
+        if all_:
+            time.sleep(LAST)
 
     def forget(self) -> None:
         """In a forked process: the sessions' threads are not here, so nobody may even close
