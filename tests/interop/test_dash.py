@@ -54,6 +54,12 @@ def test_ports_of_cpp_are_part_of_the_picture(peer: CppProgram, browser: Browser
         wait_until(lambda: peer.do("inlet.getInputCount()") == 1, PATIENCE)
         assert peer.do("inlet.read().size()") == 6
         page.get_by_role("button", name=re.compile("Undo")).wait_for()
+        page.get_by_role("button", name="Cameras").click()
+        wait_until(
+            lambda: page.evaluate(
+                "document.querySelector('#cameras img').naturalWidth"
+            ) == 160, PATIENCE,
+        )  # fmt: skip
         browser.picture(page, "dash-cpp")
         page.get_by_role("button", name=re.compile("Undo")).click()
         wait_until(lambda: peer.do("inlet.getInputCount()") == 0, PATIENCE)

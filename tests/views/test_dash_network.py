@@ -42,6 +42,7 @@ def test_names_are_told_once() -> None:
         "program": "python robot.py",
         "process": 7,
         "ours": False,
+        "image": False,
     }
     assert first["states"] == [[1, "alive"]] * 2
     assert first["problem"] == ""

@@ -33,7 +33,7 @@ SHARE: Final = 0.5  # of the time in which ports are asked, at most
 WANTED: Final = 10.0  # seconds that a question keeps the looks going
 
 _FILES: Final = (
-    *("dash.css", "dash.js", "dash_detail.js", "dash_graph.js"),
+    *("dash.css", "dash.js", "dash_camera.js", "dash_detail.js", "dash_graph.js"),
     *("dash_layout.js", "dash_list.js", "dash_word.js"),
 )
 

@@ -145,13 +145,14 @@ def _port(state: PortState) -> dict[str, Any]:
         "program": cut(state.program),
         "process": state.pid,
         "ours": bool(state.ours),
+        "image": state.type == "yarp/image",
     }
 
 
 def _stranger(name: str) -> dict[str, Any]:
     """An end of a connection that is not registered."""
     shown = {"name": cut(name), "address": ["", 0], "place": "", "program": ""}
-    return {**shown, "process": 0, "ours": False}
+    return {**shown, "process": 0, "ours": False, "image": False}
 
 
 def _state(state: PortState) -> tuple[int | None, str]:

@@ -1,6 +1,7 @@
 // The whole network: what the program of this page knows of it, once a second.
 
 import {ask, may, pause, press, say, several} from "/*/common.js";
+import {Cameras} from "./dash_camera.js";
 import {Detail} from "./dash_detail.js";
 import {Graph} from "./dash_graph.js";
 import {List} from "./dash_list.js";
@@ -66,6 +67,7 @@ let refusal = ""; // why what was done last did not work
 
 const allowed = (await may()).includes("write");
 const graph = new Graph(byId("graph").querySelector("canvas"), choose);
+const cameras = new Cameras(byId("cameras"), choose);
 const list = new List(byId("list"), choose);
 const detail = new Detail(byId("detail"), network, {chosen: choose, act, may: allowed});
 
@@ -156,6 +158,11 @@ function tab(graphical) {
 
 byId("show-graph").onclick = () => tab(true);
 byId("show-list").onclick = () => tab(false);
+byId("show-cameras").onclick = () => {
+  if (byId("cameras").hidden) cameras.open();
+  else cameras.close();
+  press(byId("show-cameras"), !byId("cameras").hidden);
+};
 byId("fit").onclick = () => {
   graph.moved = false;
   graph.fit();
@@ -168,7 +175,7 @@ byId("search").oninput = () => {
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape") choose(null, "");
   if (event.target.closest("input, select, textarea") || event.ctrlKey || event.metaKey || event.altKey) return;
-  const keys = {"/": () => byId("search").focus(), g: () => tab(true), l: () => tab(false), f: () => byId("fit").click()};
+  const keys = {"/": () => byId("search").focus(), g: () => tab(true), l: () => tab(false), f: () => byId("fit").click(), c: () => byId("show-cameras").click()};
   if (!keys[event.key]) return;
   event.preventDefault();
   keys[event.key]();
@@ -192,6 +199,8 @@ async function round() {
     graph.arrange([...network.ports.values()], [...network.links.values()]);
     byId("names").replaceChildren(...[...network.ports.keys()].map((name) => new Option(name)));
   }
+  cameras.take([...network.ports.values()]);
+  byId("show-cameras").hidden = !cameras.names.length;
   remember(told.events);
   const undo = byId("undo");
   say(undo, allowed && told.undo ? `Undo: ${told.undo}` : "");
