@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import yarpy
+from yarpy.wrap.array import Array
 from yarpy.wrap.hint import shape_of
-from yarpy.wrap.shape import ANY, Array, Scalar, Several, Table
+from yarpy.wrap.shape import ANY, Scalar, Several, Table
 
 T = typing.TypeVar("T")
 N = typing.TypeVar("N", bound=int)

@@ -10,9 +10,9 @@ import pytest
 
 import yarpy
 from yarpy.wrap import frame, payload
+from yarpy.wrap.array import Image
 from yarpy.wrap.hint import shape_of
 from yarpy.wrap.middleware import Failure, Item
-from yarpy.wrap.shape import Image
 
 PIXELS = np.arange(18, dtype="u1").reshape(2, 3, 3)
 JSON = [

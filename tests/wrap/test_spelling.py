@@ -9,9 +9,9 @@ import pytest
 
 import yarpy
 from yarpy.wire.message import CALL, DATA, Message, Packet
+from yarpy.wrap.array import Image
 from yarpy.wrap.hint import shape_of
 from yarpy.wrap.middleware import Failure, Item
-from yarpy.wrap.shape import Image
 from yarpy.wrap.spelling import FORMS, failure, failure_of, frame_of, question, received, text_of
 
 

@@ -15,11 +15,11 @@ from __future__ import annotations
 from typing import Any, Unpack
 
 from yarpy.errors import RemoteError
+from yarpy.wrap.array import Image
 from yarpy.wrap.decorator import Handle, Stream, activate, last, on, stream
 from yarpy.wrap.method import Changes
 from yarpy.wrap.middleware import Received
 from yarpy.wrap.setting import configure
-from yarpy.wrap.shape import Image
 
 __all__ = [
     "Handle",

@@ -13,17 +13,15 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin, get_type_hints
 
+from yarpy.wrap.array import Array, Image, Picture
 from yarpy.wrap.shape import (
     ANY,
-    Array,
     Choice,
     Either,
     Foreign,
-    Image,
     Maybe,
     Member,
     Nothing,
-    Picture,
     Record,
     Row,
     Scalar,

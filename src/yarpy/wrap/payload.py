@@ -21,8 +21,9 @@ from yarpy.data.image import Image
 from yarpy.data.jpeg import decode as decode_jpeg
 from yarpy.errors import DecodeError
 from yarpy.wrap import frame
+from yarpy.wrap.array import Picture
 from yarpy.wrap.middleware import Failure, Item, Received
-from yarpy.wrap.shape import ANY, Picture, Row, Scalar, Several, Shape
+from yarpy.wrap.shape import ANY, Row, Scalar, Several, Shape
 from yarpy.wrap.spelling import jpeg_of
 from yarpy.wrap.tree import TAG, Buffer, from_text, to_text
 

@@ -12,7 +12,6 @@ equal, whatever the hint; a frame carries the rest.
 
 from __future__ import annotations
 
-import dataclasses
 import enum
 from collections.abc import Mapping, Sequence
 from datetime import datetime
@@ -20,33 +19,11 @@ from typing import Any, Final
 
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
-from yarpy.data.image import Image as YarpImage
-from yarpy.data.pixel import pixel_of
 from yarpy.errors import DecodeError
 from yarpy.wire.message import Message
-from yarpy.wrap.tree import array_of
 
 NOT_NATIVE: Final = object()
 _INT64: Final = 1 << 63
-
-
-@dataclasses.dataclass(frozen=True)
-class Image:
-    """In `Annotated[np.ndarray, Image("bgr")]`: the array is a picture with these pixels.
-
-    code: a pixel code of YARP: "rgb", "bgr", "mono", "rgba", "mono16" ...
-    jpeg: the quality (1 to 100) with which it travels as a JPEG; None sends every pixel.
-    """
-
-    code: str = "rgb"
-    jpeg: int | None = None
-
-    def __post_init__(self) -> None:
-        pixel_of(self.code)
-        if self.jpeg is not None and not 1 <= self.jpeg <= 100:
-            raise ValueError(f"a JPEG has a quality of 1 to 100, not {self.jpeg}")
-        if self.jpeg is not None and self.code not in ("rgb", "bgr", "mono"):
-            raise ValueError(f'a JPEG holds "rgb", "bgr" or "mono", not "{self.code}"')
 
 
 class Shape:
@@ -268,102 +245,6 @@ class Record(Shape):
 
     def read(self, message: Message) -> Any:
         return message.as_(dict)
-
-
-class Array(Shape):
-    """An array of numpy, or of a library that shares memory with it."""
-
-    def __init__(self, module: str = "numpy") -> None:
-        self.module = module
-        self.name = "an array"
-
-    def dump(self, value: Any) -> Any:
-        array = value if type(value).__module__ == "numpy" else array_of(value)
-        if array is None or not hasattr(array, "shape"):
-            raise TypeError(f"expected {self.name}, got {shown(value)}")
-        return array
-
-    def load(self, plain: Any) -> Any:
-        import numpy as np
-
-        if isinstance(plain, (str, bytes, dict)) or plain is None:
-            raise self._wrong(plain)
-        try:
-            array = np.asarray(plain)
-        except (ValueError, TypeError) as error:
-            raise DecodeError(f"expected {self.name}: {error}") from error
-        if array.dtype.hasobject:
-            raise self._wrong(plain)
-        if self.module == "numpy":
-            return array
-        return _moved(array, self.module)
-
-    def native(self, plain: Any) -> Any:
-        """Arrays of which YARP has the type and the number of dimensions."""
-        if not plain.size:
-            return NOT_NATIVE
-        channels = plain.shape[2] if plain.ndim == 3 else 0
-        return plain if (plain.dtype.str, plain.ndim, channels) in _NATIVE_ARRAYS else NOT_NATIVE
-
-    def read(self, message: Message) -> Any:
-        import numpy as np
-
-        return message.as_(np.ndarray)
-
-
-_NATIVE_ARRAYS: Final = frozenset(
-    [(kind, 1, 0) for kind in ("<f8", "<f4", "<i8", "<i4", "<i2", "|i1")]
-    + [("<f8", 2, 0), ("|u1", 2, 0), ("<u2", 2, 0)]
-    + [("|u1", 3, 3), ("|u1", 3, 4), ("<f4", 3, 3)]
-)
-
-
-def _moved(array: Any, module: str) -> Any:
-    """An array of another library, which the program has imported: its hint names it."""
-    import importlib
-
-    library = importlib.import_module(module)
-    if module == "torch":
-        return library.from_numpy(array if array.flags.writeable else array.copy())
-    if module == "tensorflow":
-        return library.convert_to_tensor(array)
-    return library.asarray(array)
-
-
-class Picture(Shape):
-    """An array that is a picture."""
-
-    def __init__(self, image: Image) -> None:
-        self.image = image
-        self.name = f"a picture ({image.code})"
-
-    def dump(self, value: Any) -> Any:
-        import numpy as np
-
-        if isinstance(value, YarpImage):
-            return value.converted(self.image.code)
-        try:
-            return YarpImage(np.asarray(value), self.image.code)
-        except ValueError as error:
-            raise TypeError(f"expected {self.name}: {error}") from error
-
-    def load(self, plain: Any) -> Any:
-        import numpy as np
-
-        if isinstance(plain, YarpImage):
-            try:
-                return plain.converted(self.image.code).array
-            except ValueError as error:
-                raise DecodeError(f"expected {self.name}: {error}") from error
-        if isinstance(plain, np.ndarray) and plain.ndim in (2, 3):
-            return plain  # of a peer that says nothing of its pixels
-        raise self._wrong(plain)
-
-    def native(self, plain: Any) -> Any:
-        return plain
-
-    def read(self, message: Message) -> Any:
-        return message.as_(YarpImage)
 
 
 class Wired(Shape):

@@ -14,8 +14,9 @@ from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.wire.message import Message
 from yarpy.wrap import frame
+from yarpy.wrap.array import Picture
 from yarpy.wrap.middleware import Failure, Item, Received
-from yarpy.wrap.shape import NOT_NATIVE, Picture, Scalar, Shape, survives
+from yarpy.wrap.shape import NOT_NATIVE, Scalar, Shape, survives
 from yarpy.wrap.tree import Jpeg, from_text, to_text
 
 WORD: Final = "yarpy/1"

@@ -21,8 +21,9 @@ from yarpy.errors import DecodeError, LocalProtocolError, Timeout
 from yarpy.idl.rosmsg.message import Message as RosMessage
 from yarpy.ros.node import Node
 from yarpy.wire.message import Message
+from yarpy.wrap.array import Picture
 from yarpy.wrap.middleware import Answer, Client, Item, Received, Server, Way
-from yarpy.wrap.shape import Picture, Scalar, Shape, Wired
+from yarpy.wrap.shape import Scalar, Shape, Wired
 from yarpy.wrap.tree import from_text, to_text
 
 _TYPES = {str: "std_msgs/String", int: "std_msgs/Int64", float: "std_msgs/Float64"}
