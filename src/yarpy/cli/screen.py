@@ -116,8 +116,9 @@ def head(snapshot: Snapshot, view: View, seconds: float) -> str:
     rate = sum(flow.rate or 0.0 for flow in flows)
     speed = sum(flow.speed or 0.0 for flow in flows)
     sort = "name" if view.ports else view.sort
+    noun = "connection" if len(flows) == 1 else "connections"
     words = [
-        f"{answering} of {len(snapshot.ports)} ports answer, {len(flows)} connections",
+        f"{answering} of {len(snapshot.ports)} ports answer, {len(flows)} {noun}",
         f"{rate:.0f} msg/s, {speed / 1e6:.1f} MB/s",
         f"asked in {seconds * 1e3:.0f} ms",
         f"by {sort}{' reversed' if view.reverse else ''}",
