@@ -19,6 +19,7 @@ import yarpy
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
 LONGEST = 60
+LONGER = {"open_robot.py": 85}  # it is four programs in one
 
 # What an example that needs no server prints, in this order, among other things.
 ALONE = {
@@ -57,6 +58,7 @@ TOGETHER = {
     "mirroring.py",
     "module.py",
     "netcat.sh",
+    "open_robot.py",  # run in tests/interop/test_open_robot.py
     "rpc_client.py",
     "rpc_server.py",
     "talker.py",
@@ -100,7 +102,7 @@ def test_every_example_is_run_here():
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_it_is_short_and_says_how_to_run_it(path: Path):
     text = path.read_text()
-    assert len(text.splitlines()) <= LONGEST
+    assert len(text.splitlines()) <= LONGER.get(path.name, LONGEST)
     words = ast.get_docstring(ast.parse(text)) if path.suffix == ".py" else text
     assert words
     assert f"examples/{path.name}" in words

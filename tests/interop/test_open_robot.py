@@ -1,24 +1,32 @@
-"""The simulated robot, as it is, for programs that know nothing of YARP: pyzmq and mosquitto see
-its camera and its joints, and move its head."""
+"""The simulated robot, as it is, for programs that know nothing of YARP: pyzmq, mosquitto, a node
+of ROS 2 by others and a client of Zenoh see its camera and its joints, and move its head."""
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
 from support.patience import patience
 from support.port import free_block
+from support.process import Process
+from support.ros2_peer import ros2_router
+from support.wait import wait_until
 
 import yarpy
 from yarpy.carriers.payload import value_of
+from yarpy.devices import ControlBoard
 from yarpy.sim.robot import Robot, icub_head
 
 zmq = pytest.importorskip("zmq", reason="needs pyzmq (pip install pyzmq)")
 
+ROOT = Path(__file__).parents[2]
 WAIT = patience(10.0)
 
 
@@ -75,3 +83,26 @@ def test_its_head_is_moved(names: Any) -> None:
     words = ("-t", "ask", "-e", "answer", "-m", '["get", "axes"]')
     answer = mosquitto("mosquitto_rr", names, "/icubSim/head/rpc:i", *words)
     assert value_of(answer.strip())[:3] == ["is", "axes", 6]
+
+
+def test_all_at_once(tmp_path: Path) -> None:
+    """The page docs/open-robot.md: `yarpy sim`, the example, and what it prints."""
+    for needed in ("zenoh", "zenoh_ros2_sdk", "rosbags"):
+        pytest.importorskip(needed)
+    if not shutil.which("mosquitto_sub"):
+        pytest.skip("needs mosquitto-clients")
+    with ros2_router() as number, yarpy.NameServer(free_block(100)) as server:
+        clean = {k: v for k, v in os.environ.items() if not k.startswith(("YARP", "ZENOH", "ROS"))}
+        env = {**clean, **server.environment, "YARPY_ZENOH": f"tcp/127.0.0.1:{number}"}
+        env["HOME"] = str(tmp_path)
+        with Process([sys.executable, "-m", "yarpy", "sim"], env=env) as robot:
+            robot.wait_line("is ready")
+            with ControlBoard("/icubSim/head", names=server.client) as head:
+                head.position_move([2], [20.0])
+                wait_until(lambda: head.encoders() == [0, 0, 20, 0, 0, 0], WAIT)
+            with Process([sys.executable, str(ROOT / "examples/open_robot.py")], env=env) as seen:
+                assert seen.wait(6 * WAIT) == 0, seen.stderr
+    lines = seen.stdout.splitlines()
+    assert len(lines) == 8
+    assert "\n".join(lines) in (ROOT / "docs" / "open-robot.md").read_text()
+    assert "which YARP" not in robot.stderr, "topics of ROS 2 are not asked which YARP they are"

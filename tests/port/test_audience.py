@@ -37,6 +37,21 @@ def test_ports_of_yarpy_are_of_yarp_3(source: BufferedPort, names: LocalNames) -
     wait_until(lambda: not audience)
 
 
+def test_who_knows_no_yarp_is_not_asked_which(
+    source: BufferedPort, names: LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(
+        port_module.MessagePort, "is_yarp4", lambda port, target: asked.append(target)
+    )
+    audience = Audience(source)
+    with BufferedPort("/socket", names=names) as socket:
+        source.connect("/socket", "zmq+push")
+        wait_until(lambda: audience.write(lambda: ["3"], lambda: pytest.fail("not asked for")) == 1)
+        assert socket.read(WAIT).value == ["3"]
+    assert asked == []
+
+
 def test_each_reader_gets_its_own(
     source: BufferedPort, names: LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:

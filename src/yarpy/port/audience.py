@@ -71,7 +71,8 @@ class Audience:
             self._readers = {link: known.get(link) or self._reader(link) for link in links}
 
     def _reader(self, link: Outbound) -> _Reader:
-        if link.carrier.spelling != "binary" or link.carrier.broadcast:
+        carrier = link.carrier
+        if carrier.spelling != "binary" or carrier.broadcast or carrier.foreign:
             return _Reader(False)
         found = _Reader(None)
         name = f"yarpy which YARP {link.route.target}"
