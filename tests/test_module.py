@@ -75,10 +75,16 @@ def test_life_ends_when_update_says_so() -> None:
     assert module.said == ["configure", "close"]
 
 
-def test_configuration_that_fails_ends_it_before_it_begins() -> None:
+def test_configuration_that_fails_ends_it_before_it_begins(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     module = Counter()
     assert module.run(ResourceFinder(["--refuse"]), names=LocalNames()) == 1
     assert module.said == ["configure"]
+    module.name = ""
+    assert module.run(ResourceFinder(["--refuse"]), names=LocalNames()) == 1
+    told = [line.partition(" gives up")[0] for line in caplog.messages]
+    assert told == ["/counter", "Counter"]
 
 
 @pytest.mark.parametrize("word", ["quit", "exit", "bye"])

@@ -124,7 +124,9 @@ class Module:
         self.name = plain_text(resources.find("name") or self.name)
         with _signals(self.stop):
             if self.configure(resources) is False:
-                log.error("%s gives up: it could not be configured", self.name or type(self))
+                log.error(
+                    "%s gives up: it could not be configured", self.name or type(self).__name__
+                )
                 return 1
             with ExitStack() as ports:
                 ports.callback(self.close)

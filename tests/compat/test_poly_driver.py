@@ -244,6 +244,8 @@ def test_motors_without_hardware() -> None:
     assert pos.getAxes() == 4
     assert pos.positionMove(1, 500.0) and encoders.getEncoder(1) == 180.0
     assert pos.checkMotionDone()
+    with pytest.raises(TypeError, match="a joint is a number, not 'elbow'"):
+        pos.positionMove("elbow", 5.0)
     modes = driver.viewIControlMode()
     assert modes.setControlMode(0, yarp.VOCAB_CM_FORCE_IDLE)
     assert modes.getControlMode(0) == yarp.VOCAB_CM_IDLE
@@ -264,6 +266,10 @@ def test_what_cannot_be_opened(capfd: pytest.CaptureFixture[str]) -> None:
         assert "yarpy-compat has RemoteFrameGrabber" in capfd.readouterr().err
         assert not yarp.PolyDriver("(device remote_controlboard) (remote /none)").isValid()
         assert '"/none' in capfd.readouterr().err
+        assert not yarp.PolyDriver("(device remote_controlboard) (local /me)").isValid()
+        assert 'the option "remote"' in capfd.readouterr().err
+        with pytest.raises(TypeError, match="opened by its options, a Property, not 3"):
+            yarp.PolyDriver(3)
         assert not yarp.PolyDriver("(device controlBoard_nws_yarp)").isValid()
         assert yarp.PolyDriver().viewIEncoders() is None
         with pytest.raises(AttributeError, match=r"no device of yarpy-compat has .*viewIGaze"):

@@ -95,3 +95,10 @@ def test_status_of_navigation_is_a_vocab() -> None:
     assert yarp.navigation_status_idle == yarpy.Vocab("idle").code
     assert yarp.Vocab_decode(yarp.navigation_status_goal_reached) == "rech"
     assert yarp.Vocab_encode("idle") == yarp.Vocab.encode("idle") == yarp.navigation_status_idle
+
+
+def test_wrong_index_of_a_bottle_says_so() -> None:
+    import yarp
+
+    with pytest.raises(TypeError, match="an index is an integer, not 'x'"):
+        yarp.Bottle("1 2").get("x")

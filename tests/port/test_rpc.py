@@ -120,16 +120,20 @@ def test_answer_may_be_anything_or_nothing(names: LocalNames) -> None:
         assert list(client.call("x", timeout=5)) == [1.5]
 
 
-def test_handler_may_answer_itself(names: LocalNames) -> None:
+@pytest.mark.parametrize(("returned", "told"), [(["ignored"], True), (None, False)])
+def test_handler_may_answer_itself(
+    returned: object, told: bool, names: LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
     def handle(message: Message) -> object:
         message.reply(["mine"])
-        return ["ignored"]
+        return returned
 
     with (
         RpcServer("/server", handle, names=names),
         RpcClient("/server", names=names) as client,
     ):
         assert [client.call("x", timeout=5) for _ in range(3)] == [["mine"]] * 3
+    assert ("does not wait for a reply" in caplog.text) is told
 
 
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "unix_stream", "local", "text_ack"])

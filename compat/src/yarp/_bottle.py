@@ -67,7 +67,10 @@ class Bottle(Portable, Searchable):
         """The element at an index; a null Value if there is none."""
         native = self._native
         value = _blank(Value)
-        value._native = native[index] if 0 <= index < len(native) else MISSING
+        try:
+            value._native = native[index] if 0 <= index < len(native) else MISSING
+        except TypeError:
+            raise TypeError(f"an index is an integer, not {index!r}") from None
         return value
 
     def pop(self) -> Value:

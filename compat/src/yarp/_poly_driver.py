@@ -68,6 +68,8 @@ class PolyDriver:
     def open(self, config: Searchable | str) -> bool:
         """Open the device that the options name; False if that fails."""
         self.close()
+        if not isinstance(config, (str, Searchable, Value)):
+            raise TypeError(f"a device is opened by its options, a Property, not {config!r:.40}")
         if isinstance(config, str):
             self._options = Property(config if config.startswith("(") else f"(device {config})")
         else:
@@ -267,9 +269,14 @@ class PolyDriver:
     def _text(self, key: str, default: str = "") -> str:
         return self._options.find(key).asString() or default
 
+    def _remote(self) -> str:
+        if not self._text("remote"):
+            raise yarpy.AddressError('the option "remote" says whose it is: (remote /icub/head)')
+        return self._text("remote")
+
     def _open_board(self) -> None:
         self._device = devices.ControlBoard(
-            self._text("remote"),
+            self._remote(),
             self._text("local"),
             carrier=self._text("carrier", "tcp"),
             names=_names.names(),
@@ -277,7 +284,7 @@ class PolyDriver:
 
     def _open_camera(self) -> None:
         self._device = devices.FrameGrabber(
-            self._text("remote"),
+            self._remote(),
             self._text("local"),
             carrier=self._text("carrier", "tcp"),
             names=_names.names(),
@@ -285,7 +292,7 @@ class PolyDriver:
 
     def _open_sensors(self) -> None:
         self._device = devices.MultiSensor(
-            self._text("remote"),
+            self._remote(),
             self._text("local"),
             carrier=self._text("carrier", "tcp"),
             timeout=self._options.find("timeout").asFloat64() or 0.5,

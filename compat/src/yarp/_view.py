@@ -107,6 +107,10 @@ class View:
 
 
 def _joint(joint: int, count: int) -> int:
-    if not 0 <= joint < count:
+    try:
+        inside = 0 <= joint < count
+    except TypeError:
+        raise TypeError(f"a joint is a number, not {joint!r}") from None
+    if not inside:
         raise IndexError(f"no joint {joint} (there are 0 to {count - 1})")
     return joint

@@ -89,7 +89,8 @@ class RpcServer(BasePort):
             reply = Bottle([Vocab("fail"), f"{type(error).__name__}: {error}"])
         answer = Bottle() if reply is None else reply
         self._forward(message, answer)
-        if message.answer is not None:
+        # A handler that has answered by `message.reply` returns None: there is nothing left to say.
+        if message.answer is not None and (reply is not None or message.wants_reply):
             try:
                 message.reply(answer)
             except UNSENDABLE as error:

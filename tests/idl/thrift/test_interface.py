@@ -61,7 +61,7 @@ def test_types_of_cpp() -> None:
         ("struct A { 1: Pont p }\nstruct Point {}", 'f:1: no type "Pont": did you mean "Point"?'),
         ("struct A {}\n\nenum A { B }", 'f:3: "A" is there already, in line 1'),
         ("struct A { 1: i32 a, 2: i32 a }", 'f:1: "a" is there twice in A'),
-        ("struct A { 1: i32 a, 1: i32 b }", '"b" and "a" in A have one number, 1'),
+        ("struct A { 1: i32 a, 1: i32 b }", '"b" and "a" in A have the same number, 1'),
         ("struct A { 1: A a }", 'f:1: "A" contains itself: put it into a list'),
         ("struct A { 1: B b }\nstruct B { 1: A a }", "contains itself"),
         ("typedef b a\ntypedef a b", "is defined by itself"),

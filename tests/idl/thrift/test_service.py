@@ -72,7 +72,7 @@ def test_people_type_lines(server: Any) -> None:
 def test_people_get_errors_that_help(server: Any) -> None:
     assert reply(server, "add 1") == '[fail] "add.b is missing"'
     assert reply(server, "add 1 x") == "[fail] \"add.b: expected an integer (i32), got 'x'\""
-    assert "left over; it takes a, b" in reply(server, "add 1 2 3")
+    assert "too many values: 8 bytes are left over; it takes a, b" in reply(server, "add 1 2 3")
     assert "Color is one of RED, GREEN, DARK_BLUE, not 'PINK'" in reply(server, "r_enum PINK")
     assert 'no method \\"nope\\": there are add, r_i8' in reply(server, "nope 1")
     assert "300 does not fit in i8" in reply(server, "r_i8 300")

@@ -116,7 +116,7 @@ def check(given: Transform) -> None:
     if not 1e-9 < _length(given) < 1e100:
         raise ValueError("a rotation is a quaternion, x y z w, that is not 0")
     if not given.source or not given.target or given.source == given.target:
-        raise ValueError("a frame and its parent have two names")
+        raise ValueError("a frame and its parent need names, and not the same")
 
 
 def pose(known: dict[str, Transform], frame: str, reference: str) -> NDArray[Any]:

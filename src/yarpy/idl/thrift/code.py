@@ -297,7 +297,8 @@ class Code:
         if kind.letter.isupper():
             low, high = 0, 1 << bits
         if not low <= number < high:
-            raise self.interface.wrong(line, f"{what} ({number}) does not fit in {kind}")
+            shown = what if what == str(number) else f"{what} ({number})"
+            raise self.interface.wrong(line, f"{shown} does not fit in {kind}")
 
     def _misfit(self, wanted: str, value: Any, line: int) -> DecodeError:
         shown = {Pairs: "a map", list: "a list"}.get(type(value)) or f"{value!r:.40}"

@@ -100,7 +100,7 @@ def load(path: str, parts: Sequence[Part], defaults: Sequence[Callable[[], Any]]
 def surplus(path: str, parts: Sequence[Part], left: int) -> DecodeError:
     names = ", ".join(part.name for part in parts)
     what = f"it takes {names}" if names else "it takes nothing"
-    return DecodeError(f"{path}: {left} bytes are left over; {what}")
+    return DecodeError(f"{path}: too many values: {left} bytes are left over; {what}")
 
 
 class Other(Exception):

@@ -299,7 +299,7 @@ def _check_fields(interface: Interface, fields: tuple[FieldText, ...], where: st
             if each.number in numbers:
                 raise interface.wrong(
                     each.line,
-                    f'"{each.name}" and "{numbers[each.number]}" {where} have one number, '
+                    f'"{each.name}" and "{numbers[each.number]}" {where} have the same number, '
                     f"{each.number}",
                 )
             numbers[each.number] = each.name
