@@ -19,6 +19,7 @@ from yarpy.carriers.http.request import (
     read_intent,
     substitute,
 )
+from yarpy.data import codec
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
@@ -197,6 +198,20 @@ def test_fields() -> None:
 
 def test_substitution() -> None:
     assert substitute("$a$b $ $c.", {"a": "1", "b": "$a"}) == "1$a  ."
+
+
+def test_arguments_in_quotes_stay_one_text() -> None:
+    said = 'C:\\new "$b"\n\r\0 \\'
+    assert codec.decode_text(substitute('say "$a" "$b" $b', {"a": said, "b": "1 2"})) == [
+        "say",
+        said,
+        "1 2",
+        1,
+        2,
+    ]
+    assert substitute('"$a', {"a": '"'}) == '""'
+    with pytest.raises(DecodeError, match="expand to more than"):
+        substitute('"$a"', {"a": '"' * 600_000})
 
 
 @given(

@@ -38,6 +38,7 @@ def test_forms_send_what_methods_take(capt: ModuleType, server: Any) -> None:
     for method, values, expected in (
         ("add", {"a": "1", "b": "2"}, "3"),
         ("r_string", {"v": "two words"}, '"two words"'),
+        ("r_string", {"v": 'a "b" \\c'}, r'"a \"b\" \\c"'),
         ("r_bool", {"v": "1"}, "[ok]"),
         ("r_enum", {"v": "7"}, "7"),
         ("r_struct", {"v_x": "4", "v_y": "5"}, "4 5"),

@@ -46,6 +46,8 @@ _RIGHTS: Final = {
 }
 
 _VARIABLE = re.compile(r"\$([A-Za-z0-9_]*)")
+#: How text within quotes spells what would end them, or change within them.
+_IN_QUOTES = str.maketrans({"\\": r"\\", '"': r"\"", "\n": r"\n", "\r": r"\r", "\0": r"\0"})
 _ABSOLUTE = re.compile(r"[A-Za-z][A-Za-z0-9+.\-]*+://[^/?#]*+")
 # What browsers and crawlers request automatically; not a message to a robot.
 _HABITS: Final = ("apple-touch-icon", ".well-known/", "robots.txt", "sitemap")
@@ -186,12 +188,15 @@ def read_fields(query: str) -> dict[str, str]:
 def substitute(text: str, fields: Mapping[str, str]) -> str:
     """`text` with each `$name` replaced by the argument of that name, or by nothing.
 
+    `"$name"` in quotes stays one text, whatever quotes and backslashes the argument has.
     DecodeError if that would add more than MAX_FILLED characters."""
     left = MAX_FILLED
 
     def value(match: re.Match[str]) -> str:
         nonlocal left
         found = fields.get(match[1], "")
+        if text[match.start() - 1 : match.start()] == text[match.end() : match.end() + 1] == '"':
+            found = found[: MAX_FILLED + 1].translate(_IN_QUOTES)
         left -= len(found)
         if left < 0:  # before it is built: many short names may repeat a long argument
             raise DecodeError(f"arguments that expand to more than {MAX_FILLED} characters")
