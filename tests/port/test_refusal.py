@@ -54,6 +54,12 @@ def test_rows(error: YarpError, line: str, kind: type[YarpError]) -> None:
     assert str(meant) == f"this was refused: {line}"
 
 
+@pytest.mark.parametrize("kind", [AddressError, UnknownName, LinkClosed])
+def test_targets_that_are_no_ports_get_the_reason(kind: type[YarpError]) -> None:
+    line = refusal.line(kind("no QoS"), "ros2+qos.fast://a")
+    assert line.endswith(" connect to ros2+qos.fast://a: no QoS")
+
+
 @pytest.mark.parametrize("line", ["RPC output already connected", "", "something else"])
 def test_other_lines_are_reasons_of_a_port(line: str) -> None:
     assert type(refusal.error(line, "this")) is NotAllowed

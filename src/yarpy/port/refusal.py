@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from yarpy.contact import is_medium
 from yarpy.errors import (
     AccessRefused,
     AddressError,
@@ -49,6 +50,8 @@ NO_HTTP: Final = (
 def line(error: YarpError, to: str) -> str:
     """What to answer when connecting to `to` fails with `error`. The first row that fits counts."""
     form = next(form for kind, form, _ in _TABLE if isinstance(error, kind))
+    if is_medium(to.partition(":")[0]) and not form.endswith("{why}"):
+        form += ": {why}"  # C++ YARP knows no such targets, nor lines for them
     return form.format(to=to, why=error)
 
 
