@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from yarpy.idl.thrift import load
+
 POSE = """\
 # of a turtle
 float32 x
@@ -146,6 +148,21 @@ def test_thrift_is_written(here, tmp_path, monkeypatch):
         cwd=out, capture_output=True, text=True, check=True, timeout=50,
     )  # fmt: skip
     assert done.stdout == "Point(x=3) False\n"
+
+
+def test_no_module_that_is_written_hides_one_of_python(here, tmp_path):
+    (tmp_path / "types.thrift").write_text("struct Point { 1: i32 x }")
+    arm = tmp_path / "arm.thrift"
+    arm.write_text('include "types.thrift"\nservice Arm { types.Point get() }')
+    out = tmp_path / "out"
+    said = here("idl", "thrift", str(arm), "--out", str(out))
+    assert said.out == f"{out}/types_.py, {out}/types_.pyi\n{out}/arm.py, {out}/arm.pyi\n"
+    done = subprocess.run(
+        [sys.executable, "-c", "import arm; print(arm.types.Point(3))"],
+        cwd=out, capture_output=True, text=True, check=True, timeout=50,
+    )  # fmt: skip
+    assert done.stdout == "Point(x=3)\n"
+    assert load(arm).types.Point(3).x == 3
 
 
 def test_wrong_thrift_files_are_named_with_the_line(here, tmp_path):

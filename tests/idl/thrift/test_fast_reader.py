@@ -22,6 +22,8 @@ def test_missing_and_surplus_values() -> None:
     with pytest.raises(DecodeError, match="16 bytes are left over; it takes nothing"):
         load("f", [])(b"\0" * 24, 8)
     assert "it takes a" in str(surplus("f", [Part("a", kinds.I32)], 3))
+    result = surplus("the result of f", [Part("", kinds.I32)], 8)
+    assert str(result) == "the result of f: too many values: 8 bytes are left over"
 
 
 def test_what_cpp_would_not_write_is_read_all_the_same() -> None:

@@ -2,7 +2,7 @@
 
 import keyword
 
-from yarpy.idl.thrift.word import ENUM, PYTHON, SERVICE, STRUCT, attribute, original
+from yarpy.idl.thrift.word import ENUM, MODULES, PYTHON, SERVICE, STRUCT, attribute, original
 
 
 def test_there_and_back() -> None:
@@ -15,4 +15,5 @@ def test_there_and_back() -> None:
 def test_only_what_is_needed_is_changed() -> None:
     assert attribute("from") == "from_" and attribute("frame") == "frame"
     assert attribute("to_dict", STRUCT) == "to_dict_" and attribute("to_dict") == "to_dict"
+    assert attribute("types", MODULES) == "types_" and attribute("camera", MODULES) == "camera"
     assert attribute("close", SERVICE) == "close_" and attribute("name", ENUM) == "name_"

@@ -98,9 +98,10 @@ def load(path: str, parts: Sequence[Part], defaults: Sequence[Callable[[], Any]]
 
 
 def surplus(path: str, parts: Sequence[Part], left: int) -> DecodeError:
-    names = ", ".join(part.name for part in parts)
-    what = f"it takes {names}" if names else "it takes nothing"
-    return DecodeError(f"{path}: too many values: {left} bytes are left over; {what}")
+    why = f"{path}: too many values: {left} bytes are left over"
+    if parts and not parts[0].name:  # a result
+        return DecodeError(why)
+    return DecodeError(f"{why}; it takes {', '.join(part.name for part in parts) or 'nothing'}")
 
 
 class Other(Exception):

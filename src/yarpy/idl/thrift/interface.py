@@ -29,7 +29,7 @@ from yarpy.idl.thrift.document import (
 )
 from yarpy.idl.thrift.kind import BINARY, BOOL, DOUBLE, TEXT, External, Scalar
 from yarpy.idl.thrift.parse import parse
-from yarpy.idl.thrift.word import PYTHON
+from yarpy.idl.thrift.word import MODULES, PYTHON, attribute
 from yarpy.log import logger
 
 log = logger("yarpy.idl")
@@ -80,7 +80,7 @@ class Interface:
         """What a Python module of it is called. DecodeError if none can be."""
         if not self.name.isidentifier() or self.name in PYTHON:
             raise DecodeError(f"{self.document.file}: no module is called {self.name}: rename it")
-        return self.name
+        return attribute(self.name, MODULES)
 
     def all(self) -> list[Interface]:
         """Those that it includes, and it."""

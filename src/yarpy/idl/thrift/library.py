@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Final
 
 from yarpy.idl.thrift.interface import Interface, read_interface, text_interface
-from yarpy.idl.thrift.module import python
+from yarpy.idl.thrift.module import import_line, python
 
 _Stamp = tuple[tuple[str, int, int], ...]
 
@@ -53,7 +53,7 @@ def run(interface: Interface, known: dict[int, ModuleType]) -> ModuleType:
     text = python(interface)
     lines = text.split("\n")
     for name in interface.includes:  # they are there already, wherever they came from
-        lines = ["" if line == f"import {name}" else line for line in lines]
+        lines = ["" if line == import_line(name) else line for line in lines]
     made = ModuleType(interface.name, f"The interface {interface.name}.")
     made.__file__ = str(interface.path) if interface.path is not None else None
     space = vars(made)

@@ -26,7 +26,7 @@ from yarpy.idl.thrift.document import (
     TypedefText,
 )
 from yarpy.idl.thrift.interface import Interface, enum_base, external
-from yarpy.idl.thrift.word import ENUM, SERVICE, STRUCT, TYPES, attribute
+from yarpy.idl.thrift.word import ENUM, MODULES, SERVICE, STRUCT, TYPES, attribute
 
 #: constants of this name say which version of an interface it is
 VERSION: Final = "protocol_version"
@@ -40,6 +40,12 @@ def python(interface: Interface) -> str:
 def stubs(interface: Interface) -> str:
     """The text of its `.pyi` file."""
     return _Module(interface, stubs=True).text()
+
+
+def import_line(name: str) -> str:
+    """The line for a file that is included."""
+    module = attribute(name, MODULES)
+    return f"import {module}" + (f" as {name}" if module != name else "")
 
 
 def summary(interface: Interface) -> str:
@@ -105,7 +111,7 @@ class _Module(Code):
             + (f" as {self.thrift}" if self.thrift != "thrift" else "")
         )
         groups = [head, "\n".join(imports), "\n".join(third)]
-        groups.append("\n".join(f"import {name}" for name in self.interface.includes))
+        groups.append("\n".join(import_line(name) for name in self.interface.includes))
         joined = "\n\n".join(group.strip("\n") for group in groups if group)
         body, before = "", ""
         for block in blocks:

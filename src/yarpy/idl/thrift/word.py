@@ -9,12 +9,15 @@ Python belongs to one of Thrift.
 from __future__ import annotations
 
 import keyword
+import sys
 from collections.abc import Collection
 from enum import IntEnum
 from typing import Final
 
 #: no name of a type, a constant or an argument
 PYTHON: Final = frozenset((*keyword.kwlist, "self"))
+#: no name of a module in a file: it would hide Python's own `types`, and nothing would start
+MODULES: Final = sys.stdlib_module_names | {"numpy", "yarpy"}
 #: no name of a type or a constant: what a module of classes is written with
 TYPES: Final = PYTHON | {
     *("str", "int", "float", "bool", "bytes", "list", "dict", "set", "tuple", "type", "object"),
