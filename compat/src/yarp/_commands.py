@@ -61,7 +61,9 @@ def translate_view(arguments: Sequence[str]) -> list[str]:
     if out:
         found += ["--out", out]
     return found + _rest(
-        options, {"name", "PortName", "remote", "connect", "out", "OutPortName"}, {"carrier"}
+        options,
+        {"name", "PortName", "remote", "connect", "out", "OutPortName"},
+        {"carrier", "quality", "rate"},
     )
 
 
@@ -99,7 +101,9 @@ def translate_thrift(arguments: Sequence[str]) -> list[str]:
                 raise Wrong(f'no generator "{language}": this one writes Python (--gen py)')
         elif word in ("-o", "-out", "--out"):
             found += ["--out", next(words, ".")]
-        elif word == "-I":
+        elif word == "--check":
+            found.append(word)
+        elif word in ("-I", "--folder"):
             found += ["--folder", next(words, ".")]
         elif word in ("-r", "-v", "--verbose", "-recurse", "--recurse", "-strict", "-debug"):
             continue
@@ -221,8 +225,8 @@ def _rest(options: Mapping[str, Any], done: set[str], same: set[str]) -> list[st
             found += [f"--{key}", *_words(options, key)[:1]]
         elif key in _WINDOW:
             print(f"note: --{key} means nothing in a browser", file=sys.stderr)
-        elif key == "help":
-            found.append("--help")
+        elif key in ("help", "no-browser"):
+            found.append(f"--{key}")
         else:
             raise Wrong(f'no option "--{key}"')
     return found
