@@ -63,6 +63,7 @@ LOOK: Final = 2.0  # seconds to find out why a router could not be reached
 LAST: Final = 0.05  # seconds in which callbacks that had begun come to their end
 FAREWELL: Final = 2.0  # seconds for threads to come back from Zenoh when the program ends
 REFUSAL: Final = 0.5  # seconds within which a router says that it refuses a certificate
+JOINING: Final = 3.0  # seconds until a router says that it is alone
 # How often a router that went away is looked for: milliseconds at first, at most, and the factor.
 RETRY: Final = {"period_init_ms": 500, "period_max_ms": 1000, "period_increase_factor": 1.5}
 
@@ -358,6 +359,18 @@ def open_router(
             f"no router at {', '.join(where) or file}: {_plain(error)}; choose another address, or "
             "end what listens there"
         ) from error
+
+
+def unjoined(router: zenoh.Session, others: Sequence[str]) -> list[str]:
+    """Why a router is joined with none of `others`, which it goes on to dial: a line for each.
+    Nothing, if it is soon joined with any."""
+    until = time.monotonic() + JOINING
+    while others and not router.info.routers_zid():
+        if time.monotonic() > until:
+            where = [endpoint(one) for one in others]
+            return [f"not joined with {one} yet: {_reason(one)}" for one in where]
+        time.sleep(0.02)
+    return []
 
 
 def _check_free(where: str) -> None:

@@ -39,3 +39,16 @@ def test_names_and_connections_without_a_server(lone: CommandLine) -> None:
         assert twice.returncode == 1 and "another address" in twice.stderr
         router.signal(signal.SIGTERM)
         assert router.wait() == 0
+
+
+def test_another_router_that_does_not_answer_is_named(lone: CommandLine) -> None:
+    here, there = (f"tcp/127.0.0.1:{free_port()}" for _ in range(2))
+    with lone.start("router", here, "--connect", there) as router:
+        router.wait_line(f"Zenoh router at {here}, joins {there}")
+        router.wait_line(f"not joined with {there} yet: Connection refused", stream="err")
+        with lone.start("router", there, "--connect", here) as other:
+            other.wait_line("Zenoh router at")
+            lone.environment |= {"YARPY_SERVER": "zenoh", "YARPY_ZENOH": there}
+            assert lone.run("name", "list").returncode == 0
+            other.signal(signal.SIGTERM)
+            assert other.wait() == 0

@@ -18,6 +18,7 @@ import click
 
 from yarpy.cli.output import print_line
 from yarpy.cli.signals import Interrupted
+from yarpy.cli.stderr import warn
 
 
 @click.command()
@@ -26,14 +27,16 @@ from yarpy.cli.signals import Interrupted
 @click.option("--config", "file", metavar="FILE", help="A configuration of Zenoh.")
 def command(where: tuple[str, ...], connect: tuple[str, ...], file: str | None) -> int:
     """Run a router of Zenoh, at WHERE: `tcp/0.0.0.0:7447`; else for this computer alone."""
-    from yarpy.transports.zenoh import HERE, close, open_router
+    from yarpy.transports.zenoh import HERE, close, open_router, unjoined
 
     router = open_router(where, connect, file or "")
     try:
         told = ", ".join(where) or file or f"tcp/{HERE}"
-        print_line(f"Zenoh router at {told}" + "".join(f", joined with {one}" for one in connect))
+        print_line(f"Zenoh router at {told}" + "".join(f", joins {one}" for one in connect))
         if not where and not file:
             print_line("for programs of this computer; for others: yarpy router tcp/0.0.0.0:7447")
+        for line in unjoined(router, connect):
+            warn(line)
         _wait()
     except Interrupted:
         return 0
