@@ -26,6 +26,8 @@ from support.port import free_block
 from support.process import Process
 
 FIRST = 10000  # the port number of the name server in the text
+# Pages that other name servers of this computer, such as those of other tests, would be seen on.
+ALONE = ("doctor.md",)
 SIZE = 100
 PATIENCE = patience(15.0)  # seconds for a command of a session
 
@@ -104,6 +106,7 @@ def run(page: Path, directory: Path, port: int, cpp: Mapping[str, str] | None = 
             "PYTHONPATH": str(Path(__file__).parents[1]),
             "YARP_CONFIG_HOME": str(directory / "config"),
             "YARPY_SERVER": f"127.0.0.1:{port}",
+            **({"YARP_PORT_RANGE": str(port)} if page.name in ALONE else {}),
             "PAGE_PORT": str(port),
             "PAGE_CPP": json.dumps(cpp),
         },

@@ -111,9 +111,9 @@ def root(ctx: click.Context, version: bool) -> int:
     `yarpy COMMAND --help` explains a command.
     """
     if ctx.invoked_subcommand is None:
-        from yarpy import __version__
+        from yarpy.cli.verbs.version import text
 
-        click.echo(f"yarpy version {__version__}" if version else ctx.get_help())
+        click.echo(text() if version else ctx.get_help())
     return 0
 
 

@@ -2,12 +2,15 @@
 
 import json
 
+from support.port import free_port
+
 import yarpy
 from yarpy.cli.verbs.doctor import told
 from yarpy.network.doctor import Finding
 
 
-def test_a_fault_and_what_mends_it(here, names):
+def test_a_fault_and_what_mends_it(here, names, monkeypatch):
+    monkeypatch.setenv("YARP_PORT_RANGE", str(free_port()))
     with yarpy.Port("/doc/a", names=names), yarpy.Port("/doc/b", names=names):
         said = here("doctor", "/doc/a", "/doc/b")
         assert said.code == 1
@@ -22,7 +25,8 @@ def test_a_fault_and_what_mends_it(here, names):
         assert (found["probe"], found["level"]) == ("not-connected", "fault")
 
 
-def test_a_healthy_network(here, names):
+def test_a_healthy_network(here, names, monkeypatch):
+    monkeypatch.setenv("YARP_PORT_RANGE", str(free_port()))  # where others look for servers, too
     with yarpy.Port("/doc/a", names=names):
         said = here("doctor")
         assert (said.code, said.out) == (0, "nothing is wrong (2 ports answer)\n")

@@ -7,11 +7,15 @@ import click
 import yarpy
 
 
-@click.command()
-def command() -> None:
-    """Print the version, and whether the core is compiled."""
+def text() -> str:
+    """The version, and how its core runs."""
     from yarpy.wire import stream
 
     compiled = not (stream.__file__ or "").endswith(".py")
-    core = "compiled core" if compiled else "pure Python"
-    click.echo(f"yarpy version {yarpy.__version__} ({core})")
+    return f"yarpy version {yarpy.__version__} ({'compiled core' if compiled else 'pure Python'})"
+
+
+@click.command()
+def command() -> None:
+    """Print the version, and whether the core is compiled."""
+    click.echo(text())
