@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import threading
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -185,3 +186,18 @@ def test_a_thousand_ports(browser: Browser, names: yarpy.LocalNames) -> None:
         assert 0 < rows < 20
         shown._thread = None
         shown.close()
+
+
+def test_a_hundred_pages_cost_the_ports_no_more_than_one(url: str, out: yarpy.Port) -> None:
+    answers: list[Any] = []
+    pages = [
+        threading.Thread(target=lambda: answers.append(get(f"{url}/network"))) for _ in range(100)
+    ]
+    for page in pages:
+        page.start()
+    for page in pages:
+        page.join()
+    assert len(answers) == 100
+    wait_until(lambda: get(f"{url}/network?since=-1").get("ports"))
+    asking = [one for one in threading.enumerate() if one.name == "yarpy dash"]
+    assert len(asking) == 1  # the one that asks ports, for all of them
