@@ -104,7 +104,7 @@ def test_long_names_are_cut_in_their_middle():
 
 def test_the_head_says_what_asking_costs():
     assert head(snapshot(), View(paused=True), 0.012) == (
-        "3 of 3 ports answer, 3 connections | 3 msg/s, 3.0 MB/s | asked in 12 ms | by rate | paused"
+        "3 of 3 ports answer, 3 connections | 3 msg/s, 3.0 MB/s | by rate | paused | asked in 12 ms"
     )
 
 

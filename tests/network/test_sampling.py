@@ -72,6 +72,22 @@ def test_rates_are_counted_between_two_looks(names: yarpy.LocalNames) -> None:
         wait_until(lambda: not [link for link in b._hub.inputs if link.route.source == "admin"])
 
 
+def test_messages_of_a_connection_that_ends_are_no_rate(names: yarpy.LocalNames) -> None:
+    with yarpy.Port("/a", names=names) as a, yarpy.BufferedPort("/b", names=names):
+        a.write([1.5])  # while nobody listens: counted as sent to nobody
+        a.connect("/b")
+        for number in range(20):
+            a.write([number], wait=True)
+        with Sampler(names) as sampler:
+            assert sampler.look().flows["/a", ""].measured("messages") == 0
+            a.disconnect("/b")
+            wait_until(lambda: not a.outputs)
+            past = sampler.look().flows["/a", ""]
+            again = sampler.look().flows["/a", ""]
+        assert past.measured("messages") == 20
+        assert (past.rate, past.speed, again.rate) == (None, None, None)
+
+
 def test_a_port_that_comes_back_is_asked_again(names: yarpy.LocalNames) -> None:
     with Sampler(names, ["/a", "/nobody"]) as sampler:
         for _ in range(2):

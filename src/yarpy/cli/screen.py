@@ -120,11 +120,11 @@ def head(snapshot: Snapshot, view: View, seconds: float) -> str:
     words = [
         f"{answering} of {len(snapshot.ports)} ports answer, {len(flows)} {noun}",
         f"{rate:.0f} msg/s, {speed / 1e6:.1f} MB/s",
-        f"asked in {seconds * 1e3:.0f} ms",
         f"by {sort}{' reversed' if view.reverse else ''}",
     ]
     if view.paused:
         words.append("paused")
+    words.append(f"asked in {seconds * 1e3:.0f} ms")  # what a narrow screen may cut
     return readable(" | ".join(words))
 
 

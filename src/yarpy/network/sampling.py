@@ -217,8 +217,8 @@ class Sampler:
         for key, flow in snapshot.flows.items():
             messages, size = flow.measured("messages"), flow.measured("bytes")
             flow.rate = flow.measured("rate")
-            if messages is None or size is None:
-                continue
+            if messages is None or size is None or not flow.target:
+                continue  # to nobody: grows by all that a connection had, when that one ends
             self._counted[key] = now, messages, size
             if key in before and now > before[key][0]:
                 passed = now - before[key][0]

@@ -17,6 +17,7 @@ from support.port import free_port
 import yarpy
 from yarpy import registry
 from yarpy.network.doctor import Case, Finding, examine
+from yarpy.network.traffic import End, Flow
 
 WINDOW = patience(0.3)  # seconds between two looks
 PAGE = Path(__file__).parents[3] / "docs" / "doctor.md"
@@ -119,3 +120,28 @@ def test_a_family_that_fails_costs_no_other(monkeypatch: pytest.MonkeyPatch) -> 
     assert names == ["before", "again", "first", "unfinished", "unfinished"]
     assert "ZeroDivisionError: by mistake" in found[3].verdict
     assert "takes longer than 0.2 s" in found[4].verdict
+
+
+# --- what is advised is pasted into a shell
+
+
+def cables(case: Case) -> Iterator[Finding]:
+    for name in ("/x;id", "/x;id>f", "/a b", "/plain"):
+        yield Finding("loose", name, f'"{name}" is loose', f"`yarpy clean {name}`")
+
+
+def test_names_are_quoted_in_commands_that_a_shell_would_misread(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    families = registry.Registry("findings", {})
+    monkeypatch.setattr(registry, "findings", families)
+    families.add("cables", cables)
+    flow = Flow("/x;id", "/x;id>f", End())
+    found = examine(made_up(flow, wanted=("/a b", "/plain")))
+    assert [one.verdict for one in found][:2] == ['"/x;id" is loose', '"/x;id>f" is loose']
+    assert [one.advice for one in found] == [
+        "`yarpy clean '/x;id'`",
+        "`yarpy clean '/x;id>f'`",
+        "`yarpy clean '/a b'`",
+        "`yarpy clean /plain`",
+    ]

@@ -235,6 +235,7 @@ def test_contradictions_and_rules_that_match_nothing_are_told_once() -> None:
     steps = network.run(30)
     assert count(steps, "critical and best effort (lines 1 and 4") == 1
     assert count(steps, "line 6 (/nobody/*) matches no connection") == 1
+    assert count(steps, "matches no connection") == 1, "those at odds do match one"
     assert network.settings == {}
 
 

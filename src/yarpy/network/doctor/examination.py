@@ -1,13 +1,17 @@
 """Examination: all families of findings look at a case, one after the other.
 
-Rules: each has a time limit; one that fails or hangs costs its own findings, and is named.
+Rules: each has a time limit; one that fails or hangs costs its own findings, and is named. Names
+that a shell would take for more than a word are quoted in what is advised, which will be pasted.
 """
 
 from __future__ import annotations
 
 import queue
+import re
+import shlex
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Any, Final
 
 from yarpy import registry
@@ -24,7 +28,8 @@ def examine(case: Case, patience: float = PATIENCE) -> list[Finding]:
     found: list[Finding] = []
     for name in registry.findings.names():
         found += _of_family(name, case, patience)
-    unique = dict.fromkeys(found)
+    names = {name for ends in case.now.flows for name in ends}.union(case.contacts, case.wanted)
+    unique = dict.fromkeys(_pasteable(found, names))
     return sorted(unique, key=lambda finding: LEVELS.index(finding.level))
 
 
@@ -52,6 +57,22 @@ def _of_family(name: str, case: Case, patience: float) -> list[Finding]:
         verdict = f"the findings of {name} are not complete: {why}"
         found.append(Finding("unfinished", name, verdict, "", "note"))
     return list(found)
+
+
+def _pasteable(findings: Iterable[Finding], names: Iterable[str]) -> Iterator[Finding]:
+    """The findings, with each of the names in their advice as a shell wants it."""
+    unsafe = sorted(
+        {name for name in names if name[:1] == "/" and shlex.quote(name) != name},
+        key=len,
+        reverse=True,
+    )
+    if not unsafe:
+        yield from findings
+        return
+    any_name = re.compile("|".join(map(re.escape, unsafe)))
+    for finding in findings:
+        advice = any_name.sub(lambda found: shlex.quote(found[0]), finding.advice)
+        yield replace(finding, advice=advice)
 
 
 def _some(findings: Iterator[Finding]) -> Iterator[Finding]:

@@ -123,8 +123,10 @@ class Governor:
 
     def _news(self, snapshot: Snapshot) -> Iterator[Step]:
         """What is to be told or counted, of connections that were not there before."""
+        at_odds: set[Rule] = set()  # with another rule: they do match something
         for pair, flow in snapshot.flows.items():
             found = self._rules.of(flow.source, flow.target) if flow.target else []
+            at_odds.update(found if len(found) == 2 else ())
             if len(found) == 2 and self._first(("both", pair)):
                 lines = " and ".join(str(rule.line) for rule in found)
                 yield Step(
@@ -132,7 +134,7 @@ class Governor:
                     f"{self._rules.where}): it is left alone until one of them says otherwise"
                 )
         for rule, pairs in self._groups.items():
-            if not pairs and self._first(("none", rule)):
+            if not pairs and rule not in at_odds and self._first(("none", rule)):
                 patterns = ", ".join(rule.connections)
                 yield Step(f"the rule in line {rule.line} ({patterns}) matches no connection now")
             if rule.kind != "critical":
