@@ -4,7 +4,8 @@ Rules: a connection without a deadline has none of this and pays nothing. At the
 each message before the monitors do. A message with a stamp is late if it is older than `deadline`
 seconds when it arrives, as far as the stamp is a time of day; clocks of two computers must agree
 for that. One without a stamp is late if it comes more than `deadline` seconds after it was due,
-which is a period of `rate` after the one before. Each late message, and each silence, counts once.
+which is a period of `rate` after the one before, and at once where there is no rate. Each late
+message, and each silence, counts once.
 """
 
 from __future__ import annotations
