@@ -276,7 +276,11 @@ def _open_output(
         if speaker.broadcast or spec.recv:
             _wait_for_member(hub, contact, speaker.name)
         link = Outbound(driver, speaker)
-        link.ride(chain)
+        try:
+            link.ride(chain)
+        except YarpError:
+            driver.transport.close()
+            raise
         if spec.recv and link.ended():
             monitors = ", ".join(name for name, _ in spec.recv)
             raise LocalProtocolError(

@@ -70,6 +70,13 @@ def test_a_limit_on_a_port(ports: Ports) -> None:
     assert told is not None and not told.dropped
 
 
+def test_a_carrier_that_is_refused_costs_no_connection(ports: Ports) -> None:
+    a, _, _, hands = ports
+    with pytest.raises(yarpy.YarpError, match="nothing confirms"):
+        hands.make(Change("/a", "/b", "carrier", "udp+send.adaptive", "tcp"))
+    assert [output.carrier for output in a.outputs] == ["tcp"]
+
+
 def test_a_limit_on_a_connection_and_another_carrier(ports: Ports) -> None:
     a, _, sampler, hands = ports
     carrier = Change("/a", "/b", "carrier", "tcp+send.adaptive", "tcp")
