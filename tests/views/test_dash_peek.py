@@ -102,8 +102,9 @@ def test_nobody_asks_any_more(
 def test_who_cannot_be_looked_at(
     names: yarpy.LocalNames, out: yarpy.Port, peeks: Peeks, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert "not registered" in peeks.told("/nobody", None)["problem"]
+    assert "being asked" in peeks.told("/out", None)["problem"]
     seen = look(names)
+    assert "not registered" in peeks.told("/nobody", seen)["problem"]
     out.close()
     assert peeks.told("/out", seen)["problem"]
     monkeypatch.setattr(dash_peek, "MOST", 0)

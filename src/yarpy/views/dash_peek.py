@@ -88,7 +88,9 @@ class Peeks:
             found = self._looks.get(name)
             if found is not None and not (found.ways and found.peek.ended):
                 return found
-            if snapshot is None or name not in snapshot.ports:
+            if snapshot is None:
+                raise yarpy.UnknownName("the ports are being asked: a moment, please")
+            if name not in snapshot.ports:
                 raise yarpy.UnknownName(f'"{name}" is not registered')
             if found is not None:  # that port shows nothing
                 self._looks.pop(name).peek.close()
