@@ -180,6 +180,8 @@ def test_a_program_that_sees_nothing_of_ours(
         assert not process.stderr
         with pytest.raises(yarpy.LocalProtocolError, match="shares no memory"):
             out.connect("/in", "memory")
+        wait_until(lambda: out.outputs)  # the one of before is back
+        assert out.disconnect("/in")
     assert not [one for one in caplog.records if one.levelname == "WARNING"]
 
 

@@ -222,3 +222,11 @@ def test_peer_that_does_not_come_to_the_meeting_place(
         with pytest.raises(RemoteProtocolError, match=words):
             out.connect(f"/127.0.0.1:{peer.getsockname()[1]}", "unix_stream")
         assert not out.outputs
+
+
+def test_a_connection_whose_replacement_is_refused_comes_back(names: LocalNames) -> None:
+    with yarpy.Port("/out", names=names) as out, yarpy.BufferedPort("/in", names=names):
+        out.connect("/in", "fast_tcp")
+        with pytest.raises(yarpy.YarpError):
+            out.connect("/in", "udp+send.adaptive")
+        wait_until(lambda: [str(link.carrier) for link in out.outputs] == ["fast_tcp"])

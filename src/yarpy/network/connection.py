@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 from yarpy.contact import Contact, check_name, is_broker, is_medium, parse_contact
@@ -23,6 +24,7 @@ from yarpy.errors import (
     Timeout,
     UnknownName,
     UnknownPlugin,
+    YarpError,
 )
 from yarpy.link.handshake import find_carrier
 from yarpy.names.base import NameClient
@@ -288,6 +290,20 @@ def _join(
         except UnknownPlugin as unheard:  # so it may be a typing error
             raise UnknownPlugin(f"{error}; {unheard}") from error
     raise error
+
+
+def rejoin(
+    source: str, target: str, carrier: str, before: str, *, names: NameClient | None = None
+) -> None:
+    """Make a connection anew over `carrier`; where that is refused it goes on over `before`, which
+    C++ ports do not see to themselves. Raises like `join`."""
+    try:
+        join(source, target, carrier, names=names)
+    except YarpError:
+        with suppress(YarpError):
+            if before and not Pairing(source, target, None, names).existing():
+                join(source, target, before, names=names)
+        raise
 
 
 def _decorated(text: str, carrier: str) -> str:

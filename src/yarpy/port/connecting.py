@@ -184,13 +184,19 @@ def dial(
         )
     target = wanted.label
     with hub.dialling.alone(target):
+        replaced: list[Outbound] = []
         if contact.name or kind.nameless:
-            for old in hub.outputs:
-                if old.route.target == target:
-                    close_output(hub, old)
-        _check(hub, kind, spec)
+            replaced = [old for old in hub.outputs if old.route.target == target]
+            for old in replaced:
+                close_output(hub, old)
         started = time.monotonic()
-        spec = open_output(hub, contact, target, spec, lost, patience)
+        try:
+            _check(hub, kind, spec)
+            spec = open_output(hub, contact, target, spec, lost, patience)
+        except YarpError:
+            for old in replaced:  # it was good until now
+                hub.crew.reconnect.output_lost(hub, old.route)
+            raise
         # One that broke before is replaced; this one may have broken already.
         hub.crew.reconnect.give_up(hub, target, before=started)
     return spec

@@ -72,20 +72,12 @@ class Actions:
         before = self._carrier(source, target)
         if carrier == before:
             return f"{source} → {target} is over {carrier} already"
-        self._replace(source, target, carrier, before)
+        connection.rejoin(source, target, carrier, before, names=self._names)
         self._remember(
             f"{source} → {target} over {before} again",
-            lambda: self._replace(source, target, before, carrier),
+            lambda: connection.rejoin(source, target, before, carrier, names=self._names),
         )
         return f"{source} → {target} is over {carrier} now"
-
-    def _replace(self, source: str, target: str, carrier: str, before: str) -> None:
-        connection.disconnect(source, target, names=self._names)
-        try:
-            connection.join(source, target, carrier, names=self._names)
-        except yarpy.YarpError:
-            connection.join(source, target, before, names=self._names)
-            raise
 
     def _carrier(self, source: str, target: str) -> str:
         found = connection.Pairing(source, target, None, self._names).existing()

@@ -7,15 +7,14 @@ LocalProtocolError with its reason; one that says nothing a Timeout.
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import LocalProtocolError, YarpError
+from yarpy.errors import LocalProtocolError
 from yarpy.names.base import NameClient
-from yarpy.network.connection import Pairing, join
+from yarpy.network.connection import rejoin
 from yarpy.network.qos import groups
 from yarpy.network.steering.change import Change
 from yarpy.qos import Qos
@@ -33,7 +32,8 @@ class Hands:
     def make(self, change: Change) -> None:
         """Raises LocalProtocolError, LinkClosed, Timeout, UnknownName."""
         if change.key == "carrier":
-            self._move(change)
+            before = str(change.before or "")
+            rejoin(change.port, change.peer, str(change.value), before, names=self._names)
         elif change.key == "limit":
             self._limit(change)
         else:
@@ -46,16 +46,6 @@ class Hands:
             return False
         reply = self._ask(change.port, "prop", "get", change.peer)
         return not reply or plain_text(reply[0]) == "fail"
-
-    def _move(self, change: Change) -> None:
-        try:
-            join(change.port, change.peer, str(change.value), names=self._names)
-        except YarpError:
-            there = Pairing(change.port, change.peer, None, self._names)
-            with suppress(YarpError):  # what the ports refuse costs the connection that was there
-                if change.before and not there.existing():
-                    join(change.port, change.peer, str(change.before), names=self._names)
-            raise
 
     def _limit(self, change: Change) -> None:
         port, peer, mbit = change.port, change.peer, change.value
