@@ -41,6 +41,17 @@ def test_connecting_and_back(names: yarpy.LocalNames, out: yarpy.Port) -> None:
         actions.act(["undo"])
 
 
+def test_connecting_what_is_connected_is_another_carrier(
+    names: yarpy.LocalNames, out: yarpy.Port
+) -> None:
+    actions = Actions(names)
+    out.connect("/in", "tcp")
+    actions.act(["connect", "/out", "/in", "fast_tcp"])
+    assert carriers(out) == ["fast_tcp"]
+    actions.act(["undo"])
+    assert carriers(out) == ["tcp"]
+
+
 def test_disconnecting_and_back(names: yarpy.LocalNames, out: yarpy.Port) -> None:
     actions = Actions(names)
     out.connect("/in", "fast_tcp")

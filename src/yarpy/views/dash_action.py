@@ -52,6 +52,9 @@ class Actions:
         raise yarpy.LocalProtocolError("a page of another version: load it again")
 
     def _connect(self, source: str, target: str, carrier: str) -> str:
+        before = connection.Pairing(source, target, None, self._names).existing()
+        if before:
+            return self._change(source, target, carrier or before)
         found, _ = connection.join(source, target, carrier or None, names=self._names)
         self._remember(
             f"disconnect {source} → {target}",
