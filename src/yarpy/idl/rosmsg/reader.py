@@ -11,7 +11,6 @@ elements, before memory is taken. Only DecodeError and Truncated come out.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from struct import Struct as Packing
 from struct import error as struct_error
 from struct import unpack_from
 from typing import Any, Final
@@ -27,7 +26,7 @@ from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type, smallest
 Read = Callable[[Buffer, int, int, list[int] | None], tuple[Any, int]]
 
 #: messages up to this size cannot have too many elements; theirs are not counted
-_SMALL: Final = 1 << 16
+SMALL: Final = 1 << 16
 #: messages in a message are read in the same function up to so many values of them
 _INLINE: Final = 100
 _COUNT: Final = 4
@@ -35,12 +34,7 @@ _COUNT: Final = 4
 
 def reader(struct: Struct, classes: Mapping[Struct, type[Message]]) -> Read:
     """The function that reads a type. `classes` has its own, and those of all structs in it."""
-    writer = _Reader(classes)
-    writer.struct(struct, "_o", struct.name)
-    writer.flush()
-    writer.code.line("return _o, _p")
-    read: Read = writer.code.compiled("_read", "_b, _p, _size, _room")
-    return read
+    return Reader(classes).compiled(struct)
 
 
 def whole(name: str, read: Read) -> Callable[[Buffer], Any]:
@@ -49,7 +43,7 @@ def whole(name: str, read: Read) -> Callable[[Buffer], Any]:
     def from_ros(view: Buffer) -> Any:
         size = len(view)
         try:
-            found, end = read(view, 0, size, None if size <= _SMALL else [limits().elements])
+            found, end = read(view, 0, size, None if size <= SMALL else [limits().elements])
         except struct_error:
             raise Truncated(
                 f"{name}: the message goes on beyond its {size} bytes", size + 1
@@ -64,23 +58,42 @@ def whole(name: str, read: Read) -> Callable[[Buffer], Any]:
     return from_ros
 
 
-class _Reader:
+class Reader:
+    """Writes the function line by line; for bytes in which nothing is aligned. `cdr_reader` says
+    where padding goes."""
+
     def __init__(self, classes: Mapping[Struct, type[Message]]) -> None:
         self.classes = classes
         self.code = Code()
         self.code.globals.update(
-            _str=str, _range=range, _short=short, _take=take, _times=_times, _tuple=tuple.__new__,
-            _Time=Time, _Duration=Duration,
+            _range=range, _short=short, _take=take, _beyond=_beyond, _times=_times, _str=str,
+            _tuple=tuple.__new__, _Time=Time, _Duration=Duration,
         )  # fmt: skip
         self.after: list[str] = []
         self.inline = _INLINE
+
+    def compiled(self, struct: Struct) -> Read:
+        self.struct(struct, "_o", struct.name)
+        self.flush()
+        self.code.line("return _o, _p")
+        read: Read = self.code.compiled("_read", "_b, _p, _size, _room")
+        return read
+
+    def text(self, path: str) -> str:
+        """The string in the bytes from `_p` to `_e`."""
+        return "_str(_b[_p:_e], 'utf-8', 'surrogateescape')"
+
+    def displaced(self) -> None:
+        """Something of unknown size was read."""
 
     def flush(self) -> None:
         """Unpack the numbers of the run, and make of them what is made of them."""
         found = self.code.run()
         if found is not None:
             packing, targets = found
-            self.code.line(f"{', '.join(targets)}, = {self.code.name(packing.unpack_from)}(_b, _p)")
+            if targets:  # else it is padding alone
+                unpack = self.code.name(packing.unpack_from)
+                self.code.line(f"{', '.join(targets)}, = {unpack}(_b, _p)")
             self.code.line(f"_p += {packing.size}")
         for line in self.after:
             self.code.line(line)
@@ -99,6 +112,7 @@ class _Reader:
                 self.flush()
                 read = self.code.name(self.classes[kind]._read)
                 self.code.line(f"{target}, _p = {read}(_b, _p, _size, _room)")
+                self.displaced()
                 return
             self.inline -= kind.parts
             inner = self.code.variable()
@@ -106,28 +120,34 @@ class _Reader:
             self.code.line(f"{target} = {inner}")
         elif isinstance(kind, ListOf):
             self.list(kind, target, path)
-        else:
-            assert isinstance(kind, Primitive)
-            self.primitive(kind, target, path)
-
-    def primitive(self, kind: Primitive, target: str, path: str) -> None:
-        if kind.is_number:
-            self.code.number(kind.letters, target)
+        elif kind.is_number:
+            self.number(kind.letters, kind.size, target)
         elif kind.name == "string":
-            length = self.count()
-            self.room(f"_p + {length}", path)
-            self.code.line(f"{target} = _str(_b[_p:_e], 'utf-8', 'surrogateescape')")
-            self.code.line("_p = _e")
+            self.string(target, path)
         else:
-            seconds, nanoseconds = self.code.variable(), self.code.variable()
-            self.code.number(kind.letters, seconds, nanoseconds)
-            cls = "_Time" if kind.name == "time" else "_Duration"
-            self.after.append(f"{target} = _tuple({cls}, ({seconds}, {nanoseconds}))")
+            self.time(kind, target)
+
+    def number(self, letter: str, size: int, target: str) -> None:
+        self.code.number(letter, target)
+
+    def string(self, target: str, path: str) -> None:
+        length = self.count()
+        self.room(f"_p + {length}", path)
+        self.code.line(f"{target} = {self.text(path)}")
+        self.code.line("_p = _e")
+        self.displaced()
+
+    def time(self, kind: Primitive, target: str) -> None:
+        """What ROS 2 has a struct for."""
+        seconds, nanoseconds = self.code.variable(), self.code.variable()
+        self.code.number(kind.letters, seconds, nanoseconds)
+        cls = "_Time" if kind.name == "time" else "_Duration"
+        self.after.append(f"{target} = _tuple({cls}, ({seconds}, {nanoseconds}))")
 
     def count(self) -> str:
         """Read a count or a length; gives the variable."""
         found = self.code.variable()
-        self.code.number("I", found)
+        self.number("I", _COUNT, found)
         self.flush()
         return found
 
@@ -141,14 +161,16 @@ class _Reader:
         element = kind.element
         if kind.length is None:
             count = self.count()
+            if kind.most is not None:
+                self.code.line(f"if {count} > {kind.most}:")
+                self.code.line(f" _beyond({self.code.name(path)}, {count}, {kind.most})")
         else:
             count = str(kind.length)
-            self.flush()
-        least = smallest(element)
-        self.room(f"_p + {count} * {least}", path)
         if isinstance(element, Primitive) and element.is_number:
-            self.array(element, count, target)
+            self.array(element, kind.length, count, target, path)
             return
+        self.flush()
+        self.room(f"_p + {count} * {smallest(element)}", path)
         self.code.line("if _room is not None:")
         self.code.line(f" _take(_room, {count}, {self.code.name(path)})")
         if isinstance(element, Primitive) and element.letters:
@@ -156,26 +178,29 @@ class _Reader:
             self.code.line(f"{target} = _times(_b, _p, {count}, {cls}, {element.letters[0]!r})")
             self.code.line("_p = _e")
             return
-        self.code.line(f"_l = {target} = []")
-        self.code.line("_add = _l.append")
+        items = self.code.variable()
+        self.code.line(f"{items} = {target} = []")
+        self.code.line(f"_add = {items}.append")
         self.code.line(f"for _ in _range({count}):")
         self.code.indent(1)
         if isinstance(element, Struct):
             read = self.code.name(self.classes[element]._read)
             self.code.line(f"_x, _p = {read}(_b, _p, _size, _room)")
         else:
-            self.code.line(f"_n, = {self.code.name(Packing('<I').unpack_from)}(_b, _p)")
-            self.code.line("_p += 4")
-            self.room("_p + _n", path)
-            self.code.line("_x = _str(_b[_p:_e], 'utf-8', 'surrogateescape')")
-            self.code.line("_p = _e")
+            self.displaced()
+            self.string("_x", path)
         self.code.line("_add(_x)")
         self.code.indent(-1)
+        self.displaced()
 
-    def array(self, element: Primitive, count: str, target: str) -> None:
+    def array(
+        self, element: Primitive, length: int | None, count: str, target: str, path: str
+    ) -> None:
         """Numbers that numpy sees where they are; bools become proper ones, which takes a copy."""
         import numpy as np
 
+        self.flush()
+        self.room(f"_p + {count} * {element.size}", path)
         look = self.code.name(np.frombuffer)
         is_bool = element.name == "bool"
         dtype = self.code.name(np.dtype("u1" if is_bool else "<" + element.letters))
@@ -193,6 +218,10 @@ def take(room: list[int], count: int, path: str) -> None:
         raise DecodeError(
             f"{path}: more than {limits().elements} strings and messages (YARPY_MAX_ELEMENTS)"
         )
+
+
+def _beyond(path: str, count: int, most: int) -> None:
+    raise DecodeError(f"{path}: {count} elements, of {most} that the type allows")
 
 
 def _times(view: Buffer, at: int, count: int, cls: Callable[..., Any], letter: str) -> list[Any]:

@@ -124,16 +124,25 @@ class Packages:
 
 
 class Rosbags:
-    """The messages of ROS Noetic that rosbags knows. Their texts have no comments."""
+    """The messages of a distribution that rosbags knows. Their texts have no comments.
+
+    `version`: 1 or 2, of ROS; `store`: what rosbags calls the distribution.
+    """
+
+    def __init__(self, version: int = 1, store: str = "ROS1_NOETIC") -> None:
+        self._version = version
+        self._store_name = store
 
     def find(self, name: str, kind: str) -> str | None:
         if kind != "msg" or self._store is None:
             return None
         package, _, plain = name.partition("/")
         full = f"{package}/msg/{plain}"
-        if package == "builtin_interfaces" or full not in self._store.fielddefs:
+        if full not in self._store.fielddefs:
             return None
-        text: str = self._store.generate_msgdef(full, ros_version=1)[0]
+        if self._version == 1 and package == "builtin_interfaces":  # rosbags has it for itself
+            return None
+        text: str = self._store.generate_msgdef(full, ros_version=self._version)[0]
         return text.partition("=" * 80)[0]
 
     @cached_property
@@ -142,19 +151,27 @@ class Rosbags:
             from rosbags.typesys import Stores, get_typestore
         except ImportError:
             return None
-        return get_typestore(Stores.ROS1_NOETIC)
+        return get_typestore(Stores[self._store_name])
+
+    def found_or_missing(self, found: str) -> str:
+        """What there is, for people, or how to install it."""
+        if self._store is None:
+            extra = "ros" if self._version == 1 else "ros2"
+            return f"rosbags, which is not installed (pip install 'yarpy[{extra}]')"
+        return found
 
     def __str__(self) -> str:
-        if self._store is None:
-            return "rosbags, which is not installed (pip install 'yarpy[ros]')"
-        return "the types that rosbags brings"
+        return self.found_or_missing("the types that rosbags brings")
 
 
 class Standard:
     """The few messages that yarpy's own types turn into."""
 
+    messages: Mapping[str, str] = MESSAGES
+    services: Mapping[str, str] = SERVICES
+
     def find(self, name: str, kind: str) -> str | None:
-        return (MESSAGES if kind == "msg" else SERVICES).get(name)
+        return (self.messages if kind == "msg" else self.services).get(name)
 
     def __str__(self) -> str:
         return "the types that yarpy brings"

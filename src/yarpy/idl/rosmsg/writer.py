@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from struct import error as struct_error
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.data.value import BIG, Blocks
 from yarpy.idl.rosmsg.code import Code
@@ -20,28 +20,27 @@ from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-#: `write(message, add)` adds the pieces of a message
-Write = Callable[[Any, Callable[[bytes | memoryview], None]], None]
+#: `write(message, add, position)` adds the pieces of a message; gives the position behind them,
+#: which is kept where fields are aligned
+Write = Callable[[Any, Callable[[bytes | memoryview], None], int], int]
 
-_INLINE = 100
+_INLINE: Final = 100
+_COUNT: Final = 4
 
 
 def writer(struct: Struct, classes: Mapping[Struct, type[Message]]) -> Write:
     """The function that writes a type; `classes` has those of the structs in it."""
-    made = _Writer(classes)
-    made.struct(struct, "_o", struct.name)
-    made.flush()
-    write: Write = made.code.compiled("_write", "_o, _add")
-    return write
+    return Writer(classes).compiled(struct)
 
 
-def whole(struct: Struct, write: Write) -> Callable[[Any], Blocks]:
-    """`to_ros` of a class."""
+def whole(struct: Struct, write: Write, head: bytes = b"") -> Callable[[Any], Blocks]:
+    """`to_ros` of a class. `head`: stands before each message."""
+    before = [head] if head else []
 
     def to_ros(self: Any) -> Blocks:
-        pieces: list[bytes | memoryview] = []
+        pieces: list[bytes | memoryview] = [*before]
         try:
-            write(self, pieces.append)
+            write(self, pieces.append, 0)
         except (struct_error, TypeError, AttributeError, OverflowError, ValueError) as error:
             raise fault(struct, self) or error from None
         if memoryview in map(type, pieces):
@@ -64,23 +63,39 @@ def joined(pieces: list[bytes | memoryview]) -> Blocks:
     return tuple(block for block in blocks if block)
 
 
-class _Writer:
+class Writer:
+    """Writes the function line by line; for bytes in which nothing is aligned. `cdr_writer` says
+    where padding goes."""
+
     def __init__(self, classes: Mapping[Struct, type[Message]]) -> None:
         self.classes = classes
         self.code = Code()
-        self.code.globals.update(_len=len, _str=str, _wrong=wrong_length)
-        #: lines that follow the numbers of the run
-        self.after: list[str] = []
+        self.code.globals.update(_len=len, _wrong=wrong_length, _beyond=_beyond, _block=_block)
         self.inline = _INLINE
+
+    def compiled(self, struct: Struct) -> Write:
+        self.struct(struct, "_o", struct.name)
+        self.flush()
+        self.code.line("return _p")
+        write: Write = self.code.compiled("_write", "_o, _add, _p")
+        return write
+
+    def moved(self, size: str) -> None:
+        """So many bytes were written."""
+
+    def displaced(self) -> None:
+        """Something of unknown size was written."""
+
+    def text(self, source: str) -> str:
+        """The bytes of a string."""
+        return f"{source}.encode('utf-8', 'surrogateescape')"
 
     def flush(self) -> None:
         found = self.code.run()
         if found is not None:
             packing, terms = found
             self.code.line(f"_add({self.code.name(packing.pack)}({', '.join(terms)}))")
-        for line in self.after:
-            self.code.line(line)
-        self.after.clear()
+            self.moved(str(packing.size))
 
     def struct(self, struct: Struct, source: str, path: str) -> None:
         for field in struct.fields:
@@ -90,7 +105,8 @@ class _Writer:
         if isinstance(kind, Struct):
             if kind.parts > self.inline:
                 self.flush()
-                self.code.line(f"{self.code.name(self.classes[kind]._write)}({source}, _add)")
+                self.inner(kind, source)
+                self.displaced()
                 return
             self.inline -= kind.parts
             inner = self.code.variable()
@@ -98,52 +114,71 @@ class _Writer:
             self.struct(kind, inner, path)
         elif isinstance(kind, ListOf):
             self.list(kind, source, path)
-        else:
-            assert isinstance(kind, Primitive)
-            self.primitive(kind, source)
-
-    def primitive(self, kind: Primitive, source: str) -> None:
-        if kind.is_number:
-            self.code.number(kind.letters, source)
+        elif kind.is_number:
+            self.number(kind.letters, kind.size, source)
         elif kind.name == "string":
-            text = self.code.variable()
-            self.code.line(f"{text} = {source}.encode('utf-8', 'surrogateescape')")
-            self.code.number("I", f"_len({text})")
-            self.flush()
-            self.code.line(f"_add({text})")
+            self.string(source)
         else:
-            time = self.code.variable()
-            self.code.line(f"{time} = {source}")
-            self.code.number(kind.letters, f"{time}.secs", f"{time}.nsecs")
+            self.time(kind, source)
+
+    def inner(self, kind: Struct, source: str) -> None:
+        """A message in a message, by its own function."""
+        write = self.code.name(self.classes[kind]._write)
+        self.code.line(f"_p = {write}({source}, _add, _p)")
+
+    def number(self, letter: str, size: int, source: str) -> None:
+        self.code.number(letter, source)
+
+    def string(self, source: str) -> None:
+        text = self.code.variable()
+        self.code.line(f"{text} = {self.text(source)}")
+        self.number("I", _COUNT, f"_len({text})")
+        self.flush()
+        self.code.line(f"_add({text})")
+        self.moved(f"_len({text})")
+        self.displaced()
+
+    def time(self, kind: Primitive, source: str) -> None:
+        """What ROS 2 has a struct for."""
+        time = self.code.variable()
+        self.code.line(f"{time} = {source}")
+        self.code.number(kind.letters, f"{time}.secs", f"{time}.nsecs")
 
     def list(self, kind: ListOf, source: str, path: str) -> None:
         items = self.code.variable()
         self.code.line(f"{items} = {source}")
         element = kind.element
-        is_array = isinstance(element, Primitive) and element.is_number
         if isinstance(element, Primitive) and element.is_number:
             self.as_array(items, element, path)
-        if kind.length is None:
-            self.code.number("I", f"_len({items})")
-        else:
+        if kind.length is not None:
             self.code.line(f"if _len({items}) != {kind.length}:")
             self.code.line(f" _wrong({self.code.name(path)}, {items}, {kind.length})")
-        self.flush()
-        if is_array:
-            block = self.code.name(_block)
-            small = f"{items}.nbytes < {BIG}"
-            self.code.line(f"_add({items}.tobytes() if {small} else {block}({items}))")
+        else:
+            if kind.most is not None:
+                self.code.line(f"if _len({items}) > {kind.most}:")
+                self.code.line(f" _beyond({self.code.name(path)}, {items}, {kind.most})")
+            self.number("I", _COUNT, f"_len({items})")
+        if isinstance(element, Primitive) and element.is_number:
+            self.array(element, kind.length, items)
             return
+        self.flush()
         self.code.line(f"if isinstance({items}, str): raise TypeError('letters are no list')")
         self.code.line(f"for _x in {items}:")
         self.code.indent(1)
         if isinstance(element, Struct):
-            self.code.line(f"{self.code.name(self.classes[element]._write)}(_x, _add)")
+            self.inner(element, "_x")
         else:
-            assert isinstance(element, Primitive)
-            self.primitive(element, "_x")
+            self.displaced()
+            self.value(element, "_x", path)
             self.flush()
         self.code.indent(-1)
+        self.displaced()
+
+    def array(self, element: Primitive, length: int | None, items: str) -> None:
+        self.flush()
+        small = f"{items}.nbytes < {BIG}"
+        self.code.line(f"_add({items}.tobytes() if {small} else _block({items}))")
+        self.moved(f"{items}.nbytes")
 
     def as_array(self, items: str, element: Primitive, path: str) -> None:
         import numpy as np
@@ -163,3 +198,7 @@ def _block(array: NDArray[Any]) -> memoryview:
     if not array.flags.c_contiguous:
         array = array.copy()
     return memoryview(array.view("u1").data)
+
+
+def _beyond(path: str, items: Any, most: int) -> None:
+    raise ValueError(f"{path}: at most {most} elements, here are {len(items)}")
