@@ -14,7 +14,6 @@ from __future__ import annotations
 import threading
 import time as clock
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Final, Literal, Self
 
 from yarpy.data.stamp import Stamp
@@ -131,12 +130,7 @@ class BagWriter:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *details: object) -> None:
         self.close()
 
     def __repr__(self) -> str:

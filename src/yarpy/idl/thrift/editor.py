@@ -177,7 +177,7 @@ class RemoteEditor:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *error: object) -> None:
+    def __exit__(self, *details: object) -> None:
         self.close()
 
 

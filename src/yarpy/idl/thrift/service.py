@@ -264,5 +264,5 @@ class Service:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *error: object) -> None:
+    def __exit__(self, *details: object) -> None:
         self.close()
