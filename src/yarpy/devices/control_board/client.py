@@ -398,7 +398,7 @@ def _requests(remote: str, local: str, names: NameClient | None) -> Asks:
     try:
         return Requests(remote, f"{local}/rpc:o", names)
     except UnknownName as unknown:
-        from yarpy.devices.control_board.function_requests import FunctionRequests
+        from yarpy.devices.control_board.yarp4.requests import FunctionRequests
 
         try:
             return FunctionRequests(remote, f"{local}/nwc/rpc:o", names)

@@ -50,18 +50,24 @@ class Form(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
-    """The words for one member of the interface, and how its values are encoded."""
+class Words:
+    """The words for one member of the interface: for one joint, for all, for some."""
 
     one: str
     all: str
     some: str
     member: str
-    kind: Kind = FLOAT
 
     def words(self) -> dict[str, Form]:
         pairs = ((self.one, Form.ONE), (self.all, Form.ALL), (self.some, Form.SOME))
         return {word: form for word, form in pairs if word}
+
+
+@dataclass(frozen=True, slots=True)
+class Row(Words):
+    """`kind`: how the values are encoded."""
+
+    kind: Kind = FLOAT
 
 
 @dataclass(frozen=True, slots=True)

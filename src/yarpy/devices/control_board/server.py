@@ -1,7 +1,7 @@
 """ControlBoardServer: serve your device on the ports of a YARP control board.
 
     <name>/rpc:i        requests and replies (`responder`); people may type them
-    <name>/nws/rpc:i    the same for programs of YARP 4 (`function_server`)
+    <name>/nws/rpc:i    the same for programs of YARP 4 (`yarp4`)
     <name>/command:i    streamed commands (`command`), which are never answered
     <name>/stateExt:o   all measurements (`state`), every period
     <name>/state:o      positions only, for tools and older clients
@@ -23,10 +23,10 @@ from yarpy.data.yarp4 import to_yarp4
 from yarpy.devices.closeable import Closeable, prefix
 from yarpy.devices.control_board import command
 from yarpy.devices.control_board.board import Board
-from yarpy.devices.control_board.function_server import Functions
 from yarpy.devices.control_board.interface import Joints
 from yarpy.devices.control_board.responder import FAIL, Responder
 from yarpy.devices.control_board.state import State
+from yarpy.devices.control_board.yarp4.server import Functions
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError

@@ -24,9 +24,9 @@ from yarpy.data.image import Image
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.devices.closeable import Closeable, local_prefix, prefix
-from yarpy.devices.frame_grabber.function_requests import FunctionRequests
 from yarpy.devices.frame_grabber.interface import FEATURES
 from yarpy.devices.frame_grabber.responder import BUSES, MODES
+from yarpy.devices.frame_grabber.yarp4.requests import FunctionRequests
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.names.base import NameClient
 from yarpy.port.port import BufferedPort

@@ -1,7 +1,7 @@
 """FrameGrabberServer: serve your camera on the ports of a YARP frame grabber.
 
     <name>          its images; RPC clients are answered here too
-    <name>/rpc      requests and replies (`responder`); those of YARP 4 too (`function_server`)
+    <name>/rpc      requests and replies (`responder`); those of YARP 4 too (`yarp4`)
 
 Rules: no image is grabbed while nobody is watching. A slow receiver misses images.
 
@@ -21,9 +21,9 @@ from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.devices.access import Access
 from yarpy.devices.closeable import Closeable, prefix
-from yarpy.devices.frame_grabber.function_server import Functions
 from yarpy.devices.frame_grabber.interface import Camera
 from yarpy.devices.frame_grabber.responder import FrameGrabberResponder
+from yarpy.devices.frame_grabber.yarp4.server import Functions
 from yarpy.devices.publisher import Publisher
 from yarpy.devices.refusal import Complaints, Refused
 from yarpy.errors import DecodeError

@@ -1,4 +1,4 @@
-"""The client side of a control board of YARP 4: `function_table` used to call functions.
+"""The client side of a control board of YARP 4: `table` used to call functions.
 
 Rules: as `requests`, whose methods it has: the fewest possible calls, for all joints where there is
 a function for that, else for several, else one joint at a time. What is not done is a
@@ -14,10 +14,10 @@ from typing import Any, Final
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.devices.closeable import Closeable
-from yarpy.devices.control_board import function_table as table
-from yarpy.devices.control_board.function_table import Row
-from yarpy.devices.control_board.functions import ControlBoardMsgs, Status
 from yarpy.devices.control_board.grammar import Form
+from yarpy.devices.control_board.yarp4 import table
+from yarpy.devices.control_board.yarp4.functions import ControlBoardMsgs, Status
+from yarpy.devices.control_board.yarp4.table import Row
 from yarpy.devices.refusal import Refused
 from yarpy.devices.status import reason
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout

@@ -3,9 +3,9 @@
 import pytest
 from support.yarp4 import Replay
 
-from yarpy.devices.control_board.function_requests import FunctionRequests
-from yarpy.devices.control_board.functions import ControlBoardMsgs
 from yarpy.devices.control_board.interface import Gains
+from yarpy.devices.control_board.yarp4.functions import ControlBoardMsgs
+from yarpy.devices.control_board.yarp4.requests import FunctionRequests
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.idl.thrift.client import client_class
 

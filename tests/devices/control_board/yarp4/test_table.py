@@ -2,10 +2,10 @@
 
 import pytest
 
-from yarpy.devices.control_board import function_table as table
-from yarpy.devices.control_board.functions import ControlBoardMsgs, Pid
 from yarpy.devices.control_board.grammar import Form
 from yarpy.devices.control_board.interface import ControlBoardLike, Gains, PidController
+from yarpy.devices.control_board.yarp4 import table
+from yarpy.devices.control_board.yarp4.functions import ControlBoardMsgs, Pid
 from yarpy.devices.refusal import Refused
 
 NAMES = {name.removesuffix("RPC") for name in ControlBoardMsgs._methods}
@@ -17,7 +17,7 @@ def test_rows_are_functions_and_members(rows: tuple[table.Row, ...]) -> None:
     members = {*dir(owner), *owner.__annotations__, *dir(ControlBoardLike)}
     members |= {"axis_types", "axis_names"}
     for row in rows:
-        assert row.functions().keys() <= NAMES, row
+        assert row.words().keys() <= NAMES, row
         assert row.member in members, row
 
 

@@ -3,7 +3,7 @@
     getRgbResolution()        a Size: [ok] 320 240
     setFeature1(1, 0.5)       a Status: [ok]; [err5] if the camera cannot, and the log says why
 
-Rules: `function_table` says which request each function stands for; the others, of cameras at
+Rules: `table` says which request each function stands for; the others, of cameras at
 FireWire, are answered with [err2]. An answer always has all its fields: C++ reads them first.
 """
 
@@ -14,9 +14,9 @@ from typing import Any, ClassVar
 
 from yarpy.data.image import Image
 from yarpy.data.value import Vocab
-from yarpy.devices.frame_grabber.function_table import FUNCTIONS, Row
-from yarpy.devices.frame_grabber.functions import FrameGrabberMsgs, Picture, Status
 from yarpy.devices.frame_grabber.responder import FrameGrabberResponder
+from yarpy.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs, Picture, Status
+from yarpy.devices.frame_grabber.yarp4.table import FUNCTIONS, Row
 from yarpy.devices.refusal import Refused
 from yarpy.log import logger
 

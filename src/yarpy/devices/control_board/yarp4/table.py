@@ -16,15 +16,16 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from yarpy.data.value import Vocab
-from yarpy.devices.control_board.functions import Pid, TorqueParameters
 from yarpy.devices.control_board.grammar import (
     FIELDS_OF_TORQUE,
     GAINS,
     IMPEDANCE,
     IMPEDANCE_RANGE,
     Form,
+    Words,
 )
 from yarpy.devices.control_board.interface import Gains, MotorTorqueParameters
+from yarpy.devices.control_board.yarp4.functions import Pid, TorqueParameters
 from yarpy.devices.kind import (
     FAULT,
     FLAG,
@@ -142,18 +143,10 @@ NONE: Final = Shape(NOTHING)
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class Row(Words):
     """The functions for one member of the interface, and the shape of its values."""
 
-    one: str
-    all: str
-    some: str
-    member: str
     shape: Shape = VALUE
-
-    def functions(self) -> dict[str, Form]:
-        pairs = ((self.one, Form.ONE), (self.all, Form.ALL), (self.some, Form.SOME))
-        return {name: form for name, form in pairs if name}
 
 
 def _row(stem: str, member: str, shape: Shape = VALUE, some: bool = False, s: str = "") -> Row:

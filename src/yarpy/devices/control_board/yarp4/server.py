@@ -4,7 +4,7 @@
     positionMoveOne(1, 45)   a Status: [ok]
     positionMoveOne(9, 45)   [err5], which is logged with the reason; [err2] for what there is not
 
-Rules: `function_table` says what each function means, those that mean something of their own are
+Rules: `table` says what each function means, those that mean something of their own are
 here. One answer for every request: what cannot be done is a Status, with zeros behind it.
 """
 
@@ -18,12 +18,12 @@ from typing import Any, ClassVar, Final
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.devices.access import Access
-from yarpy.devices.control_board import function_table as table
 from yarpy.devices.control_board.board import TARGETS, Board
-from yarpy.devices.control_board.function_table import Row
-from yarpy.devices.control_board.functions import ControlBoardMsgs, Status
 from yarpy.devices.control_board.grammar import Form
 from yarpy.devices.control_board.interface import Gains
+from yarpy.devices.control_board.yarp4 import table
+from yarpy.devices.control_board.yarp4.functions import ControlBoardMsgs, Status
+from yarpy.devices.control_board.yarp4.table import Row
 from yarpy.devices.kind import FLOAT, number
 from yarpy.devices.refusal import Refused
 from yarpy.devices.status import FAILED, MISSING, OK
@@ -209,11 +209,11 @@ def _works() -> dict[str, Work]:
     works: dict[str, Work] = {}
     for rows, act in ((table.READ, Functions._read), (table.WRITE, Functions._write)):
         for row in rows:
-            for name, form in row.functions().items():
+            for name, form in row.words().items():
                 works[name] = partial(_on_joints, act, row, form)
     for rows, act in ((table.PID_READ, Functions._read), (table.PID_WRITE, Functions._write)):
         for row in rows:
-            for name, form in row.functions().items():
+            for name, form in row.words().items():
                 works[name] = partial(_on_controllers, act, row, form)
     for name in table.CALIBRATOR:
         works[name] = partial(_calibration, name)

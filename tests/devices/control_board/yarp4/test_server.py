@@ -11,8 +11,8 @@ from yarpy.data.value import Vocab
 from yarpy.data.yarp4 import to_yarp3
 from yarpy.devices.control_board import command
 from yarpy.devices.control_board.board import Board
-from yarpy.devices.control_board.function_server import Functions
-from yarpy.devices.control_board.functions import ControlBoardMsgs
+from yarpy.devices.control_board.yarp4.functions import ControlBoardMsgs
+from yarpy.devices.control_board.yarp4.server import Functions
 from yarpy.wire.message import CALL, Answer, Message
 
 ROWS = recorded("board")["client"]

@@ -6,8 +6,8 @@ import pytest
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.image import Image
 from yarpy.data.value import Vocab
-from yarpy.devices.frame_grabber.function_table import BY_WORDS, FUNCTIONS
-from yarpy.devices.frame_grabber.functions import Configuration, Corner, FrameGrabberMsgs
+from yarpy.devices.frame_grabber.yarp4.functions import Configuration, Corner, FrameGrabberMsgs
+from yarpy.devices.frame_grabber.yarp4.table import BY_WORDS, FUNCTIONS
 
 
 def test_rows_are_functions() -> None:

@@ -7,7 +7,7 @@ from support.yarp4 import Replay
 
 from yarpy.data.bottle import Bottle
 from yarpy.devices.frame_grabber.client import FrameGrabber
-from yarpy.devices.frame_grabber.function_requests import FunctionRequests
+from yarpy.devices.frame_grabber.yarp4.requests import FunctionRequests
 from yarpy.errors import LocalProtocolError
 
 

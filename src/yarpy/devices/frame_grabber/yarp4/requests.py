@@ -11,8 +11,8 @@ from typing import Any
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.devices.frame_grabber.function_table import BY_WORDS, FUNCTIONS
-from yarpy.devices.frame_grabber.functions import FrameGrabberMsgs, Status
+from yarpy.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs, Status
+from yarpy.devices.frame_grabber.yarp4.table import BY_WORDS, FUNCTIONS
 from yarpy.devices.status import reason
 from yarpy.errors import LocalProtocolError
 from yarpy.idl.thrift.client import client_class

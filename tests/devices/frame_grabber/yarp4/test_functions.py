@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from yarpy.devices.frame_grabber import functions
+from yarpy.devices.frame_grabber.yarp4 import functions
 from yarpy.idl.thrift.interface import read_interface
 from yarpy.idl.thrift.module import python
 

@@ -17,7 +17,7 @@ from yarpy.data.bottle import Bottle, Property
 from yarpy.data.image import Image
 from yarpy.data.value import Vocab
 from yarpy.data.writer import dict_elements
-from yarpy.devices.frame_grabber.functions import Configuration, Corner
+from yarpy.devices.frame_grabber.yarp4.functions import Configuration, Corner
 
 Elements = Sequence[Any]
 

@@ -12,9 +12,9 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.image import Image
 from yarpy.data.yarp4 import to_yarp3
 from yarpy.devices.access import Access
-from yarpy.devices.frame_grabber.function_server import Functions, blank
-from yarpy.devices.frame_grabber.functions import FrameGrabberMsgs
 from yarpy.devices.frame_grabber.responder import FrameGrabberResponder
+from yarpy.devices.frame_grabber.yarp4.functions import FrameGrabberMsgs
+from yarpy.devices.frame_grabber.yarp4.server import Functions, blank
 from yarpy.devices.refusal import Complaints
 from yarpy.idl.thrift.structure import default_of
 from yarpy.wire.message import CALL, Answer, Message
