@@ -328,7 +328,10 @@ def slow_tokens(line):
     return found
 
 
-@given(st.lists(st.sampled_from(list(b'ab1 ,\t\n"\\(){}[].')), max_size=30).map(bytes))
+@given(
+    st.lists(st.sampled_from(list(b'ab1 ,\t\n"\\(){}[].')), max_size=30).map(bytes)
+    | st.lists(st.sampled_from(list(b'ab ,\n"')), max_size=20).map(bytes)
+)
 def test_tokens(line):
     assert tokens(line) == slow_tokens(line)
 

@@ -6,7 +6,7 @@ import pytest
 from support.name_line import serve_names
 
 from yarpy.contact import Contact
-from yarpy.names.base import NameClient
+from yarpy.names.base import NameClient, introduce
 from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.nameserver.local import LocalNames
@@ -31,6 +31,8 @@ def test_promises(names: NameClient) -> None:
     assert temporary.name.startswith("/tmp/port/")
     names.announce("/a")
     names.announce("/a", ok=False)
+    introduce(names, "/a", {"words": ["y", 6], "more": []})
+    assert names.get("/a", "words") == ["6", "y"]
     assert names.set("/a", "words", "two words", "x", 5) == ["5", "two words", "x"]
     assert names.get("/a", "words") == ["5", "two words", "x"]
     assert names.get("/a", "nothing") == names.get("/nope", "words") == []

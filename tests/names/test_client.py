@@ -12,9 +12,10 @@ from support.port import free_port
 
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
-from yarpy.errors import AddressError, NoNameServer, RemoteProtocolError
+from yarpy.errors import AccessRefused, AddressError, NoNameServer, RemoteProtocolError
 from yarpy.names import client as client_module
 from yarpy.names.client import YarpNameClient
+from yarpy.nameserver.reply import Reply
 
 
 class Scripted:
@@ -94,6 +95,50 @@ def test_one_connection_serves_many_commands() -> None:
         names.set("/x", "k", 1)
         assert names.get("/x", "k") == ["1"]
         assert server.connections == 2, "Bottle replies have a connection of their own"
+
+
+def test_all_about_a_port_goes_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = {"offers": ["tcp", "udp"], "ips": ["::1", "127.0.0.1"], "process": [17]}
+    service = new_service()
+    said: list[bytes] = []
+    answer = service.answer_text
+
+    def listen(line: bytes, peer: str) -> Reply:
+        said.append(line)
+        return answer(line, peer)
+
+    monkeypatch.setattr(service, "answer_text", listen)
+    with serve_names(service) as server, YarpNameClient("127.0.0.1", server.port) as names:
+        names.register("/x")
+        names.introduce("/x", told)
+        assert said[1:] == [
+            b'bot set "/x" offers tcp udp',
+            b'bot set "/x" ips "::1" "127.0.0.1"',
+            b'bot set "/x" process 17',
+            b'announce "/x"',
+        ]
+        for key, values in told.items():
+            assert names.get("/x", key) == sorted(map(str, values))
+        for connection in server.open:
+            connection.shutdown(socket.SHUT_RDWR)
+        names.introduce("/x", {"process": [18]})  # all of it over a new connection
+        assert names.get("/x", "process") == ["18"]
+
+
+@pytest.mark.parametrize(
+    ("replies", "error"),
+    [
+        (b"ok\r\n<ACK>\r\nok\r\n", NoNameServer),
+        (b'[fail] "Access refused: not you"\r\n<ACK>\r\n[ok]\r\n<ACK>\r\n', AccessRefused),
+    ],
+)
+def test_bad_news_about_a_port(replies: bytes, error: type[Exception]) -> None:
+    with (
+        Scripted(b"Welcome admin\r\n" + replies, close=True) as server,
+        YarpNameClient("127.0.0.1", server.port) as names,
+        pytest.raises(error),
+    ):
+        names.introduce("/x", {"process": [17]})
 
 
 def test_commands_and_requests() -> None:

@@ -32,6 +32,9 @@ from yarpy.data.value import (
 )
 from yarpy.errors import DecodeError
 
+#: bytes of a text that are too few to count its elements
+_FREE: Final = 1 << 10
+
 #: bytes of nested text that are always read, however deep
 _FREE_WORK: Final = 1 << 22
 
@@ -43,6 +46,10 @@ _MARK = re.compile(rb'\\.|["(){}]|[, \t\r\n]', re.DOTALL)
 #: What makes a text more than words between separators.
 _NESTING = re.compile(rb'[\\"(){}]')
 _WORD = re.compile(rb"[^, \t\r\n]++")
+
+#: The same where quotes are allowed: an even number of them closes each that was opened.
+_DEEPER = re.compile(rb"[\\(){}]")
+_TOKEN = re.compile(rb'(?:"[^"]*+"|[^", \t\r\n]++)++')
 _SEPARATORS: Final = bytes.maketrans(b",\t\r\n", b"    ")
 
 #: Leading zeros, signs and x, then digits: anything else makes a token a word.
@@ -66,7 +73,8 @@ def parse_text(text: str | bytes, make_list: type[list[Any]] = list) -> list[Any
     Lists among them are made by `make_list(elements)`.
     """
     data = text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
-    return _parse(data, [max(_FREE_WORK, 8 * len(data)), limits().elements], make_list)
+    most = len(data) if len(data) <= _FREE else limits().elements
+    return _parse(data, [max(_FREE_WORK, 8 * len(data)), most], make_list)
 
 
 def balanced(text: str | bytes) -> bool:
@@ -126,6 +134,11 @@ def tokens(data: bytes, most: int = sys.maxsize) -> list[bytes]:
         if len(data) > most and sum(1 for _ in _WORD.finditer(data)) > most:
             raise _too_many()
         return [word for word in data.translate(_SEPARATORS).split(b" ") if word]
+    if _DEEPER.search(data) is None and not data.count(b'"') & 1:
+        words = _TOKEN.findall(data)
+        if len(words) > most:
+            raise _too_many()
+        return words
     start = 0
     quoted = False
     round_depth = curly_depth = 0

@@ -10,6 +10,8 @@ from __future__ import annotations
 import socket
 import sys
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache, lru_cache
+from typing import Any
 
 from yarpy.contact import host_zid
 
@@ -28,6 +30,7 @@ def plain_host(text: str) -> str:
     return text
 
 
+@lru_cache(maxsize=256)
 def is_loopback(host: str) -> bool:
     """Whether only this computer can reach `host`."""
     if host == "localhost":
@@ -118,17 +121,8 @@ def _interface_addresses() -> Iterator[str]:
     """What `getifaddrs` of the C library lists (Linux, macOS, the BSDs)."""
     import ctypes  # late: 5 ms, and only processes that open ports need it
 
-    class _Interface(ctypes.Structure):
-        pass
-
-    _Interface._fields_ = [
-        ("next", ctypes.POINTER(_Interface)),
-        ("name", ctypes.c_char_p),
-        ("flags", ctypes.c_uint),
-        ("address", ctypes.c_void_p),
-    ]
-    library = ctypes.CDLL(None)
-    head = ctypes.POINTER(_Interface)()
+    library, link = _library()
+    head = link()
     if library.getifaddrs(ctypes.byref(head)) != 0:
         return
     try:
@@ -141,6 +135,24 @@ def _interface_addresses() -> Iterator[str]:
             entry = entry.contents.next
     finally:
         library.freeifaddrs(head)
+
+
+@cache
+def _library() -> tuple[Any, Any]:
+    """The C library, and the type of a pointer to `struct ifaddrs`."""
+    import ctypes
+
+    class _Interface(ctypes.Structure):
+        pass
+
+    link = ctypes.POINTER(_Interface)
+    _Interface._fields_ = [
+        ("next", link),
+        ("name", ctypes.c_char_p),
+        ("flags", ctypes.c_uint),
+        ("address", ctypes.c_void_p),
+    ]
+    return ctypes.CDLL(None), link
 
 
 def _socket_address(start: bytes, entry: object) -> str:

@@ -6,7 +6,7 @@ unknown name is None, not an error.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 from yarpy.contact import Contact
@@ -14,6 +14,7 @@ from yarpy.contact import Contact
 # A class with a method called `list` cannot spell this type inside its body.
 Contacts = list[Contact]
 Strings = list[str]
+Values = Sequence[str | int | float]
 
 
 @runtime_checkable
@@ -80,3 +81,22 @@ class Medium(Protocol):
         """Let the port with that TCP port number be called: `welcome` gets each connection, a
         transport, in a thread of its own. Returns what ends that."""
         ...
+
+
+@runtime_checkable
+class Batch(Protocol):
+    """A name service that can be told all about a port at once."""
+
+    def introduce(self, name: str, properties: Mapping[str, Values], /) -> None:
+        """Set properties of `name`, then announce it."""
+        ...
+
+
+def introduce(names: NameClient, name: str, properties: Mapping[str, Values]) -> None:
+    """Set properties of `name`, then announce it: at once where the service can take that."""
+    if isinstance(names, Batch):
+        names.introduce(name, properties)
+        return
+    for key, values in properties.items():
+        names.set(name, key, *values)
+    names.announce(name)

@@ -15,7 +15,7 @@ import os
 import socket
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, TypeVar
 
 from yarpy.contact import Contact
@@ -30,7 +30,7 @@ from yarpy.errors import (
     RemoteProtocolError,
     YarpError,
 )
-from yarpy.names.base import Contacts, Strings
+from yarpy.names.base import Contacts, Strings, Values
 from yarpy.names.registration_line import END, PREFIX, parse_registration
 from yarpy.transports.peer_timeout import notice_death
 from yarpy.transports.tls_setting import required
@@ -42,6 +42,7 @@ WHO = 1.0  # seconds to find out what listens there when it does not answer
 LARGEST = 64 << 20  # bytes of one whole reply
 
 _ACK = "<ACK>"
+_FAILED = ("[fail]", "fail")
 _BOTTLE_VERBS = frozenset({"announce", "subscribe", "unsubscribe", "topic", "untopic", "type"})
 
 Prepare = Callable[[socket.socket], None]
@@ -176,6 +177,17 @@ class YarpNameClient:
     def get(self, name: str, key: str) -> Strings:
         return list(map(plain_text, self.request(["bot", "get", name, key])))
 
+    def introduce(self, name: str, properties: Mapping[str, Values]) -> None:
+        # One after the other, each would wait for the server to wake up.
+        texts = [
+            Bottle(["bot", "set", name, key, *values]).to_text()
+            for key, values in properties.items()
+        ]
+        texts.append(Bottle(["announce", name]).to_text())
+        for lines in self._ask("acked", lambda line: _acknowledged(line, *texts)):
+            if lines and lines[0].startswith(_FAILED):
+                self._succeeded(_bottle(lines))
+
     def list(self, prefix: str | None = None) -> Contacts:
         lines = self.command("list", prefix) if prefix else self.command("list")
         contacts = [contact for contact in map(parse_registration, lines) if contact is not None]
@@ -221,9 +233,8 @@ class YarpNameClient:
         An old style reply comes as a Bottle of its lines, without the end line.
         """
         text = Bottle(command).to_text()
-        reply = self._ask("acked", lambda line: _acknowledged(line, text))
-        if len(reply) == 2 and reply[0] == "fail":
-            self._admitted(plain_text(reply[1]))
+        reply = _bottle(self._ask("acked", lambda line: _acknowledged(line, text))[0])
+        self._succeeded(reply)
         return reply
 
     def connect(self) -> socket.socket:
@@ -259,6 +270,11 @@ class YarpNameClient:
         """Raise AccessRefused if that is what the server said."""
         if (error := refused(said.encode())) is not None:
             raise AccessRefused(f"the name server at {self.address} says: {error}")
+
+    def _succeeded(self, reply: Bottle) -> None:
+        """Raise AccessRefused if that is what a Bottle says."""
+        if len(reply) == 2 and reply[0] == "fail":
+            self._admitted(plain_text(reply[1]))
 
     @property
     def address(self) -> str:
@@ -386,18 +402,25 @@ def _old_style(line: _Line, command: str) -> list[str]:
     return lines
 
 
-def _acknowledged(line: _Line, command: str) -> Bottle:
-    line.send(_encode(f"d\r\n{command}\r\n"))
-    lines: list[str] = []
+def _acknowledged(line: _Line, *commands: str) -> list[list[str]]:
+    """Send commands in one piece; the lines of each reply."""
+    line.send(_encode("".join(f"d\r\n{command}\r\n" for command in commands)))
+    replies: list[list[str]] = []
     size = 0
-    while (text := line.line()) != _ACK:
-        size += len(text) + 2
-        if size > LARGEST:
-            raise RemoteProtocolError(f"a name server's reply of more than {LARGEST} bytes")
-        lines.append(text)
-    if lines and lines[-1] == END:
-        return Bottle(lines[:-1])
-    return Bottle.from_text("\n".join(lines))
+    for _ in commands:
+        lines: list[str] = []
+        while (text := line.line()) != _ACK:
+            size += len(text) + 2
+            if size > LARGEST:
+                raise RemoteProtocolError(f"a name server's reply of more than {LARGEST} bytes")
+            lines.append(text)
+        replies.append(lines)
+    return replies
+
+
+def _bottle(lines: list[str]) -> Bottle:
+    """The one Bottle that a reply is, or a Bottle of its old style lines."""
+    return Bottle(lines[:-1]) if lines[-1:] == [END] else Bottle.from_text("\n".join(lines))
 
 
 def _encode(text: str) -> bytes:

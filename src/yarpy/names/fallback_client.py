@@ -7,12 +7,12 @@ asked of the first. The first one must answer, the others may be down.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from yarpy.contact import Contact
 from yarpy.errors import AddressError, NoNameServer
-from yarpy.names.base import Contacts, Medium, NameClient, Strings
+from yarpy.names.base import Contacts, Medium, NameClient, Strings, Values, introduce
 
 
 def _warn(message: str, *arguments: object) -> None:
@@ -84,6 +84,9 @@ class SeveralNames:
 
     def set(self, name: str, key: str, *values: str | int | float) -> Strings:
         return self.clients[0].set(name, key, *values)
+
+    def introduce(self, name: str, properties: Mapping[str, Values]) -> None:
+        introduce(self.clients[0], name, properties)
 
     def get(self, name: str, key: str) -> Strings:
         return self.clients[0].get(name, key)

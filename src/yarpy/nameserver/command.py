@@ -325,19 +325,13 @@ def without_request(command: Sequence[Any]) -> tuple[list[Any], bool]:
     spec 9.5).
     """
     words = list(command)
-    keys = {plain_text(item[0]) for item in words if _is_pair(item)}
-    if not keys & {"format", "REQUEST_URI"}:
+    pairs = [item for item in words if isinstance(item, list) and len(item) == 2]
+    if not {plain_text(pair[0]) for pair in pairs} & {"format", "REQUEST_URI"}:
         return words, False
-    json = any(
-        _is_pair(item) and list(map(plain_text, item)) == ["format", "json"] for item in words
-    )
+    json = any(list(map(plain_text, pair)) == ["format", "json"] for pair in pairs)
     while words and isinstance(words[-1], list):
         del words[-1]
     return words, json
-
-
-def _is_pair(item: Any) -> bool:
-    return isinstance(item, list) and len(item) == 2
 
 
 def _registered(

@@ -6,6 +6,7 @@ quotes; the other style is one Bottle. Source: nameserver spec 2.2.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +17,9 @@ from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.names.registration_line import END, registration_line
 from yarpy.nameserver.topology import Action
+
+# A text that no reader takes for anything but a word (as it might null, inf and numbers).
+_WORD = re.compile(r"[A-Za-hj-mo-z][A-Za-z0-9_]*+")
 
 HELP_HEADING = "Here are some ways to use the name server:"
 HELP = (
@@ -131,6 +135,8 @@ def properties(name: str, key: str, values: list[str] | None, nested: bool) -> R
 
 def value_of(text: str) -> Any:
     """A stored property as the value that its text spells; what is not one value stays text."""
+    if _WORD.fullmatch(text) and text not in ("true", "false"):
+        return text
     try:
         parsed = Bottle.from_text(text)
     except DecodeError:

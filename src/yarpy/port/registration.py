@@ -17,7 +17,7 @@ from yarpy.contact import Contact, check_name
 from yarpy.errors import AddressError, LinkClosed, NoNameServer, Timeout, YarpError
 from yarpy.log import logger
 from yarpy.names.address import local_addresses, outward_address
-from yarpy.names.base import NameClient
+from yarpy.names.base import NameClient, Values, introduce
 from yarpy.names.default import DEFAULT, secret
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.port.probe import who
@@ -153,14 +153,16 @@ class Registration:
     def describe(self, names: NameClient) -> None:
         """Tell a name service what we are, and that we listen."""
         known = [*carriers.names()]
-        names.set(self.name, "offers", *known)
-        names.set(self.name, "accepts", *known)
         bound = listening_host()
-        names.set(self.name, "ips", *([bound] if bound else local_addresses()))
-        names.set(self.name, "process", os.getpid())
+        told: dict[str, Values] = {
+            "offers": known,
+            "accepts": known,
+            "ips": [bound] if bound else local_addresses(),
+            "process": [os.getpid()],
+        }
         if self.declared.node:
-            names.set(self.name, "ros", "own")  # no name server has to tell the master of us
-        names.announce(self.name)
+            told["ros"] = ["own"]  # no name server has to tell the master of us
+        introduce(names, self.name, told)
 
     def service(self) -> NameClient | None:
         """The name service to look others up with, None if there is none."""

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from yarpy.config.configuration import Configuration, Server
 
 HAPPY: Final = 600.0  # seconds between signs of life
+PAUSE: Final = 0.02  # seconds between two times of printing
 BACKLOG: Final = 10_000  # lines that may wait for a slow terminal before some are left out
 SILENT: Final = 1000  # names that are remembered as reported not to answer
 QUESTIONS: Final = 100  # different ones that are remembered of each
@@ -122,6 +123,7 @@ class Scribe:
         self._skipped = 0
         self._registered = ""
         self._closed = False
+        self._leaving = threading.Event()
         self._changed = threading.Condition()  # commands come from threads of connections
         self._thread = threading.Thread(target=self._run, name="yarpy server log", daemon=True)
         self._thread.start()
@@ -166,6 +168,7 @@ class Scribe:
 
     def close(self) -> None:
         """Print what is left."""
+        self._leaving.set()
         with self._changed:
             self._closed = True
             self._changed.notify()
@@ -186,6 +189,7 @@ class Scribe:
                 print_line("\n".join(lines))
             except (OSError, ValueError):
                 return  # nobody reads any more; the server goes on
+            self._leaving.wait(PAUSE)  # to be woken for each command costs as much as the command
 
 
 def _parts(text: str) -> tuple[str, str, str]:
