@@ -255,6 +255,8 @@ def main() -> None:
         print("|---" + "|--:" * (len(heading) - 1) + "|")
         for who in rounds[0]:
             print(row(who, rounds))
+    if not options.connections:
+        return
     print("\n| a connection | end | KiB | threads |")
     print("|---|---|--:|--:|")
     for (carrier, end), fact in connecting(options).items():

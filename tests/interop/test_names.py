@@ -39,6 +39,9 @@ def test_client_of_a_cpp_server(cpp_server: CppYarp) -> None:
         assert names.set("/x", "ips", "127.0.0.1", "10.0.0.1") == ["10.0.0.1", "127.0.0.1"]
         assert names.get("/x", "ips") == ["10.0.0.1", "127.0.0.1"]
         assert names.get("/nope", "ips") == []
+        names.introduce("/x", {"ips": ["::1"], "offers": ["tcp", "udp"], "process": [17]})
+        told = [names.get("/x", key) for key in ("ips", "offers", "process")]
+        assert told == [["::1"], ["tcp", "udp"], ["17"]]
         assert [c.name for c in names.list("/tmp")] == ["/tmp/port/1", "/tmp/port/2"]
         assert names.list()[-1] == Contact("mcast", "fallback", "224.2.1.1", cpp_server.port)
         assert names.request(["subscribe", "/x", "topic://top"]) == ["ok"]
