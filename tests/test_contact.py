@@ -22,7 +22,7 @@ def test_examples_in_the_docstrings() -> None:
 
 
 FORMS = [
-    # text, carrier, name, host, port (spec core-3 section 6.1)
+    # text, carrier, name, host, port
     ("/foo", "", "/foo", "", 0),
     ("tcp://foo", "tcp", "/foo", "", 0),
     ("tcp:/foo", "tcp", "/foo", "", 0),

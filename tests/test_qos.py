@@ -20,7 +20,7 @@ def test_examples_in_the_docstrings() -> None:
 
 
 TOS = [
-    # the whole table of core-3 section 8.2
+    # the whole table of C++ YARP
     *((f"CS{n}", 32 * n) for n in range(8)),
     *[("AF11", 40), ("AF12", 48), ("AF13", 56), ("AF21", 72), ("AF22", 80), ("AF23", 88)],
     *[("AF31", 104), ("AF32", 112), ("AF33", 120), ("AF41", 136), ("AF42", 144), ("AF43", 152)],

@@ -1,6 +1,6 @@
 """Addresses: `Contact`, where a port is and how to speak to it.
 
-Rules: pure, no sockets. The text forms are those of C++ YARP (spec core-3 section 6.1):
+Rules: pure, no sockets. The text forms are those of C++ YARP:
 
     >>> parse_contact("/cam")
     Contact(carrier='', name='/cam', host='', port=0)

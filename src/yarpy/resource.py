@@ -4,7 +4,7 @@
     finder.find("rate", 30)          # --rate 50, else `rate 50` in tracker.ini, else 30
     finder.file("camera.xml")        # where it is found, or None
 
-Rules (nameserver spec 6.6 and 7.1, checked against C++ YARP): `--from FILE` names another
+Rules (checked against C++ YARP): `--from FILE` names another
 configuration file, `--context CONTEXT` another context. What the command line says wins over the
 file, and the file over `defaults`. A configuration file that was asked for has to be there; one
 that a program names as its usual one need not. Files are searched as `yarpy.config.resource` says,

@@ -12,8 +12,7 @@ It travels to the other side as a *specifier*: the sender's name, and a group `(
 addition, where every dot has become a space.
 
 Rules: pure. A connection has one `Route`, and that holds the one `CarrierSpec`: no other code
-parses carrier strings. What may be shown is `text`, without the password. Source: core-1 sections
-1.6, 1.12.
+parses carrier strings. What may be shown is `text`, without the password.
 
     >>> spec = parse_carrier("mjpeg+path.a.b+password.x+y+recv.priority+tc.0.5")
     >>> spec.base, spec.value("path"), spec.text

@@ -16,7 +16,7 @@ from yarpy.wire.stream import run
 
 KEY = b"secretkey"
 
-# The first message of a C++ server 3.9.1 with this key (spec core-1 section 1.11).
+# The first message of a C++ server 3.9.1 with this key.
 NONCE = bytes.fromhex("547749648828493e")
 SIGNATURE = bytes.fromhex("27d2864d2878cd72259ff5809f23c7caacc0cf23036e4bb1438d74edad1a8bcc")
 

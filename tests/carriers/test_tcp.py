@@ -27,7 +27,6 @@ GREETINGS = [
     (Tcp, "tcp", "/cap/out", load_capture("conn_tcp_disconnect").steps[0].data),
     (FastTcp, "fast_tcp", "/cap/out", load_capture("conn_fast_tcp_stream").steps[0].data),
     (Tcp, "tcp", "/cap/rc", load_capture("conn_tcp_rpc").steps[0].data),
-    # spec core-1 section 1.6
     (
         Tcp,
         "tcp+recv.foo+file.a.b.lua+x.1",
@@ -96,7 +95,7 @@ def test_call_is_answered_by_the_bare_object_then_acknowledged() -> None:
     reply = talk.reply([Vocab("ok"), [1, 2], 3.5])
     assert reply is not None
     assert reply.value == [Vocab("ok"), [1, 2], 3.5]
-    # spec core-1 section 2.6, with a vocab for its string
+    # the list, with a vocab in front of a list and a number
     assert said(talk.traffic, "acceptor") == bytes.fromhex(
         "0001000003000000 09000000 6f6b0000 0101000002000000 01000000 02000000"
         "0a000000 0000000000000c40 5941000000005250"

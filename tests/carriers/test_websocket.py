@@ -120,7 +120,7 @@ def test_handshake_of_another_version_is_refused() -> None:
 
 
 def test_messages_go_out_block_by_block_as_from_cpp() -> None:
-    """core-4 7.10: `82 08` and the port command, `82 1a` and a Bottle of 26 bytes."""
+    """`82 08` and the port command, `82 1a` and a Bottle of 26 bytes."""
     page = Page()
     page.carrier.encode(page.end.stream, Packet([1, "abc"]))
     body = Bottle([1, "abc"]).to_bytes()

@@ -18,7 +18,7 @@ from yarpy.data.value import Float32, Int8, Int64, Vocab
 from yarpy.errors import DecodeError
 
 CPP = [
-    # text of a Bottle, and what C++ answers (core-4 7.7, all captured)
+    # text of a Bottle, and what C++ answers (all captured)
     ("(a 1) (b 2)", '{"a": 1, "b": 2}'),
     ("x (a 1) (b 2)", '{"type": "x", "a": 1, "b": 2}'),
     ("ok (a 1) (b (x 2.5)) [voc]", '["ok", ["a", 1], {"type": "b", "x": 2.5}, "voc"]'),

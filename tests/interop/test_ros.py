@@ -13,7 +13,7 @@ import yarpy
 def test_topics_of_cpp_are_known_to_the_master(
     cpp: CppYarp, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """The commands of section 6: C++ leaves the calls to the name server."""
+    """`yarp read` and `yarp write` with topics: C++ leaves the calls to the name server."""
     with (
         ros_graph(tmp_path_factory.mktemp("ros")) as graph,
         yarpy.NameServer(ros=graph.uri) as server,

@@ -1,4 +1,4 @@
-"""The command language beyond what `test_capture` replays: spec cases, HTTP, events, strangers."""
+"""The command language beyond what `test_capture` replays: odd cases, HTTP, events, strangers."""
 
 import threading
 from typing import Any

@@ -43,7 +43,6 @@ MESSAGES: list[tuple[str, object, str, bytes]] = [
     ("a", [Vocab("ver")], "", captured("admin_binary", 4)),
     ("a", ["ver"], "", captured("admin_binary", 6)),
     ("a", [Vocab("list"), Vocab("out"), "/cap/in"], "", captured("admin_binary", 12)),
-    # spec core-1 section 2.2
     (
         "D",
         ["hi", 5],

@@ -6,7 +6,7 @@ Rules: a header each; then a question is a body behind its length, and an answer
 and a body: an answer of the type behind 1, behind 0 a text that says why there is none, which is
 `[fail] "text"` here. A message that wants no answer gets one all the same, which is read and
 forgotten. Without `persistent=1` the server hangs up after one answer; `probe=1` asks for the
-header alone. Source: ros section 5.3.
+header alone.
 """
 
 from __future__ import annotations

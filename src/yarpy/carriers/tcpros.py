@@ -7,7 +7,7 @@
 Rules: a header each, then bodies behind their lengths. The publisher decides about the type; one
 without a type of its own takes that of its subscriber, and one that meets only `*` sends YARP's own
 spelling. A message that is not of the type is not sent, and counted. A header with `service` is a
-call: `rossrv`. Source: ros section 5, carriers section 9.
+call: `rossrv`.
 """
 
 from __future__ import annotations

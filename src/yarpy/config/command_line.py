@@ -1,6 +1,6 @@
 """Command lines of YARP programs: `--key value value --flag` as a `Property`.
 
-Rules (nameserver spec 7.1, checked against C++ YARP): every argument is one value, so that
+Rules (checked against C++ YARP): every argument is one value, so that
 `--list "(1 2)"` is a list and `--text "a b"` one string; `--a::b 3` means `(a (b 3))`; backslashes
 are literal; a later `--key` replaces an earlier one. Anything before the first `--` is not an
 option and is skipped.

@@ -1,7 +1,7 @@
 """Where the name servers are, read from the same files and variables that C++ YARP uses.
 
 Rules: functions of an environment mapping and a directory, so that nothing here depends on the
-process it runs in. Nothing is printed. Source: nameserver spec 6.1-6.5.
+process it runs in. Nothing is printed.
 
     yarp_namespace.conf   the namespaces, as Bottle text; none means /root
     yarp.conf             the address of the server of /root: `HOST PORT [MODE]`

@@ -8,7 +8,7 @@
     [import context "file"]                   a file found in a context
     // comment      # comment      $VARIABLE ${VARIABLE} $(VARIABLE)
 
-Rules (nameserver spec 7.1, checked against C++ YARP): reading never fails on a file's content; a
+Rules (checked against C++ YARP): reading never fails on a file's content; a
 missing included file is skipped with a warning. Beware, as in C++: `//` begins a comment even
 inside a URL unless quoted, `a=b` without blanks is one key, and an open bracket or quote swallows
 the rest of the file.

@@ -1,6 +1,6 @@
 """Finding configuration and data files where YARP looks for them.
 
-Rules (nameserver spec 6.6): a file is the first that exists of
+Rules: a file is the first that exists of
 
     1. ./NAME
     2. next to the program's configuration file, if that was found in the current directory

@@ -5,9 +5,9 @@
     Property, dict                  {"a": 1, "b": 2}
     bytes                           {"type": "blob", "base64": "AQL/"}
 
-Rules: every message gives valid JSON. Where C++ gives valid JSON this is the same value (core-4
-7.7), so booleans, which are vocabs, are the strings "true" and "false", and a list of pairs is an
-object; but only if its keys are different words (C++ repeats keys or writes numbers as keys).
+Rules: every message gives valid JSON. Where C++ gives valid JSON this is the same value, so
+booleans, which are vocabs, are the strings "true" and "false", and a list of pairs is an object;
+but only if its keys are different words (C++ repeats keys or writes numbers as keys).
 Numbers that JSON cannot express (nan, infinities) are null. Reading, an object is a list of pairs,
 its `type` is the word in front of them, and null is the vocab `null`.
 """

@@ -1,4 +1,4 @@
-"""XML-RPC: calls and answers as messages, and messages as calls and answers (core-4 7.8).
+"""XML-RPC: calls and answers as messages, and messages as calls and answers.
 
     method(1, "two words", [2.5])        method 1 "two words" (2.5)
     {"a": 1, "b": "x"}                   (dict (a 1) (b x))

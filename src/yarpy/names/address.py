@@ -81,7 +81,7 @@ def address_towards(
 ) -> str:
     """The address of this computer that the other side of `connection` can reach.
 
-    `YARP_IP` is a prefix that wins if one of our addresses begins with it (spec nameserver 6.3).
+    `YARP_IP` is a prefix that wins if one of our addresses begins with it.
     Otherwise it is the local end of the connection: on a computer with several networks, the one
     that leads to the name server. Without a connection: the best guess of `outward_address`.
     """

@@ -5,7 +5,7 @@ one command at a time. Old style commands go over `NAME_SERVER` lines, several o
 each behind its own 12 bytes of prefix. What C++ answers with a Bottle (`bot ...`, `subscribe`,
 `topic` ...) goes over `CONNACK`, where the end of a reply can be seen. A connection that turns out
 to be dead (the server was restarted) is replaced once before NoNameServer is raised; every command
-may be repeated without harm. Source: nameserver spec 1.1, 1.2, 5.
+may be repeated without harm.
 """
 
 from __future__ import annotations

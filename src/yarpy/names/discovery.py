@@ -2,7 +2,7 @@
 
 Rules: the datagram codec is pure. A server is asked by the name of its namespace and answers to
 the whole group with the first line of its reply. Every member of the group receives everything, so
-a malformed datagram is skipped silently. Source: nameserver spec 6.4.
+a malformed datagram is skipped silently.
 
     offset 0   uint32 LE   CRC-32 of the bytes from 8 on
     offset 4   int32 LE    number of the packet in its message; always 0 here

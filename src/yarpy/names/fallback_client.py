@@ -1,6 +1,6 @@
 """Several name services used as one, in order of preference.
 
-Rules (nameserver spec 6.5): a port is registered in all, the first one completes the address and
+Rules: a port is registered in all, the first one completes the address and
 the others get it complete; a query goes through them until one knows the name; everything else is
 asked of the first. The first one must answer, the others may be down.
 """

@@ -8,7 +8,7 @@
     /viewer=-/camera, /viewer-#/camera      older ways to write the second
 
 Rules: pure. A port without a category (`/camera@/robot`) gets the one for what it does. Names
-without `@`, `=/` and `#/` are those of ordinary ports. Source: ros section 1.
+without `@`, `=/` and `#/` are those of ordinary ports.
 
     >>> name = parse_node_name("/camera+@/robot~sensor_msgs/Image")
     >>> name.node, name.topic, name.category, name.type

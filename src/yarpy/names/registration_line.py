@@ -1,8 +1,7 @@
 """The text lines that name servers and their clients exchange.
 
 Rules: pure. A registration is the one line that every client parses (C++ by word position). Names
-may contain blanks and nothing is quoted, so we parse it from both ends. Source: nameserver spec
-1.1, 2.3.
+may contain blanks and nothing is quoted, so we parse it from both ends.
 """
 
 from __future__ import annotations

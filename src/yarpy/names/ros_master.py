@@ -4,8 +4,7 @@
     master.call("registerSubscriber", "/me", "/chatter", "std_msgs/String", "http://here:1234/")
 
 Rules: a call takes `timeout` seconds at most, and has a connection of its own. What does not
-answer, or answers unlike a master, is an error that says who was asked and what to do. Source: ros
-sections 2 to 4.
+answer, or answers unlike a master, is an error that says who was asked and what to do.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@
 
 Rules: a command is a Bottle, the reply either *old style* (text lines ended by `*** end of
 message`) or one Bottle; which of them depends on the verb, on a leading `bot` and on a `(format
-json)` that HTTP adds, never on the connection (nameserver spec 2.1, 2.2). Unknown verbs get the
+json)` that HTTP adds, never on the connection. Unknown verbs get the
 end line alone. No input raises; a refusal is said in the reply.
 """
 
@@ -321,8 +321,7 @@ def without_request(command: Sequence[Any]) -> tuple[list[Any], bool]:
     """The words of a command, and whether HTTP asked for JSON.
 
     HTTP appends what it knows of the request as `(key value)` lists: `(format json)`,
-    `(REQUEST_URI ...)`, the user's variables. C++ takes them for arguments; we do not (nameserver
-    spec 9.5).
+    `(REQUEST_URI ...)`, the user's variables. C++ takes them for arguments; we do not.
     """
     words = list(command)
     pairs = [item for item in words if isinstance(item, list) and len(item) == 2]

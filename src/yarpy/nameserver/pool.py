@@ -1,6 +1,6 @@
 """A pool of things a name server hands out: port numbers, temporary names, multicast groups.
 
-Rules: pure. Values are text, because they are recycled in *string* order (nameserver spec 3.1-3.3)
+Rules: pure. Values are text, because they are recycled in *string* order
 and stored as text. A value is given back only by its owner, so a client that names somebody else's
 number cannot free it. Running out is an AddressError, never the end of the server.
 """

@@ -1,7 +1,7 @@
 """Replies of a name server: the two styles, and how each is built.
 
 Rules: pure. Old style is lines ended by `*** end of message`, each a Bottle without any double
-quotes; the other style is one Bottle. Source: nameserver spec 2.2.
+quotes; the other style is one Bottle.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Reply:
     def message(self) -> Bottle:
         """For a binary connection: an old style reply becomes a Bottle of one string.
 
-        C++ sends raw text there, which no binary reader can digest (nameserver spec 1.3).
+        C++ sends raw text there, which no binary reader can digest.
         """
         if self.bottle is not None:
             return self.bottle

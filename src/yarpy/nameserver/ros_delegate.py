@@ -4,7 +4,7 @@ Rules: ports of C++ YARP with the names of topics (`/msg-@/node`) leave it to th
 master, once both they and the port of their node are announced; ports of yarpy call it themselves,
 and say so (`OWN`). What is registered is unregistered in the same words, and told again to a master
 that was restarted. All calls are made by one thread, so that no command waits for the master; but a
-question for a name that nobody here has is asked there. Source: ros section 2.
+question for a name that nobody here has is asked there.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The tables of a name server's two SQLite files, and how registrations and rules stand in them.
 
-Rules: the same tables as C++ yarpserver's, so each can open the other's files (schema: nameserver
-spec 8.1). Changes arrive together, as copies, and are one transaction. Text is stored as the bytes
-that came. When to write is `database`'s business.
+Rules: the same tables as C++ yarpserver's, so each can open the other's files. Changes
+arrive together, as copies, and are one transaction. Text is stored as the bytes that came. When to
+write is `database`'s business.
 
     ports   tags(id, rid, ns, name, value)
               a port     rid NULL, ns NULL, name 'port', value its name; its id is R

@@ -1,7 +1,7 @@
 """The name store: which port is where, with which properties, and what was lent to it.
 
 Rules: pure; no sockets, no files, no clock. Names, fields and properties are one table, as in C++
-yarpserver: the keys `carrier`, `host`, `socket` and `type` *are* the address (nameserver spec 2.7).
+yarpserver: the keys `carrier`, `host`, `socket` and `type` *are* the address.
 Property values are a multiset and come back sorted by their bytes. `*` is an ordinary name, not a
 wildcard. Whatever the network can make grow has a limit (`Limits`); AddressError beyond it.
 """
@@ -138,7 +138,7 @@ class NameStore:
 
     @property
     def pools(self) -> dict[str, Pool]:
-        """The pools under the names they have in a database (nameserver spec 8.1)."""
+        """The pools under the names they have in a database."""
         return {"regid": self.numbers, "tmpid": self.temporary, "mcastCursor": self.groups}
 
     def watch(self, on_change: Callable[[str, str], None] | None) -> None:

@@ -4,7 +4,7 @@ Rules: pure; the clock is handed in (seconds since the epoch). Nothing here talk
 event (`announce`, `vanish`, `subscribe` ...) returns the connections to make or to break, and the
 caller does so in the background, in order for each pair of ports.
 
-Semantics (nameserver spec 8.3): a name is live from `announce` until it is unregistered, or until
+Semantics: a name is live from `announce` until it is unregistered, or until
 somebody says that it does not answer and it has been live for more than 30 s. A rule joins two
 ports, or a port and a topic; a port into a topic is joined with every port out of it.
 """

@@ -1,7 +1,7 @@
 """The network as a whole: connect and disconnect any two ports, check for them, wait for them.
 
-Rules: all requests go to the ports themselves, in the messages that C++ tools send (core-3 section
-6); nothing here needs a port of its own. `names` None is the default name service.
+Rules: all requests go to the ports themselves, in the messages that C++ tools send; nothing
+here needs a port of its own. `names` None is the default name service.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def admin(
 
 class Pairing:
     """Two ports whose connection is made, checked or ended from outside: over which carrier, which
-    of them is asked, and in which words (core-3 section 6.2)."""
+    of them is asked, and in which words."""
 
     def __init__(
         self, source: str, target: str, carrier: str | None, names: NameClient | None

@@ -1,6 +1,6 @@
 """The priority of any connection in the network, read from and set at the ports at its two ends.
 
-Rules: the messages are those of C++ tools (core-3 section 8.3), so ports of any YARP answer; each
+Rules: the messages are those of C++ tools, so ports of any YARP answer; each
 end has its own settings. Settings that a side should keep are left out.
 """
 

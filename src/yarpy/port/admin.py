@@ -1,6 +1,6 @@
 """The administrative channel of a port: a Bottle in, a Bottle out.
 
-Rules: the commands and replies are those of C++ YARP 3.9 (spec core-3 section 5), to the letter,
+Rules: the commands and replies are those of C++ YARP 3.9, to the letter,
 line ends inside strings included. A word counts by its first four characters, string or vocab
 alike.
 """

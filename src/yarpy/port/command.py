@@ -1,7 +1,7 @@
 """Port commands: what connects, disconnects and describes a port, in the words that telnet users
 see.
 
-Rules: the lines are those of C++ YARP (core-1 section 2.4).
+Rules: the lines are those of C++ YARP.
 """
 
 from __future__ import annotations

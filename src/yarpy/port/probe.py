@@ -4,7 +4,7 @@ connections, or by a Caller, again and again over one.
 Rules: the asking side has no port of its own; its name has no slash in front, so that it displaces
 no connection; there is always a time limit. Before a port is told to end a connection it is asked
 for its name, over the same connection: a number that a name service remembers may belong to another
-port by now. Source: core-3 sections 5.1, 6.3, 6.4.
+port by now.
 """
 
 from __future__ import annotations

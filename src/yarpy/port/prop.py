@@ -1,6 +1,6 @@
 """`prop get` and `prop set` of a port: its process, its threads, the priority of its connections.
 
-Rules: the shapes are those of C++ YARP (core-3 sections 5.3, 8). Settings apply to the first
+Rules: the shapes are those of C++ YARP. Settings apply to the first
 connection with that peer.
 """
 

@@ -1,7 +1,7 @@
 """Refusals: the lines in which ports say that a connection cannot be made, and our errors.
 
 Rules: one table, read both ways: what a port of ours answers, and what another port's answer means.
-The lines are those of C++ YARP (core-3 section 5.3), which gives no reasons; we add one behind a
+The lines are those of C++ YARP, which gives no reasons; we add one behind a
 colon.
 
     >>> line(UnknownName('no port "/b" is registered'), "tcp://b")

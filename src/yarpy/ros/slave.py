@@ -1,8 +1,7 @@
 """What a node answers to the master, to other nodes and to the tools of ROS.
 
 Rules: every answer is [code, message, value]: 1 done, 0 it could not be, -1 not understood. The
-first argument is who asks. Over XML-RPC and as administrative messages alike. Source: ros
-section 4.
+first argument is who asks. Over XML-RPC and as administrative messages alike.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ The other side are nodes whose RMW_IMPLEMENTATION is rmw_zenoh_cpp. What is here
     name, key, token, qos, attachment    the texts and bytes of that RMW; pure
     load                                 a type of ROS 2 as a class
 
-Rules: pure files import no session. Source: beyond section 1.
+Rules: pure files import no session.
 """
 
 from __future__ import annotations

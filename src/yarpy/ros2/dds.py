@@ -6,8 +6,7 @@ Rules: topics alone: the services of the usual middleware cannot be reached by t
 given bytes, and gives bytes: its own way of writing and reading messages takes many times as long.
 Unlike over Zenoh, whoever promises less than the other side asks for is not connected; the log says
 so. DDS opens sockets and looks for others by multicast, in the local network unless
-ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE or CYCLONEDDS_URI say otherwise. Source: beyond
-section 2.
+ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE or CYCLONEDDS_URI say otherwise.
 """
 
 from __future__ import annotations

@@ -336,7 +336,7 @@ def test_page_that_a_program_made() -> None:
 
 @pytest.mark.parametrize("piece", [0, 1])
 def test_reply_that_begins_a_stream(piece: int) -> None:
-    """core-4 7.5: the connection is turned round, each later message of the port is a chunk."""
+    """The connection is turned round, each later message of the port is a chunk."""
     answer = [["stream", 1], ["web", "<p>one</p>"]]
     request = b"GET /my/stream HTTP/1.1\r\nHost: x\r\n\r\n"
     owner, said = serve(*chop(request, piece), answer=answer)

@@ -65,7 +65,8 @@ def run(lonely: CommandLine, *commands: str) -> str:
 
 @needs_curl
 def test_talking_to_web_apps(demo: Process, lonely: CommandLine):
-    """Find the head, tilt it, see that it is tilted: section 7 of the article."""
+    """Find the head, tilt it, see that it is tilted: section 7 of "A middle way for robotics
+    middleware"."""
     told = json.loads(run(lonely, line(demo, "curl", "query")))
     assert told["type"] == "port"
     assert told["name"] == "/icubSim/head/rpc:i"
@@ -84,7 +85,7 @@ def test_talking_to_web_apps(demo: Process, lonely: CommandLine):
 
 @needs_netcat
 def test_talking_to_a_human(demo: Process, lonely: CommandLine):
-    """Section 8: the same without even curl, and what a port says to garbage."""
+    """Section 8 there: the same without even curl, and what a port says to garbage."""
     with shell(lonely, line(demo, "CONNECT")) as process:
         process.wait_line(r"^\[ok\]", timeout=PATIENCE)
         angles = process.wait_line(r"^\[is\] encs \((.*)\) \[tsta\] .* \[ok\]", timeout=PATIENCE)[1]

@@ -2,7 +2,7 @@
 
 Rules: plain HTML that also works without its script, which adds live data; nothing is loaded from
 elsewhere. Anything from a port or a message is escaped here. Lines of a name server become links,
-lines of its help (those that begin with `+`) become forms, as in C++ (core-4 7.4).
+lines of its help (those that begin with `+`) become forms, as in C++.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@
 
 Rules: pure functions of method, target, headers and body. `$name` in `req` and `data` is replaced
 by the argument of that name. Nothing else is added to a message, where C++ appends all arguments
-again. Source: core-4 7.2 and 7.3.
+again.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@
     text     1 2 CR LF            no reply: 204
     none     204
     page     the port's page with the reply on it (`port_page`)
-    web      a page that a program put into its reply (core-4 7.5), isolated from the port's own
+    web      a page that a program put into its reply, isolated from the port's own
 
 Rules: a reply goes in, a Response comes out; `carrier` writes it. Each response forbids caching and
 type sniffing, and lets any page read it.

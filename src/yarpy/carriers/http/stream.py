@@ -3,7 +3,7 @@
     events        id: 7 1.25 LF data: [1, 2] LF LF      for JavaScript's EventSource
     json          [1, 2] LF
     text          1 2 CR LF
-    reply_page    what the program put under `web`      see core-4 7.5
+    reply_page    what the program put under `web`
 
 Rules: each form of a message is made once for all its readers. A picture is sent as size and kind
 only, unless a JSON reader asks for pixels; to see it, use mjpeg.
