@@ -17,7 +17,7 @@ of a picture is the comment in the JPEG file, as with mjpeg.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from yarpy.data import codec, jpeg
@@ -39,10 +39,11 @@ _UNSET: Final = object()
 def to_payload(packet: Packet) -> Buffer:
     """What a packet is to others, made once for all of them. Raises TypeError, ValueError or
     OverflowError for what cannot be sent."""
-    found = packet.forms.get(_KEY)
+    forms = packet.forms
+    found: Buffer | None = forms.get(_KEY)
     if found is None:
-        found = packet.forms[_KEY] = (payload_of(packet.value, packet.envelope),)
-    return found[0]
+        found = forms[_KEY] = payload_of(packet.value, packet.envelope)
+    return found
 
 
 def payload_of(value: Any, envelope: bytes = b"") -> Buffer:
@@ -91,7 +92,7 @@ class PayloadMessage(Message):
     __slots__ = ("_decoded",)
 
     def __init__(self, key: str, payload: tuple[Buffer, ...], envelope: str = "") -> None:
-        super().__init__(key, payload, envelope, "foreign")
+        Message.__init__(self, key, payload, envelope, "foreign")
         self._decoded: Any = _UNSET
 
     @property
@@ -126,7 +127,7 @@ def _copied(key: str, data: Buffer, envelope: str, source: str) -> Message:
     return message
 
 
-def message_of(key: str, frames: list[Buffer]) -> Message:
+def message_of(key: str, frames: Sequence[Buffer]) -> Message:
     """What came."""
     envelope = ""
     if len(frames) == 1 and frames[0][:3] == JPEG:

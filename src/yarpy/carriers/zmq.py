@@ -28,6 +28,7 @@ from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
 RAW: Final = b"raw:"
+_HEADS: Final = [zmtp.head(size) for size in range(256)]  # of messages of one short frame
 PORT: Final = "X-Yarp-Port"  # the property by which a port says its name and modifiers
 NOBODY: Final = "zmq"  # what a peer without a name is called
 MAX_PREFIX: Final = 1 << 12  # bytes of a subscription
@@ -228,7 +229,7 @@ class Push(Zmq):
         body = to_payload(packet)
         if len(body) < 256:  # as mostly
             self._small = True
-            stream.write(bytes((0, len(body))) + body)
+            stream.write(_HEADS[len(body)] + body)
         else:
             self.write(stream, [body])
 
@@ -367,6 +368,9 @@ class Pull(Zmq):
     replies = False
 
     def parse(self, stream: ByteStream) -> Message | None:
+        body = zmtp.parse_body(stream)  # of one frame, as mostly
+        if body is not None:
+            return message_of(DATA, (body,))
         frames = zmtp.parse_message(stream)
         return None if frames is None else self.take(frames)
 
@@ -394,7 +398,7 @@ class Sub(Pull):
             stream.write(zmtp.frame(b"\1" + topic))
 
     def take(self, frames: list[Buffer]) -> Message:
-        is_raw = len(frames) > 1 and bytes(frames[0][: len(RAW)]) == RAW
+        is_raw = len(frames) > 1 and frames[0][: len(RAW)] == RAW
         return received(DATA, frames if is_raw or len(frames) == 1 else frames[1:])
 
 
@@ -434,7 +438,7 @@ def split(frames: list[Buffer]) -> tuple[list[Buffer], list[Buffer]]:
 
 def is_raw(frames: list[Buffer]) -> bool:
     """Whether the last frame is in YARP's own spelling."""
-    return len(frames) == 2 and bytes(frames[0][: len(RAW)]) == RAW
+    return len(frames) == 2 and frames[0][: len(RAW)] == RAW
 
 
 def received(key: str, frames: list[Buffer]) -> Message:

@@ -124,6 +124,18 @@ def parse_frame(stream: ByteStream, limit: int) -> Frame | None:
     return flags, bytes(buffer[start : stream.head])
 
 
+def parse_body(stream: ByteStream) -> bytes | None:
+    """The only frame of a message, as `parse_message`; None for all others."""
+    start = stream.head + 2
+    if start > stream.tail or stream.buffer[start - 2]:
+        return None
+    end = start + stream.buffer[start - 1]
+    if end > stream.tail:
+        return None
+    stream.head = end
+    return bytes(stream.buffer[start:end])
+
+
 def parse_message(stream: ByteStream) -> list[Buffer] | None:
     """The frames of a message of which everything has come already, all of them short; or None,
     and nothing was read."""

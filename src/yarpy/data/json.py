@@ -21,6 +21,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from yarpy.data.bottle import Bottle
+from yarpy.data.json_plain import NOT_PLAIN, plain_json, plain_value
 from yarpy.data.limit import limits
 from yarpy.data.text import plain_text
 from yarpy.data.value import MAX_DEPTH, Vocab, fits
@@ -43,7 +44,9 @@ def to_json(value: object, outer: Outer = "auto", *, pixels: bool = True) -> str
     outer: whether the outermost list becomes an array or an object; `auto`: what it looks like.
     pixels: whether an image comes with its pixels, or only with its size and kind.
     """
-    text = _writer().encode(_plain_top(value, outer, pixels))
+    text = plain_json(value) if outer == "auto" else None
+    if text is None:
+        text = _writer().encode(_plain_top(value, outer, pixels))
     if text.isascii():
         return text
     text = _C1.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
@@ -59,14 +62,26 @@ def from_json(text: str | bytes | bytearray | memoryview) -> Any:
         data = text if isinstance(text, str) else bytes(text).decode("utf-8")
         if len(data) > _FREE and sum(map(data.count, ",[{")) > (most := limits().elements):
             raise DecodeError(f"JSON of more than {most} elements (YARPY_MAX_ELEMENTS)")
-        found = _reader().decode(data)
+        found = _read(data)
     except RecursionError:
         raise DecodeError(f"JSON nested more than {MAX_DEPTH} deep") from None
     except DecodeError:
         raise
     except ValueError as error:
         raise DecodeError(f"this is not JSON: {error}") from None
-    return _message(found, 0)
+    value = plain_value(found)
+    return _message(found, 0) if value is NOT_PLAIN else value
+
+
+def _read(text: str) -> Any:
+    reader = _reader()
+    try:
+        found, end = reader.raw_decode(text)
+        if end == len(text):
+            return found
+    except ValueError:
+        pass
+    return reader.decode(text)  # with space around it, or it says what is wrong
 
 
 @cache
