@@ -23,6 +23,7 @@ ENVELOPES = [
     (b"bytes", b"bytes"),
     ("cut\nhere", b"cut"),
     ("cut \u00e9 here", b"cut "),  # as C++, at the first byte that is not ASCII
+    ("del\x7fete", b"del\x7fete"),
     ("", b""),
 ]
 

@@ -89,13 +89,49 @@ def test_plain_messages_are_parsed_in_place(
     stream = ByteStream()
     stream.feed(data + b"next")
     message = framing.parse_plain(stream)
-    if envelope:
-        assert message is None
-        assert stream.waiting == len(data) + 4
-    else:
-        assert message is not None
-        assert (message.key, message.value) == (key, value)
-        assert stream.waiting == 4
+    assert message is not None
+    assert (message.key, message.value, message.envelope) == (key, value, envelope)
+    assert stream.waiting == 4
+
+
+STAMPED = encode([1, "ping"], "2 1.25")
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (STAMPED.replace(b" 2 1.25", b" 2\r1.25"), ("D", "21.25")),
+        (STAMPED.replace(b"D 2 1.25", b"d  2 1.2"), ("d", "2 1.2")),
+        (STAMPED.replace(b"D 2 1.25", b"D\xff2 1.25"), ("D", "2 1.25")),
+    ],
+)
+def test_odd_envelopes_are_parsed_in_place(data: bytes, message: tuple[str, str]) -> None:
+    stream = ByteStream()
+    stream.feed(data)
+    found = framing.parse_plain(stream)
+    assert found is not None
+    assert (found.key, found.envelope) == message
+    other = decode(data, 1)
+    assert (other.key, other.envelope, other.payload) == (*message, found.payload)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        STAMPED.replace(b"D 2 1.25", b"D 2\0001.25"),
+        STAMPED.replace(b"D 2 1.25\0", b"D 2 1.255"),
+        STAMPED.replace(b"D 2 1.25", b"q 2 1.25"),
+        STAMPED.replace(b"~\0\0\1", b"~\0\0\2"),
+        STAMPED.replace(b"\2\1\xff", b"\2\2\xff"),
+        STAMPED.replace(struct.pack("<i", 17), struct.pack("<i", -17), 1),
+    ],
+)
+def test_what_is_no_envelope_is_left_alone(data: bytes) -> None:
+    assert data != STAMPED
+    stream = ByteStream()
+    stream.feed(data)
+    assert framing.parse_plain(stream) is None
+    assert stream.waiting == len(data)
 
 
 @pytest.mark.parametrize(("key", "value", "envelope", "data"), MESSAGES, ids=IDS)

@@ -363,7 +363,11 @@ def envelope_of(stamp: Stamp | str | bytes) -> bytes:
             f"a stamp is a yarpy.Stamp or a line of text, not {stamp!r}; a message is one "
             "object, several go into a list: write([1, 2])"
         )
-    data = stamp.encode() if isinstance(stamp, str) else stamp
+    if isinstance(stamp, str):
+        if stamp.isascii() and stamp.isprintable():
+            return stamp.encode()
+        stamp = stamp.encode()
+    data = stamp
     for index, byte in enumerate(data):
         if byte < 0x20 or byte >= 0x80:
             return data[:index]

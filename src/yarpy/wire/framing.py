@@ -26,6 +26,7 @@ MAX_COMMAND: Final = 1 << 15  # half the buffer of a stream
 _NUMBER: Final = struct.Struct("<2si2s")
 _INT: Final = struct.Struct("<i")
 _TWO: Final = struct.Struct("<2i")
+_THREE: Final = struct.Struct("<3i")
 
 
 def number(value: int) -> bytes:
@@ -57,6 +58,7 @@ _KEYS: Final = {key: b"\0\0\0\0~" + key.encode() + b"\0\1" for key in "Dda"}
 _HEADS: Final = {
     key: (_PLAIN + _INT.pack(8), b"\0\0\0\0" + command) for key, command in _KEYS.items()
 }
+_TEXT: Final = b"~\0\0\1"  # behind the length of a port command that is a text
 QUIT: Final = INDEX + b"\x01\x01" + _FILLER + _TWO.pack(10, 0) + b"\2\0\0\0~\0\0\1q\0"
 
 
@@ -67,7 +69,7 @@ def encode_command(key: str, envelope: bytes = b"", text: bytes = b"") -> bytes:
     if not text and key in _KEYS:
         return _KEYS[key]
     body = key.encode() + text + b"\0"
-    return _INT.pack(len(body)) + b"~\0\0\1" + body
+    return _INT.pack(len(body)) + _TEXT + body
 
 
 def encode(packet: Packet) -> list[Buffer]:
@@ -76,11 +78,15 @@ def encode(packet: Packet) -> list[Buffer]:
     framed = packet.framed
     if framed is None:
         blocks = packet.blocks
-        if len(blocks) == 1 and not packet.envelope:
+        if len(blocks) == 1:
             # The common case, kept short: two blocks, the second is the payload.
             payload = blocks[0]
-            head, command = _HEADS[packet.key]
-            start = head + _INT.pack(len(payload)) + command
+            if packet.envelope:
+                command = encode_command(packet.key, packet.envelope)
+                start = _PLAIN + _THREE.pack(len(command), len(payload), 0) + command
+            else:
+                head, command = _HEADS[packet.key]
+                start = head + _INT.pack(len(payload)) + command
             framed = [start + payload] if len(payload) < LARGE else [start, payload]
         else:
             framed = _encode_blocks(encode_command(packet.key, packet.envelope), blocks)
@@ -140,7 +146,7 @@ def read_message(stream: ByteStream) -> Steps[Message]:
 
 
 def parse_plain(stream: ByteStream) -> Message | None:
-    """A whole message without envelope at the head of the stream's buffer, or None: look closer.
+    """A whole message at the head of the stream's buffer, or None: look closer.
 
     The hot path: nothing is waited for, no generator runs, the payload is copied out once.
     """
@@ -150,14 +156,35 @@ def parse_plain(stream: ByteStream) -> Message | None:
     if stream.tail < start + 8:
         return None
     command, size = _TWO.unpack_from(buffer, head + _HEAD_SIZE)
-    end = start + 8 + size
-    if command != 8 or not 8 <= size < LARGE or stream.tail < end:
+    end = start + command + size
+    if not 8 <= size < LARGE or stream.tail < end:
         return None
+    if command != 8:
+        return _parse_stamped(stream, start, start + command, end)
     key = _CHARACTERS.get(buffer[start + 5])
     if key is None or buffer[start + 4] != 0x7E:
         return None
     stream.head = end
     return Message(key, bytes(buffer[start + 8 : end]))
+
+
+def _parse_stamped(stream: ByteStream, start: int, body: int, end: int) -> Message | None:
+    """The same for a message with an envelope: its port command is a text, which ends at `body`."""
+    buffer = stream.buffer
+    text = start + 8
+    if (
+        not text < body <= start + MAX_COMMAND
+        or not buffer.startswith(_TEXT, start + 4)
+        or not buffer.startswith(_PLAIN, stream.head)
+        or buffer.find(0, text, body) != body - 1
+    ):
+        return None
+    message = parse_command(_said(buffer[text : body - 1]))
+    if message.key not in ("D", "d"):
+        return None
+    message.payload = bytes(buffer[body:end])
+    stream.head = end
+    return message
 
 
 _CHARACTERS: Final = {ord(key): key for key in "Dda"}
@@ -229,7 +256,12 @@ def read_command(stream: ByteStream) -> Steps[tuple[Message, int] | None]:
     if head[5]:
         return Message(chr(head[5])), 8
     text = yield from _read_text(stream)
-    return parse_command(text.translate(None, b"\r\n").decode("utf-8", "replace")), 9 + len(text)
+    return parse_command(_said(text)), 9 + len(text)
+
+
+def _said(text: Buffer) -> str:
+    """The text of a port command without ends of lines."""
+    return bytes(text).translate(None, b"\r\n").decode("utf-8", "replace")
 
 
 def _read_text(stream: ByteStream) -> Steps[bytes]:

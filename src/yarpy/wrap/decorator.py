@@ -102,10 +102,14 @@ def _decorated(func: Any) -> tuple[Any, Method]:
 def _find(active: dict[int, Mode], method: Method, args: tuple[Any, ...]) -> Mode | None:
     """The mode that counts for a call."""
     mode = active.get(id(args[0])) if args else None
-    if mode is None:
-        mode = active.get(EVERYBODY)
-        if mode is None and UNDECIDED in active and args:
-            mode = setting.decide(method, args[0], _activate)
+    return _find_other(active, method, args) if mode is None else mode
+
+
+def _find_other(active: dict[int, Mode], method: Method, args: tuple[Any, ...]) -> Mode | None:
+    """The mode of an object for which none was chosen."""
+    mode = active.get(EVERYBODY)
+    if mode is None and UNDECIDED in active and args:
+        mode = setting.decide(method, args[0], _activate)
     return mode
 
 
@@ -116,7 +120,9 @@ def _function(func: Callable[..., Any], method: Method) -> Callable[..., Any]:
     def call(*args: Any, **kwargs: Any) -> Any:
         if not active:
             return func(*args, **kwargs)
-        mode = _find(active, method, args)
+        mode = active.get(id(args[0])) if args else None  # as `_find`: this is what a call costs
+        if mode is None:
+            mode = _find_other(active, method, args)
         return func(*args, **kwargs) if mode is None else mode.run(func, args, kwargs)
 
     return call

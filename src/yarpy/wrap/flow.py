@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Final
 
@@ -32,8 +32,6 @@ class Outlets:
         self._publishers: list[list[Publisher]] = []
         self._names: list[list[str]] = []
         self._single = len(outputs) == 1
-        self._only: Publisher | None = None
-        self._shape = self._shapes[0]
         self._count = itertools.count()
         self._waited = not method.wait
         self._source = outputs[0].topic
@@ -48,17 +46,29 @@ class Outlets:
             raise
         self._topics = [(output.topic, output.middlewares) for output in outputs]
         if self._single and len(self._publishers[0]) == 1:
-            self._only = self._publishers[0][0]
+            self._send_now = self._to(self._publishers[0][0], self._shapes[0])
+        else:
+            self._send_now = self._send_several
+        #: Sends what a call returned. Raises TypeError, ValueError for what cannot be sent.
+        self.send = self._send_now if self._waited else self._send_patiently
 
-    def send(self, value: Any) -> None:
-        """Send what a call returned. Raises TypeError, ValueError for what cannot be sent."""
+    def _send_patiently(self, value: Any) -> None:
         if not self._waited:
             self._wait()
-        if self._only is not None:
-            shape = self._shape
-            item = Item(shape.dump(value), shape, next(self._count), time.time(), self._source)
-            self._only.publish(item)
-            return
+        self._send_now(value)
+
+    def _to(self, publisher: Publisher, shape: Shape) -> Callable[[Any], None]:
+        """How a single value goes to a single middleware: what is the same for each is looked up
+        once."""
+        dump, publish, source = shape.dump, publisher.publish, self._source
+        number, now = self._count.__next__, time.time
+
+        def send(value: Any) -> None:
+            publish(Item(dump(value), shape, number(), now(), source))
+
+        return send
+
+    def _send_several(self, value: Any) -> None:
         values = (value,) if self._single else value
         if not isinstance(values, (tuple, list)) or len(values) != len(self._shapes):
             raise TypeError(

@@ -13,7 +13,7 @@ equal, whatever the hint; a frame carries the rest.
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 from typing import Any, Final
 
@@ -24,6 +24,8 @@ from yarpy.wire.message import Message
 
 NOT_NATIVE: Final = object()
 _INT64: Final = 1 << 63
+_SURE: Final = frozenset((str, float, bool, bytes))  # whatever their value, they come back
+_TEXT: Final = frozenset((str,))
 
 
 class Shape:
@@ -140,7 +142,7 @@ class Several(Shape):
             raise DecodeError(f"expected {self.name}: {error}") from error
 
     def native(self, plain: Any) -> Any:
-        return _native_list(list(plain))
+        return _native_list(plain if type(plain) is list else list(plain))
 
     def read(self, message: Message) -> Any:
         return message.as_(list)
@@ -392,15 +394,27 @@ _SCALARS: Final = (bool, int, float, str, bytes)
 def survives(value: Any) -> bool:
     """Whether an element of a list comes back from YARP equal to what it was."""
     kind = type(value)
-    if kind is str or kind is float or kind is bool or kind is bytes:
+    if kind in _SURE:
         return True
     if kind is int:
         return bool(-_INT64 <= value < _INT64)
     if kind is list or kind is Bottle:
-        return all(map(survives, value))
+        return _survive(value)
     if kind is dict:  # a dict in a list has a kind of its own; one in that has not
         return all(type(key) is str and _flat(item) for key, item in value.items())
     return False
+
+
+def _survive(values: Iterable[Any]) -> bool:
+    """Whether each of them does."""
+    for value in values:
+        kind = type(value)
+        if kind is int:
+            if not -_INT64 <= value < _INT64:
+                return False
+        elif kind not in _SURE and not survives(value):
+            return False
+    return True
 
 
 def _flat(value: Any) -> bool:
@@ -415,22 +429,15 @@ def _native_list(items: list[Any]) -> Any:
     """A list; not one of a single text, which is how Wrapyfi sends everything."""
     if len(items) == 1 and type(items[0]) is str:
         return NOT_NATIVE
-    return items if all(map(survives, items)) else NOT_NATIVE
+    return items if _survive(items) else NOT_NATIVE
 
 
 def _native_dict(plain: Any) -> Any:
-    """A dict, as what a port writes: a list of pairs, where a dict in it would lose its kind."""
-    nested = False
-    for key, item in plain.items():
-        kind = type(item)
-        if type(key) is not str:
-            return NOT_NATIVE
-        if kind is float or kind is str or kind is bool:
-            continue
-        if not survives(item):
-            return NOT_NATIVE
-        nested = nested or kind is dict or kind is list
-    return [[key, item] for key, item in plain.items()] if nested else plain
+    """A dict, as what a port writes: a list of pairs, since a dict in a dict would lose its
+    kind."""
+    if not _TEXT.issuperset(map(type, plain)) or not _survive(plain.values()):
+        return NOT_NATIVE
+    return [[key, item] for key, item in plain.items()]
 
 
 def shown(value: Any) -> str:

@@ -6,6 +6,7 @@ Bottle `yarpy/1 header blob ...`. A reader tells the two, and Wrapyfi's texts, b
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle
@@ -51,6 +52,19 @@ def wrapyfi(item: Item) -> Any:
 
 
 FORMS: Final = {"native": native, "frame": framed, "wrapyfi": wrapyfi}
+
+
+def form_of(encoding: str, shape: Shape) -> Callable[[Item], Any]:
+    """What a port writes for items of this shape."""
+    if encoding != "native" or (type(shape) is Picture and shape.image.jpeg is not None):
+        return FORMS[encoding]
+    spelled = shape.native
+
+    def form(item: Item) -> Any:
+        found = spelled(item.plain)
+        return framed(item) if found is NOT_NATIVE else found
+
+    return form
 
 
 def jpeg_of(item: Item) -> Jpeg | None:

@@ -24,6 +24,7 @@ from yarpy.wrap.spelling import (
     FORMS,
     failure,
     failure_of,
+    form_of,
     frame_of,
     question,
     received,
@@ -49,7 +50,7 @@ class Yarp:
         port = BufferedPort(way.topic, strict=way.keep == "all")
         if way.qos is not None:
             _give(port, way.qos)
-        return PortPublisher(port, way)
+        return PortPublisher(port, way, shape)
 
     def listener(self, way: Way, shape: Shape) -> PortListener:
         port = BufferedPort("", strict=way.keep == "all")
@@ -82,14 +83,16 @@ def _give(port: BufferedPort, qos: Qos) -> None:
 class PortPublisher:
     """Writes to a port of its own."""
 
-    def __init__(self, port: BufferedPort, way: Way) -> None:
+    def __init__(self, port: BufferedPort, way: Way, shape: Shape) -> None:
         self.port = port
         self._name = way.encoding
-        self._form = FORMS[way.encoding]
+        self._form = form_of(way.encoding, shape)
+        self._write = port.write
 
     def publish(self, item: Item) -> int:
-        value = item.form(self._name, self._form)
-        return self.port.write(value, f"{item.count} {item.time:.6f}")
+        make = self._form
+        value = make(item) if item.forms is None else item.form(self._name, make)
+        return self._write(value, f"{item.count} {item.time:.6f}")
 
     def wait(self, timeout: float | None) -> bool:
         return self.port.wait_for_outputs(1, timeout)
