@@ -19,7 +19,14 @@ if __name__ == "__main__":
 from support.cpp_venv import MissingPeer, environment_directory
 
 # Without OpenCV Wrapyfi falls back to nothing and says little about it.
-PACKAGES = ("wrapyfi==0.5.0", "opencv-python-headless>=4.10", "pyzmq>=26")
+PACKAGES = (
+    "wrapyfi==0.5.0",
+    "opencv-python-headless>=4.10",
+    "pyzmq>=26",
+    "eclipse-zenoh>=1.4",
+    "paho-mqtt>=2",
+    "python-socketio[client]>=5.11",
+)
 
 
 def directory() -> Path:

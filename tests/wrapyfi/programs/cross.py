@@ -1,6 +1,7 @@
-"""Each type of Wrapyfi, sent or taken: `cross.py SIDE MIDDLEWARE TYPE...`, by either `wrapyfi`.
+"""Each type of Wrapyfi, sent or taken: `cross.py SIDE MIDDLEWARE,... TYPE...`, by either `wrapyfi`.
 
-A sender sends until its input ends. A taker prints a line of JSON for each type, and ends.
+A sender sends until its input ends. A taker prints a line of JSON for each type and middleware, and
+ends.
 """
 
 import json
@@ -13,7 +14,8 @@ import numpy as np
 
 from wrapyfi.connect.wrapper import MiddlewareCommunicator
 
-side, mware = sys.argv[1:3]
+side = sys.argv[1]
+mwares = sys.argv[2].split(",")
 types = sys.argv[3:]
 # Wrapyfi's publishers over ZeroMQ may never see that somebody listens, while others send.
 WAIT = os.environ.get("CROSS_WAIT") != "0"
@@ -23,37 +25,55 @@ SOUND = np.sin(np.arange(200) / 10).astype(np.float32)
 
 
 class Cross(MiddlewareCommunicator):
-    @MiddlewareCommunicator.register("NativeObject", mware, "Cross", "/x/native", should_wait=WAIT)
-    def native(self):
+    @MiddlewareCommunicator.register(
+        "NativeObject", "$mware", "Cross", "/x/native", should_wait=WAIT
+    )
+    def native(self, mware=None):
         return ({"t": (1, 2), "s": {1, None}, "a": np.arange(4.0), "n": [None, True, 2.5]},)
 
     @MiddlewareCommunicator.register(
-        "Image", mware, "Cross", "/x/rgb", width=32, height=24, rgb=True, should_wait=WAIT
+        "Image", "$mware", "Cross", "/x/rgb", width=32, height=24, rgb=True, should_wait=WAIT
     )
-    def rgb(self):
+    def rgb(self, mware=None):
         return (COLOUR,)
 
     @MiddlewareCommunicator.register(
-        "Image", mware, "Cross", "/x/mono", width=32, height=24, rgb=False, should_wait=WAIT
+        "Image", "$mware", "Cross", "/x/mono", width=32, height=24, rgb=False, should_wait=WAIT
     )
-    def mono(self):
+    def mono(self, mware=None):
         return (COLOUR[..., 0],)
 
     @MiddlewareCommunicator.register(
-        "Image", mware, "Cross", "/x/fp", width=32, height=24, rgb=True, fp=True, should_wait=WAIT
+        "Image",
+        "$mware",
+        "Cross",
+        "/x/fp",
+        width=32,
+        height=24,
+        rgb=True,
+        fp=True,
+        should_wait=WAIT,
     )
-    def fp(self):
+    def fp(self, mware=None):
         return (COLOUR.astype(np.float32) / 7,)
 
     @MiddlewareCommunicator.register(
-        "Image", mware, "Cross", "/x/jpg", width=32, height=24, rgb=True, jpg=True, should_wait=WAIT
+        "Image",
+        "$mware",
+        "Cross",
+        "/x/jpg",
+        width=32,
+        height=24,
+        rgb=True,
+        jpg=True,
+        should_wait=WAIT,
     )
-    def jpg(self):
+    def jpg(self, mware=None):
         return (PLAIN,)
 
     @MiddlewareCommunicator.register(
         "AudioChunk",
-        mware,
+        "$mware",
         "Cross",
         "/x/sound",
         rate=16000,
@@ -61,11 +81,11 @@ class Cross(MiddlewareCommunicator):
         channels=1,
         should_wait=WAIT,
     )
-    def sound(self):
+    def sound(self, mware=None):
         return ((SOUND, 16000),)
 
-    @MiddlewareCommunicator.register("NativeObject", mware, "Cross", "/x/rpc", should_wait=WAIT)
-    def ask(self, *args, **kwargs):
+    @MiddlewareCommunicator.register("NativeObject", "$mware", "Cross", "/x/rpc", should_wait=WAIT)
+    def ask(self, *args, mware=None, **kwargs):
         return ({"args": list(args), "kwargs": kwargs},)
 
 
@@ -87,35 +107,37 @@ def told(name, value):
     return repr(value)
 
 
-cross = Cross()
+crosses = {mware: Cross() for mware in mwares}
 for name in types:
     mode = {"send": "publish", "take": "listen"}[side]
     if name == "ask":
         mode = {"send": "reply", "take": "request"}[side]
-    cross.activate_communication(name, mode)
+    for cross in crosses.values():
+        cross.activate_communication(name, mode)
 
 
-def send(names):
+def send(calls):
     while True:
-        for name in names:
-            getattr(cross, name)()
+        for mware, name in calls:
+            getattr(crosses[mware], name)(mware=mware)
         time.sleep(0.05)
 
 
+calls = [(mware, name) for mware in mwares for name in types]
 if side == "send":
     print("ready", flush=True)
-    for names in [[name] for name in types] if WAIT else []:
-        threading.Thread(target=send, args=(names,), daemon=True).start()
+    for call in calls if WAIT else []:
+        threading.Thread(target=send, args=([call],), daemon=True).start()
     if not WAIT:
-        send(types)
+        send(calls)
     sys.stdin.read()
 else:
-    for name in types:
+    for mware, name in calls:
         if name == "ask":
-            (value,) = cross.ask((1, 2), [3], k={"z": (9,)})
+            (value,) = crosses[mware].ask((1, 2), [3], k={"z": (9,)}, mware=mware)
         else:
             value = None
             while value is None or (name == "sound" and value[0] is None):
-                (value,) = getattr(cross, name)()
-        print(json.dumps([name, told(name, value)]), flush=True)
+                (value,) = getattr(crosses[mware], name)(mware=mware)
+        print(json.dumps([mware, name, told(name, value)]), flush=True)
 os._exit(0)

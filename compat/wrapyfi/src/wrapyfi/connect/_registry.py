@@ -19,6 +19,9 @@ from typing import Any, ClassVar
 SHIPPED = {
     "yarp": "wrapyfi.middlewares.yarp",
     "zeromq": "wrapyfi.middlewares.zeromq",
+    "mqtt": "wrapyfi.middlewares.mqtt",
+    "zenoh": "wrapyfi.middlewares.zenoh",
+    "websocket": "wrapyfi.middlewares.websocket",
 }
 #: why a middleware is not there
 missing: dict[str, str] = {}
@@ -49,6 +52,8 @@ class Registry:
         for name, module in SHIPPED.items():
             try:
                 importlib.import_module(module)
+            except ImportError as error:
+                missing[name] = str(error)
             except Exception as error:
                 missing[name] = f"{type(error).__name__}: {error}"
         for folder in filter(None, os.environ.get("WRAPYFI_MWARE_PATHS", "").split(":")):

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+import yarpy
 from wrapyfi.utils.image_encoders import JpegEncoder, decode_jpg
 from wrapyfi.utils.serialization_encoders import JsonDecodeHook, JsonEncoder
 
@@ -32,10 +33,13 @@ class Native:
         """The JSON of a value. Raises TypeError for what it cannot hold."""
         return json.dumps(value, cls=JsonEncoder, **self._plugins, **self._encoder)
 
-    def value(self, text: str | bytes) -> Any:
+    def of_text(self, text: str | bytes) -> Any:
         """The value of a text. Raises ValueError."""
         hook = JsonDecodeHook(**self._plugins).object_hook
-        return json.loads(text, object_hook=hook, **self._decoder)
+        try:
+            return json.loads(text, object_hook=hook, **self._decoder)
+        except (TypeError, LookupError, AttributeError, RecursionError, OverflowError) as error:
+            raise yarpy.DecodeError(f"a text with tags that do not fit: {error}") from error
 
 
 class Picture:
@@ -103,18 +107,18 @@ class Sound:
             )
         return array, int(rate)
 
+    def row(self, chunk: Any) -> tuple[int, int, int, Any] | None:
+        """Chunk, channels, rate and samples, as answers and ZeroMQ have them."""
+        found = None if chunk is None else self.checked(chunk)
+        if found is None:
+            return None
+        samples, rate = found
+        return len(samples), samples.shape[1], rate, self.shaped(samples)
+
     def shaped(self, samples: Any) -> Any:
         """As it is given to listeners: one channel has one dimension."""
         array = np.asarray(samples)
         return array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array
-
-
-def asked(native: Native, value: Any) -> tuple[list[Any], dict[str, Any]]:
-    """Arguments of a request that came as `[args, kwargs]`. Raises ValueError."""
-    args, kwargs = value
-    if not isinstance(kwargs, dict):
-        raise ValueError("a request is [arguments, arguments by name]")
-    return list(args), kwargs
 
 
 def patience() -> float | None:

@@ -1,0 +1,374 @@
+"""The four sides of every middleware: publisher, listener, server and client of each type.
+
+A middleware is a `Medium`: how each type is spelled (`Form`), and what carries that. `offer` makes
+the classes of it and registers them. What carries is opened by the first call that communicates:
+
+    out(publisher)      wait(timeout) -> whether somebody listens; send(spelled); close()
+    into(listener)      wait(timeout) -> whether somebody publishes; receive(timeout) -> what came;
+                        close()
+    serving(server)     take() -> (what came, answer), answer(spelled | Failure); close()
+    asking(client)      ask(spelled, timeout) -> what came; close()
+
+Rules: whatever waits raises Timeout, and PortClosed when it is closed meanwhile. A request is what
+the form of NativeObject makes of `[args, kwargs]`. A request that cannot be read, and an answer
+that cannot be spelled, are told to the client: nobody is left waiting.
+"""
+
+from __future__ import annotations
+
+import logging
+import queue
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Protocol
+
+import yarpy
+from wrapyfi.connect.clients import Client, Clients
+from wrapyfi.connect.listeners import Listener, Listeners
+from wrapyfi.connect.publishers import Publisher, Publishers
+from wrapyfi.connect.servers import Server, Servers
+from wrapyfi.middlewares._form import patience
+from wrapyfi.utils.core_utils import SingletonOptimized
+from yarpy.wrap.inbox import Inbox
+from yarpy.wrap.middleware import Failure, Received, question_of
+
+#: what `Form.value` gives for a message that listeners are not told of
+SKIP = object()
+#: values that a listener has not taken yet, where a library delivers them
+KEPT = 100
+
+
+class Form(Protocol):
+    """How values of a type are spelled. `nothing` is what a listener gets that does not wait."""
+
+    nothing: Any
+
+    def __init__(self, options: dict[str, Any]) -> None: ...
+
+    def spelled(self, obj: Any) -> Any:
+        """What is sent; None for nothing. Raises TypeError, ValueError."""
+
+    def value(self, came: Any) -> Any:
+        """The value, or SKIP. Raises ValueError."""
+
+
+@dataclass(frozen=True)
+class Medium:
+    """A middleware. Without `serving` and `asking` it has topics alone. Listeners of one that is
+    `forgiving` tell the log what cannot be read, and wait for the next."""
+
+    name: str
+    topics: Mapping[str, Callable[[dict[str, Any]], Form]]
+    out: Callable[[Any], Any]
+    into: Callable[[Any], Any]
+    answers: Mapping[str, Callable[[dict[str, Any]], Form]] = field(default_factory=dict)
+    serving: Callable[[Any], Any] | None = None
+    asking: Callable[[Any], Any] | None = None
+    forgiving: bool = False
+
+
+class Nothing(metaclass=SingletonOptimized):
+    """What programs call to start and stop a middleware by hand. There is nothing to do."""
+
+    @classmethod
+    def activate(cls, **kwargs: Any) -> Any:
+        return cls()
+
+    @staticmethod
+    def deinit() -> None:
+        return None
+
+
+class _Sending(Publisher):
+    medium: ClassVar[Medium]
+    kind: ClassVar[str]
+
+    def __init__(
+        self,
+        name: str,
+        out_topic: str,
+        carrier: str = "tcp",
+        should_wait: bool = True,
+        **options: Any,
+    ) -> None:
+        super().__init__(name, out_topic, carrier, should_wait, **options)
+        self.options = options
+        self.form = self.medium.topics[self.kind](options)
+        self._out: Any = None
+
+    def establish(self, repeats: int = -1, **kwargs: Any) -> bool:
+        if self._out is None:
+            self._out = self.medium.out(self)
+        if self.should_wait and not self._out.wait(patience()):
+            raise yarpy.Timeout(f'nobody listens to "{self.out_topic}"')
+        return self.check_establishment(True)
+
+    def publish(self, obj: Any) -> None:
+        spelled = self.form.spelled(obj)
+        if spelled is None:
+            return
+        if not self.established:
+            self.establish()
+        self._out.send(spelled)
+
+    def close(self) -> None:
+        if self._out is not None:
+            self._out.close()
+            self._out = None
+        self.established = False
+
+
+class _Taking(Listener):
+    medium: ClassVar[Medium]
+    kind: ClassVar[str]
+
+    def __init__(
+        self,
+        name: str,
+        in_topic: str,
+        carrier: str = "tcp",
+        should_wait: bool = True,
+        **options: Any,
+    ) -> None:
+        super().__init__(name, in_topic, carrier, should_wait, **options)
+        self.options = options
+        self.form = self.medium.topics[self.kind](options)
+        self._in: Any = None
+
+    def establish(self, repeats: int = -1, **kwargs: Any) -> bool:
+        if self._in is None:
+            self._in = self.medium.into(self)
+        there = self._in.wait(patience() if self.should_wait else 0.0)
+        if self.should_wait and not there:
+            raise yarpy.Timeout(f'nobody publishes "{self.in_topic}"')
+        return self.check_establishment(there)
+
+    def listen(self) -> Any:
+        if not self.established and not self.establish():
+            return self.form.nothing
+        while True:
+            try:
+                came = self._in.receive(patience() if self.should_wait else 0.0)
+            except yarpy.Timeout:
+                if self.should_wait:
+                    raise
+                return self.form.nothing
+            value = self._value(came)
+            if value is not SKIP:
+                return value
+
+    def _value(self, came: Any) -> Any:
+        try:
+            return self.form.value(came)
+        except (ValueError, TypeError, LookupError) as error:
+            if not self.medium.forgiving:
+                raise
+            logging.error("[wrapyfi] %s: what came cannot be read: %s", self.in_topic, error)
+            return SKIP
+
+    def close(self) -> None:
+        if self._in is not None:
+            self._in.close()
+            self._in = None
+        self.established = False
+
+
+class _Serving(Server):
+    medium: ClassVar[Medium]
+    kind: ClassVar[str]
+
+    def __init__(
+        self,
+        name: str,
+        out_topic: str,
+        carrier: str = "tcp",
+        out_topic_connect: str | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__(name, out_topic, carrier, out_topic_connect, **options)
+        self.options = options
+        self.form = self.medium.answers[self.kind](options)
+        self._request = self.medium.topics["NativeObject"](options)
+        self._serving: Any = None
+        self._answer: Callable[[Any], None] | None = None
+
+    def establish(self, *args: Any, **kwargs: Any) -> bool:
+        if self._serving is None:
+            assert self.medium.serving is not None
+            self._serving = self.medium.serving(self)
+        return self.check_establishment(True)
+
+    def await_request(self, *args: Any, **kwargs: Any) -> tuple[list[Any], dict[str, Any]]:
+        if not self.established:
+            self.establish()
+        while True:
+            came, answer = self._serving.take()
+            try:
+                found = question_of(self._request.value(came))
+            except Exception as error:
+                logging.error("[wrapyfi] a request that cannot be read: %s", error)
+                answer(Failure.of(error))
+                continue
+            self._answer = answer
+            return found
+
+    def reply(self, obj: Any) -> None:
+        answer, self._answer = self._answer, None
+        if answer is None:
+            return
+        if isinstance(obj, Exception):
+            answer(Failure.of(obj))
+            return
+        try:
+            spelled = self.form.spelled(obj)
+        except Exception as error:
+            answer(Failure.of(error))
+            raise
+        answer(spelled)
+
+    def close(self) -> None:
+        self.reply(yarpy.PortClosed("the server was closed"))
+        if self._serving is not None:
+            self._serving.close()
+            self._serving = None
+        self.established = False
+
+
+class _Asking(Client):
+    medium: ClassVar[Medium]
+    kind: ClassVar[str]
+
+    def __init__(self, name: str, in_topic: str, carrier: str = "tcp", **options: Any) -> None:
+        super().__init__(name, in_topic, carrier, **options)
+        self.options = options
+        self.form = self.medium.answers[self.kind](options)
+        self._request = self.medium.topics["NativeObject"](options)
+        self._client: Any = None
+
+    def establish(self, *args: Any, **kwargs: Any) -> bool:
+        if self._client is None:
+            assert self.medium.asking is not None
+            self._client = self.medium.asking(self)
+        return self.check_establishment(True)
+
+    def request(self, *args: Any, **kwargs: Any) -> Any:
+        spelled = self._request.spelled([args, kwargs])
+        if not self.established:
+            self.establish()
+        return self.form.value(self._client.ask(spelled, patience()))
+
+    def close(self) -> None:
+        if self._client is not None:
+            self._client.close()
+            self._client = None
+        self.established = False
+
+
+class _NoProperties:
+    """Properties, where there are none."""
+
+    nothing: Any = None
+
+    def __init__(self, options: dict[str, Any]) -> None:
+        raise NotImplementedError("Properties are parameters of ROS: only ros has them")
+
+    def spelled(self, obj: Any) -> Any: ...
+
+    def value(self, came: Any) -> Any: ...
+
+
+def offer(medium: Medium) -> None:
+    """Register the classes of a middleware."""
+    topics = {"Properties": _NoProperties, **medium.topics}
+    medium = replace(medium, topics=topics)
+    sides: list[tuple[Any, Any, str, Any]] = [
+        (Publishers, _Sending, "Publisher", topics),
+        (Listeners, _Taking, "Listener", topics),
+        (Servers, _Serving, "Server", medium.answers),
+        (Clients, _Asking, "Client", medium.answers),
+    ]
+    for registry, base, word, forms in sides:
+        for kind in forms:
+            made = type(f"{kind}{word}", (base,), {"medium": medium, "kind": kind})
+            registry.register(kind, medium.name)(made)
+
+
+class Arrivals:
+    """What came to a listener by the threads of a library: `KEPT` at most, then the oldest go."""
+
+    def __init__(self, topic: str) -> None:
+        self._came_to = topic
+        self._inbox = Inbox(KEPT)
+
+    def arrived(self, came: Any) -> None:
+        with suppress(yarpy.PortClosed):
+            self._inbox.put(Received(came))
+
+    def wait(self, timeout: float | None) -> bool:
+        """Publishers are not waited for, as it was."""
+        return True
+
+    def receive(self, timeout: float | None) -> Any:
+        try:
+            return self._inbox.take(timeout).value
+        except yarpy.Timeout:
+            raise yarpy.Timeout(f'nothing came from "{self._came_to}"') from None
+
+    @property
+    def closed(self) -> bool:
+        return self._inbox.closed
+
+    def close(self) -> None:
+        self._inbox.close()
+
+
+class Desk:
+    """Where requests wait, each in the thread that brought it, until the program takes them."""
+
+    def __init__(self, topic: str) -> None:
+        self._topic = topic
+        self._asked: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._closed = False
+
+    def ask(self, came: Any) -> Any:
+        """What the program answers: spelled, or a Failure."""
+        answered: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._asked.put((came, answered.put))
+        if self._closed:
+            self.close()
+        return answered.get()
+
+    def take(self) -> tuple[Any, Callable[[Any], None]]:
+        """The next request, and what takes its answer. Raises PortClosed."""
+        found: tuple[Any, Callable[[Any], None]] | None = self._asked.get()
+        if found is None:
+            self._asked.put(None)
+            raise yarpy.PortClosed(f'"{self._topic}" was closed')
+        return found
+
+    def close(self) -> None:
+        """Refuse whatever waits, and what comes."""
+        self._closed = True
+        failure = Failure("PortClosed", "the server was closed")
+        try:
+            while True:
+                found = self._asked.get_nowait()
+                if found is not None:
+                    found[1](failure)
+        except queue.Empty:
+            self._asked.put(None)
+
+
+def when_there(attempt: Callable[[], Any]) -> Any:
+    """What `attempt` returns, as soon as there is somebody to ask."""
+    limit = patience()
+    deadline = None if limit is None else time.monotonic() + limit
+    while True:
+        try:
+            return attempt()
+        except (yarpy.UnknownName, yarpy.LinkClosed):
+            if deadline is not None and time.monotonic() > deadline:
+                raise
+            time.sleep(0.1)
