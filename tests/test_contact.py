@@ -81,6 +81,7 @@ def test_contacts_as_text(found: Contact, text: str, address: str, reachable: bo
 
 GOOD = ["/a", "/a/b", "/a:i", "/a:1x", "/a b".replace(" ", "_"), "/\u00e4", "/" + "x" * 800]
 BAD = ["", "a", "/a b", "/a\tb", "/a/", "/", "/a:1", "/a:1/b", "/" + "x" * 901, "/a\x00", "/a\x7f"]
+BAD += ['/a"b', "/a\\b"]
 
 
 @pytest.mark.parametrize("name", GOOD)

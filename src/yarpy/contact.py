@@ -164,6 +164,9 @@ def check_name(name: str) -> str:
         problem = f'must start with "/": try "/{name}"'
     elif any(c.isspace() for c in name):
         problem = "must not contain blanks"
+    elif '"' in name or "\\" in name:
+        # The lines of name servers leave quotes out and double backslashes, ours as those of C++.
+        problem = "must not contain quotes or backslashes, which name servers cannot hand on"
     elif name.endswith("/"):
         problem = 'must not end with "/"'
     elif _host_port(name[1:].partition("/")[0]) is not None:
