@@ -25,6 +25,7 @@ from yarpy.errors import (
     WrongPort,
 )
 from yarpy.nameserver.local import LocalNames
+from yarpy.network.connection import called
 from yarpy.port.port import Port
 
 
@@ -313,4 +314,17 @@ def test_connection_to_an_address_with_a_name_can_be_ended_by_it(names: LocalNam
         assert [link.target for link in out.outputs] == ["/in"]
         assert yarpy.is_connected("/out", target, names=names)
         assert yarpy.disconnect("/out", target, names=names)
+        assert not out.outputs
+
+
+def test_connection_to_an_address_is_known_by_the_name_that_is_there(names: LocalNames) -> None:
+    with yarpy.Port("/out", names=names) as out, yarpy.BufferedPort("/in", names=names) as in_:
+        address = f"/{in_.address}/"
+        yarpy.connect("/out", address, names=names)
+        wait_until(lambda: in_.inputs)
+        assert called("/out", "/in", names) == address
+        assert called("/in", "/out", names) == "/out"
+        assert called("/out", "/other", names) == "/other"
+        assert yarpy.is_connected("/out", "/in", names=names)
+        assert yarpy.disconnect("/out", "/in", names=names)
         assert not out.outputs

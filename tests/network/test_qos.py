@@ -83,3 +83,11 @@ def test_ports_that_know_no_deadlines_are_not_believed(
 def test_nonsense_about_deadlines_is_none() -> None:
     text = '(sched ((policy 0))) (timing ((deadline "soon") (rate -3) (late never)))'
     assert qos.read(Bottle.from_text(text)) == Qos("SCHED_OTHER")
+
+
+def test_a_connection_that_was_dialled_by_address(names: yarpy.LocalNames) -> None:
+    with yarpy.Port("/a", names=names) as a, yarpy.Port("/b", names=names) as b:
+        a.connect(f"/{b.address}")
+        wait_until(lambda: b.inputs)
+        qos.grant("/a", "/b", sender=Qos(packets="HIGH"), receiver=Qos(packets=3), names=names)
+        assert [one.packets for one in qos.granted("/a", "/b", names)] == ["AF42", 3]

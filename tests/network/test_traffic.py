@@ -69,3 +69,40 @@ def test_a_port_about_itself() -> None:
     assert (state.is_rpc, state.type) == (True, "yarp/image")
     read_port(state, yarpy.Bottle(["no"]))
     assert (state.pid, state.program) == (0, "")
+
+
+def test_a_connection_that_was_dialled_by_address_goes_by_the_names() -> None:
+    def snapshot(*places: tuple[str, int]) -> Snapshot:
+        found = Snapshot(0.0)
+        for name, number in places:
+            found.ports[name] = PortState(name, Contact("tcp", name, "127.0.0.1", number))
+        found.add("/a", [("out", "/a", "/127.0.0.1:5/", End("tcp", 3))])
+        return found
+
+    one = snapshot(("/a", 4), ("/b", 5))
+    one.add("/b", [("in", "/a", "/b", End("tcp", 2))])
+    one.unite()
+    assert one.flows == {("/a", "/b"): Flow("/a", "/b", End("tcp", 3), End("tcp", 2))}
+    silent = snapshot(("/a", 4), ("/b", 5))
+    silent.unite()
+    assert [*silent.flows] == [("/a", "/b")]
+    for other in (snapshot(("/a", 4), ("/b", 6)), snapshot(("/a", 4), ("/b", 5), ("/old", 5))):
+        other.unite()
+        assert [*other.flows] == [("/a", "/127.0.0.1:5/")], "nobody knows which port that is"
+    certain = snapshot(("/a", 4), ("/b", 5), ("/old", 5))
+    certain.add("/b", [("in", "/a", "/b", End("tcp"))])
+    certain.unite()
+    assert [*certain.flows] == [("/a", "/b")]
+    twice = snapshot(("/a", 4), ("/b", 5))
+    twice.add("/a", [("out", "/a", "/b", End("udp"))])
+    twice.unite()
+    assert len(twice.flows) == 2
+
+
+def test_a_receiver_may_have_dialled() -> None:
+    found = Snapshot(0.0)
+    for name, number in (("/a", 4), ("/b", 5)):
+        found.ports[name] = PortState(name, Contact("tcp", name, "10.0.0.1", number))
+    found.add("/b", [("in", "/10.0.0.1:4/", "/b", End("mjpeg"))])
+    found.unite()
+    assert found.flows == {("/a", "/b"): Flow("/a", "/b", None, End("mjpeg"))}

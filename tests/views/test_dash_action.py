@@ -126,6 +126,26 @@ def test_what_cannot_be_done_says_so(
     assert actions.undo_text == ""
 
 
+@pytest.mark.parametrize(
+    "act", [["carrier", "/out", "/in", "fast_tcp"], ["disconnect", "/out", "/in"]]
+)
+def test_priority_and_deadline_outlive_what_makes_a_connection_anew(
+    act: list[object], names: yarpy.LocalNames, out: yarpy.Port
+) -> None:
+    actions = Actions(names)
+    out.connect("/in", "tcp")
+    actions.act(["priority", "/out", "/in", "", "HIGH"])
+    actions.act(["deadline", "/out", "/in", "20"])
+    actions.act(act)
+    if act[0] == "carrier":
+        sender, receiver = qos.granted("/out", "/in", names)
+        assert (sender.packets, receiver.packets, receiver.deadline) == ("AF42", "AF42", 0.02)
+    actions.act(["undo"])
+    assert carriers(out) == ["tcp"]
+    sender, receiver = qos.granted("/out", "/in", names)
+    assert (sender.packets, receiver.packets, receiver.deadline) == ("AF42", "AF42", 0.02)
+
+
 def test_only_so_much_is_remembered(names: yarpy.LocalNames, out: yarpy.Port) -> None:
     actions = Actions(names)
     for _ in range(KEPT):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from typing import Any
 
 from yarpy.contact import Contact, check_name, is_broker, is_medium, parse_contact
@@ -24,11 +23,11 @@ from yarpy.errors import (
     Timeout,
     UnknownName,
     UnknownPlugin,
-    YarpError,
 )
 from yarpy.link.handshake import find_carrier
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
+from yarpy.network.dialled import address_in, leads_to
 from yarpy.port import identity, probe, refusal
 from yarpy.port.choosing import offers_memory
 from yarpy.port.connecting import unknown
@@ -84,6 +83,28 @@ def admin(
             f'"{name}" is registered, but does not answer ({error}); if its program is gone, '
             "`yarpy clean` removes the name"
         ) from error
+
+
+def called(port: str, peer: str, names: NameClient | None = None) -> str:
+    """What `port` calls its connection with `peer`: another name than that where it was dialled by
+    address. `peer` if it has none. Raises as `admin`."""
+    host, contact = find(port, names).host, query(peer, names)
+    if contact is None:
+        return peer
+    for side in ("out", "in"):
+        listed = admin(port, "list", side, names=names)
+        if peer in listed or (found := _dialled(listed, contact, host)):
+            return peer if peer in listed else found
+    return peer
+
+
+def _dialled(listed: Bottle, contact: Contact, host: str) -> str:
+    """The address of `contact` in what a port at `host` lists, "" if it is not there."""
+    for peer in map(plain_text, listed):
+        address = address_in(peer)
+        if address is not None and leads_to(address, contact, host):
+            return peer
+    return ""
 
 
 class Pairing:
@@ -176,6 +197,8 @@ class Pairing:
             listed = self.ask_back(Vocab("list"), Vocab("in"))
             if listed.find("push") != 0:
                 listed = self.admin(*words) if self.plain else Bottle()
+        if not listed and (address := self.dialled()):
+            listed = self.admin(*words[:2], address)
         return plain_text(listed.find("carrier", "")) if listed else ""
 
     def delete(self, names: NameClient) -> bool:
@@ -185,7 +208,16 @@ class Pairing:
             return True
         if _done(self.admin(Vocab("del"), self.peer)):
             return True
+        address = self.dialled()
+        if address and _done(self.admin(Vocab("del"), address)):
+            return True
         return not self.plain and _done(self.ask_back(Vocab("del")))
+
+    def dialled(self) -> str:
+        """The address by which the source calls the destination, if it has dialled that so; ""."""
+        if self.pull or not (self.source.name and self.target.name):
+            return ""
+        return _dialled(self.admin(Vocab("list"), Vocab("out")), self.there, self.here.host)
 
     def ask_back(self, *words: object) -> Bottle:
         """Ask the destination about a connection that it may have dialled itself, as with pull
@@ -290,20 +322,6 @@ def _join(
         except UnknownPlugin as unheard:  # so it may be a typing error
             raise UnknownPlugin(f"{error}; {unheard}") from error
     raise error
-
-
-def rejoin(
-    source: str, target: str, carrier: str, before: str, *, names: NameClient | None = None
-) -> None:
-    """Make a connection anew over `carrier`; where that is refused it goes on over `before`, which
-    C++ ports do not see to themselves. Raises like `join`."""
-    try:
-        join(source, target, carrier, names=names)
-    except YarpError:
-        with suppress(YarpError):
-            if before and not Pairing(source, target, None, names).existing():
-                join(source, target, before, names=names)
-        raise
 
 
 def _decorated(text: str, carrier: str) -> str:

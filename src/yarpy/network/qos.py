@@ -14,7 +14,7 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, UnknownName
 from yarpy.names.base import NameClient
-from yarpy.network.connection import admin
+from yarpy.network.connection import admin, called
 from yarpy.qos import Qos, Sched, policy_of
 
 
@@ -41,8 +41,8 @@ def grant(
     """
     for qos, port, peer in ((sender, source, target), (receiver, target, source)):
         if qos is not None:
-            _granted(port, peer, names)  # there is such a connection
-            reply = admin(port, "prop", "set", peer, *groups(qos), names=names)
+            name, _ = _find(port, peer, names)
+            reply = admin(port, "prop", "set", name, *groups(qos), names=names)
             if not (reply and plain_text(reply[0]) == "ok"):
                 reason = plain_text(reply[1]) if len(reply) > 1 else "the system refuses it"
                 raise LocalProtocolError(f'"{port}" does not set this for "{peer}": {reason}')
@@ -60,12 +60,24 @@ def _confirm(port: str, peer: str, names: NameClient | None) -> None:
 
 
 def _granted(port: str, peer: str, names: NameClient | None) -> Qos:
+    return _find(port, peer, names)[1]
+
+
+def _find(port: str, peer: str, names: NameClient | None) -> tuple[str, Qos]:
+    """What `port` calls its connection with `peer`, and what is granted to it."""
     reply = admin(port, "prop", "get", peer, names=names)
-    if not reply or reply[0] == Vocab("fail"):
-        raise UnknownName(
-            f'"{port}" has no connection with "{peer}"; `yarpy ping {port}` lists those it has'
-        )
-    return read(reply)
+    if not _is_told(reply):
+        peer = called(port, asked := peer, names)
+        reply = admin(port, "prop", "get", peer, names=names) if peer != asked else Bottle()
+    if _is_told(reply):
+        return peer, read(reply)
+    raise UnknownName(
+        f'"{port}" has no connection with "{peer}"; `yarpy ping {port}` lists those it has'
+    )
+
+
+def _is_told(reply: Bottle) -> bool:
+    return bool(reply) and reply[0] != Vocab("fail")
 
 
 def read(reply: Bottle) -> Qos:

@@ -121,6 +121,7 @@ class Sampler:
             for state, told in pool.map(self._ask, contacts):
                 snapshot.ports[state.name] = state
                 snapshot.add(state.name, told)
+        snapshot.unite()
         snapshot.flows = {key: snapshot.flows[key] for key in sorted(snapshot.flows)}
         self._count(snapshot)
         return snapshot

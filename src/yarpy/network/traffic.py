@@ -16,6 +16,7 @@ from typing import Any, Final, Literal, TypeAlias
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
+from yarpy.network.dialled import address_in, leads_to
 from yarpy.qos import Qos
 
 LONGEST: Final = 1000  # characters of a text that a port says
@@ -149,6 +150,41 @@ class Snapshot:
                 flow.sender = end
             else:
                 flow.receiver = end
+
+    def unite(self) -> None:
+        """Join what the two ends tell of a connection that one of them dialled by address and so
+        calls by that: it goes by the names of both, where these are certain."""
+        strange = [key for key in self.flows if address_in(key[0]) or address_in(key[1])]
+        if not strange:
+            return
+        places: dict[int, list[PortState]] = {}
+        for state in self.ports.values():
+            places.setdefault(state.contact.port, []).append(state)
+        for key in strange:
+            named, one = self._named(key, places), self.flows[key]
+            known = self.flows.get(named) or Flow(*named)
+            if named == key or (known.sender and one.sender) or (known.receiver and one.receiver):
+                continue
+            del self.flows[key]
+            sender, receiver = known.sender or one.sender, known.receiver or one.receiver
+            self.flows[named] = Flow(*named, sender, receiver)
+
+    def _named(self, key: tuple[str, str], places: dict[int, list[PortState]]) -> tuple[str, str]:
+        """A connection by the names of its ends, as far as these are known."""
+        for place, peer in enumerate(key):
+            address, other = address_in(peer), self.ports.get(key[1 - place])
+            if address is None or other is None:
+                continue
+            names = [
+                state.name
+                for state in places.get(address.port, ())
+                if leads_to(address, state.contact, other.contact.host)
+            ]
+            keys = [(name, key[1]) if place == 0 else (key[0], name) for name in names]
+            found = [one for one in keys if one in self.flows] or keys
+            if len(found) == 1:
+                return found[0]
+        return key
 
 
 # --- reading what ports say

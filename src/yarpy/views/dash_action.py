@@ -1,7 +1,7 @@
 """What a person does to the network on its page, and takes back.
 
 Rules: one thing at a time, and each says how to undo it. A connection whose carrier cannot be
-changed is made again as it was.
+changed is made again as it was, and one that is made anew keeps its priority and deadline.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Final
 import yarpy
 from yarpy.names.base import NameClient
 from yarpy.network import connection, qos
+from yarpy.network.rejoining import give_back, rejoin, settings
 
 KEPT: Final = 100  # things that can be taken back
 
@@ -64,21 +65,24 @@ class Actions:
 
     def _disconnect(self, source: str, target: str) -> str:
         carrier = self._carrier(source, target)
+        had = settings(source, target, self._names)
         connection.disconnect(source, target, names=self._names)
-        self._remember(
-            f"connect {source} → {target} again",
-            lambda: connection.join(source, target, carrier, names=self._names),
-        )
+
+        def again() -> None:
+            connection.join(source, target, carrier, names=self._names)
+            give_back(source, target, had, self._names)
+
+        self._remember(f"connect {source} → {target} again", again)
         return f"disconnected {source} → {target}"
 
     def _change(self, source: str, target: str, carrier: str) -> str:
         before = self._carrier(source, target)
         if carrier == before:
             return f"{source} → {target} is over {carrier} already"
-        connection.rejoin(source, target, carrier, before, names=self._names)
+        rejoin(source, target, carrier, before, names=self._names)
         self._remember(
             f"{source} → {target} over {before} again",
-            lambda: connection.rejoin(source, target, before, carrier, names=self._names),
+            lambda: rejoin(source, target, before, carrier, names=self._names),
         )
         return f"{source} → {target} is over {carrier} now"
 

@@ -102,3 +102,25 @@ def test_what_is_refused_or_gone(ports: Ports) -> None:
         hands.make(change)
     with pytest.raises(yarpy.UnknownName):
         hands.make(Change("/nobody", "/b", "packets", "AF42", "CS0"))
+
+
+def test_a_connection_that_was_dialled_by_address() -> None:
+    names = yarpy.LocalNames()
+    with (
+        yarpy.Port("/a", names=names) as a,
+        yarpy.BufferedPort("/b", names=names) as b,
+        Sampler(names, urgent="tester") as sampler,
+    ):
+        a.connect(f"/{b.address}/", "tcp")
+        assert b.wait_for_inputs(timeout=10)
+        [flow] = sampler.look().flows.values()
+        assert (flow.source, flow.target) == ("/a", "/b")
+        assert flow.sender
+        assert flow.receiver
+        hands = Hands(sampler.ask, names)
+        change = Change("/a", "/b", "packets", "AF42", "CS0")
+        hands.make(change)
+        assert a.outputs[0].qos.packets == "AF42"
+        assert not hands.is_gone(change)
+        hands.make(Change("/a", "/b", "carrier", "fast_tcp", "tcp"))
+        assert [str(link.carrier) for link in a.outputs] == ["fast_tcp"]

@@ -14,8 +14,9 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError
 from yarpy.names.base import NameClient
-from yarpy.network.connection import rejoin
+from yarpy.network.connection import called
 from yarpy.network.qos import groups
+from yarpy.network.rejoining import rejoin
 from yarpy.network.steering.change import Change
 from yarpy.qos import Qos
 
@@ -37,18 +38,28 @@ class Hands:
         elif change.key == "limit":
             self._limit(change)
         else:
-            reply = self._ask(change.port, "prop", "set", change.peer, *groups(wanted(change)))
+            peer = self._peer(change)
+            reply = self._ask(change.port, "prop", "set", peer, *groups(wanted(change)))
             _check(change, reply)
 
     def is_gone(self, change: Change) -> bool:
         """Whether the connection that it is about no longer exists, and the setting with it."""
         if change.port == change.peer:
             return False
-        reply = self._ask(change.port, "prop", "get", change.peer)
-        return not reply or plain_text(reply[0]) == "fail"
+        return not self._knows(change.port, self._peer(change))
+
+    def _knows(self, port: str, peer: str) -> bool:
+        reply = self._ask(port, "prop", "get", peer)
+        return bool(reply) and plain_text(reply[0]) != "fail"
+
+    def _peer(self, change: Change) -> str:
+        """The peer as the port that is asked calls it: by its address, if it was dialled so."""
+        if change.port == change.peer or self._knows(change.port, change.peer):
+            return change.peer
+        return called(change.port, change.peer, self._names)
 
     def _limit(self, change: Change) -> None:
-        port, peer, mbit = change.port, change.peer, change.value
+        port, peer, mbit = change.port, self._peer(change), change.value
         if port != peer or (mbit is not None and change.before is not None):
             reply = self._ask(port, "set", "out", peer, ["mbit", float(mbit or 0.0)])
         elif mbit is None:
