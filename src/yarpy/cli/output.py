@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Iterable
 from typing import Any
 
 from yarpy.data.text import plain_text
@@ -39,6 +40,12 @@ def jsonable(value: Any) -> Any:
 def print_json(value: Any) -> None:
     """One line of JSON on standard output, flushed."""
     print_line(json.dumps(jsonable(value), ensure_ascii=False))
+
+
+def print_all_json(items: Iterable[Any]) -> None:
+    """Each on a line of its own, as JSON."""
+    for item in items:
+        print_json(item)
 
 
 def print_line(text: str) -> None:

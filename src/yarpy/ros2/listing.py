@@ -28,12 +28,14 @@ class Entry(NamedTuple):
     type: str
 
     @property
+    def carrier(self) -> str:
+        """What it is spoken to over."""
+        return "ros2+srv" if self.kind == "service" else "ros2"
+
+    @property
     def target(self) -> str:
         """What it is connected by; the name of a node."""
-        if self.kind == "node":
-            return self.name
-        carrier = "ros2" if self.kind == "topic" else "ros2+srv"
-        return f"{carrier}:/{self.name}~{self.type}"
+        return self.name if self.kind == "node" else f"{self.carrier}:/{self.name}~{self.type}"
 
 
 def is_used(environment: Mapping[str, str]) -> bool:

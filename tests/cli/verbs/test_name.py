@@ -4,6 +4,8 @@ import json
 
 import pytest
 
+from yarpy.ros2.listing import Entry
+
 END = "*** end of message\n"
 
 
@@ -86,7 +88,12 @@ def test_json(here):
     here("name", "register", "/name/j", "tcp", "10.0.0.1", "10006")
     expected = {"name": "/name/j", "host": "10.0.0.1", "port": 10006, "carrier": "tcp"}
     assert json.loads(here("name", "query", "/name/j", "--json").out) == expected
-    assert json.loads(here("name", "--json", "list", "/name/j").out) == [expected]
+    assert json.loads(here("name", "--json", "list", "/name/j").out) == expected
+    here("name", "register", "/name/j/k", "tcp", "10.0.0.1", "10007")
+    listed = [
+        json.loads(line) for line in here("name", "list", "/name/j", "--json").out.splitlines()
+    ]
+    assert [one["name"] for one in listed] == ["/name/j", "/name/j/k"]
     here("name", "set", "/name/j", "k", "v", "w")
     assert json.loads(here("name", "get", "/name/j", "k", "--json").out) == ["v", "w"]
     assert json.loads(here("name", "bot", "query", "/name/j", "--json").out)[1] == [
@@ -94,6 +101,24 @@ def test_json(here):
         "/name/j",
     ]
     assert json.loads(here("name", "gc", "--json").out) == ["garbage collection done."]
+
+
+def test_json_of_ros2(here, monkeypatch):
+    found = [
+        Entry("node", "/n", ""),
+        Entry("service", "/s", "std_srvs/srv/Trigger"),
+        Entry("topic", "/t", "std_msgs/msg/String"),
+    ]
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")
+    monkeypatch.setattr("yarpy.ros2.listing.listing", lambda prefix: found)
+    plain = here("name", "list", "/nothing").out.splitlines()[:-1]
+    assert plain == [f'{item.kind} "{item.target}"' for item in found]
+    told = [json.loads(line) for line in here("name", "list", "/x", "--json").out.splitlines()]
+    assert [(one["name"], one["carrier"], one["kind"], one["type"]) for one in told] == [
+        ("/n", "ros2", "node", ""),
+        ("/s", "ros2+srv", "service", "std_srvs/srv/Trigger"),
+        ("/t", "ros2", "topic", "std_msgs/msg/String"),
+    ]
 
 
 @pytest.mark.parametrize("port", ["0", "-1", "65536", "x"])

@@ -131,7 +131,8 @@ def test_what_is_written_to_nobody_is_no_trouble(here, flowing):
 
 
 def test_all_connections_for_programs(here, flowing):
-    [flow] = [one for one in json.loads(here("stats", "--json").out) if one["target"] == "/over/in"]
+    told = [json.loads(line) for line in here("stats", "--json").out.splitlines()]
+    [flow] = [one for one in told if one["target"] == "/over/in"]
     assert (flow["source"], flow["carrier"]) == ("/over/[bold]out", "tcp")
     assert flow["sender"]["messages"] == flow["receiver"]["messages"] == 5
     assert flow["sender"]["qos"]["packets"] == "AF42"

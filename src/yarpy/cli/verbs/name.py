@@ -20,17 +20,19 @@ Exit codes: 0 answered; 1 `query` finds nothing, the server knows no such comman
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import click
 
 import yarpy
-from yarpy.cli.output import print_json, print_line
+from yarpy.cli.output import print_all_json, print_json, print_line
 from yarpy.cli.stderr import complain
 
 if TYPE_CHECKING:
     from yarpy.names.ros import RosNames
     from yarpy.names.zenoh import ZenohNames
+    from yarpy.ros2.listing import Entry
 
 END = "*** end of message"
 #: What all servers understand.
@@ -65,7 +67,7 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
     if verb == "query" and len(arguments) == 1:
         _print_contact(client.query(arguments[0]) or find(arguments[0], client), as_json)
     elif verb == "list" and as_json:
-        print_json([as_dict(contact) for contact in client.list(*arguments[:1])])
+        _print_list(client.list(*arguments[:1]), arguments)
     elif verb == "register" and arguments:
         _print_contact(client.register(*parse_address(arguments)), as_json)
     elif verb == "unregister" and len(arguments) == 1:
@@ -104,7 +106,7 @@ def _answer_for_zenoh(
     elif verb == "list":
         contacts = names.list(*arguments[:1])
         if as_json:
-            print_json([as_dict(contact) for contact in contacts])
+            _print_list(contacts, arguments)
         else:
             for line in (*map(registration_line, contacts), *_lines_of_ros2(arguments), END):
                 print_line(line)
@@ -147,7 +149,7 @@ def _answer_for_ros(
         return False
     if as_json:
         asked = getattr(names, "clients", [names])
-        print_json([as_dict(item) for client in asked for item in client.list(*arguments[:1])])
+        _print_list((item for one in asked for item in one.list(*arguments[:1])), arguments)
     else:
         for line in (*_lines_of(graphs, arguments), *_lines_of_ros2(arguments), END):
             print_line(line)
@@ -166,15 +168,27 @@ def _lines_of(graphs: list[RosNames], arguments: tuple[str, ...]) -> list[str]:
 
 def _lines_of_ros2(arguments: tuple[str, ...]) -> list[str]:
     """Nodes, topics and services of ROS 2, by what they are connected to, if there is any."""
+    return [f'{item.kind} "{item.target}"' for item in _listed_of_ros2(arguments)]
+
+
+def _listed_of_ros2(arguments: tuple[str, ...]) -> list[Entry]:
     from yarpy.ros2.listing import is_used, listing
 
     if not is_used(os.environ):
         return []
     try:
-        return [f'{item.kind} "{item.target}"' for item in listing("".join(arguments[:1]))]
+        return listing("".join(arguments[:1]))
     except yarpy.YarpError as error:
         complain(f"ROS 2 is not listed: {error}")
         return []
+
+
+def _print_list(contacts: Iterable[yarpy.Contact], arguments: tuple[str, ...]) -> None:
+    """`list` for programs: ports, and what there is in ROS 2."""
+    print_all_json(map(as_dict, contacts))
+    for item in _listed_of_ros2(arguments):
+        place = yarpy.Contact(item.carrier, item.name)
+        print_json({**as_dict(place), "kind": item.kind, "type": item.type})
 
 
 def parse_address(words: tuple[str, ...]) -> list[Any]:

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from yarpy.cli.output import print_json, print_line
+from yarpy.cli.output import print_all_json, print_line
 from yarpy.cli.stderr import complain
 
 
@@ -27,7 +27,7 @@ def command(name: str | None, names_only: bool, as_json: bool) -> int:
         complain(f'no plug-in "{name}"; `yarpy plugin` lists what is installed')
         return 1
     if as_json:
-        print_json([{"kind": kind, "name": found_name} for kind, found_name in found])
+        print_all_json({"kind": kind, "name": found_name} for kind, found_name in found)
     elif name is None:
         for kind, found_name in found:
             print_line(found_name if names_only else f"{kind:<10}{found_name}")

@@ -22,7 +22,7 @@ from typing import Any
 import click
 
 import yarpy
-from yarpy.cli.output import print_json, print_line
+from yarpy.cli.output import print_all_json, print_json, print_line
 from yarpy.cli.ports import ANY, hear_from, open_port
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain
@@ -124,7 +124,7 @@ def _show_all(as_json: bool, wide: bool) -> int:
     with Sampler() as sampler:
         snapshot = sampler.look()
     if as_json:
-        print_json(overview.connections_json(snapshot))
+        print_all_json(overview.connections_json(snapshot))
         return 0
     rows = [overview.row(flow) for flow in overview.shown(snapshot, wide)]
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
