@@ -97,16 +97,37 @@ REFUSED = [
     "prop set /in (qos ((priority BAD)))",
     "prop set /in (qos ((dscp 64)))",
     "prop set /in (qos ((dscp NOSUCH)))",
+    "prop set /in (qos ((dscp (1 2))))",
     "prop set /in (qos ((tos -1)))",
     "prop set /in (qos ((tos 256)))",
     "prop set /in (qos)",
     "prop set /in (qos ())",
     "prop set /in (sched)",
     "prop set /in (sched ((policy NOSUCH)))",
+    "prop set /in (sched ((policy (1 2))))",
     "prop set /in (sched ((policy 1) (priority high)))",
+    "prop set /in (sched ((policy 1) (priority (1 2))))",
+    "prop set /in (sched ((policy 1) (priority 1e400)))",
     "prop set /none (qos ((tos 12)))",
     "prop set /out (process)",
+    "prop set /out (process ((priority x)))",
 ]
+REASONS = {
+    "(timing ((deadline soon)))": "a deadline is a number from 0 to 86400, not 'soon'",
+    "(timing ((dedline 0.1)))": '"dedline" is none of ((deadline SECONDS) (rate HZ)',
+    "(timing (deadline 0.1))": "which timing takes",
+    "(timing ((late never)))": 'what is late is "drop" or "keep"',
+    "(monitor ((a 1)))": "no monitor here",
+}
+
+
+@pytest.mark.parametrize("asked", REASONS)
+def test_our_own_words_are_refused_with_the_reason(asked: str, names: LocalNames) -> None:
+    with Port("/out", names=names) as out, Port("/in", names=names):
+        out.connect("/in")
+        verdict, reason = admin(names, "/out", f"prop set /in {asked}")
+        assert verdict == Vocab("fail")
+        assert REASONS[asked] in reason
 
 
 @pytest.mark.parametrize("words", ["/in", "/in 5", "/in (x 1)", "/out", "/out (x 1)", "/none", ""])

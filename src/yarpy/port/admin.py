@@ -220,13 +220,13 @@ def _prop(hub: Hub, request: Bottle) -> Bottle:
     if not key.startswith("/"):
         return Bottle([_OK])
     try:
-        done = set_self(hub, request) if key == hub.name else set_peer(hub, key, request)
+        set_self(hub, request) if key == hub.name else set_peer(hub, key, request)
     except ValueError as error:
         log.warning("%s: %s: %s", hub.name, request, error)  # the reply of C++ gives no reason
-        done = False
+        return failure()
     except YarpError as error:
         return failure(str(error))
-    return Bottle([_OK]) if done else failure()
+    return Bottle([_OK])
 
 
 def _keep(hub: Hub, key: str, value: Any) -> bool:

@@ -10,15 +10,19 @@ import os
 import platform
 import sys
 import threading
-from typing import Any
+from typing import Any, Final
 
 from yarpy.data.bottle import Bottle, Property
+from yarpy.data.text import plain_text
+from yarpy.errors import LocalProtocolError
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.link.qos import grant_sched, grant_tos, thread_of
 from yarpy.monitors.chain import Chain
 from yarpy.port.hub import Hub
 from yarpy.qos import Qos, Sched, policy_of, schedule, scheduled, tos_of
+
+TIMING: Final = ("deadline", "rate", "late")
 
 
 def get_self(hub: Hub) -> Bottle:
@@ -78,50 +82,43 @@ def get_peer(hub: Hub, name: str) -> Bottle | None:
     return reply or None
 
 
-def set_self(hub: Hub, request: Bottle) -> bool:
-    """`(process ((priority N) (policy P)))`: every thread of the process."""
+def set_self(hub: Hub, request: Bottle) -> None:
+    """`(process ((priority N) (policy P)))`: every thread of the process. Raises as `set_peer`."""
     if request.group("process") is None:
-        return True
-    group = _group(request, "process")
-    if group is None:
-        return False
-    sched = _sched(group, Sched(0, 0))
+        return
+    sched = _sched(_group(request, "process"), Sched(0, 0))
     for thread in threading.enumerate():
         if thread.native_id is not None:
             schedule(thread.native_id, sched)
-    return True
 
 
-def set_peer(hub: Hub, name: str, request: Bottle) -> bool:
+def set_peer(hub: Hub, name: str, request: Bottle) -> None:
     """`(sched ((priority N) (policy P))) (qos ((priority HIGH))) (timing ((deadline S) (rate HZ)
-    (late drop))) (monitor ((KEY VALUE)))` on the first connection."""
+    (late drop))) (monitor ((KEY VALUE)))` on the first connection.
+
+    Raises ValueError for what makes no sense and C++ refuses, too; LocalProtocolError for the rest.
+    """
     keys = ("sched", "qos", "timing", "monitor")
     wanted = [key for key in keys if request.group(key) is not None]
     links = _links(hub, name)
     if not links:
-        return not wanted
+        if wanted:
+            raise ValueError(f"cannot find any connection to/from {name}")
+        return
     link = links[0]
     if "sched" in wanted:
-        group = _group(request, "sched")
-        if group is None:
-            return False
-        grant_sched(link, _sched(group, Sched()))
+        grant_sched(link, _sched(_group(request, "sched"), Sched()))
     if "qos" in wanted:
-        group = _group(request, "qos")
-        if group is None:
-            return False
-        grant_tos(link, _tos(group))
+        grant_tos(link, _tos(_group(request, "qos")))
     if "timing" in wanted:
-        group = _group(request, "timing")
-        if group is None:
-            return False
-        told = {key: _plain(group.find(key)) for key in ("deadline", "rate", "late")}
-        link.expect(Qos(**told))
+        try:
+            link.expect(Qos(**_wishes(_group(request, "timing"))))
+        except ValueError as error:
+            raise LocalProtocolError(str(error)) from error
     if "monitor" in wanted:
         group, chain = _group(request, "monitor"), _chain(link)
-        if group is None or chain is None or not chain.configure(Property.from_bottle(group)):
-            return False
-    return True
+        if chain is None or not chain.configure(Property.from_bottle(group)):
+            raise LocalProtocolError("there is no monitor here that takes parameters")
 
 
 def _chain(link: Inbound | Outbound) -> Chain | None:
@@ -134,14 +131,21 @@ def _links(hub: Hub, name: str) -> list[Inbound | Outbound]:
     return [*out, *(x for x in hub.inputs if x.route.source == name)]
 
 
-def _group(request: Bottle, key: str) -> Bottle | None:
+def _group(request: Bottle, key: str) -> Bottle:
     """The list of lists behind `key`; a dict is refused, as C++ does."""
     value = request.find(key)
-    return value if isinstance(value, Bottle) and value else None
+    if not isinstance(value, Bottle) or not value:
+        raise ValueError(f"{key} is followed by a list of lists: ({key} ((KEY VALUE)))")
+    return value
 
 
 def _sched(group: Bottle, default: Sched) -> Sched:
     policy, priority = group.find("policy"), group.find("priority")
+    whole = isinstance(priority, int) or (isinstance(priority, float) and priority.is_integer())
+    if priority is not None and not whole:
+        raise ValueError(f"the priority of a thread is a whole number, not {priority!r:.40}")
+    if policy is not None and not isinstance(policy, int | str):
+        raise ValueError(f"a scheduling policy is a name or a number, not {policy!r:.40}")
     return Sched(
         default.policy if policy is None or policy == -1 else policy_of(policy),
         default.priority if priority is None or priority == -1 else int(priority),
@@ -152,11 +156,25 @@ def _tos(group: Bottle) -> int:
     level, dscp, tos = group.find("priority"), group.find("dscp"), group.find("tos")
     if isinstance(level, str):
         return tos_of(level)
-    if dscp is not None:
+    if isinstance(dscp, int | str):
         return tos_of(dscp)
     if isinstance(tos, int) and 0 <= tos < 256:
         return tos
     raise ValueError("a packet priority is a level, a DSCP class or a TOS byte")
+
+
+def _wishes(group: Bottle) -> dict[str, Any]:
+    """When messages should come; a word that is misspelt is refused and not passed over."""
+    found: dict[str, Any] = {}
+    for item in group:
+        key = plain_text(item[0]) if isinstance(item, Bottle) and len(item) == 2 else ""
+        if key not in TIMING:
+            raise ValueError(
+                f'"{key:.40}" is none of ((deadline SECONDS) (rate HZ) (late drop)), which timing '
+                "takes; a deadline or a rate of 0 ends it"
+            )
+        found[key] = _plain(item[1])
+    return found
 
 
 def _plain(value: Any) -> Any:
@@ -164,8 +182,8 @@ def _plain(value: Any) -> Any:
 
 
 def _timing(wanted: Qos) -> Property:
-    found = {"deadline": wanted.deadline, "rate": wanted.rate, "late": wanted.late}
-    return Property((key, value) for key, value in found.items() if value is not None)
+    found = ((key, getattr(wanted, key)) for key in TIMING)
+    return Property((key, value) for key, value in found if value is not None)
 
 
 def _dict(**values: Any) -> Property:
