@@ -199,6 +199,16 @@ def test_the_end_of_a_program_waits_for_those_who_wait_in_zenoh() -> None:
         raise AssertionError("it is over")
 
 
+def test_the_end_of_a_program_waits_for_the_seats_that_are_taken() -> None:
+    calls = zenoh.Calls()
+    seat, _ = calls.seat(), calls.seat()
+    seat.acquire()
+    threading.Timer(0.05, seat.release).start()
+    calls.refuse()
+    calls.wait()
+    assert calls.over and not seat.locked()
+
+
 FORKING = """
 import os, sys
 from yarpy.errors import LocalProtocolError

@@ -39,6 +39,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, Self
+from weakref import WeakSet
 
 from yarpy.errors import (
     AddressError,
@@ -59,6 +60,7 @@ PORT: Final = 7447
 LAN: Final = "lan"
 HERE: Final = f"127.0.0.1:{PORT}"
 
+ENDING: Final = "the program ends"
 LOOK: Final = 2.0  # seconds to find out why a router could not be reached
 LAST: Final = 0.05  # seconds in which callbacks that had begun come to their end
 FAREWELL: Final = 2.0  # seconds for threads to come back from Zenoh when the program ends
@@ -184,40 +186,56 @@ class _Held:
 
 class Calls:
     """Threads that wait in Zenoh: the interpreter may not end meanwhile. To be used as `with
-    CALLS:` around what waits there. `waking` are called when the program ends."""
+    CALLS:` around what waits there. `waking` are called when the program ends.
+
+    Where one thread at a time waits, and often, a `seat` of its own costs less: a lock to be held
+    meanwhile, by whoever has seen that it is not `over`.
+    """
 
     def __init__(self) -> None:
         self.waking: list[Callable[[], object]] = []
         self._waiting = 0
-        self._over = False
+        self.over = False
         self._lock = threading.Lock()
+        self._seats = WeakSet[threading.Lock]()
 
     def __enter__(self) -> None:
         with self._lock:
-            if self._over:
-                raise ConnectionAbortedError("the program ends")
+            if self.over:
+                raise ConnectionAbortedError(ENDING)
             self._waiting += 1
 
     def __exit__(self, *details: object) -> None:
         with self._lock:
             self._waiting -= 1
 
+    def seat(self) -> threading.Lock:
+        """A lock for one thread at a time."""
+        seat = threading.Lock()
+        with self._lock:
+            self._seats.add(seat)
+        return seat
+
     def refuse(self) -> None:
         """Nobody may wait any more."""
         with self._lock:
-            self._over = True
+            self.over = True
         for wake in self.waking:
             wake()
 
     def wait(self) -> None:
         """Wait until everybody has come back, but not for ever."""
         deadline = time.monotonic() + FAREWELL
-        while self._waiting and time.monotonic() < deadline:
+        with self._lock:
+            seats = [*self._seats]
+        while self._waiting or any(seat.locked() for seat in seats):
+            if time.monotonic() > deadline:
+                return
             time.sleep(0.001)
 
     def start_over(self) -> None:
         """In a forked process: those threads are not here."""
-        self._waiting, self._lock = 0, threading.Lock()
+        self._waiting, self._lock, self._seats = 0, threading.Lock(), WeakSet()
 
 
 CALLS: Final = Calls()

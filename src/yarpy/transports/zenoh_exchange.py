@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.contact import ZENOH, host_zid, zid_host
 from yarpy.log import logger
-from yarpy.transports.zenoh import CALLS, Lease, load, share
+from yarpy.transports.zenoh import CALLS, ENDING, Lease, load, share
 from yarpy.transports.zenoh_pipe import MESSAGES, WAKE, ZenohPipe
 
 if TYPE_CHECKING:
@@ -62,7 +62,9 @@ class _Line:
         self._subscriber = session.declare_subscriber(
             self._own, library.handlers.RingChannel(MESSAGES + 16)
         )
+        self._recv, self._try_recv = self._subscriber.recv, self._subscriber.try_recv
         self._publisher: Any = None
+        self._reading, self._writing = CALLS.seat(), CALLS.seat()
         self.prefer("DATA")
 
     def prefer(self, priority: str) -> None:
@@ -73,12 +75,15 @@ class _Line:
             priority=getattr(self._library.Priority, priority),
             express=True,
         )
+        self._put = self._publisher.put
         if before is not None:
             undeclare(before)
 
     def put(self, data: bytes) -> None:
-        with CALLS:
-            self._publisher.put(data)
+        with self._writing:
+            if CALLS.over:
+                raise ConnectionAbortedError(ENDING)
+            self._put(data)
 
     def tell(self, data: bytes) -> None:
         with CALLS:
@@ -98,13 +103,14 @@ class _Line:
                 self._session.put(self._own, bytes([WAKE]), allowed_destination=local)
 
     def recv(self) -> bytes:
-        with CALLS:
-            data: bytes = self._subscriber.recv().payload.to_bytes()
+        with self._reading:
+            if CALLS.over:
+                raise ConnectionAbortedError(ENDING)
+            data: bytes = self._recv().payload.to_bytes()
         return data
 
     def try_recv(self) -> bytes | None:
-        with CALLS:
-            sample = self._subscriber.try_recv()
+        sample = self._try_recv()  # which holds Python's lock all the time
         return None if sample is None else sample.payload.to_bytes()
 
     def close(self) -> None:

@@ -38,9 +38,12 @@ SAY: Final = 0.1  # seconds after which a reader says what it has taken, or a qu
 AGAIN: Final = 5.0  # seconds after which the other end is told once more of the end
 GAP: Final = 2.0  # seconds in which messages may overtake each other
 
-_HEAD = struct.Struct("<BI")
+_HEAD: Final = struct.Struct("<BI")
+_SIZE: Final = _HEAD.size
+_pack, _unpack = _HEAD.pack, _HEAD.unpack_from
 _COUNT = struct.Struct("<BQI")
 _ALL: Final = 1 << 32
+_NOTHING: Final = memoryview(b"")
 
 # DSCP numbers below which a priority of Zenoh is the right one: YARP's LOW, NORM (0), HIGH, CRIT.
 _PRIORITIES: Final = ((8, "DATA"), (16, "DATA_LOW"), (24, "DATA_HIGH"), (32, "INTERACTIVE_LOW"))
@@ -96,7 +99,7 @@ class ZenohPipe:
         self._line = line
         self._tos = 0
         # What comes. Only the thread that reads changes it.
-        self._chunk = memoryview(b"")
+        self._chunk = _NOTHING
         self._over = False  # the reading side has seen the end
         self._next = 0  # number of the message that comes next
         self._early: dict[int, bytes] = {}  # what has overtaken that
@@ -116,13 +119,8 @@ class ZenohPipe:
         self._ended = False  # the other end will say no more
         self._deaf = False  # nor listen
         self._broken = ""  # why nothing goes any more
-        self._interrupted = False
+        self._silent = False  # nothing goes any more: broken, interrupted or closed
         self._closed = False
-
-    @property
-    def _silent(self) -> bool:
-        """Whether nothing goes any more."""
-        return bool(self._broken) or self._interrupted or self._closed
 
     # -- what the exchange brings, in threads of Zenoh --------------------------------------------
 
@@ -147,7 +145,7 @@ class ZenohPipe:
         """Nothing will come or go any more; what has come can still be read."""
         with self._changed:
             self._broken = self._broken or reason
-            self._ended = True
+            self._ended = self._silent = True
             self._changed.notify_all()
         self._wake()
 
@@ -166,33 +164,48 @@ class ZenohPipe:
         """Have bytes at hand; False at the end. Raises BlockingIOError."""
         deadline = None
         while not self._chunk and not self._over:
-            data = self._early.pop(self._next, None) or self._come()
-            if data is None:
+            if not wait or self._early or self._silent:
+                data = self._early.pop(self._next, None) or self._look()
+                if data is not None:
+                    self._accept(data)
+                    continue
                 if self._silent:
                     self._over = True
                     break
                 if not wait:
                     raise BlockingIOError("nothing has come")
-                if patience is not None:
-                    now = time.monotonic()
-                    deadline = now + patience if deadline is None else deadline
-                    if now >= deadline:
-                        raise BlockingIOError("nothing has come")
+            if patience is not None:
+                now = time.monotonic()
+                if deadline is None:
+                    deadline = now + patience
+                elif now >= deadline:
+                    raise BlockingIOError("nothing has come")
+            if self._early or deadline is not None:
                 self._set_alarm(deadline)
-                data = self._come(wait=True)
-            self._accept(data)
+            try:
+                data = self._line.recv()  # woken by whoever says `silent`, or by the alarm
+            except Exception:
+                self._fail()
+                continue
+            if not self._early and data[:_SIZE] == _pack(DATA, self._next) != data:
+                self._next = (self._next + 1) % _ALL
+                self._chunk = memoryview(data)[_SIZE:]
+            else:
+                self._accept(data)
         return not self._over
 
-    def _come(self, wait: bool = False) -> bytes | None:
+    def _look(self) -> bytes | None:
         try:
-            return self._line.recv() if wait else self._line.try_recv()
-        except KeyboardInterrupt:
-            raise
+            return self._line.try_recv()
         except Exception:
-            with self._changed:
-                self._broken = self._broken or "the session with Zenoh is closed"
-                self._changed.notify_all()
+            self._fail()
             return None
+
+    def _fail(self) -> None:
+        with self._changed:
+            self._broken = self._broken or "the session with Zenoh is closed"
+            self._silent = True
+            self._changed.notify_all()
 
     def _set_alarm(self, deadline: float | None) -> None:
         """Be woken at that time, and when something is missing for too long."""
@@ -206,13 +219,13 @@ class ZenohPipe:
         self._alarm = 0.0
         self._wake()
 
-    def _accept(self, data: bytes | None) -> None:
+    def _accept(self, data: bytes) -> None:
         if self._early and self._next not in self._early and time.monotonic() > self._gap:
             self._lose("something was lost on the way")
             return
         if not data or data[0] == WAKE:
             return
-        kind, number = _HEAD.unpack_from(data) if len(data) >= _HEAD.size else (RESET, 0)
+        kind, number = _unpack(data) if len(data) >= _SIZE else (RESET, 0)
         if kind not in (DATA, END):
             self._lose("what comes is no message")
         elif number != self._next:
@@ -226,7 +239,7 @@ class ZenohPipe:
         else:
             self._next = (number + 1) % _ALL
             self._gap = time.monotonic() + GAP if self._early else 0.0
-            self._chunk = memoryview(data)[_HEAD.size :]
+            self._chunk = memoryview(data)[_SIZE:]
 
     def _lose(self, reason: str) -> None:
         self._over = True
@@ -235,11 +248,11 @@ class ZenohPipe:
         self._tell(bytes([RESET]))
 
     def recv_into(self, view: memoryview) -> int:
-        return self._copy(view) if self._wait(True, self._patience) else 0
+        return self._copy(view) if self._chunk or self._wait(True, self._patience) else 0
 
     def try_recv_into(self, view: memoryview) -> int:
         try:
-            return self._copy(view) if self._wait(False, None) else 0
+            return self._copy(view) if self._chunk or self._wait(False, None) else 0
         except BlockingIOError:
             return -1
 
@@ -249,9 +262,14 @@ class ZenohPipe:
 
     def _copy(self, view: memoryview) -> int:
         chunk = self._chunk
-        count = min(len(view), len(chunk))
-        view[:count] = chunk[:count]
-        self._chunk = chunk[count:]
+        count = len(chunk)
+        if count <= len(view):
+            view[:count] = chunk
+            self._chunk = _NOTHING
+        else:
+            count = len(view)
+            view[:] = chunk[:count]
+            self._chunk = chunk[count:]
         self._taken += count
         now = time.monotonic()
         if (
@@ -268,13 +286,16 @@ class ZenohPipe:
             self._line.tell(data)
         except Exception:  # the other end sees that, too
             self._broken = self._broken or "the session with Zenoh is closed"
+            self._silent = True
 
     # -- sending ----------------------------------------------------------------------------------
 
     def send(self, buffers: Sequence[Buffer]) -> None:
+        left = self.try_send(buffers)
+        if not left:
+            return
         limit = self._send_patience
         deadline = None if limit is None else time.monotonic() + limit
-        left = self.try_send(buffers)
         while left:
             if deadline is not None and time.monotonic() >= deadline:
                 raise BlockingIOError("the other end does not read")
@@ -288,15 +309,25 @@ class ZenohPipe:
         return max(0, self._confirmed + WINDOW - self._sent)
 
     def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
-        left = [buffer for buffer in buffers if len(buffer)]
+        size = sum(map(len, buffers))
         with self._sending:
+            room = self._confirmed + WINDOW - self._sent
+            if (  # as nearly always
+                0 < size <= PIECE
+                and size <= room
+                and (self._number - self._confirmed_number) % _ALL < MESSAGES
+                and not (self._silent or self._deaf)
+            ):
+                self._go(size, buffers)
+                return []
+            left = [buffer for buffer in buffers if len(buffer)]
             while left:
                 if self._silent or self._deaf:
                     raise BrokenPipeError(self._broken or "the connection is closed")
                 room = min(self._room(), PIECE)
                 if not room:
                     return left
-                pieces: list[Buffer] = [b""]
+                pieces: list[Buffer] = []
                 while left and room:
                     piece = left[0]
                     if len(piece) > room:
@@ -306,14 +337,14 @@ class ZenohPipe:
                         left.pop(0)
                     pieces.append(piece)
                     room -= len(piece)
-                pieces[0] = _HEAD.pack(DATA, self._number)
-                data = b"".join(pieces)
-                self._number = (self._number + 1) % _ALL
-                self._sent += len(data) - _HEAD.size
-                self._put(data)
+                self._go(sum(map(len, pieces)), pieces)
         return left
 
-    def _put(self, data: bytes) -> None:
+    def _go(self, size: int, pieces: Sequence[Buffer]) -> None:
+        """Send a message of so many bytes."""
+        data = b"".join((_pack(DATA, self._number), *pieces))
+        self._number = (self._number + 1) % _ALL
+        self._sent += size
         try:
             self._line.put(data)
         except Exception as error:
@@ -355,7 +386,7 @@ class ZenohPipe:
 
     def interrupt(self) -> None:
         with self._changed:
-            self._interrupted = True
+            self._silent = True
             self._changed.notify_all()
         self._wake()
 
@@ -363,7 +394,7 @@ class ZenohPipe:
         with self._changed:
             if self._closed:
                 return
-            self._closed = True
+            self._closed = self._silent = True
             self._changed.notify_all()
         self._wake()
         with self._sending:
