@@ -149,7 +149,7 @@ class Carrier:
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         """Write one message."""
-        stream.write(*framing.encode(packet))
+        stream.output += packet.framed or framing.encode(packet)
 
     def gathers(self, packet: Packet) -> bool:
         """Whether what `encode` has just written may wait for others of a burst: it is small, and
@@ -189,7 +189,7 @@ class Carrier:
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
         """Write the reply to a message: the object itself, without framing."""
-        stream.write(*codec.encode(value))
+        stream.output += codec.encode(value)
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         """Read a reply; None if the peer's acknowledgement shows that there will be none."""
@@ -204,7 +204,7 @@ class Carrier:
 
     def encode_ack(self, stream: ByteStream, count: int) -> None:
         """Write `count` acknowledgements."""
-        stream.write(framing.ACK * count)
+        stream.output.append(framing.ACK * count)
 
     def parse_acks(self, stream: ByteStream, most: int) -> int:
         """Take up to `most` acknowledgements that have already arrived; returns how many."""

@@ -69,7 +69,7 @@ def read_list(make_list: type[L], make_dict: Callable[[L], Any], view: Buffer) -
     code, count = _read_pair(buffer)
     items = make_list()
     try:
-        room = _room(size)
+        room = None if size <= _SMALL else _room(size)
         _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room, make_list, make_dict)
     except struct_error:
         raise Truncated(f"the Bottle goes on beyond its {size} bytes", size + 1) from None
@@ -85,7 +85,7 @@ def read_leading(
     code, count = _read_pair(buffer)
     items = make_list()
     try:
-        room = _room(len(buffer))
+        room = None if len(buffer) <= _SMALL else _room(len(buffer))
         end = _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room, make_list, make_dict)
     except (struct_error, DecodeError):
         return None
@@ -96,8 +96,6 @@ def _room(size: int) -> list[int] | None:
     """How many elements a message of `size` bytes may still have; None if there cannot be too many.
 
     An element takes a byte on the wire, and forty here."""
-    if size <= _SMALL:
-        return None
     most = limits().elements
     return [most] if size > most else None
 

@@ -133,9 +133,11 @@ class Driver:
         `deadline` is a time of `time.monotonic`; 0.0: no waiting. Raises Timeout when it has come:
         what is left by then stays in the stream, and leaves with the next flush.
         """
-        output = self.stream.take_output()
+        stream = self.stream
+        output = stream.output
         if not output:
             return
+        stream.output = []
         left: list[Buffer] = []
         try:
             if deadline is None:
@@ -151,14 +153,14 @@ class Driver:
                 self.bytes_out += len(piece)
             for piece in left:
                 self.bytes_out -= len(piece)
-            if self.stream.aside:
-                self.bytes_out += self.stream.aside
-                self.stream.aside = 0
+            if stream.aside:
+                self.bytes_out += stream.aside
+                stream.aside = 0
         else:
             for piece in output:
                 self.bytes_out += getattr(piece, "size", 0)
         if left:
-            self.stream.put_back(left)
+            stream.put_back(left)
             raise Timeout("the peer does not read what is sent")
 
     def _send_until(self, left: list[Buffer], deadline: float) -> list[Buffer]:
@@ -183,7 +185,10 @@ class Driver:
                 return
             buffer = self.stream.get_buffer()
             count = self._look(buffer) if self._looks else -1
-            if count < 0:
+            if count < 0 and self._skip:
+                self._skip -= 1
+                count = self.transport.recv_into(buffer)
+            elif count < 0:
                 count = self._sleep(buffer)
         except OSError as error:
             if isinstance(error, YarpError):
@@ -201,15 +206,16 @@ class Driver:
         """Let the kernel wake us. If the wait was short, polling would have been faster."""
         started = time.perf_counter()
         count = self.transport.recv_into(buffer)
-        if self._skip:
-            self._skip -= 1
-        elif self.eager and time.perf_counter() - started < SOON:
+        if self.eager and time.perf_counter() - started < SOON:
             self._looks = True
         return count
 
     def _look(self, buffer: memoryview) -> int:
         """Poll until bytes come; -1 when that takes longer than going to sleep would."""
         look = self.transport.try_recv_into
+        count = look(buffer)
+        if count >= 0:
+            return count  # which says nothing about whether it pays to poll
         until = time.perf_counter() + LOOKING
         while True:
             for _ in range(8):

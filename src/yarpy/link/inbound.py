@@ -6,6 +6,7 @@ message to the port, unless the port's reader has a lease to read the socket its
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from typing import TYPE_CHECKING, Any, Protocol
@@ -208,15 +209,16 @@ class Inbound:
         deadline: float | None,
         spin: bool = False,
         newest: bool = False,
-        late: bool = False,
+        away: float = math.inf,
     ) -> Message | None:
         """The next data message, read in the thread of a reader that has the lease.
 
         None when the lease is over, or `deadline` has come. With `newest` it is the last of the
         messages that are there; the others are dropped and counted. A reader that was away for
-        long (`late`) gives the lease up if that has kept the sender waiting.
+        more than `away` seconds gives the lease up if that has kept the sender waiting.
         """
         turn, receiver = self.turn, self.receiver
+        late = away < math.inf and time.perf_counter() - turn.seen > away
         if deadline is not None and deadline - time.monotonic() >= SILENCE:
             deadline = None
         if not turn.take(SILENCE if deadline is None else max(0.0, deadline - time.monotonic())):
@@ -230,7 +232,10 @@ class Inbound:
                 return None
             message = self._next(deadline)
             if message is not None:
-                return self._take_newest(message) if newest else self._take(message)
+                self._take(message)
+                if newest and message.key == DATA and self.driver.stream.waiting:
+                    message = self._newest(message)
+                return message
         except Timeout:
             if deadline is None:
                 turn.end()
@@ -244,22 +249,20 @@ class Inbound:
         turn.end()
         return None
 
-    def _take(self, message: Message) -> Message:
+    def _take(self, message: Message) -> None:
         """Acknowledge data; a question keeps the link's thread parked until its end."""
         if message.key == CALL and self.receiver.open_question(message):
             if message.answer is not None:
                 message.answer.then = self.turn.stir
-            return message
+            return
         try:
             self.receiver.settle(message)
         except YarpError:
             pass  # the sender has gone: the next reader meets the same end
-        return message
 
-    def _take_newest(self, message: Message) -> Message:
-        """Take the newest of the messages that have come already."""
+    def _newest(self, message: Message) -> Message:
+        """Take the newest of the messages that have come behind this one already."""
         receiver, stream = self.receiver, self.driver.stream
-        self._take(message)
         try:
             while message.key == DATA and stream.waiting:
                 later = self.carrier.parse(stream)
@@ -274,7 +277,8 @@ class Inbound:
                     receiver.refuse(later)
                     continue
                 self.counter.drops += 1
-                message = self._take(passed)
+                self._take(passed)
+                message = passed
         except YarpError:
             pass  # the sender has gone, or breaks the rules: the next reader meets the same
         return message

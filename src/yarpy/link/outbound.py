@@ -413,12 +413,12 @@ class Outbound:
             self.sender.caught_up()  # unread acknowledgements hide the end behind them
         if self._listener is not None:
             self._listener.hear()
-        transport = self.driver.transport
-        if not self.broken and transport.ended():
+        sender, transport = self.sender, self.driver.transport
+        if not sender.broken and transport.ended():
             transport.interrupt()  # frees a thread that is stuck in sending
-            with self.sender.lock:
-                self.sender.give_up()
-        return self.broken
+            with sender.lock:
+                sender.give_up()
+        return sender.broken
 
     def attend(self) -> None:
         """Hear what the reader says as soon as it does, in this thread, until the end."""

@@ -95,7 +95,7 @@ class Receiver:
                     if self.intake.reason:
                         raise RemoteProtocolError(self.intake.reason) from error
                     raise
-            if self._unsent_acks or driver.stream.pending:
+            if self._unsent_acks or driver.stream.output:
                 self.send_acks()
             if self._due:
                 self._fill_in_time(deadline)

@@ -102,7 +102,7 @@ class Sender:
             return False
         try:
             driver = self.driver
-            if self.broken or self.halfway or driver.stream.pending:
+            if self.broken or self.halfway or driver.stream.output:
                 return False
             try:
                 left = driver.transport.try_send([data])
@@ -131,7 +131,7 @@ class Sender:
             return False
         try:
             driver = self.driver
-            if self.broken or self.halfway or driver.stream.pending:
+            if self.broken or self.halfway or driver.stream.output:
                 return False
             left = driver.transport.try_send([data])
             unsent = sum(map(len, left))
@@ -220,10 +220,10 @@ class Sender:
                 if pause > RUSH * self._cost:
                     # Who was flooding and paused for less than a burst lasts has been interrupted.
                     self._rush = BURST - 1 if self._rush == BURST and pause < LASTING else 0
-                    self._flush_at_once(now, until)
+                    self.flush(until)
                 elif self._rush < BURST:
                     self._rush += 1
-                    self._flush_at_once(now, until)
+                    self.flush(until)
                 elif carrier.delivery.coalesces and carrier.gathers(packet):
                     self._gather(now, until)
                 else:
@@ -243,15 +243,21 @@ class Sender:
         counter = self.counter
         counter.count(now)
         counter.bytes = driver.bytes_out
+        self._left = now
+        if not self.gathered:
+            # How long a send takes; it seems longer when the reader runs first.
+            self._left = time.perf_counter()
+            if self._left - now < self._cost:
+                self._cost = self._left - now
         if carrier.acks:
             if window.count(now) and not self.halfway:
                 self._look_for_acks(until)
+                self._left = time.perf_counter()
         else:
             if self.gathered:
                 size, self._pieces = driver.stream.written(self._pieces)
                 self._gathered_bytes += size
             self.confirmation.ends.append(driver.bytes_out + self._gathered_bytes)
-        self._left = time.perf_counter()
         return sent
 
     def _has_room(self, full: bool, until: float | None) -> bool:
@@ -298,11 +304,6 @@ class Sender:
             self.give_up()
             raise
         return True
-
-    def _flush_at_once(self, now: float, until: float | None) -> None:
-        """Send, and learn how long that takes; it seems longer when the reader runs first."""
-        self.flush(until)
-        self._cost = min(self._cost, time.perf_counter() - now)
 
     def _gather(self, now: float, until: float | None) -> None:
         """Coalesce: leave the message in the stream for the next send, which comes soon."""

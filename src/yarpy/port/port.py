@@ -137,8 +137,12 @@ class MessagePort(BasePort):
     ) -> int:
         deadline = None if timeout is None else time.monotonic() + timeout
         if len(outputs) == 1:
-            link = outputs[0]
-            took = [link] if self._attempt(link, Outbound.send, packet, deadline) else []
+            link, took = outputs[0], []
+            try:
+                if link.active and not link.log and link.send(packet, deadline):
+                    took = [link]
+            except YarpError as error:
+                self._lose(link, error)
         else:
             took = self._send_to_several(packet, outputs, deadline)
         if wait:
@@ -192,11 +196,13 @@ class MessagePort(BasePort):
             return False
         try:
             return act(link, *arguments)
-        except LinkClosed as error:
-            self._hub.drop_output(link, str(error), lost=True)
         except YarpError as error:
-            self._hub.drop_output(link, str(error))
+            self._lose(link, error)
         return False
+
+    def _lose(self, link: Outbound, error: YarpError) -> None:
+        """A connection has failed: it is made again if that is because its peer went away."""
+        self._hub.drop_output(link, str(error), lost=isinstance(error, LinkClosed))
 
     def flush(self, timeout: float | None = None) -> bool:
         """Wait until every message was sent and, where readers acknowledge, taken; False if that

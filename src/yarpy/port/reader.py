@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 
 from yarpy.errors import Timeout
@@ -34,6 +35,12 @@ class Reader:
     def _judge(self) -> None:
         self._newest = isinstance(self._mailbox, Latest)
         self._quick = _NEWEST_QUICK if self._newest else _QUICK
+        # After so many seconds without a reader, who wants the newest, it may have kept its sender
+        # waiting: then it gives the lease up, but not before it has looked itself once more. The
+        # newest is there, while the link's thread would begin with the oldest. A reader that wants
+        # every message keeps the lease: a busy writer in the same process makes every turn of its
+        # reader late, and handing each message over from another thread would make it later still.
+        self._away = self._quick if self._newest and not self._spin else math.inf
 
     def exchange(self, mailbox: Mailbox) -> None:
         """Read through another mailbox from now on, while nobody reads."""
@@ -64,12 +71,11 @@ class Reader:
         mailbox = self._mailbox
         if mailbox.held:
             mailbox.settle()
-        late = self._newest and self._was_long()
         while True:
             link = self._sole
             leased = link is not None and link.turn.leased
             if link is not None and leased and not mailbox.waiting:
-                message = link.read(deadline, self._spin, self._newest, late)
+                message = link.read(deadline, self._spin, self._newest, self._away)
                 if message is not None:
                     if not mailbox.stopped:
                         if message.answer is not None:
@@ -90,17 +96,3 @@ class Reader:
                 return message
             if deadline is not None and time.monotonic() >= deadline:
                 raise Timeout(f'nothing came to "{self._hub.name}" within {timeout} s')
-
-    def _was_long(self) -> bool:
-        """Whether the reader was away for so long that it gives the lease up if it kept a sender
-        waiting.
-
-        Not before it has looked itself once more: the newest is there, while the link's thread
-        would begin with the oldest. A reader that wants every message keeps the lease: a busy
-        writer in the same process makes every turn of its reader late, and handing each message
-        over from another thread would make it later still.
-        """
-        link = self._sole
-        if link is None or not link.turn.leased or self._spin:
-            return False
-        return time.perf_counter() - link.turn.seen > self._quick

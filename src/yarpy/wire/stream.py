@@ -70,14 +70,14 @@ class ByteStream:
     """Bytes in, bytes out. `limit` is the largest message, in bytes, that is accepted.
 
     `buffer`, `head` and `tail` are open to protocols that parse in place: `buffer[head:tail]` has
-    arrived and was not read; move `head` past what was used.
+    arrived and was not read; move `head` past what was used. `output` waits to be taken: what is
+    appended to it was written.
     """
 
     __slots__ = (
         "_big",
         "_big_filled",
         "_eof",
-        "_output",
         "_proven",
         "_spare",
         "_view",
@@ -87,6 +87,7 @@ class ByteStream:
         "ending",
         "head",
         "limit",
+        "output",
         "paused",
         "tail",
     )
@@ -103,7 +104,7 @@ class ByteStream:
         #: what finds the end of the reply that is expected, where it is no Bottle
         self.ending: Callable[[int], Walk] | None = None
         self._eof = False
-        self._output: list[Buffer] = []
+        self.output: list[Buffer] = []
         self._big: memoryview | None = None  # where a large read lands
         self._big_filled = 0
         self._spare: list[bytearray] = []
@@ -117,7 +118,8 @@ class ByteStream:
             return self._big[self._big_filled :]
         if self.head == self.tail:
             self.head = self.tail = 0
-        elif self.tail == len(self.buffer):
+            return self._view
+        if self.tail == len(self.buffer):
             self._compact()
         return self._view[self.tail :]
 
@@ -146,7 +148,7 @@ class ByteStream:
 
     def take_output(self) -> list[Buffer]:
         """What the protocol wrote since the last call, in order."""
-        output, self._output = self._output, []
+        output, self.output = self.output, []
         return output
 
     def forget(self) -> None:
@@ -156,21 +158,21 @@ class ByteStream:
 
     def put_back(self, rest: Iterable[Buffer]) -> None:
         """What was taken and could not be sent is to be taken first."""
-        self._output[:0] = rest
+        self.output[:0] = rest
 
     def snapshot_output(self) -> None:
         """Copy what waits to be taken, so that its writer may change it."""
-        self._output = [piece if type(piece) is bytes else bytes(piece) for piece in self._output]
+        self.output = [piece if type(piece) is bytes else bytes(piece) for piece in self.output]
 
     @property
     def pending(self) -> bool:
         """Whether there is output to take."""
-        return bool(self._output)
+        return bool(self.output)
 
     def written(self, start: int = 0) -> tuple[int, int]:
         """The bytes of what waits to be taken from the piece number `start` on, and the number of
         the next piece."""
-        output = self._output
+        output = self.output
         return sum(map(len, output[start:])), len(output)
 
     @property
@@ -182,7 +184,7 @@ class ByteStream:
 
     def write(self, *buffers: Buffer) -> None:
         """Queue bytes for the peer. Large buffers are sent from where they are, not copied."""
-        self._output.extend(buffers)
+        self.output.extend(buffers)
 
     def more(self, count: int) -> Steps[None]:
         """Wait until `count` bytes (at most the buffer's size) lie between head and tail."""
@@ -359,7 +361,7 @@ class ObjectStream(ByteStream):
 
     def write_object(self, item: object) -> None:
         """Queue an object for the peer."""
-        self._output.append(item)  # type: ignore[arg-type]
+        self.output.append(item)  # type: ignore[arg-type]
 
 
 class DatagramStream(ByteStream):
