@@ -32,9 +32,10 @@ def reference(
     offset: int = 0,
     size: int = 20000,
     length: int | None = None,
+    where: int = 0,
 ) -> bytes:
     length = len(envelope) if length is None else length
-    return struct.pack("<4sc3x3I2Q", mark, key, slot, 1, length, offset, size) + envelope
+    return struct.pack("<4scxH3I2Q", mark, key, where, slot, 1, length, offset, size) + envelope
 
 
 def joined(kept: list[bytes]) -> tuple[Memory, SharedStream]:
@@ -79,6 +80,26 @@ def test_one_copy_for_several_connections() -> None:
         assert carrier.prepare(packet)
         carrier.encode(stream, packet)
     assert len(kept) == 1
+
+
+def test_a_payload_in_memory_that_others_have_shown() -> None:
+    carrier, stream = joined([])
+    shelf = Shelf([])
+    shelf.lend = lambda parcel: 0x103  # type: ignore[method-assign]
+    carrier._memory = shelf
+    packet = Packet([bytes(20000)])
+    carrier.encode(stream, packet)
+    size = sum(map(len, packet.blocks))
+    assert b"".join(stream.take_output()) == reference(where=0x103, size=size)
+
+
+def test_a_reader_that_cannot_have_it_gets_it_through_the_socket() -> None:
+    carrier, stream = joined([])
+    shelf = Shelf([])
+    shelf.lend = lambda parcel: -1  # type: ignore[method-assign]
+    carrier._memory = shelf
+    carrier.encode(stream, Packet([bytes(20000)]))
+    assert b"".join(stream.take_output()) == b"".join(framing.encode(Packet([bytes(20000)])))
 
 
 def test_without_room_the_payload_goes_through_the_socket() -> None:
@@ -147,6 +168,7 @@ BAD = {
     "command": reference(key=b"q"),
     "envelope": reference(length=1 << 31),
     "slot": reference(slot=7),
+    "memory": reference(where=1),
     "place": reference(offset=19999, size=2),
     "far": reference(offset=(1 << 64) - 1),
     "size": reference(size=1 << 63),

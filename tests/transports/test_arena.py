@@ -14,6 +14,7 @@ import pytest
 from yarpy.errors import LocalProtocolError
 from yarpy.transports import arena as module
 from yarpy.transports.arena import LEDGER, PAGE, Arena, Placed, Reader, arena_of, sealed_memory
+from yarpy.transports.lease import HEADROOM
 
 pytestmark = pytest.mark.skipif(not module.available(), reason="this system has no such memory")
 
@@ -188,6 +189,65 @@ def test_a_system_without_memory_to_give(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(os, "memfd_create", fails)
     with pytest.raises(LocalProtocolError, match="use the carrier tcp"):
         Arena("/out", 4 * PAGE)
+
+
+def test_room_that_a_program_fills_itself(peer: Peer) -> None:
+    arena = Arena("/out", 1 << 20)
+    lease = arena.prepare(20000)
+    lease[HEADROOM:] = 7
+    placed = arena.place([b"head", memoryview(lease)[HEADROOM:]], 20004)
+    assert placed is not None
+    assert os.pread(arena.number, placed.size, placed.offset) == b"head" + bytes([7]) * 20000
+    assert placed.offset == HEADROOM - 4  # nothing was copied
+    assert not lease.flags.writeable
+    arena.lend(placed, peer.reader)
+    held = placed.slot, placed.generation
+    del placed, lease
+    assert arena.used == 1
+    second = arena.prepare(20000)
+    assert second.offset > 0  # the first is still looked at
+    peer.give_back(held)
+    assert arena.used == 0
+    assert arena.prepare(20000).offset == 0
+
+
+def test_it_may_be_sent_again_but_not_with_another_head() -> None:
+    arena = Arena("/out", 1 << 20)
+    pixels = memoryview(arena.prepare(20000))[HEADROOM:]
+    offsets = []
+    for head in (b"head", b"head", b"HEAD"):
+        placed = arena.place([head, pixels], 20004)
+        assert placed is not None
+        offsets.append(placed.offset)
+    assert offsets[:2] == [HEADROOM - 4] * 2
+    assert offsets[2] > 20000  # a copy: somebody may look at the first
+
+
+def test_no_room_to_prepare() -> None:
+    arena = Arena("/out", 8 * PAGE)
+    assert arena.prepare(8 * PAGE) is None
+    kept = arena.prepare(4 * PAGE)
+    assert arena.prepare(4 * PAGE) is None
+    del kept
+    assert arena.prepare(4 * PAGE) is not None
+
+
+def test_it_ends_while_readers_still_look(peer: Peer) -> None:
+    """Not when the garbage is collected."""
+    gc.disable()
+    try:
+        arena = Arena("/out", 1 << 20)
+        lent(arena, peer)
+        lease = arena.prepare(20000)
+        placed = arena.place([memoryview(lease)[HEADROOM:]], 20000)
+        assert placed is not None
+        arena.lend(placed, peer.reader)
+        number = arena.number
+        del placed, lease, arena
+        with pytest.raises(OSError):
+            os.fstat(number)
+    finally:
+        gc.enable()
 
 
 def test_a_port_has_one_arena_for_as_long_as_it_is_used() -> None:

@@ -13,12 +13,12 @@ import pytest
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.transports.arena import LEDGER, PAGE, Arena, available, sealed_memory
-from yarpy.transports.borrowed import Borrowed
+from yarpy.transports.borrowed import OTHERS, Borrowed, Shown
 
 pytestmark = pytest.mark.skipif(not available(), reason="this system has no such memory")
 
 
-class Shown:
+class Seen:
     """An arena as its reader sees it, with what the reader says of it."""
 
     def __init__(self) -> None:
@@ -40,11 +40,11 @@ class Shown:
 
 
 def test_a_payload_is_given_back_with_its_last_view() -> None:
-    shown = Shown()
+    shown = Seen()
     placed = shown.arena.place([bytes(range(100))], 100)
     assert placed is not None
     assert shown.borrowed is not None
-    view = shown.borrowed.take(3, 7, placed.offset, 100)
+    view = shown.borrowed.take(0, 3, 7, placed.offset, 100)
     assert view == bytes(range(100))
     assert (view.readonly, view.format, view.ndim) == (True, "B", 1)
     array = np.frombuffer(view[10:20], np.uint8)
@@ -63,22 +63,22 @@ def test_a_payload_is_given_back_with_its_last_view() -> None:
 
 
 def test_no_copy_is_made() -> None:
-    shown = Shown()
+    shown = Seen()
     placed = shown.arena.place([bytes(100)], 100)
     assert placed is not None
     assert shown.borrowed is not None
-    view = shown.borrowed.take(0, 1, placed.offset, 100)
-    shown.arena._view[placed.offset + 5] = 42  # as only a sender that breaks the rules does
+    view = shown.borrowed.take(0, 0, 1, placed.offset, 100)
+    shown.arena.view[placed.offset + 5] = 42  # as only a sender that breaks the rules does
     assert view[5] == 42
     os.close(shown.pipe)
 
 
 def test_views_outlive_the_connection() -> None:
-    shown = Shown()
+    shown = Seen()
     placed = shown.arena.place([b"still here"], 10)
     assert placed is not None
     assert shown.borrowed is not None
-    view = shown.borrowed.take(0, 1, placed.offset, 10)
+    view = shown.borrowed.take(0, 0, 1, placed.offset, 10)
     shown.borrowed = None
     gc.collect()
     assert shown.held
@@ -94,10 +94,43 @@ def test_views_outlive_the_connection() -> None:
     [(256, 0, 1), (0, 4 * PAGE, 1), (0, 0, 4 * PAGE + 1), (0, 1 << 63, 8), (0, 8, (1 << 64) - 4)],
 )
 def test_places_outside(slot: int, offset: int, size: int) -> None:
-    shown = Shown()
+    shown = Seen()
     assert shown.borrowed is not None
     with pytest.raises(RemoteProtocolError):
-        shown.borrowed.take(slot, 1, offset, size)
+        shown.borrowed.take(0, slot, 1, offset, size)
+    os.close(shown.pipe)
+
+
+@pytest.mark.parametrize("number", [1, OTHERS, OTHERS + 1, 0xFEFF])
+def test_memory_that_was_never_shown(number: int) -> None:
+    shown = Seen()
+    assert shown.borrowed is not None
+    with pytest.raises(RemoteProtocolError, match="never shown"):
+        shown.borrowed.take(number, 0, 1, 0, 1)
+    os.close(shown.pipe)
+
+
+def test_memory_of_a_third_program() -> None:
+    """Its pipe is held for as long as anybody looks at it, under whatever number."""
+    shown, third = Seen(), Arena("/third", PAGE)
+    placed = third.place([b"third"], 5)
+    assert placed is not None
+    ours, theirs = os.pipe2(os.O_NONBLOCK)
+    assert shown.borrowed is not None
+    shown.borrowed.show(2, Shown(os.dup(third.number), theirs))
+    view = shown.borrowed.take(2, 9, 4, placed.offset, 5)
+    with pytest.raises(RemoteProtocolError):
+        shown.borrowed.take(2, 9, 4, PAGE, 1)
+    shown.borrowed = None
+    gc.collect()
+    assert view == b"third"
+    with pytest.raises(BlockingIOError):
+        os.read(ours, 1)
+    del view
+    gc.collect()
+    assert shown.ledger[9] == 4
+    assert os.read(ours, 1) == b""
+    os.close(ours)
     os.close(shown.pipe)
 
 
@@ -107,6 +140,7 @@ def descriptors() -> int:
 
 def refused(file: int, ledger: int, pipe: int, match: str) -> None:
     """They are refused, and closed."""
+    gc.collect()
     before = descriptors()
     with pytest.raises(RemoteProtocolError, match=match):
         Borrowed(file, ledger, pipe)
@@ -174,11 +208,11 @@ def test_a_file_beyond_all_measure_is_refused() -> None:
 
 
 def test_a_copy_of_a_view_is_an_ordinary_array() -> None:
-    shown = Shown()
+    shown = Seen()
     placed = shown.arena.place([b"0123456789"], 10)
     assert placed is not None
     assert shown.borrowed is not None
-    array = np.frombuffer(shown.borrowed.take(0, 1, placed.offset, 10), np.uint8)
+    array = np.frombuffer(shown.borrowed.take(0, 0, 1, placed.offset, 10), np.uint8)
     copies = [array.copy(), pickle.loads(pickle.dumps(array))]
     del array
     assert shown.ledger[0] == 1

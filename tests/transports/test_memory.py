@@ -12,7 +12,8 @@ import pytest
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.transports import memory
-from yarpy.transports.arena import LEDGER, PAGE, available, sealed_memory
+from yarpy.transports.arena import LEDGER, PAGE, arena_of, available, sealed_memory, tidy
+from yarpy.transports.borrowed import OTHERS
 from yarpy.transports.memory import MemoryTransport, SendingTransport, open_memory
 
 pytestmark = pytest.mark.skipif(not available(), reason="this system has no such memory")
@@ -51,12 +52,12 @@ def test_payloads_lie_in_memory(pair: tuple[MemoryTransport, MemoryTransport]) -
     sending, reading = pair
     placed = sending.place([b"one", b"two"], 6)
     assert placed is not None
-    assert sending.lend(placed)
-    view = reading.take(placed.slot, placed.generation, placed.offset, placed.size)
+    assert sending.lend(placed) == 0
+    view = reading.take(0, placed.slot, placed.generation, placed.offset, placed.size)
     assert view == b"onetwo"
     assert reading.place([b"x"], 1) is None  # answers go through the socket
     with pytest.raises(RemoteProtocolError):
-        sending.take(0, 1, 0, 1)
+        sending.take(0, 0, 1, 0, 1)
 
 
 def test_views_outlive_both_ends() -> None:
@@ -64,7 +65,7 @@ def test_views_outlive_both_ends() -> None:
     placed = sending.place([b"onetwo"], 6)
     assert placed is not None
     sending.lend(placed)
-    view = reading.take(placed.slot, placed.generation, placed.offset, placed.size)
+    view = reading.take(0, placed.slot, placed.generation, placed.offset, placed.size)
     arena = placed.arena
     del placed
     reading.close()
@@ -127,6 +128,150 @@ def test_a_reader_that_hangs_up_is_not_waited_for() -> None:
     sending.close()
 
 
+# -- from program to program ----------------------------------------------------------------------
+
+
+class Chain:
+    """Three ports: what the first writes the second passes on to the third, as it has it."""
+
+    def __init__(self) -> None:
+        self.first, self.second = met("/first"), met("/second")
+
+    def write(self, data: bytes) -> memoryview:
+        """What the second program sees of it."""
+        return self.pass_on(self.first, data)
+
+    def relay(self, view: memoryview) -> memoryview:
+        """What the third sees of what the second has."""
+        return self.pass_on(self.second, view)
+
+    def pass_on(
+        self, pair: tuple[MemoryTransport, MemoryTransport], data: bytes | memoryview
+    ) -> memoryview:
+        sending, reading = pair
+        placed = sending.place([data], len(data))
+        assert placed is not None
+        where = sending.lend(placed)
+        self.own = placed.source is placed.arena
+        return reading.take(where, placed.slot, placed.generation, placed.offset, placed.size)
+
+    def close(self) -> None:
+        for one in (*self.first, *self.second):
+            one.close()
+
+
+@pytest.fixture
+def chain() -> Iterator[Chain]:
+    chain = Chain()
+    yield chain
+    chain.close()
+
+
+def test_what_was_received_is_passed_on_as_it_lies(chain: Chain) -> None:
+    arena = arena_of("/first")
+    for number in range(3):
+        view = chain.relay(chain.write(bytes([number]) * 20000))
+        assert not chain.own
+        assert bytes(view) == bytes([number]) * 20000
+        assert arena.used == 1  # the second program is done with it, the third is not
+        arena.view[5] = 99  # the very same memory, as only a sender that breaks the rules shows
+        assert view[5] == 99
+        del view
+        tidy()
+        assert arena.used == 0
+
+
+def test_a_part_of_it_is_passed_on_as_well(chain: Chain) -> None:
+    view = chain.write(bytes(range(250)) * 200)
+    assert bytes(chain.relay(view[100:30100])) == bytes(view[100:30100])
+    assert not chain.own
+
+
+def test_small_parts_are_copied(chain: Chain) -> None:
+    assert bytes(chain.relay(chain.write(b"x" * 20000)[:100])) == b"x" * 100
+    assert chain.own
+
+
+def test_what_is_looked_at_outlives_who_passed_it_on(chain: Chain) -> None:
+    arena = arena_of("/first")
+    view = chain.relay(chain.write(b"x" * 20000))
+    chain.close()
+    tidy()
+    assert arena.used == 1
+    assert bytes(view) == b"x" * 20000
+    del view
+    tidy()
+    assert arena.used == 0
+
+
+def test_memory_of_many_programs_in_turn(chain: Chain) -> None:
+    """A connection knows some of them at a time."""
+    pairs = [met(f"/source/{number}") for number in range(OTHERS + 3)]
+    for _ in range(2):
+        for number, pair in enumerate(pairs):
+            view = chain.relay(chain.pass_on(pair, bytes([number]) * 20000))
+            assert not chain.own
+            assert bytes(view) == bytes([number]) * 20000
+    for pair in pairs:
+        for one in pair:
+            one.close()
+
+
+def test_a_reader_that_takes_no_descriptors_gets_copies(chain: Chain) -> None:
+    sending, _ = chain.second
+    assert isinstance(sending, SendingTransport)
+    assert sending._aside is not None
+    sending._aside.close()
+    view = chain.write(b"x" * 20000)
+    placed = sending.place([view], len(view))
+    assert placed is not None
+    assert sending.lend(placed) < 0
+    del placed, view
+    assert arena_of("/second").used == 0
+    tidy()
+    assert arena_of("/first").used == 0
+
+
+@pytest.mark.parametrize("where", [0x101, 0x100, 0x1FF, 0xFFFF, 1])
+def test_memory_that_does_not_come(
+    pair: tuple[MemoryTransport, MemoryTransport], where: int
+) -> None:
+    with pytest.raises(RemoteProtocolError, match="memory number"):
+        pair[1].take(where, 0, 1, 0, 1)
+
+
+@pytest.mark.parametrize("said", [b"\2", b"\1\1", b""])
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_descriptors_that_come_in_a_wrong_way(
+    pair: tuple[MemoryTransport, MemoryTransport], said: bytes, count: int
+) -> None:
+    sending, reading = pair
+    assert isinstance(sending, SendingTransport)
+    assert sending._aside is not None
+    before = len(os.listdir("/proc/self/fd"))
+    if count:
+        socket.send_fds(sending._aside, [said], [0] * count)
+    else:
+        sending._aside.send(said)
+    with pytest.raises(RemoteProtocolError, match="memory number 1"):
+        reading.take(0x101, 0, 1, 0, 1)
+    assert len(os.listdir("/proc/self/fd")) == before
+
+
+def test_other_memory_is_looked_at_as_closely(
+    pair: tuple[MemoryTransport, MemoryTransport],
+) -> None:
+    sending, reading = pair
+    assert isinstance(sending, SendingTransport)
+    assert sending._aside is not None
+    unsealed = os.memfd_create("test", os.MFD_ALLOW_SEALING)
+    os.ftruncate(unsealed, PAGE)
+    socket.send_fds(sending._aside, [b"\1"], [unsealed])
+    os.close(unsealed)
+    with pytest.raises(RemoteProtocolError, match="may become shorter"):
+        reading.take(0x101, 0, 1, 0, 1)
+
+
 # -- strangers ------------------------------------------------------------------------------------
 
 
@@ -187,15 +332,16 @@ def two(sock: socket.socket) -> None:
 
 
 def devices(sock: socket.socket) -> None:
-    socket.send_fds(sock, [b"YARPYMEM"], [0, 0, 0])
+    socket.send_fds(sock, [b"YARPYMEM"], [0, 0, 0, 0])
 
 
 def unsealed(sock: socket.socket) -> None:
     file, ledger = os.memfd_create("test"), sealed_memory("test", LEDGER)
     os.ftruncate(file, PAGE)
     ours, theirs = os.pipe()
-    socket.send_fds(sock, [b"YARPYMEM"], [file, ledger, theirs])
-    for number in (file, ledger, ours, theirs):
+    aside, other = socket.socketpair()
+    socket.send_fds(sock, [b"YARPYMEM"], [file, ledger, theirs, aside.fileno()])
+    for number in (file, ledger, ours, theirs, aside.detach(), other.detach()):
         os.close(number)
 
 

@@ -4,12 +4,14 @@ Unix socket.
     greeting    YARPYMEM, the sender's specifier, eight bytes: where the sender can be met
     answer      a YARP number: the port's; 0: "I cannot see you", and the connection goes on as tcp
     messages    as over tcp, but instead of a payload of 16 KiB or more a reference to it:
-                NUL M E M | D or d, three NULs | int32 slot, generation, length of the envelope |
-                int64 offset, length of the payload | the envelope
+                NUL M E M | D or d, NUL | int16 memory | int32 slot, generation, length of the
+                envelope | int64 offset, length of the payload | the envelope
+    memory      0: the sender's; else the number of what it has received from others, and 256 more
+                if that is shown to this reader for the first time
 
 Rules: between two programs of yarpy of one user on one computer. Every message is acknowledged. One
-copy of a payload is made for all readers of a port, and none at a reader. What finds no room there
-goes through the socket, as answers do.
+copy of a payload is made for all readers of a port, none where it lies in shared memory already,
+and none at a reader. What finds no room there goes through the socket, as answers do.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ from yarpy.wire.stream import LARGE, ByteStream
 
 NAME: Final = "memory"
 _PLACE: Final = struct.Struct("<Q")
-_REFERENCE: Final = struct.Struct("<4sc3x3I2Q")
+_REFERENCE: Final = struct.Struct("<4scxH3I2Q")
 _MARK: Final = b"\0MEM"  # no other message begins with a NUL
 _KEYS: Final = (b"D", b"d")
 
@@ -100,11 +102,12 @@ class Memory(Indexed):
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         parcel = self._placed(packet)
         memory = self._memory
-        if parcel is None or memory is None or not memory.lend(parcel):
+        where = -1 if parcel is None or memory is None else memory.lend(parcel)
+        if parcel is None or where < 0:
             stream.write(*framing.encode(packet))
             return
         envelope = packet.envelope
-        numbers = (parcel.slot, parcel.generation, len(envelope), parcel.offset, parcel.size)
+        numbers = (where, parcel.slot, parcel.generation, len(envelope), parcel.offset, parcel.size)
         stream.write(_REFERENCE.pack(_MARK, packet.key.encode(), *numbers) + envelope)
         stream.aside += parcel.size
 
@@ -129,7 +132,7 @@ class Memory(Indexed):
             return framing.parse_plain(stream)
         if stream.waiting < _REFERENCE.size:
             return None
-        mark, key, slot, generation, length, offset, size = _REFERENCE.unpack_from(
+        mark, key, where, slot, generation, length, offset, size = _REFERENCE.unpack_from(
             stream.buffer, stream.head
         )
         if mark != _MARK or key not in _KEYS or length > framing.MAX_COMMAND:
@@ -147,7 +150,8 @@ class Memory(Indexed):
         envelope = stream.buffer[start : start + length].decode("utf-8", "replace").strip()
         stream.head += end
         stream.came_aside += size
-        return Message(key.decode(), stream.memory.take(slot, generation, offset, size), envelope)
+        payload = stream.memory.take(where, slot, generation, offset, size)
+        return Message(key.decode(), payload, envelope)
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         if not stream.waiting:

@@ -39,6 +39,7 @@ from yarpy.port.kept import Kept
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.monitoring import Monitoring
 from yarpy.port.part import Seat
+from yarpy.port.preparing import Preparing
 from yarpy.port.reception import Reception
 from yarpy.port.registration import Registration
 from yarpy.route import Route
@@ -136,6 +137,7 @@ class Hub:
         self.kept = Kept()
         self.seat: Seat | None = None  # in the graph of a node
         self.monitoring = Monitoring(self)
+        self.preparing = Preparing()
         silence = "" if admits_outputs else SILENT
         self.reception = Reception(registration, limit, self.run_input, directory, silence)
 
@@ -464,6 +466,7 @@ class Hub:
             if link.thread is not None and link.thread is not threading.current_thread():
                 link.thread.join(max(0.0, deadline - time.monotonic()))
         self.reception.close()
+        self.preparing.end()
         self.monitoring.close()
         self.callbacks.close()
         try:

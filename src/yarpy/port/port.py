@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from typing import Final, TypeVarTuple
+from typing import TYPE_CHECKING, Any, Final, TypeVarTuple
 
 from yarpy.contact import parse_contact
 from yarpy.data.stamp import Stamp
@@ -24,8 +24,12 @@ from yarpy.port.connection import ConnectionEvent
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox, Rendezvous
 from yarpy.port.reader import Reader
+from yarpy.transports.lease import freeze
 from yarpy.wire.message import CALL, Message, Packet
 from yarpy.wire.stream import DEFAULT_LIMIT
+
+if TYPE_CHECKING:
+    from numpy.typing import DTypeLike, NDArray
 
 Args = TypeVarTuple("Args")
 
@@ -66,6 +70,18 @@ class MessagePort(BasePort):
         except PortClosed:
             return
 
+    def prepare(self, shape: int | tuple[int, ...], dtype: DTypeLike = "u1") -> NDArray[Any]:
+        """A new numpy array of that shape and type, to be filled and written.
+
+        It lies in memory that programs on this computer share, so nothing is copied for those that
+        are connected by `memory`: not when it is written, nor when it is read. It may be written as
+        it is, or as Image(array), Vector(array) ... What it holds at first is undefined. Writing it
+        makes it read-only, since others look at it then; prepare another one for the next message.
+        Its memory is used again once nobody holds the array or looks at the message.
+        """
+        self._check_open()
+        return self._hub.preparing.array(self._hub.name, shape, dtype)
+
     def write(
         self,
         value: object,
@@ -92,11 +108,13 @@ class MessagePort(BasePort):
         if hub.closing or hub.interrupted:
             self._check_open()
         envelope = envelope_of(stamp) if stamp is not None else b""
+        packet = Packet(value, envelope)
+        if hub.preparing.begun:
+            freeze(value, packet.blocks)
         outputs = hub.outputs
         if not outputs:
             hub.count_unconnected()
             return 0
-        packet = Packet(value, envelope)
         if hub.monitoring.output is not None:
             passed = hub.monitoring.output.send(packet)
             if passed is None:

@@ -56,13 +56,13 @@ class Shelf:
         self._parcels.append(b"".join(blocks))
         return SimpleNamespace(slot=len(self._parcels) - 1, generation=1, offset=0, size=size)
 
-    def lend(self, parcel: object) -> bool:
-        """The peer may have it."""
-        return True
+    def lend(self, parcel: object) -> int:
+        """The peer may have it: from the only memory there is."""
+        return 0
 
-    def take(self, slot: int, generation: int, offset: int, size: int) -> memoryview:
+    def take(self, where: int, slot: int, generation: int, offset: int, size: int) -> memoryview:
         """A payload that was kept. Raises RemoteProtocolError for any other."""
-        if slot >= len(self._parcels) or offset + size > len(self._parcels[slot]):
+        if where or slot >= len(self._parcels) or offset + size > len(self._parcels[slot]):
             raise RemoteProtocolError("a payload that lies nowhere")
         return memoryview(self._parcels[slot])[offset : offset + size]
 

@@ -8,7 +8,8 @@
 Rules: nothing of it has a name, so nothing is left behind by programs that are killed. The file is
 sealed: it cannot be made shorter, which would kill whoever reads it, and readers cannot write it. A
 payload stays until its writer is done with it and every reader that was told of it has given it
-back, or lives no more, also when its connection has ended.
+back, or lives no more, also when its connection has ended. What lies in shared memory already,
+received or filled in there, is lent as it lies.
 """
 
 from __future__ import annotations
@@ -17,12 +18,14 @@ import mmap
 import os
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Final
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
 from weakref import WeakValueDictionary
 
 from yarpy.errors import LocalProtocolError
 from yarpy.log import logger
+from yarpy.transports.lease import HEADROOM, Source, address_of, lease_type, place_of
 from yarpy.wire.stream import Buffer
 
 log = logger("yarpy.transports")
@@ -62,32 +65,82 @@ def sealed_memory(name: str, size: int) -> int:
 
 
 @dataclass(slots=True, eq=False)
-class _Region:
-    """Where a payload lies. kept: its writer may tell others of it."""
+class _Span:
+    """Room in the file. used: something lies there, or is about to."""
 
-    slot: int
-    generation: int
     offset: int
     end: int
-    kept: bool = True
-    readers: list[Reader] = field(default_factory=list)
+    used: bool = True
+
+
+class _Mapped:
+    """The memory of an arena, as its extents know it. They do not know the arena, which ends with
+    its port."""
+
+    def __init__(self, memory: mmap.mmap) -> None:
+        self.view = memoryview(memory)
+        self.lock = threading.Lock()  # of all that an arena notes
+        self.freed = False  # some room is
+
+
+class Extent:
+    """Room in an arena, for as long as this object lives. A program that fills it itself leaves
+    HEADROOM in front of its array."""
+
+    __slots__ = ("_head", "_mapped", "_span", "offset")
+
+    def __init__(self, mapped: _Mapped, span: _Span) -> None:
+        self._mapped = mapped
+        self._span = span
+        self.offset = span.offset
+        self._head: bytes | None = None
+
+    def begin(self, head: bytes) -> bool:
+        """Put that in front of the array; False if it has been sent with something else there."""
+        mapped = self._mapped
+        with mapped.lock:
+            if self._head is None:
+                self._head = head
+                stop = self.offset + HEADROOM
+                mapped.view[stop - len(head) : stop] = head
+            return self._head == head
+
+    def __del__(self) -> None:
+        self._span.used = False  # in whatever thread: no lock is taken
+        self._mapped.freed = True
+
+
+class _Loan:
+    """A payload that readers are told of. kept: its writer may tell others. holder: what keeps it
+    where it lies, in our memory or (foreign) elsewhere."""
+
+    __slots__ = ("foreign", "generation", "holder", "kept", "readers", "slot")
+
+    def __init__(self, slot: int, generation: int, foreign: bool, holder: object) -> None:
+        self.slot = slot
+        self.generation = generation
+        self.foreign = foreign
+        self.holder = holder
+        self.kept = True
+        self.readers: list[Reader] = []
 
 
 class Placed:
-    """A payload in an arena, for as long as this object lives."""
+    """A payload that can be lent, for as long as this object lives. `source` is where it lies."""
 
-    __slots__ = ("arena", "generation", "offset", "region", "size", "slot")
+    __slots__ = ("arena", "generation", "loan", "offset", "size", "slot", "source")
 
-    def __init__(self, arena: Arena, region: _Region, size: int) -> None:
+    def __init__(self, arena: Arena, loan: _Loan, source: Source, offset: int, size: int) -> None:
         self.arena = arena
-        self.region = region
-        self.slot = region.slot
-        self.generation = region.generation
-        self.offset = region.offset
+        self.loan = loan
+        self.slot = loan.slot
+        self.generation = loan.generation
+        self.source = source
+        self.offset = offset
         self.size = size
 
     def __del__(self) -> None:
-        self.region.kept = False
+        self.loan.kept = False
 
 
 class Reader:
@@ -103,9 +156,9 @@ class Reader:
         self._given_back = memoryview(self._memory).cast("I")
         self.ended = False  # the connection has
 
-    def has(self, region: _Region) -> bool:
+    def has(self, loan: _Loan) -> bool:
         """Whether it may still look at that payload."""
-        if self._given_back[region.slot] == region.generation:
+        if self._given_back[loan.slot] == loan.generation:
             return False
         return not self.ended or self._lives()
 
@@ -151,76 +204,133 @@ class Arena:
         except (OSError, ValueError) as error:
             os.close(self.number)
             raise LocalProtocolError(f"no memory to share ({error}); use tcp") from error
-        self._view = memoryview(self._memory)
-        self._lock = threading.Lock()  # of what is below
-        self._regions: list[_Region] = []  # that are in use, the lowest first
+        self._mapped = _Mapped(self._memory)
+        self.view = self._mapped.view
+        self._lock = self._mapped.lock  # of what is below
+        self._spans: list[_Span] = []  # that are in use, the lowest first
+        self._loans: list[_Loan] = []
+        self._relayed = 0  # of these lie in other memory
+        self._slots = [*range(SLOTS - 1, -1, -1)]  # that are free
         self._generation = 0
         self._backed = 0  # bytes that the system has given us
         self._full = False
 
+    @property
+    def descriptors(self) -> tuple[int, ...]:
+        """What others see it by. No pipe: we keep what lies there, and after us nobody writes."""
+        return (self.number,)
+
+    @cached_property
+    def address(self) -> int:
+        """Where it is mapped."""
+        return address_of(self._memory)
+
     def place(self, blocks: Sequence[Buffer], size: int) -> Placed | None:
-        """Copy a payload in; None if there is no room."""
+        """Take a payload in, copied unless it lies in shared memory; None if there is no room."""
+        found = place_of(blocks)
+        if found is not None:
+            source, offset, holder = found
+            with self._lock:
+                loan = self._lend(source, holder)
+            if loan is not None:
+                return Placed(self, loan, source, offset, size)
         with self._lock:
-            region = self._take(size)
-        if region is None:
-            return None
-        placed = Placed(self, region, size)
-        start = region.offset
+            extent = self._take(size)
+            loan = None if extent is None else self._lend(self, extent)
+            if extent is None or loan is None:
+                self._tell(size)
+                return None
+            self._say_room()
+        placed = Placed(self, loan, self, extent.offset, size)
+        start = extent.offset
         for block in blocks:
             stop = start + len(block)
-            _copy(self._view[start:stop], block)
+            _copy(self.view[start:stop], block)
             start = stop
         return placed
 
+    def prepare(self, size: int) -> Any:
+        """Room for a program to fill, as an array of bytes that has HEADROOM in front; None if
+        there is none."""
+        with self._lock:
+            extent = self._take(HEADROOM + size)
+        if extent is None:
+            return None
+        lease = lease_type()(HEADROOM + size, "u1", self._memory, extent.offset)
+        lease.source, lease.offset, lease.room = self, extent.offset, extent
+        return lease
+
     def lend(self, placed: Placed, reader: Reader) -> bool:
         """`reader` is about to be told of it; False if it was already."""
-        readers = placed.region.readers
+        readers = placed.loan.readers
         if placed.arena is not self or reader in readers:
             return False
         readers.append(reader)
         return True
 
+    def recall(self, placed: Placed, reader: Reader) -> None:
+        """`reader` was not told of it."""
+        placed.loan.readers.remove(reader)
+
     @property
     def used(self) -> int:
-        """How many payloads lie there."""
+        """How many payloads are lent, or about to be."""
+        self.tidy()
+        return len(self._loans)
+
+    def tidy(self) -> None:
+        """Give back what nobody can look at any more."""
         with self._lock:
             self._give_back()
-            return len(self._regions)
 
-    def _take(self, size: int) -> _Region | None:
+    def _lend(self, source: Source, holder: object) -> _Loan | None:
+        """A slot for a payload, None if all are taken."""
+        if not self._slots:
+            self._give_back()
+            if not self._slots:
+                return None
+        self._generation = self._generation % _LAST + 1
+        loan = _Loan(self._slots.pop(), self._generation, source is not self, holder)
+        self._loans.append(loan)
+        if loan.foreign:
+            self._relayed += 1
+            _RELAYING.add(self)
+        return loan
+
+    def _take(self, size: int) -> Extent | None:
         """Room for a payload: the lowest, since that is in the processor's cache."""
         self._give_back()
         need = -(-size // PAGE) * PAGE
         start = place = 0
-        for region in self._regions:
-            if region.offset - start >= need:
+        for span in self._spans:
+            if span.offset - start >= need:
                 break
-            start = region.end
+            start = span.end
             place += 1
         end = start + need
-        if end > self.size or len(self._regions) == SLOTS or not self._back(end):
-            self._tell(size)
+        if end > self.size or not self._back(end):
             return None
-        if self._full:
-            self._full = False
-            log.warning(
-                "%s: its readers have given memory back, large messages fit again", self.name
-            )
-        slots = {region.slot for region in self._regions}
-        slot = next(number for number in range(SLOTS) if number not in slots)
-        self._generation = self._generation % _LAST + 1
-        found = _Region(slot, self._generation, start, end)
-        self._regions.insert(place, found)
-        return found
+        span = _Span(start, end)
+        self._spans.insert(place, span)
+        return Extent(self._mapped, span)
 
     def _give_back(self) -> None:
         """Forget the payloads that nobody can look at any more."""
-        if any(not region.kept for region in self._regions):
-            self._regions = [
-                region
-                for region in self._regions
-                if region.kept or any(reader.has(region) for reader in region.readers)
-            ]
+        for loan in [loan for loan in self._loans if not loan.kept]:
+            for reader in loan.readers:
+                if reader.has(loan):
+                    break
+            else:
+                self._loans.remove(loan)
+                self._slots.append(loan.slot)
+                loan.holder = None
+                if loan.foreign:
+                    self._relayed -= 1
+                    if not self._relayed:
+                        _RELAYING.discard(self)
+        if self._mapped.freed:
+            self._mapped.freed = False
+            self._spans = [span for span in self._spans if span.used]
 
     def _back(self, end: int) -> bool:
         """Have the system give us memory up to there, so that writing it cannot fail."""
@@ -242,9 +352,16 @@ class Arena:
             "shared memory: it is sent as a copy, as over tcp. A program that keeps pictures for "
             "long should copy them (array.copy())",
             self.name,
-            len(self._regions),
+            len(self._loans),
             size,
         )
+
+    def _say_room(self) -> None:
+        if self._full:
+            self._full = False
+            log.warning(
+                "%s: its readers have given memory back, large messages fit again", self.name
+            )
 
     def __del__(self) -> None:
         number = getattr(self, "number", -1)
@@ -269,6 +386,19 @@ def _copy(room: memoryview, block: Buffer) -> None:
     import numpy as np
 
     np.copyto(np.frombuffer(room, np.uint8), np.frombuffer(block, np.uint8))
+
+
+#: that have lent what lies in other memory, which their readers may look at when they themselves
+#: are not needed any more
+_RELAYING: Final[set[Arena]] = set()
+
+
+def tidy() -> None:
+    """Give back to other programs what our readers have done with. To be called now and then: it is
+    not told to us."""
+    if _RELAYING:
+        for arena in tuple(_RELAYING):
+            arena.tidy()
 
 
 _ARENAS: Final[WeakValueDictionary[str, Arena]] = WeakValueDictionary()

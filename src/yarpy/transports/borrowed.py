@@ -1,9 +1,10 @@
-"""Borrowed: memory of another program that large payloads are looked at in.
+"""Borrowed: memory of other programs that large payloads are looked at in.
 
 Rules: what comes from there is not trusted: a file that could become shorter under us, which the
 system answers by killing who reads it, is refused, and so is a place outside of it. A payload is
 given back when the last view of it is gone, in whatever thread that happens: by a number in the
-ledger, which takes no lock and no system call.
+ledger, which takes no lock and no system call. A sender may show us memory that it has received
+from others; then we hold their pipe, too, so that they know.
 """
 
 from __future__ import annotations
@@ -11,14 +12,45 @@ from __future__ import annotations
 import mmap
 import os
 import stat
-from functools import cache
-from typing import Any, Final
+from functools import cache, cached_property, partial
+from typing import Final
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.transports.arena import F_GET_SEALS, F_SEAL_SHRINK, LEDGER, SLOTS, sealed_memory
+from yarpy.transports.lease import address_of, lease_type
 
 LARGEST: Final = 1 << 32  # bytes of a file that we map
+OTHERS: Final = 8  # files of other programs that one sender shows us at a time
 _ALIEN: Final = "the peer hands over {}, not shared memory that it cannot take away again"
+
+
+class Shown:
+    """A file of another program that is mapped here, and a pipe (-1: there is none) that is held
+    for as long. The descriptors become ours. Raises RemoteProtocolError."""
+
+    def __init__(self, file: int, pipe: int = -1) -> None:
+        self._file, self._pipe = file, pipe
+        if pipe >= 0 and not stat.S_ISFIFO(os.fstat(pipe).st_mode):
+            raise RemoteProtocolError(_ALIEN.format("no pipe"))
+        self.size = _checked(file)
+        try:
+            self.memory = mmap.mmap(file, self.size, prot=mmap.PROT_READ)
+        except (OSError, ValueError) as error:
+            raise RemoteProtocolError(f"memory that cannot be looked at ({error})") from error
+
+    @cached_property
+    def address(self) -> int:
+        """Where it is mapped."""
+        return address_of(self.memory)
+
+    @property
+    def descriptors(self) -> tuple[int, ...]:
+        """What others can see it by."""
+        return (self._file,) if self._pipe < 0 else (self._file, self._pipe)
+
+    def __del__(self) -> None:
+        for number in self.descriptors:
+            os.close(number)
 
 
 class Borrowed:
@@ -26,39 +58,39 @@ class Borrowed:
     file, the ledger, and a pipe to be held for as long as we look. Raises RemoteProtocolError."""
 
     def __init__(self, file: int, ledger: int, pipe: int) -> None:
-        self._pipe = pipe
         try:
-            if not stat.S_ISFIFO(os.fstat(pipe).st_mode):
-                raise RemoteProtocolError(_ALIEN.format("no pipe"))
-            self.size = _checked(file)
+            self._shown: list[Shown | None] = [Shown(file, pipe), *[None] * OTHERS]
             if _checked(ledger) < LEDGER:
                 raise RemoteProtocolError(_ALIEN.format("a ledger that is too short"))
             try:
-                self._memory = mmap.mmap(file, self.size, prot=mmap.PROT_READ)
                 self._ledger = mmap.mmap(ledger, LEDGER)
             except (OSError, ValueError) as error:
                 raise RemoteProtocolError(f"memory that cannot be looked at ({error})") from error
         finally:
-            os.close(file)
             os.close(ledger)
         self._given_back = memoryview(self._ledger).cast("I")
 
-    def take(self, slot: int, generation: int, offset: int, size: int) -> memoryview:
+    def show(self, number: int, shown: Shown) -> None:
+        """From now on `number`, up to OTHERS, is that memory of another program."""
+        self._shown[number] = shown
+
+    def take(self, number: int, slot: int, generation: int, offset: int, size: int) -> memoryview:
         """A payload, read-only; it keeps this object alive. Raises RemoteProtocolError."""
-        if slot >= SLOTS or size > self.size or offset > self.size - size:
+        shown = self._shown[number] if number <= OTHERS else None
+        if shown is None:
+            raise RemoteProtocolError(f"memory number {number}, which was never shown")
+        if slot >= SLOTS or size > shown.size or offset > shown.size - size:
             raise RemoteProtocolError(
-                f"a payload of {size} bytes at {offset} of memory that has {self.size}"
+                f"a payload of {size} bytes at {offset} of memory that has {shown.size}"
             )
-        lease = _lease()(size, "u1", self._memory, offset)
-        lease.terms = self, slot, generation
+        lease = lease_type()(size, "u1", shown.memory, offset)
+        lease.source, lease.offset = shown, offset
+        lease.ended = partial(self.give_back, slot, generation)
         return memoryview(lease)
 
     def give_back(self, slot: int, generation: int) -> None:
         """Nobody looks at that payload any more."""
         self._given_back[slot] = generation
-
-    def __del__(self) -> None:
-        os.close(self._pipe)
 
 
 def _checked(number: int) -> int:
@@ -86,21 +118,3 @@ def _device() -> int:
         return os.fstat(number).st_dev
     finally:
         os.close(number)
-
-
-@cache
-def _lease() -> Any:
-    """The class of what views are taken of: an array, since these can be over a part of a file."""
-    import numpy as np
-
-    class Lease(np.ndarray[Any, np.dtype[np.uint8]]):
-        """Gives back what it was over once it is gone."""
-
-        terms: tuple[Borrowed, int, int] | None = None
-
-        def __del__(self) -> None:
-            if self.terms is not None:
-                memory, slot, generation = self.terms
-                memory.give_back(slot, generation)
-
-    return Lease

@@ -2,7 +2,8 @@
 
 Rules: the sender waits at a number that it has told over TCP, the reader comes there, and both look
 at whose program the other one is: the same user's. Then the reader gets three descriptors
-(`arena.py`). The socket has no file: its name ends with it.
+(`arena.py`), and a second socket, by which those of other programs' memory follow when the sender
+passes on what lies there. The first has no file: its name ends with it.
 """
 
 from __future__ import annotations
@@ -14,18 +15,35 @@ import select
 import socket
 import struct
 import time
+import weakref
+from array import array
 from collections.abc import Callable, Sequence
 from typing import Final
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
-from yarpy.transports.arena import LEDGER, Placed, Reader, arena_of, available, sealed_memory
-from yarpy.transports.borrowed import Borrowed
+from yarpy.transports.arena import (
+    LEDGER,
+    Arena,
+    Placed,
+    Reader,
+    arena_of,
+    available,
+    sealed_memory,
+    tidy,
+)
+from yarpy.transports.base import MSG_DONTWAIT
+from yarpy.transports.borrowed import OTHERS, Borrowed, Shown
+from yarpy.transports.lease import Source
 from yarpy.transports.tcp import TcpTransport
 from yarpy.transports.unix import UnixTransport
 from yarpy.wire.stream import Buffer
 
 PATIENCE: Final = 5.0  # seconds for the two sides to meet
 LOOK: Final = 0.02  # seconds between looks whether the other side still comes
+NOWHERE: Final = -1  # the reader cannot have it
+_FRESH: Final = 1 << 8  # the memory of that number has just been shown
+_MOST: Final = 8  # descriptors that come at a time
+_CLOEXEC: Final = int(getattr(socket, "MSG_CMSG_CLOEXEC", 0))  # no program we start gets them
 _WORD: Final = b"YARPYMEM"
 _CREDENTIALS: Final = struct.Struct("3i")  # process, user, group
 
@@ -77,11 +95,11 @@ class MemoryTransport(UnixTransport):
         """No memory of ours is shared here."""
         return None
 
-    def lend(self, parcel: Placed) -> bool:
+    def lend(self, parcel: Placed) -> int:
         """No memory of ours is shared here."""
-        return False
+        return NOWHERE
 
-    def take(self, slot: int, generation: int, offset: int, size: int) -> memoryview:
+    def take(self, where: int, slot: int, generation: int, offset: int, size: int) -> memoryview:
         """No memory of the peer's is shared here."""
         raise RemoteProtocolError("a reference to memory that is not shared")
 
@@ -90,9 +108,12 @@ class SendingTransport(MemoryTransport):
     """The side of the port called `name`, which sends."""
 
     def __init__(self, name: str) -> None:
-        self.arena = arena_of(name)
-        self.key = self.arena
+        self._arena: Arena | None = arena_of(name)
+        self.key = self._arena
         self._reader: Reader | None = None
+        self._aside: socket.socket | None = None  # where descriptors go
+        self._others: list[weakref.ref[Source] | None] = [None] * OTHERS  # that were shown
+        self._next = 0  # the number to be used next
         sock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         super().__init__(sock, secrets.randbits(63))
         try:
@@ -120,29 +141,62 @@ class SendingTransport(MemoryTransport):
         self._hand_over()
 
     def _hand_over(self) -> None:
+        arena = self._arena
+        assert arena is not None
         ledger = sealed_memory("yarpy-ledger", LEDGER)
         pipe: tuple[int, ...] = ()
+        self._aside, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         try:
             pipe = os.pipe2(os.O_CLOEXEC | os.O_NONBLOCK)
-            socket.send_fds(self.sock, [_WORD], [self.arena.number, ledger, pipe[1]])
+            numbers = [arena.number, ledger, pipe[1], theirs.fileno()]
+            _send(self.sock, _WORD, numbers)
             self._reader = Reader(os.dup(ledger), pipe[0])
             pipe = pipe[1:]
         finally:
+            theirs.close()
             for number in (ledger, *pipe):
                 os.close(number)
 
     def place(self, blocks: Sequence[Buffer], size: int) -> Placed | None:
-        """Copy a payload into the arena; None if there is no room."""
-        return self.arena.place(blocks, size)
+        """Take a payload into the arena, copied unless it lies in shared memory; None if there is
+        no room."""
+        return None if self._arena is None else self._arena.place(blocks, size)
 
-    def lend(self, parcel: Placed) -> bool:
-        """The reader is about to be told of it."""
-        return self._reader is not None and self.arena.lend(parcel, self._reader)
+    def lend(self, parcel: Placed) -> int:
+        """The reader is about to be told of it: in which memory."""
+        arena, reader = self._arena, self._reader
+        if arena is None or reader is None:
+            return NOWHERE
+        if not arena.lend(parcel, reader):
+            return NOWHERE
+        where = 0 if parcel.source is arena else self._show(parcel.source)
+        if where < 0:
+            arena.recall(parcel, reader)
+        return where
+
+    def _show(self, source: Source) -> int:
+        """The number of memory that is not ours, as the reader knows it."""
+        for number, other in enumerate(self._others):
+            if other is not None and other() is source:
+                return number + 1
+        place = self._next
+        try:
+            assert self._aside is not None
+            _send(self._aside, bytes([place + 1]), source.descriptors, MSG_DONTWAIT)
+        except OSError:
+            return NOWHERE  # it takes none at present
+        self._next = (place + 1) % OTHERS
+        self._others[place] = weakref.ref(source)
+        return place + 1 | _FRESH
 
     def close(self) -> None:
         super().close()
+        if self._aside is not None:
+            self._aside.close()
         if self._reader is not None:
             self._reader.ended = True
+        self._arena = self.key = None  # it ends with the last connection, or array in it
+        tidy()
 
 
 class ReadingTransport(MemoryTransport):
@@ -151,34 +205,82 @@ class ReadingTransport(MemoryTransport):
     def __init__(self, sock: socket.socket, number: int) -> None:
         super().__init__(sock, number)
         self._borrowed: Borrowed | None = None
+        self._aside: socket.socket | None = None  # where descriptors come from
 
     def ready(self, look: Callable[[], object] | None = None) -> None:
         self.limit_waiting(PATIENCE)
         try:
-            said, numbers, flags, _ = socket.recv_fds(
-                self.sock, len(_WORD), 8, getattr(socket, "MSG_CMSG_CLOEXEC", 0)
-            )
+            said, numbers, complete = _receive(self.sock, len(_WORD))
         except BlockingIOError:
             raise TimeoutError("the sender does not share its memory") from None
         self.limit_waiting(None)
-        if said != _WORD or len(numbers) != 3 or flags & socket.MSG_CTRUNC:
-            for number in numbers:
-                os.close(number)
+        if said != _WORD or len(numbers) != 4 or not complete:
+            _close(numbers)
             raise RemoteProtocolError(
-                f"three descriptors of shared memory were expected, not {len(numbers)}"
+                f"four descriptors of shared memory were expected, not {len(numbers)}"
             )
-        file, ledger, pipe = numbers
+        file, ledger, pipe, aside = numbers
+        try:
+            self._aside = socket.socket(fileno=aside)
+        except OSError:
+            _close(numbers)
+            raise RemoteProtocolError("the fourth descriptor is no socket") from None
         self._borrowed = Borrowed(file, ledger, pipe)
 
-    def take(self, slot: int, generation: int, offset: int, size: int) -> memoryview:
+    def take(self, where: int, slot: int, generation: int, offset: int, size: int) -> memoryview:
         """A payload. Raises RemoteProtocolError for one that lies nowhere."""
-        if self._borrowed is None:
-            return super().take(slot, generation, offset, size)
-        return self._borrowed.take(slot, generation, offset, size)
+        borrowed = self._borrowed
+        if borrowed is None:
+            return super().take(where, slot, generation, offset, size)
+        tidy()
+        if where & _FRESH:
+            borrowed.show(where & ~_FRESH, self._shown(where & ~_FRESH))
+        return borrowed.take(where & ~_FRESH, slot, generation, offset, size)
+
+    def _shown(self, number: int) -> Shown:
+        """Memory of another program, which the sender has just shown."""
+        if self._aside is None or not 0 < number <= OTHERS:
+            raise RemoteProtocolError(f"memory number {number}; there are {OTHERS} at most")
+        try:
+            said, numbers, complete = _receive(self._aside, 2, MSG_DONTWAIT)
+        except OSError as error:
+            raise RemoteProtocolError(f"memory number {number} was not shown ({error})") from error
+        if said != bytes([number]) or len(numbers) not in (1, 2) or not complete:
+            _close(numbers)
+            raise RemoteProtocolError(f"memory number {number} was shown in a wrong way")
+        return Shown(*numbers)
 
     def close(self) -> None:
         super().close()
         self._borrowed = None  # what is looked at still keeps it
+        if self._aside is not None:
+            self._aside.close()
+        tidy()
+
+
+# `socket.send_fds` and `recv_fds` of Python ignore their flags.
+
+
+def _send(sock: socket.socket, said: bytes, numbers: Sequence[int], flags: int = 0) -> None:
+    """Send descriptors. Raises OSError."""
+    sock.sendmsg([said], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array("i", numbers))], flags)
+
+
+def _receive(sock: socket.socket, size: int, flags: int = 0) -> tuple[bytes, list[int], bool]:
+    """At most `size` bytes, the descriptors that came with them, and whether these are all. Raises
+    OSError."""
+    found = array("i")
+    room = socket.CMSG_SPACE(_MOST * found.itemsize)
+    said, beside, told, _ = sock.recvmsg(size, room, flags | _CLOEXEC)
+    for level, kind, data in beside:
+        if (level, kind) == (socket.SOL_SOCKET, socket.SCM_RIGHTS):
+            found.frombytes(data[: len(data) - len(data) % found.itemsize])
+    return said, list(found), not told & socket.MSG_CTRUNC
+
+
+def _close(numbers: Sequence[int]) -> None:
+    for number in numbers:
+        os.close(number)
 
 
 def _reading(number: int) -> ReadingTransport | None:

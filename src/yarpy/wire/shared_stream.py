@@ -30,14 +30,17 @@ class SharedMemory(Protocol):
     """The same for all connections that have the same memory."""
 
     def place(self, blocks: Sequence[Buffer], size: int) -> Parcel | None:
-        """Copy a payload into it; None if there is no room."""
+        """Take a payload in, copied unless it lies in shared memory already; None if there is no
+        room."""
 
-    def lend(self, parcel: Parcel) -> bool:
-        """The peer is about to be told of that payload; False if it cannot have it."""
+    def lend(self, parcel: Parcel) -> int:
+        """The peer is about to be told of that payload: in which memory it lies, 16 bits; negative
+        if it cannot have it."""
 
-    def take(self, slot: int, generation: int, offset: int, size: int) -> memoryview:
+    def take(self, where: int, slot: int, generation: int, offset: int, size: int) -> memoryview:
         """A payload that the peer tells of, read-only; it is given back when the last view of it is
-        gone. Raises RemoteProtocolError for one that lies nowhere."""
+        gone. `where` is what the peer was told by `lend`. Raises RemoteProtocolError for one that
+        lies nowhere."""
 
 
 class SharedStream(ByteStream):

@@ -84,7 +84,10 @@ class FrameGrabberServer(Closeable):
             if found is None or isinstance(found, Image):
                 return found
             # A copy, because the camera refills its array while this is being sent.
-            return Image(np.array(found, copy=True, order="C"))
+            given = np.asarray(found)
+            copy = self.images.prepare(given.shape, given.dtype)
+            copy[...] = given
+            return Image(copy)
 
         image = self._camera.use("image", take)
         if image is None or not image.width or not image.height:

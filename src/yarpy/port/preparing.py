@@ -1,0 +1,48 @@
+"""Preparing: arrays that a program fills where its readers look at them.
+
+Rules: they mean the same wherever they lie. Without shared memory, and without room in it, it is
+memory of our own, of which a copy is sent.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from yarpy.errors import LocalProtocolError
+from yarpy.transports.arena import Arena, arena_of, available
+from yarpy.transports.lease import HEADROOM, lease_type
+from yarpy.wire.stream import LARGE
+
+if TYPE_CHECKING:
+    from numpy.typing import DTypeLike, NDArray
+
+
+class Preparing:
+    """The room that a port gives its program to fill."""
+
+    def __init__(self) -> None:
+        self._arena: Arena | None = None
+        self.begun = False  # there were arrays
+
+    def array(self, name: str, shape: int | tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
+        """A new array, for the port called `name`; its contents are undefined."""
+        import numpy as np
+
+        kind = np.dtype(dtype)
+        size = kind.itemsize * math.prod(shape if isinstance(shape, tuple) else (shape,))
+        lease = None
+        if size >= LARGE and available():
+            try:
+                self._arena = self._arena or arena_of(name)
+                lease = self._arena.prepare(size)
+            except LocalProtocolError:
+                pass  # no descriptor is left
+        if lease is None:
+            lease = lease_type()(HEADROOM + size, "u1")
+        self.begun = True
+        return np.ndarray(shape, kind, lease, HEADROOM)
+
+    def end(self) -> None:
+        """The port closes."""
+        self._arena = None

@@ -1,0 +1,148 @@
+"""Lease: the array that every view of shared memory comes from, and how it is found again.
+
+Rules: it says in whose memory it lies, and where. It lives for as long as any view of it: then what
+was received is given back, and room that a program has filled itself is free again. Bytes that are
+to be sent are followed back through the arrays that they are a view of, so memory is not looked up
+by its address, and nothing has to be registered.
+"""
+
+from __future__ import annotations
+
+import mmap
+import sys
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, Final, Protocol, TypeAlias
+
+from yarpy.wire.stream import LARGE, Buffer
+
+HEADROOM: Final = 256  # bytes before an array that is filled in place: for a message's head
+
+
+class Source(Protocol):
+    """A file in memory that payloads lie in."""
+
+    @property
+    def address(self) -> int:
+        """Where it is mapped here."""
+
+    @property
+    def descriptors(self) -> tuple[int, ...]:
+        """The file; and a pipe, if somebody wants to know until when it is looked at."""
+
+
+class Room(Protocol):
+    """A piece of our own memory that a program fills."""
+
+    def begin(self, head: bytes) -> bool:
+        """Put that in front of the array; False if something else is there."""
+
+
+Place: TypeAlias = tuple[Source, int, object]
+"""Where a payload lies already: in what, at which offset; and what keeps it there."""
+
+
+@cache
+def lease_type() -> Any:
+    """The class: an array, since these can be over a part of a file."""
+    import numpy as np
+
+    class Lease(np.ndarray[Any, np.dtype[np.uint8]]):
+        """Bytes of shared memory; or, without a source, bytes in place of such."""
+
+        source: Source | None = None
+        offset: int = 0
+        room: Room | None = None
+        ended: Callable[[], object] | None = None  # called with its end
+
+        def __array_finalize__(self, _: object) -> None:
+            """Arrays that numpy makes of it are ordinary ones."""
+
+        def __del__(self) -> None:
+            if self.ended is not None:
+                self.ended()
+
+    return Lease
+
+
+def leases() -> bool:
+    """Whether there can be any: whether one was made."""
+    return lease_type.cache_info().currsize > 0
+
+
+def place_of(blocks: Sequence[Buffer]) -> Place | None:
+    """Where the bytes of these blocks lie one after the other in memory that can be shown to
+    others; None if they do not.
+
+    The last block is what lies there; what is in front of it is small, and lies before it or can be
+    put there.
+    """
+    block = blocks[-1] if blocks else b""
+    if type(block) is not memoryview or len(block) < LARGE or not leases():
+        return None
+    lease = _lease_of(block)
+    if lease is None or lease.source is None:
+        return None
+    source: Source = lease.source
+    start = _address(block) - source.address
+    first: int = lease.offset
+    head = blocks[0] if len(blocks) == 2 else b"".join(blocks[:-1])
+    begin = start - len(head)
+    if begin < first or len(head) > HEADROOM:
+        return None
+    room: Room | None = lease.room
+    if head and not (
+        room.begin(bytes(head))
+        if room is not None and start == first + HEADROOM
+        else memoryview(lease)[begin - first : start - first] == head
+    ):
+        return None
+    if room is None:
+        return source, begin, lease
+    _lease_of(block, freeze=True)
+    return source, begin, room
+
+
+def freeze(value: object, blocks: Sequence[Buffer]) -> None:
+    """Forbid a program to change what it has filled and written: its readers look at it. `blocks`
+    are its bytes."""
+    _lease_of(value, freeze=True)  # of an array, even if it was copied all the same
+    if blocks:
+        _lease_of(blocks[-1], freeze=True)
+
+
+def _lease_of(view: object, freeze: bool = False) -> Any:
+    """What a block or array is a view of, by way of the arrays between; None if that is something
+    else."""
+    lease, numpy = lease_type(), sys.modules["numpy"]
+    one: Any = view
+    between = []
+    while type(one) is not lease:
+        if isinstance(one, numpy.ndarray):
+            between.append(one)
+            one = one.base
+        elif type(one) is memoryview:
+            one = one.obj
+        else:
+            return None
+    if freeze:
+        for array in (one, *between):
+            array.setflags(write=False)
+    return one
+
+
+def address_of(memory: mmap.mmap) -> int:
+    """Where a file is mapped."""
+    import numpy as np
+
+    address: int = np.frombuffer(memory, np.uint8).__array_interface__["data"][0]
+    return address
+
+
+def _address(block: memoryview) -> int:
+    numpy = sys.modules["numpy"]
+    whole: Any = block.obj
+    if not (isinstance(whole, numpy.ndarray) and whole.nbytes == len(block)):
+        whole = numpy.frombuffer(block, numpy.uint8)
+    address: int = whole.__array_interface__["data"][0]
+    return address

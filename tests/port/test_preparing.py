@@ -1,0 +1,128 @@
+"""Preparing: arrays that a program fills where its readers look at them, and passes on so."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.process import Process
+from support.wait import wait_until
+
+import yarpy
+from yarpy.port import preparing
+from yarpy.transports.arena import arena_of, available
+from yarpy.transports.lease import HEADROOM, lease_type
+
+ECHO = """
+import yarpy
+came, out = yarpy.BufferedPort("/echo/in", strict=True), yarpy.Port("/echo/out")
+print("open", flush=True)
+for message in came:
+    out.write(message.value)
+    del message
+"""
+
+shares = pytest.mark.skipif(not available(), reason="this system has no such memory")
+
+
+@pytest.fixture
+def server(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[yarpy.NameServer]:
+    with yarpy.NameServer() as server:
+        for key, value in server.environment.items():
+            monkeypatch.setenv(key, value)
+        yield server
+
+
+@pytest.mark.parametrize("here", [True, False])
+def test_an_array_to_fill(here: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same wherever it lies."""
+    if not here:
+        monkeypatch.setattr(preparing, "available", lambda: False)
+    names = yarpy.LocalNames()
+    with yarpy.Port("/out", names=names) as out:
+        for shape, dtype in [((10, 20, 3), "u1"), ((300, 300), np.uint16), (100000, float)]:
+            array = out.prepare(shape, dtype)
+            assert array.shape == (shape if isinstance(shape, tuple) else (shape,))
+            assert (type(array), array.dtype) == (np.ndarray, np.dtype(dtype))
+            array[...] = 5
+            part = array[1:]
+            out.write(part)
+            with pytest.raises(ValueError, match="read-only"):
+                part[0] = 1
+        with yarpy.BufferedPort("/in", names=names) as came:
+            out.connect("/in")
+            array = out.prepare((300, 304))
+            array[...] = 7
+            out.write(yarpy.Image(array))
+            with pytest.raises(ValueError, match="read-only"):
+                array[0, 0] = 1
+            assert (came.read(5).value.array == 7).all()
+            out.write(array)  # once more, as it is
+            assert (came.read(5).value.array == 7).all()
+        with pytest.raises(TypeError):
+            out.prepare("many")  # type: ignore[arg-type]
+        with pytest.raises(ValueError, match="negative"):
+            out.prepare((-1, 5))
+    with pytest.raises(yarpy.PortClosed):
+        out.prepare(5)
+
+
+@shares
+def test_without_room_it_is_memory_of_our_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    from yarpy.transports import arena
+
+    monkeypatch.setattr(arena.Arena.__init__, "__defaults__", (1 << 20,))
+    with yarpy.Port("/out", names=yarpy.LocalNames()) as out:
+        kept = [out.prepare(300_000) for _ in range(10)]
+        for number, array in enumerate(kept):
+            array[...] = number
+        assert [int(array.sum()) for array in kept] == [300_000 * n for n in range(10)]
+
+
+@shares
+def test_the_memory_ends_with_the_port() -> None:
+    """Not with the garbage collector."""
+    with yarpy.Port("/out", names=yarpy.LocalNames()) as out:
+        out.prepare(300_000)
+        number = arena_of("/out").number
+    with pytest.raises(OSError):
+        os.fstat(number)
+
+
+@shares
+def test_there_and_back_without_a_copy(
+    server: yarpy.NameServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program fills memory, another passes it on, and nobody copies it."""
+    from yarpy.transports import arena
+
+    copied: list[int] = []
+    monkeypatch.setattr(arena, "_copy", lambda room, block: copied.append(len(block)))
+    with (
+        Process([sys.executable, "-c", ECHO], env=os.environ) as echo,
+        yarpy.Port("/out") as out,
+        yarpy.BufferedPort("/in") as came,
+    ):
+        echo.wait_line("^open$")
+        assert out.connect("/echo/in").carrier == "memory"
+        assert yarpy.connect("/echo/out", "/in").carrier == "memory"
+        arena_ = arena_of("/out")
+        for number in range(20):
+            array = out.prepare((500, 400))
+            array[...] = number
+            out.write(array)
+            message = came.read(10)
+            found = message.as_(yarpy.Image).array
+            assert (found == number).all()
+            # Only who looks at the very same memory sees what its writer does against the rules.
+            assert isinstance(array.base, lease_type())
+            arena_.view[array.base.offset + HEADROOM] = 200
+            assert found[0, 0] == 200
+            del found, message
+        assert copied == []
+        del array
+        wait_until(lambda: len(arena_._spans) <= 3)  # all others were used again
