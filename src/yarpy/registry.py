@@ -30,6 +30,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "unix_stream": "yarpy.carriers.unix_stream:UnixStream",
         "local": "yarpy.carriers.local:Local",
         "memory": "yarpy.carriers.memory:Memory",
+        "shmem": "yarpy.carriers.shmem:Shmem",
         "name_ser": "yarpy.carriers.name_ser:NameSer",
         "http": "yarpy.carriers.http.carrier:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",

@@ -5,21 +5,15 @@
         ...
 
 The package with the C++ programs brings its devices as static libraries and with headers, but has
-linked none of them into its `yarpdev`. So one is linked here, from a main function of a few lines,
-and kept beside the virtual environment.
+linked none of them into its `yarpdev`. So one is linked here, from a main function of a few lines.
 """
 
 import contextlib
-import fcntl
-import hashlib
-import os
-import shutil
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 from support.cpp import CppYarp
-from support.cpp_venv import MissingPeer
+from support.cpp_link import linked
 from support.process import Process
 
 DEVICES = (
@@ -31,7 +25,10 @@ DEVICES = (
     "multipleanalogsensorsserver",
     "multipleanalogsensorsclient",
 )
-_LIBRARIES = ("dev", "sig", "math", "os", "init", "gsl", "priv_hmac", "wire_rep_utils")
+_LIBRARIES = [f"yarp_{name}" for name in DEVICES] + [
+    f"YARP_{name}"
+    for name in ("dev", "sig", "math", "os", "init", "gsl", "priv_hmac", "wire_rep_utils")
+]
 
 _SOURCE = """
 #include <yarp/dev/Drivers.h>
@@ -50,39 +47,7 @@ int main(int argc, char* argv[]) {{
 
 def device_host(cpp: CppYarp) -> Path:
     """A yarpdev with `DEVICES`; links it the first time. Or MissingPeer."""
-    compiler = shutil.which(os.environ.get("CXX", "g++"))
-    if compiler is None:
-        raise MissingPeer("C++ devices as peers have to be linked: install g++, or name it in CXX")
-    packages = cpp.root / "lib/python3.10/site-packages"
-    mark = hashlib.sha256(_SOURCE.encode()).hexdigest()[:12]
-    target = cpp.root.parent / f"{cpp.root.name}-devices-{mark}"
-    with (cpp.root.parent / f"{target.name}.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not target.exists():
-            _link(compiler, packages, target)
-    return target
-
-
-def _link(compiler: str, packages: Path, target: Path) -> None:
-    source = target.with_suffix(".cpp")
-    source.write_text(_SOURCE)
-    half_done = target.with_suffix(".part")
-    libraries = packages / "yarp/lib"
-    foreign = sorted((packages / "yarp_middleware.libs").glob("libACE*.so*"))
-    command = [
-        *(compiler, "-std=c++17", f"-I{packages / 'yarp/include'}", str(source)),
-        *("-o", str(half_done), "-Wl,--start-group"),
-        *(str(libraries / f"libyarp_{name}.a") for name in DEVICES),
-        *(str(libraries / f"libYARP_{name}.a") for name in _LIBRARIES),
-        *("-Wl,--end-group", *map(str, foreign)),
-        *(f"-Wl,-rpath,{packages / 'yarp_middleware.libs'}", "-lz", "-lpthread", "-ldl"),
-    ]
-    try:
-        subprocess.run(command, check=True, capture_output=True, text=True, timeout=300)
-    except subprocess.CalledProcessError as error:
-        line = error.stderr.strip().splitlines()[-1:]
-        raise MissingPeer(f"could not link C++ devices as peers: {' '.join(line)}") from error
-    half_done.replace(target)
+    return linked(cpp, "devices", _SOURCE, _LIBRARIES)
 
 
 @contextlib.contextmanager

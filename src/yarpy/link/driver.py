@@ -342,6 +342,10 @@ class Driver:
                 from yarpy.transports.memory import open_memory
 
                 return open_memory(effect.listen, effect.port, effect.group)
+            if effect.kind == "shmem":
+                from yarpy.transports.shmem import open_shmem
+
+                return open_shmem(effect.listen, local, remote, effect.port)
             if effect.kind == "inproc":
                 return open_inproc(effect.listen, local, remote)
         raise LocalProtocolError(f"{effect} is not something a connection can do")

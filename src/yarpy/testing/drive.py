@@ -26,7 +26,7 @@ from yarpy.wire.steps import Effect, Steps
 from yarpy.wire.stream import DEFAULT_LIMIT, Buffer, ByteStream, DatagramStream, ObjectStream
 
 TCP_PORT = 21602  # the port number that the accepting side always gives
-UDP_PORT = 48669
+UDP_PORT = 48669  # and of other places that the accepting side opens
 GROUP = ("224.1.1.3", 21604)
 
 
@@ -39,7 +39,8 @@ class Handle:
 
     def __init__(self, effect: Open) -> None:
         self.effect = effect
-        self.port = UDP_PORT if effect.listen and effect.kind == "udp" else effect.port
+        numbered = effect.listen and effect.kind in ("udp", "shmem")
+        self.port = UDP_PORT if numbered else effect.port
 
 
 class Shelf:

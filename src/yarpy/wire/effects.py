@@ -20,10 +20,10 @@ from yarpy.wire.stream import ByteStream
 class Open(Effect):
     """Open another way to the same peer; the driver sends back a handle with `.port` (0: none).
 
-    `kind` names the transport (`tcp`, `udp`, `mcast`, `unix`, `memory`, `inproc`). `listen` is true
-    on the side that accepted the TCP connection. `group` and `port` say where: a multicast group,
-    the peer's UDP port. For `memory` they are whose it is, and the number where its sender can be
-    met; the handle is None if that cannot be seen from here.
+    `kind` names the transport (`tcp`, `udp`, `mcast`, `unix`, `memory`, `shmem`, `inproc`).
+    `listen` is true on the side that accepted the TCP connection. `group` and `port` say where: a
+    multicast group, the peer's port. For `memory` they are whose it is, and the number where its
+    sender can be met; the handle is None if that cannot be seen from here.
     """
 
     kind: str
