@@ -110,6 +110,16 @@ def test_the_next_one_undoes_what_a_killed_one_left(tmp_path: Path) -> None:
         journal.close()
 
 
+def test_a_damaged_journal_is_told(tmp_path: Path) -> None:
+    (tmp_path / "journal").write_bytes(b"nonsense\n")
+    journal, events = Journal(tmp_path / "journal"), list[Event]()
+    Agent(RULES, events.append, journal, yarpy.LocalNames()).run(lambda: False)
+    [event] = events
+    assert event.text.startswith("1 line of the journal cannot be read")
+    assert str(journal.copy) in event.text
+    journal.close()
+
+
 @pytest.fixture
 def nonsense() -> Iterator[int]:
     """Something that listens, and answers nonsense; the number of its socket."""

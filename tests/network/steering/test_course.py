@@ -34,6 +34,20 @@ def test_missed_deadlines() -> None:
     assert made.counts([PAIR]) and not made.counts([("/x", "/y")])
 
 
+def test_a_single_late_message_is_chance() -> None:
+    made = course((1.0, {}, counted(0, 0)), (2.0, {}, counted(10, 1)), (3.0, {}, counted(20, 2)))
+    assert made.missed([PAIR], 2.0) == 0.0
+    assert made.missed([PAIR], 1.0) == 0.1
+
+
+def test_messages_per_second() -> None:
+    made = course((1.0, {}, counted(0, 0)), (2.0, {}, counted(90, 0)), (3.0, {}, counted(100, 50)))
+    assert made.pace([PAIR]) == 50.0
+    assert made.pace([("/x", "/y")]) == 0.0
+    assert Course().pace([PAIR]) == 0.0
+    assert course((1.0, {}, {}), (2.0, {}, {})).pace([PAIR]) == 0.0
+
+
 def test_silence_is_late_too() -> None:
     made = course((1.0, {}, counted(10, 0)), (2.0, {}, counted(10, 3)))
     assert made.missed([PAIR], 0.0) == 1.0

@@ -68,6 +68,23 @@ def test_a_step_is_not_judged_before_something_came() -> None:
     assert count(network.run(8), "did not help (nothing comes): it is as it was") == 1
 
 
+def test_a_slow_stream_is_judged_on_many_messages() -> None:
+    network = Network()
+    network.rates[LOOP] = 5.0
+    network.run(10)
+    number = iter(range(10_000))
+    network.late = lambda: 0.8 if next(number) % 80 == 0 else 0.0  # one message in a hundred
+    assert count(network.run(60), "late on") == 0
+    network.late = lambda: 0.5
+    taken = network.run(20)
+    assert count(taken, "its packets become HIGH") == 1
+    network.late = lambda: 0.8 if next(number) % 8 == 0 else 0.5  # the first ones may be on time
+    since = network.now
+    while count(network.run(0.25), "did not help") == 0:
+        assert network.now - since < 30
+    assert network.now - since > 5, "that was told of a handful of messages"
+
+
 def test_one_thing_at_a_time() -> None:
     network = Network()
     seen: list[int] = []

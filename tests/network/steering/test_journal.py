@@ -36,9 +36,34 @@ def test_damage_is_passed_over(tmp_path: Path) -> None:
     journal.close()
     with where.open("ab") as file:
         file.write(b'\xff\n{"port": 3}\n[[[[\n{"port": "/x", "pee')
+    damage = where.read_bytes()
     after = Journal(where)
     assert after.left() == [FIRST.undone]
+    assert after.damaged == 3  # not what a crash leaves at the end, which was never done
+    assert after.copy.read_bytes() == damage
+    after.clear()
     after.close()
+    last = Journal(where)
+    assert last.damaged == 0
+    last.close()
+
+
+def test_what_a_crash_leaves_is_no_damage(tmp_path: Path) -> None:
+    where = tmp_path / "journal"
+    where.write_bytes(b'{"port": "/x", "pee')
+    journal = Journal(where)
+    assert (journal.left(), journal.damaged) == ([], 0)
+    assert not journal.copy.exists()
+    journal.close()
+
+
+def test_a_journal_that_is_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    where = tmp_path / "journal"
+    monkeypatch.setattr("yarpy.network.steering.journal.LARGEST", 100)
+    where.write_bytes(b"{}" * 100)
+    journal = Journal(where)
+    assert journal.damaged
+    journal.close()
 
 
 def test_one_agent_at_a_time(tmp_path: Path) -> None:

@@ -106,6 +106,11 @@ class Agent:
         if self._journal is None:
             return
         left = self._journal.left()
+        if (damaged := self._journal.damaged) > 0:
+            self._journal.damaged = 0
+            text = f"{damaged} line{'s' if damaged > 1 else ''} of the journal cannot be read: "
+            text += f"what they say was changed stays so; {self._journal.copy} has them"
+            self._tell(Event(time.time(), text))
         failed: list[tuple[Change, str]] = []
         stays: list[Change] = []
         for change in left:

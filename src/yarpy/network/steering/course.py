@@ -32,25 +32,22 @@ class Course:
 
     def missed(self, pairs: list[Pair], since: float) -> float | None:
         """The part of the messages over these connections that missed a deadline from the first
-        look at or after `since` until now; None where nobody counts, or nothing came."""
+        look at or after `since` until now, a single one being chance; None where nobody counts, or
+        nothing came."""
         looks = [flows for at, flows in self._looks if at >= since - 1e-9]
-        if len(looks) < 2:
-            return None
-        missed = came = 0
-        for pair in pairs:
-            first, last = looks[0].get(pair), looks[-1].get(pair)
-            if first is None or last is None or first.missed is None or last.missed is None:
-                continue
-            late = max(last.missed - first.missed, 0)
-            ends = [flow.receiver.messages if flow.receiver else None for flow in (first, last)]
-            passed = max((ends[1] or 0) - (ends[0] or 0), 0)
-            missed, came = missed + late, came + max(passed, late)
-        return missed / came if came else None
+        missed, came = _counted(pairs, looks)
+        return (missed if missed > 1 else 0) / came if came else None
+
+    def pace(self, pairs: list[Pair]) -> float:
+        """Messages, or missed deadlines, per second over all of these connections in the last
+        looks; 0.0 if nobody counts, or nothing came."""
+        looks = [(at, flows) for at, flows in self._looks if _are_counted(pairs, flows)]
+        _, came = _counted(pairs, [flows for _, flows in looks])
+        return came / (looks[-1][0] - looks[0][0]) if came else 0.0
 
     def counts(self, pairs: list[Pair]) -> bool:
         """Whether a deadline is counted on one of these now."""
-        flows = self._looks[-1][1] if self._looks else {}
-        return any(pair in flows and flows[pair].missed is not None for pair in pairs)
+        return bool(self._looks) and _are_counted(pairs, self._looks[-1][1])
 
     def wants_more(self, pair: Pair, since: float) -> bool:
         """Whether its sender had more to send than it could, at most looks since then."""
@@ -80,3 +77,23 @@ class Course:
             if len(sizes) == 2:
                 return max(sizes[1] - sizes[0], 0) / (looks[-1][0] - looks[0][0]) / MBIT
         return None
+
+
+def _are_counted(pairs: list[Pair], flows: dict[Pair, Flow]) -> bool:
+    return any(pair in flows and flows[pair].missed is not None for pair in pairs)
+
+
+def _counted(pairs: list[Pair], looks: list[dict[Pair, Flow]]) -> tuple[int, int]:
+    """How many messages missed their deadline between the first look and the last, of how many."""
+    missed = came = 0
+    if len(looks) < 2:
+        return missed, came
+    for pair in pairs:
+        first, last = looks[0].get(pair), looks[-1].get(pair)
+        if first is None or last is None or first.missed is None or last.missed is None:
+            continue
+        late = max(last.missed - first.missed, 0)
+        ends = [flow.receiver.messages if flow.receiver else None for flow in (first, last)]
+        passed = max((ends[1] or 0) - (ends[0] or 0), 0)
+        missed, came = missed + late, came + max(passed, late)
+    return missed, came

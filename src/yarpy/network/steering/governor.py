@@ -26,7 +26,9 @@ TOLERANCE: Final = 0.02  # of the messages may miss their deadline
 HELPED: Final = 0.8  # times what was missed before, or less
 SETTLE: Final = 0.5  # seconds until the effect of a step is looked at
 SILENT: Final = 5.0  # seconds without a message after which a step is thought to have done harm
-LOOK_AT: Final = 0.5  # seconds that trouble lasts before it is believed
+LOOK_AT: Final = 0.5  # seconds that trouble lasts before it is believed, at least
+MESSAGES: Final = 50  # on which a connection is judged
+SLOWEST: Final = 20.0  # seconds for which these are awaited
 STARVING: Final = 1.5  # seconds, likewise
 ENOUGH: Final = 0.8  # of its minimum: less is starving
 REST: Final = 60.0  # seconds until what did not help is tried again; then twice that
@@ -46,6 +48,7 @@ class Trial:
     changes: tuple[Change, ...]
     before: float | None  # the part that missed its deadline
     since: float
+    span: float  # seconds over which it is judged
 
 
 class Governor:
@@ -109,7 +112,8 @@ class Governor:
         if not made:
             self._strike(rule, measure, now)
         elif not self._trusting:
-            self._trial = Trial(rule, measure, tuple(made), before, now)
+            span = self._span(self._groups.get(rule, []))
+            self._trial = Trial(rule, measure, tuple(made), before, now, span)
 
     # -- what there is ----------------------------------------------------------------------------
 
@@ -168,12 +172,11 @@ class Governor:
 
     def _help(self, snapshot: Snapshot, now: float) -> Step | None:
         """The next measure for the critical rule that is worst off."""
-        since = max(now - LOOK_AT, self._changed)
         worst: tuple[float, Rule, list[Pair]] | None = None
         for rule, pairs in self._of("critical"):
             if self._rest.get((rule.line, FLOOD), 0.0) > now:
                 continue  # it is late by its own doing
-            missed = self._course.missed(pairs, since)
+            missed = self._course.missed(pairs, max(now - self._span(pairs), self._changed))
             if missed is None and not self._course.counts(pairs) and self._crowded(snapshot):
                 missed = 1.0  # nobody can tell: better to be careful
             if missed is not None and missed > TOLERANCE and (worst is None or missed > worst[0]):
@@ -203,8 +206,14 @@ class Governor:
         """Whether two looks in a row said so."""
         if not self._course.counts(pairs):
             return True
-        half = self._course.missed(pairs, max(now - LOOK_AT / 2, self._changed))
-        return half is not None and half > TOLERANCE and now - self._changed >= LOOK_AT
+        span = self._span(pairs)
+        half = self._course.missed(pairs, max(now - span / 2, self._changed))
+        return half is not None and half > TOLERANCE and now - self._changed >= span
+
+    def _span(self, pairs: list[Pair]) -> float:
+        """Seconds over which these connections are judged: until enough messages have come."""
+        pace = self._course.pace(pairs)
+        return min(max(LOOK_AT, MESSAGES / pace if pace else LOOK_AT), SLOWEST)
 
     def _crowded(self, snapshot: Snapshot) -> bool:
         return any(
@@ -273,10 +282,11 @@ class Governor:
 
     def _judge(self, trial: Trial, now: float) -> Step | None:
         pairs = self._groups.get(trial.rule, [])
-        if now - trial.since < 2 * SETTLE:
+        span = SETTLE + trial.span
+        if now - trial.since < span:
             return None
         missed = self._course.missed(pairs, trial.since + SETTLE)
-        if missed is None and now - trial.since < SILENT and trial.before is not None:
+        if missed is None and now - trial.since < max(SILENT, span) and trial.before is not None:
             return None  # nothing came yet, or nobody answered
         self._trial = None
         if trial.before is None:

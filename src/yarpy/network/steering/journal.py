@@ -2,8 +2,8 @@
 
 Rules: whoever starts next finds what one that was killed has left, and undoes it. One agent at a
 time: the file is locked while it runs. A line is a change as JSON, with the value of the beginning
-in `before`; it is written and synced before the change is made. A damaged line (the last one of a
-crash) is passed over.
+in `before`; it is written and synced before the change is made, so a last line without an end, as a
+crash leaves it, stands for nothing. Others that cannot be read are counted, and kept in a copy.
 """
 
 from __future__ import annotations
@@ -45,11 +45,21 @@ class Journal:
                 f"another autoqos is running: it has {where} (YARP_DATA_HOME says where that is)"
             ) from error
         self._first: dict[tuple[str, str, str], Change] = {}
+        self.damaged = 0  # lines that could not be read
+        self.copy = where.with_name(f"{where.name}.damaged")
         self._file.seek(0)
-        for line in self._file.read(LARGEST).splitlines():
-            with suppress(ValueError, RecursionError):
+        text = self._file.read(LARGEST)
+        for line in text.splitlines(keepends=True):
+            try:
                 change = Change.from_dict(json.loads(line))
+            except (ValueError, RecursionError):
+                self.damaged += line.endswith(b"\n")
+            else:
                 self._first.setdefault(change.what, change)
+        self.damaged += bool(self._file.read(1))  # too much of it
+        if self.damaged:
+            with suppress(OSError):
+                self.copy.write_bytes(text)
 
     def left(self) -> list[Change]:
         """What undoes all that was changed, the last change first."""
@@ -63,10 +73,6 @@ class Journal:
         self._file.write(json.dumps(change.as_dict()).encode() + b"\n")
         self._file.flush()
         os.fsync(self._file.fileno())
-
-    def origin(self, change: Change) -> Change:
-        """The first change of the same thing, or this one."""
-        return self._first.get(change.what, change)
 
     def clear(self) -> None:
         """All has been undone."""
