@@ -40,7 +40,10 @@ TRANSLATED = [
     ("thrift", "-gen py -I include -v a.thrift b.thrift", None),
     ("rosmsg", "--name /typ@/yarpros", "idl rosmsg --name /typ@/yarpros"),
     ("rosmsg", "--help", "idl rosmsg --help"),
-    ("rosmsg", "--no-ros true --out . std_msgs/String", None),
+    ("rosmsg", "--no-ros true --out . std_msgs/String", "idl rosmsg --python std_msgs/String"),
+    ("rosmsg", "--verbose --md5 a/B c/D", "idl rosmsg --md5 a/B c/D"),
+    ("rosmsg", "--folder lib --raw a/B", "idl rosmsg --folder lib --raw a/B"),
+    ("rosmsg", "a/B --stubs --context c", "idl rosmsg --context c --stubs a/B"),
     ("rosmsg", "std_msgs/String --out .", "idl rosmsg --python std_msgs/String"),
 ]
 
@@ -64,6 +67,20 @@ def test_translation(name: str, given: str, wanted: str | None) -> None:
     assert translate(words) == wanted.split()
 
 
+def test_what_the_help_shows_is_taken() -> None:
+    from yarp import _commands
+    from yarpy.cli.verbs.idl import rosmsg, thrift
+
+    for command, translate in (
+        (rosmsg, _commands.translate_rosmsg),
+        (thrift, _commands.translate_thrift),
+    ):
+        for option in command.params:
+            for word in option.opts:
+                if word.startswith("--"):
+                    assert word in translate([word, ".", "a/B.thrift"])
+
+
 @pytest.mark.parametrize(
     ("name", "given", "why"),
     [
@@ -71,6 +88,7 @@ def test_translation(name: str, given: str, wanted: str | None) -> None:
         ("thrift", "--gen py", "give a .thrift file"),
         ("thrift", "--nonsense a.thrift", "no option"),
         ("rosmsg", "", "give a type"),
+        ("rosmsg", "--nonsense a/B", "no option"),
         ("view", "--nonsense 1", "no option"),
         ("yarp", "config", "yarp-config"),
     ],

@@ -114,6 +114,13 @@ def test_static_methods_are_functions_too() -> None:
     assert yarp.Time_now() <= yarp.now()
 
 
+def test_missing_member_of_a_class_says_what_there_is() -> None:
+    import yarp
+
+    with pytest.raises(AttributeError, match=r"did you mean Network_connect"):
+        _ = yarp.Network_conect
+
+
 def test_missing_name_says_what_there_is() -> None:
     import yarp
 

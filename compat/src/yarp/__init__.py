@@ -54,6 +54,10 @@ def _missing(name: str) -> str:
     why = NOT_HERE.get(name)
     known = [*WHERE]
     near = get_close_matches(name, known, n=3, cutoff=0.7)
+    owner, _, member = name.partition("_")
+    if member and owner in CLASSES:  # a flat alias; Python itself suggests members of classes
+        members = get_close_matches(member, dir(__getattr__(owner)), n=3, cutoff=0.7)
+        near = [f"{owner}_{each}" for each in members]
     hint = f"; did you mean {' or '.join(near)}?" if near else ""
     return (
         f"module 'yarp' has no attribute {name!r}{hint} "

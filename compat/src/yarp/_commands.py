@@ -117,19 +117,32 @@ def translate_thrift(arguments: Sequence[str]) -> list[str]:
 
 
 def translate_rosmsg(arguments: Sequence[str]) -> list[str]:
-    """`yarpidl_rosmsg --name /typ@/yarpros` serves types; with a type, Python for it is printed."""
+    """`yarpidl_rosmsg --name /typ@/yarpros` serves types; with a type, Python for it is printed.
+
+    What `yarpy idl rosmsg` takes besides is taken here, too.
+    """
+    found, form, names = ["idl", "rosmsg"], "--python", list[str]()
     if _HELP.intersection(arguments):
-        return ["idl", "rosmsg", "--help"]
-    options, plain = _split(arguments)
-    dropped = {"no-ros", "web", "no-cache", "no-index", "verbose", "out", "soft"}
-    values = [word for key in ("no-cache", "no-index", "verbose") for word in _words(options, key)]
-    names = [*plain, *values]
-    found = ["idl", "rosmsg"]
-    if "name" in options:
-        return [*found, "--name", _text(options, "name")]
+        return [*found, "--help"]
+    words = iter(arguments)
+    for word in words:
+        if word in ("--raw", "--md5", "--python", "--stubs"):
+            form = word
+        elif word in ("--name", "--folder", "--context"):
+            found += [word, next(words, "")]
+        elif word in ("--out", "--no-ros", "--web", "--soft"):
+            next(words, "")
+        elif word in ("--no-cache", "--no-index", "--verbose"):
+            continue
+        elif word.startswith("-"):
+            raise Wrong(f'no option "{word}"')
+        else:
+            names.append(word)
+    if "--name" in found:
+        return found
     if not names:
         raise Wrong("give a type or a file: yarpidl_rosmsg std_msgs/String")
-    return [*found, "--python", *names, *_rest(options, dropped, set())]
+    return [*found, form, *names]
 
 
 def translate_yarp(arguments: Sequence[str]) -> list[str]:

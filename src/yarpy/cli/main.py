@@ -17,7 +17,7 @@ from typing import Any, Final, NoReturn
 import click
 
 from yarpy.cli import signals
-from yarpy.cli.stderr import complain
+from yarpy.cli.stderr import complain, complain_of
 from yarpy.cli.verb_list import GROUPS, VERBS
 from yarpy.errors import UnknownPlugin, YarpError
 
@@ -133,11 +133,8 @@ def run(arguments: Sequence[str]) -> int:
     except click.ClickException as error:
         complain(error.format_message())
         return 1
-    except YarpError as error:
-        complain(str(error))
-        return 1
-    except OSError as error:
-        complain(f"{error.strerror or error}" + (f": {error.filename}" if error.filename else ""))
+    except (YarpError, OSError) as error:
+        complain_of(error)
         return 1
     return code if isinstance(code, int) else 0
 

@@ -13,6 +13,14 @@ def complain(text: str) -> None:
     click.echo(f"{label} {readable(' '.join(text.split()))}", err=True)
 
 
+def complain_of(error: Exception) -> None:
+    """The same of an exception; one of the system names its file."""
+    if isinstance(error, OSError) and error.strerror:
+        complain(error.strerror + (f": {error.filename}" if error.filename else ""))
+    else:
+        complain(str(error))
+
+
 def warn(text: str) -> None:
     """Say on standard error what may surprise."""
     label = click.style("warning:", fg="yellow", bold=True)

@@ -150,6 +150,23 @@ def test_thrift_is_written(here, tmp_path, monkeypatch):
     assert done.stdout == "Point(x=3) False\n"
 
 
+def test_all_files_are_checked(here, tmp_path):
+    (tmp_path / "a.thrift").write_text("struct A { 1: i32 x")
+    (tmp_path / "b.thrift").write_text("struct B { 1: i32 x }")
+    (tmp_path / "c.thrift").write_text("struct C { 1: Nothing x }")
+    files = [str(tmp_path / f"{name}.thrift") for name in "abcd"]
+    said = here("idl", "thrift", "--check", *files)
+    assert said.code == 1
+    assert said.out == f"{files[1]}: 1 struct\n"
+    errors = said.err.splitlines()
+    assert len(errors) == 3
+    for error, file in zip(errors, (files[0], files[2], files[3]), strict=True):
+        assert error.startswith("error: ") and file in error
+    said = here("idl", "thrift", *files, "--out", str(tmp_path / "out"))
+    assert (said.code, said.err.splitlines()) == (1, errors)
+    assert not (tmp_path / "out").exists()
+
+
 def test_no_module_that_is_written_hides_one_of_python(here, tmp_path):
     (tmp_path / "types.thrift").write_text("struct Point { 1: i32 x }")
     arm = tmp_path / "arm.thrift"

@@ -30,6 +30,7 @@ from typing import TYPE_CHECKING
 import click
 
 from yarpy.cli.output import print_line
+from yarpy.cli.stderr import complain_of
 from yarpy.errors import YarpError
 
 if TYPE_CHECKING:
@@ -129,16 +130,23 @@ def thrift(files: tuple[str, ...], check: bool, out: str, folders: tuple[str, ..
 
     places = [Path(folder) for folder in folders]
     found: dict[Path | None, Interface] = {}
-    for file in files:
-        for each in read_interface(Path(file), places).all():
-            found.setdefault(each.path, each)
-    texts = {}
-    for each in found.values():
-        texts[each.module_name] = python(each), stubs(each)  # all are right before one is written
+    texts: dict[str, tuple[str, str]] = {}
+    wrong = 0
+    for file in files:  # all are right before one is written
+        try:
+            all_ = read_interface(Path(file), places).all()
+            for each in all_:
+                texts[each.module_name] = python(each), stubs(each)
+        except (YarpError, OSError) as error:
+            complain_of(error)
+            wrong += 1
+        else:
+            found.update((each.path, each) for each in all_ if each.path not in found)
     if check:
         for each in found.values():
             print_line(f"{each.document.file}: {summary(each)}")
-        return 0
+    if check or wrong:
+        return 1 if wrong else 0
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     for name, (module, stub) in texts.items():
