@@ -76,6 +76,13 @@ class RosGraph:
         self._running.append(process)
         return process
 
+    def needs_packages(self, site: Path) -> None:
+        """Skip the test if ROS's Python cannot load the packages in a folder."""
+        environment = {**self.environment, "PYTHONPATH": str(site)}
+        done = subprocess.run([PYTHON, "-c", "import cv2, numpy, yaml"], env=environment)
+        if done.returncode:
+            pytest.skip(f"the Python of ROS 1 cannot load what is in {site}")
+
     def yarpy(self, *words: str, **variables: str) -> Process:
         """Start a command of ours, without a YARP name server unless `variables` name one."""
         environment = {

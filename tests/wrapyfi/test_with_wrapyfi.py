@@ -17,6 +17,8 @@ from support.cpp_venv import MissingPeer
 from support.patience import patience
 from support.port import free_block, free_port
 from support.process import Process
+from support.ros import PYTHON
+from support.ros_graph import ros_graph
 from support.wrapyfi_venv import prepare
 
 import yarpy
@@ -192,3 +194,45 @@ def test_each_type_crosses(mware: str, side: str, crossing: dict[tuple[str, str]
         first = "(1, 2)" if side == "real" else "[1, 2]"  # nested tuples are marked here
         expected = f"{{'args': [{first}, [3]], 'kwargs': {{'k': {{'z': (9,)}}}}}}"
         assert json.loads(line[0])[2] == expected
+
+
+ROS_TYPES = (*TYPES, "jpg", "pose", "property", "ask", "ask_rgb", "ask_sound")
+
+
+@pytest.fixture(scope="module")
+def crossing_ros(
+    wrapyfi: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[dict[str, Process]]:
+    """The same over ROS 1: the other side is Wrapyfi on rospy, in Debian's Python."""
+    site = next(wrapyfi.glob("lib/python*/site-packages"))
+    ours, real = (sys.executable, OURS), (PYTHON, site)
+    with ExitStack() as stack:
+        takers = {}
+        graph = stack.enter_context(ros_graph(tmp_path_factory.mktemp("ros")))
+        graph.needs_packages(site)
+        for side, pair in {"ours": (ours, real), "real": (real, ours)}.items():
+            known = {**graph.environment, "CROSS_TOPICS": f"/{side}"}
+            for word, (python, path) in zip(("send", "take"), pair, strict=True):
+                takers[side] = Process(
+                    [python, CROSS, word, "ros", *ROS_TYPES],
+                    env={**known, "PYTHONPATH": str(path)},
+                    cwd=graph.home,
+                )
+                stack.enter_context(takers[side])
+        yield takers
+
+
+@pytest.mark.parametrize("side", ["ours", "real"])
+def test_each_type_crosses_ros(side: str, crossing_ros: dict[str, Process]) -> None:
+    found: dict[str, Any] = {}
+    for name in ROS_TYPES:
+        pattern = rf'^\["ros", "{name}", .*\]$'
+        line = crossing_ros[side].wait_line(pattern, timeout=patience(45.0), stream="out")
+        found[name] = json.loads(line[0])[2]
+    assert "'t': (1, 2)" in found["native"] and "'n': [None, True, 2.5]" in found["native"]
+    for name, shape, kind in (*PICTURES, ("ask_rgb", [24, 32, 3], "uint8")):
+        assert found[name] == {"shape": shape, "dtype": kind, "near": True}
+    assert found["sound"] == found["ask_sound"] == {"rate": 16000, "near": True}
+    assert found["pose"] == [0.5, 0.0, "geometry_msgs/Pose"]
+    assert found["property"] == "{'a': [1, 2.5], 'b': 'word'}"
+    assert "[3]], 'kwargs': {'k': {'z': (9,)}}" in found["ask"]

@@ -4,6 +4,7 @@ A sender sends until its input ends. A taker prints a line of JSON for each type
 ends.
 """
 
+import importlib
 import json
 import os
 import sys
@@ -17,6 +18,7 @@ from wrapyfi.connect.wrapper import MiddlewareCommunicator
 side = sys.argv[1]
 mwares = sys.argv[2].split(",")
 types = sys.argv[3:]
+TOPICS = os.environ.get("CROSS_TOPICS", "/x")
 # Wrapyfi's publishers over ZeroMQ may never see that somebody listens, while others send.
 WAIT = os.environ.get("CROSS_WAIT") != "0"
 COLOUR = np.arange(24 * 32 * 3, dtype=np.uint8).reshape(24, 32, 3)
@@ -26,19 +28,26 @@ SOUND = np.sin(np.arange(200) / 10).astype(np.float32)
 
 class Cross(MiddlewareCommunicator):
     @MiddlewareCommunicator.register(
-        "NativeObject", "$mware", "Cross", "/x/native", should_wait=WAIT
+        "NativeObject", "$mware", "Cross", f"{TOPICS}/native", should_wait=WAIT
     )
     def native(self, mware=None):
         return ({"t": (1, 2), "s": {1, None}, "a": np.arange(4.0), "n": [None, True, 2.5]},)
 
     @MiddlewareCommunicator.register(
-        "Image", "$mware", "Cross", "/x/rgb", width=32, height=24, rgb=True, should_wait=WAIT
+        "Image", "$mware", "Cross", f"{TOPICS}/rgb", width=32, height=24, rgb=True, should_wait=WAIT
     )
     def rgb(self, mware=None):
         return (COLOUR,)
 
     @MiddlewareCommunicator.register(
-        "Image", "$mware", "Cross", "/x/mono", width=32, height=24, rgb=False, should_wait=WAIT
+        "Image",
+        "$mware",
+        "Cross",
+        f"{TOPICS}/mono",
+        width=32,
+        height=24,
+        rgb=False,
+        should_wait=WAIT,
     )
     def mono(self, mware=None):
         return (COLOUR[..., 0],)
@@ -47,7 +56,7 @@ class Cross(MiddlewareCommunicator):
         "Image",
         "$mware",
         "Cross",
-        "/x/fp",
+        f"{TOPICS}/fp",
         width=32,
         height=24,
         rgb=True,
@@ -61,7 +70,7 @@ class Cross(MiddlewareCommunicator):
         "Image",
         "$mware",
         "Cross",
-        "/x/jpg",
+        f"{TOPICS}/jpg",
         width=32,
         height=24,
         rgb=True,
@@ -75,7 +84,7 @@ class Cross(MiddlewareCommunicator):
         "AudioChunk",
         "$mware",
         "Cross",
-        "/x/sound",
+        f"{TOPICS}/sound",
         rate=16000,
         chunk=200,
         channels=1,
@@ -84,13 +93,52 @@ class Cross(MiddlewareCommunicator):
     def sound(self, mware=None):
         return ((SOUND, 16000),)
 
-    @MiddlewareCommunicator.register("NativeObject", "$mware", "Cross", "/x/rpc", should_wait=WAIT)
+    @MiddlewareCommunicator.register(
+        "ROSMessage", "$mware", "Cross", f"{TOPICS}/pose", should_wait=WAIT
+    )
+    def pose(self, mware=None):
+        pose = message("geometry_msgs", "Pose")()
+        pose.position.x = 0.5
+        return (pose,)
+
+    @MiddlewareCommunicator.register("Properties", "$mware", "Cross", f"{TOPICS}/property")
+    def property(self, mware=None):
+        return ({"a": [1, 2.5], "b": "word"},)
+
+    @MiddlewareCommunicator.register(
+        "Image", "$mware", "Cross", f"{TOPICS}/rpc_rgb", should_wait=WAIT
+    )
+    def ask_rgb(self, mware=None):
+        return (COLOUR,)
+
+    @MiddlewareCommunicator.register(
+        "AudioChunk", "$mware", "Cross", f"{TOPICS}/rpc_sound", rate=16000, should_wait=WAIT
+    )
+    def ask_sound(self, mware=None):
+        return ((SOUND, 16000),)
+
+    @MiddlewareCommunicator.register(
+        "NativeObject", "$mware", "Cross", f"{TOPICS}/rpc", should_wait=WAIT
+    )
     def ask(self, *args, mware=None, **kwargs):
         return ({"args": list(args), "kwargs": kwargs},)
 
 
+def message(package, name):
+    """A class of rospy's, or of yarpy's."""
+    try:
+        return getattr(importlib.import_module(f"{package}.msg"), name)
+    except ImportError:
+        from yarpy.idl import load
+
+        return load(f"{package}/{name}")
+
+
 def told(name, value):
     """What came, as text that is the same for the same value."""
+    if name == "pose":
+        return [value.position.x, value.orientation.w, value._type]
+    name = name.removeprefix("ask_")
     if name == "sound":
         samples, rate = value
         error = float(np.abs(np.ravel(samples) - SOUND).max())
@@ -110,7 +158,7 @@ def told(name, value):
 crosses = {mware: Cross() for mware in mwares}
 for name in types:
     mode = {"send": "publish", "take": "listen"}[side]
-    if name == "ask":
+    if name.startswith("ask"):
         mode = {"send": "reply", "take": "request"}[side]
     for cross in crosses.values():
         cross.activate_communication(name, mode)

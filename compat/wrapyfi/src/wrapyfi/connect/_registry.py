@@ -19,6 +19,8 @@ from typing import Any, ClassVar
 SHIPPED = {
     "yarp": "wrapyfi.middlewares.yarp",
     "zeromq": "wrapyfi.middlewares.zeromq",
+    "ros": "wrapyfi.middlewares.ros",
+    "ros2": "wrapyfi.middlewares.ros2",
     "mqtt": "wrapyfi.middlewares.mqtt",
     "zenoh": "wrapyfi.middlewares.zenoh",
     "websocket": "wrapyfi.middlewares.websocket",

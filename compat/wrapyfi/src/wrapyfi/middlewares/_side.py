@@ -296,11 +296,11 @@ def offer(medium: Medium) -> None:
 
 
 class Arrivals:
-    """What came to a listener by the threads of a library: `KEPT` at most, then the oldest go."""
+    """What came to a listener by the threads of a library: so many are kept, the oldest go."""
 
-    def __init__(self, topic: str) -> None:
+    def __init__(self, topic: str, keep: int = KEPT) -> None:
         self._came_to = topic
-        self._inbox = Inbox(KEPT)
+        self._inbox = Inbox(keep)
 
     def arrived(self, came: Any) -> None:
         with suppress(yarpy.PortClosed):
