@@ -8,6 +8,7 @@ import pytest
 
 import yarpy
 from yarpy import aio
+from yarpy.link.accept_loop import LOOP
 
 
 @pytest.fixture(autouse=True)
@@ -33,7 +34,7 @@ def test_cancelled_opening_leaves_no_port_behind():
             assert not _open_ports()
 
     def _open_ports():
-        return [thread for thread in threading.enumerate() if thread.name == "yarpy /aio/in"]
+        return [one for one in LOOP.entrances if one.name == "/aio/in"]
 
     asyncio.run(main())
 

@@ -12,6 +12,7 @@ from support.wait import wait_until
 
 from yarpy.contact import Contact
 from yarpy.errors import AddressError, NoNameServer
+from yarpy.link.accept_loop import LOOP
 from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.nameserver.local import LocalNames
@@ -222,7 +223,7 @@ def test_port_that_cannot_be_opened_leaves_nothing_behind(call: str) -> None:
     for _ in range(2):
         with pytest.raises(NoNameServer):
             Port("/here", names=names)  # not: the name is in use
-    assert [thread for thread in threading.enumerate() if thread.name == "yarpy /here"] == []
+    assert "/here" not in [one.name for one in LOOP.entrances]
     if call == "set":
         assert names.query("/here") is None
 

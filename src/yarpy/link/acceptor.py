@@ -1,16 +1,16 @@
-"""Acceptor: the thread of a port that takes new connections.
+"""Acceptor: takes the new connections of a port.
 
-Rules: a connection costs a thread only once it has said what it speaks, in eight bytes, so a
-thousand silent ones cost a thousand file numbers and nothing else (`Lobby`). How many are served
-is limited (`Occupancy`). The last file numbers are the program's (`Descriptors`): when they run
-short, the connection silent for longest is closed; if none is silent, the port takes none for a
-while.
+Rules: a port that nobody talks to costs a socket and no thread: one waits for all ports
+(`accept_loop`). A connection costs a thread only once it has said what it speaks, in eight bytes,
+so a thousand silent ones cost a thousand file numbers and nothing else (`Lobby`). How many are
+served is limited (`Occupancy`). The last file numbers are the program's (`Descriptors`): when they
+run short, the connection silent for longest is closed; if none is silent, the port takes none for
+a while.
 """
 
 from __future__ import annotations
 
 import errno
-import selectors
 import socket
 import sys
 import threading
@@ -19,6 +19,7 @@ from contextlib import suppress
 from typing import Final
 
 from yarpy.carriers.base import MAGIC_SIZE
+from yarpy.link.accept_loop import LOOP
 from yarpy.link.descriptors import Descriptors
 from yarpy.link.episode import Episode
 from yarpy.link.lobby import Lobby
@@ -53,7 +54,7 @@ class Acceptor:
     ) -> None:
         self._listener = TcpListener(port)
         self.port = self._listener.port
-        self._name = name
+        self.name = name
         self._serve = serve
         self._speaks_first = speaks_first
         self.occupancy = Occupancy(name)
@@ -62,32 +63,58 @@ class Acceptor:
         self._crowded = Episode(name, "fewer silent connections wait again")
         self._short = Episode(name, "takes connections again, there are free file descriptors")
         self._paused = False
-        self._selector = selectors.DefaultSelector()
-        self._selector.register(self._listener.sock, selectors.EVENT_READ)
-        self.thread = threading.Thread(target=self._run, name=f"yarpy {name}", daemon=True)
-        self.thread.start()
-
-    def _run(self) -> None:
-        listener, lobby = self._listener, self._lobby
+        self._gone = threading.Event()  # no socket is left
         try:
-            while not listener.closed:
-                left = lobby.left()
-                if self._paused:
-                    left = AGAIN if left is None else min(AGAIN, left)
-                for key, _ in self._selector.select(left):
-                    if key.fileobj is listener.sock:
-                        self._accept()
-                    else:
-                        assert isinstance(key.fileobj, socket.socket)
-                        self._wake(key.fileobj)
-                for sock in lobby.overdue():
-                    self._let_go(sock)
-                if self._paused:
-                    self._look_again()
-        finally:
-            self._selector.close()
-            listener.release()
-            lobby.clear()
+            LOOP.enter(self._listener.sock, self)
+        except BaseException:
+            self._listener.release()
+            raise
+
+    @property
+    def thread_id(self) -> int:
+        """The kernel's id of the thread that waits for connections."""
+        return (LOOP.thread and LOOP.thread.native_id) or -1
+
+    # -- what the loop calls ----------------------------------------------------------------------
+
+    def ready(self, sock: socket.socket) -> None:
+        """Somebody comes, or speaks."""
+        if sock is self._listener.sock:
+            self._accept()
+        else:
+            self._wake(sock)
+        self.look()
+
+    def left(self) -> float | None:
+        """Seconds until something is to be done though nobody speaks."""
+        if self._gone.is_set():
+            return None
+        left = self._lobby.left()
+        if self._paused:
+            left = AGAIN if left is None else min(AGAIN, left)
+        return left
+
+    def look(self) -> None:
+        """Let those go who have been silent for too long; or all, if the port is closed."""
+        if self._listener.closed:
+            self._leave_all()
+            return
+        for sock in self._lobby.overdue():
+            self._let_go(sock)
+        if self._paused:
+            self._look_again()
+
+    def _leave_all(self) -> None:
+        if self._gone.is_set():
+            return
+        for sock in self._lobby:
+            LOOP.forget(sock)
+        if not self._paused:
+            LOOP.forget(self._listener.sock)
+        self._listener.release()
+        self._lobby.clear()
+        LOOP.leave(self)
+        self._gone.set()
 
     # -- taking them ------------------------------------------------------------------------------
 
@@ -123,12 +150,12 @@ class Acceptor:
         self._short.happened("takes no connections for now: %s (ulimit -n)", why)
         if not self._paused:
             self._paused = True
-            self._selector.unregister(self._listener.sock)
+            LOOP.forget(self._listener.sock)
 
     def _look_again(self) -> None:
         if not self._listener.closed and self._descriptors.take():
             self._paused = False
-            self._selector.register(self._listener.sock, selectors.EVENT_READ)
+            LOOP.watch(self._listener.sock, self)
             if self._descriptors.plenty:
                 self._short.over()
 
@@ -143,7 +170,7 @@ class Acceptor:
         with suppress(OSError):
             sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVLOWAT, MAGIC_SIZE)
         self._lobby.enter(sock, address)
-        self._selector.register(sock, selectors.EVENT_READ)
+        LOOP.watch(sock, self)
 
     def _drop_oldest(self) -> bool:
         oldest = self._lobby.oldest()
@@ -160,7 +187,7 @@ class Acceptor:
         sock.close()
 
     def _leave(self, sock: socket.socket) -> str:
-        self._selector.unregister(sock)
+        LOOP.forget(sock)
         address = self._lobby.leave(sock)
         if 2 * len(self._lobby) < self.occupancy.share:
             self._crowded.over()
@@ -168,8 +195,8 @@ class Acceptor:
 
     def _wake(self, sock: socket.socket) -> None:
         """Serve a connection that has said what it speaks; one that only hung up was a probe."""
-        if sock.fileno() < 0:
-            return  # it went a moment ago
+        if sock.fileno() < 0 or self._listener.closed:
+            return  # it went a moment ago, or goes with all others
         address = self._leave(sock)
         try:
             if len(sock.recv(MAGIC_SIZE, _PEEK)) >= _ENOUGH:
@@ -188,13 +215,13 @@ class Acceptor:
             sock.close()
             return
         thread = threading.Thread(
-            target=self._run_one, args=(sock, address), name=f"yarpy {self._name} <- ?", daemon=True
+            target=self._run_one, args=(sock, address), name=f"yarpy {self.name} <- ?", daemon=True
         )
         try:
             thread.start()
         except RuntimeError as error:  # the system has no more threads, or Python is ending
             if threading.main_thread().is_alive():
-                log.error("%s: a connection is refused: %s", self._name, error)
+                log.error("%s: a connection is refused: %s", self.name, error)
             self.occupancy.leave(address)
             sock.close()
 
@@ -208,12 +235,12 @@ class Acceptor:
 
     def abandon(self) -> None:
         """Close this process's copies of the sockets, in a forked process without our thread."""
-        self._selector.close()
         self._listener.release()
         self._lobby.clear()
+        self._gone.set()
 
     def close(self) -> None:
         """Stop listening; connections that are being served are not touched."""
         self._listener.close()
-        if threading.current_thread() is not self.thread:
-            self.thread.join(5.0)
+        if threading.current_thread() is not LOOP.thread:
+            self._gone.wait(5.0)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import socket
 import time
+from collections.abc import Iterator
 from typing import Final
 
 from yarpy.link.occupancy import is_here
@@ -26,6 +27,9 @@ class Lobby:
 
     def __len__(self) -> int:
         return len(self._waiting)
+
+    def __iter__(self) -> Iterator[socket.socket]:
+        return iter(self._waiting)
 
     def enter(self, sock: socket.socket, address: str) -> None:
         """A connection has come."""

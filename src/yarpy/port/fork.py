@@ -12,7 +12,7 @@ from __future__ import annotations
 import os
 from functools import cache
 
-from yarpy.link import budget
+from yarpy.link import accept_loop, budget
 from yarpy.link.inbound import Inbound
 from yarpy.link.outbound import Outbound
 from yarpy.names.default import DEFAULT
@@ -30,6 +30,7 @@ def prepare() -> None:
 def _leave_behind() -> None:
     DEFAULT.start_over()
     budget.start_over()
+    accept_loop.LOOP.start_over()
     for hub in RECONNECTOR.start_over():
         _abandon(hub)
 

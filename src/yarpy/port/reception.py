@@ -73,7 +73,7 @@ class Reception:
     @property
     def thread_id(self) -> int:
         """The kernel's id of the thread that accepts connections."""
-        return -1 if self._acceptor is None else self._acceptor.thread.native_id or -1
+        return -1 if self._acceptor is None else self._acceptor.thread_id
 
     def _welcome(self, sock: socket.socket) -> None:
         """The life of one accepted connection, in its own thread."""
