@@ -17,7 +17,8 @@ class Line:
         self.priority = "DATA"
         self.closed = False
 
-    def put(self, data: bytes) -> None:
+    def put(self, data: bytes | bytearray) -> None:
+        data = bytes(data)
         self.wire.sent.append((self.priority, data))
         if not self.wire.lose(data):
             self.wire.to(self.name)._line.inbox.put(data)  # type: ignore[attr-defined]

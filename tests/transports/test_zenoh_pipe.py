@@ -63,6 +63,16 @@ def test_large_messages_go_in_pieces_and_credit_comes_back() -> None:
     assert max(len(sent) for _, sent in wire.sent) == zenoh_pipe.PIECE + 5
 
 
+def test_large_messages_of_all_sizes_follow_each_other() -> None:
+    wire = Wire()
+    large = zenoh_pipe.LARGE
+    for size in (large, large + 1, large, 2 * large, 3 * large, large - 1, large):
+        data = bytes([size % 251]) * size
+        wire.one.send([data[:10], memoryview(data)[10:]])
+        assert read(wire.other, size) == data
+    assert len(wire.one._spare) <= zenoh_pipe.SPARE
+
+
 def test_a_sender_learns_what_was_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(zenoh_pipe, "SAY", 0.0)
     wire = Wire()
@@ -174,7 +184,7 @@ def test_the_other_end_of_a_broken_pipe_is_told(monkeypatch: pytest.MonkeyPatch)
 
 def test_a_session_that_was_closed_ends_it() -> None:
     class Closed(Line):
-        def put(self, data: bytes) -> None:
+        def put(self, data: bytes | bytearray) -> None:
             raise RuntimeError("closed")
 
         def recv(self) -> bytes:

@@ -79,7 +79,7 @@ class _Line:
         if before is not None:
             undeclare(before)
 
-    def put(self, data: bytes) -> None:
+    def put(self, data: bytes | bytearray) -> None:
         with self._writing:
             if CALLS.over:
                 raise ConnectionAbortedError(ENDING)

@@ -34,6 +34,8 @@ DATA, END, WAKE, CREDIT, CLOSED, RESET = range(6)
 WINDOW: Final = 1 << 23  # bytes on their way to a reader
 MESSAGES: Final = 1024
 PIECE: Final = 1 << 21  # bytes of one message of Zenoh
+LARGE: Final = 1 << 16  # bytes of a message from which on its memory is kept for the next
+SPARE: Final = 2  # such messages of different sizes: of one in pieces, the first and the last
 SAY: Final = 0.1  # seconds after which a reader says what it has taken, or a quarter of the above
 AGAIN: Final = 5.0  # seconds after which the other end is told once more of the end
 GAP: Final = 2.0  # seconds in which messages may overtake each other
@@ -52,8 +54,8 @@ _PRIORITIES: Final = ((8, "DATA"), (16, "DATA_LOW"), (24, "DATA_HIGH"), (32, "IN
 class Line(Protocol):
     """What a pipe needs of Zenoh. `put`, `tell` and the like raise whatever Zenoh raises."""
 
-    def put(self, data: bytes) -> object:
-        """Send to the other end's reader."""
+    def put(self, data: bytes | bytearray) -> object:
+        """Send a copy to the other end's reader."""
 
     def tell(self, data: bytes) -> object:
         """Send to the other end's exchange."""
@@ -111,6 +113,7 @@ class ZenohPipe:
         # What goes.
         self._number = 0
         self._sent = 0  # bytes
+        self._spare: dict[int, bytearray] = {}  # size -> memory of a large message
         self._confirmed = self._confirmed_number = 0  # what the other end has taken
         self._changed = threading.Condition()  # of credit, and of the pipe's end
         self._sending = threading.Lock()  # messages leave in the order of their numbers
@@ -342,7 +345,9 @@ class ZenohPipe:
 
     def _go(self, size: int, pieces: Sequence[Buffer]) -> None:
         """Send a message of so many bytes."""
-        data = b"".join((_pack(DATA, self._number), *pieces))
+        head = _pack(DATA, self._number)
+        small = size < LARGE
+        data = b"".join((head, *pieces)) if small else self._joined(head, size, pieces)
         self._number = (self._number + 1) % _ALL
         self._sent += size
         try:
@@ -350,6 +355,22 @@ class ZenohPipe:
         except Exception as error:
             self.break_off("the session with Zenoh is closed")
             raise BrokenPipeError(self._broken) from error
+
+    def _joined(self, head: bytes, size: int, pieces: Sequence[Buffer]) -> bytearray:
+        """A large message, in memory that was used for those before it: fresh memory of that size
+        costs several times as much as copying does."""
+        data = self._spare.get(size)
+        if data is None:
+            if len(self._spare) == SPARE:
+                self._spare.clear()
+            data = self._spare[size] = bytearray(_SIZE + size)
+        with memoryview(data) as view:
+            view[:_SIZE] = head
+            end = _SIZE
+            for piece in pieces:
+                begin, end = end, end + len(piece)
+                view[begin:end] = piece
+        return data
 
     def _wait_for_room(self, deadline: float | None) -> None:
         with self._changed:
