@@ -50,6 +50,7 @@ class Driver:
         self.transport = transport
         self._objects = transport if isinstance(transport, ObjectTransport) else None
         self.stream = ByteStream(limit) if self._objects is None else ObjectStream()
+        self.stream.lend = getattr(transport, "lend", None)
         self.admission = Admission()  # what the peer may do with our port
         self.silence = ""  # why nobody can hear what our port writes: it never writes
         # Whether polling may beat sleeping.

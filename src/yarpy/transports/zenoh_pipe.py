@@ -102,6 +102,7 @@ class ZenohPipe:
         self._tos = 0
         # What comes. Only the thread that reads changes it.
         self._chunk = _NOTHING
+        self._whole = b""  # that which `_chunk` is the rest of
         self._over = False  # the reading side has seen the end
         self._next = 0  # number of the message that comes next
         self._early: dict[int, bytes] = {}  # what has overtaken that
@@ -192,7 +193,7 @@ class ZenohPipe:
                 continue
             if not self._early and data[:_SIZE] == _pack(DATA, self._next) != data:
                 self._next = (self._next + 1) % _ALL
-                self._chunk = memoryview(data)[_SIZE:]
+                self._whole, self._chunk = data, memoryview(data)[_SIZE:]
             else:
                 self._accept(data)
         return not self._over
@@ -242,7 +243,7 @@ class ZenohPipe:
         else:
             self._next = (number + 1) % _ALL
             self._gap = time.monotonic() + GAP if self._early else 0.0
-            self._chunk = memoryview(data)[_SIZE:]
+            self._whole, self._chunk = data, memoryview(data)[_SIZE:]
 
     def _lose(self, reason: str) -> None:
         self._over = True
@@ -268,11 +269,31 @@ class ZenohPipe:
         count = len(chunk)
         if count <= len(view):
             view[:count] = chunk
-            self._chunk = _NOTHING
+            self._whole, self._chunk = b"", _NOTHING
         else:
             count = len(view)
             view[:] = chunk[:count]
             self._chunk = chunk[count:]
+        self._take(count)
+        return count
+
+    def lend(self, count: int, back: int) -> memoryview | None:
+        """The next `count` bytes, read-only, where they have come, or None. They begin with the
+        last `back` bytes of those that were received."""
+        whole = self._whole
+        start = len(whole) - len(self._chunk) - back
+        end = start + count
+        if start < _SIZE or end > len(whole) or 2 * count < len(whole):
+            return None  # they lie elsewhere, or would keep much more than themselves
+        view = memoryview(whole)
+        self._chunk = view[end:]
+        if not self._chunk:
+            self._whole = b""
+        self._take(count - back)
+        return view[start:end]
+
+    def _take(self, count: int) -> None:
+        """So many bytes were taken, which the sender is told now and then."""
         self._taken += count
         now = time.monotonic()
         if (
@@ -282,7 +303,6 @@ class ZenohPipe:
         ) and not self._broken:
             self._said, self._said_number, self._due = self._taken, self._next, now + SAY
             self._tell(_COUNT.pack(CREDIT, self._taken, self._next))
-        return count
 
     def _tell(self, data: bytes) -> None:
         try:

@@ -86,6 +86,7 @@ class ByteStream:
         "came_aside",
         "ending",
         "head",
+        "lend",
         "limit",
         "output",
         "paused",
@@ -103,6 +104,9 @@ class ByteStream:
         self.came_aside = 0  # bytes that have come in another way
         #: what finds the end of the reply that is expected, where it is no Bottle
         self.ending: Callable[[int], Walk] | None = None
+        #: the next so many bytes where a transport has them, of which the last so many of those
+        #: that have come here are the first; None: they have to be copied
+        self.lend: Callable[[int, int], memoryview | None] | None = None
         self._eof = False
         self.output: list[Buffer] = []
         self._big: memoryview | None = None  # where a large read lands
@@ -307,6 +311,11 @@ class ByteStream:
             raise RemoteProtocolError(
                 f"a message of {count} bytes is announced; the limit is {self.limit} bytes"
             )
+        lent = None if self.lend is None else self.lend(count, self.tail - self.head)
+        if lent is not None:
+            self.came_aside += count - (self.tail - self.head)
+            self.head = self.tail
+            return lent
         target = self._spare_buffer(count)
         view = memoryview(target)
         filled = min(self.tail - self.head, len(target))
