@@ -13,6 +13,7 @@ from support.zenoh import Line, Wire
 from yarpy.qos import tos_of
 from yarpy.transports import zenoh_pipe
 from yarpy.transports.zenoh_pipe import ZenohPipe, priority_of
+from yarpy.wire.stream import ByteStream
 
 
 def read(pipe: ZenohPipe, count: int) -> bytes:
@@ -71,6 +72,61 @@ def test_large_messages_of_all_sizes_follow_each_other() -> None:
         wire.one.send([data[:10], memoryview(data)[10:]])
         assert read(wire.other, size) == data
     assert len(wire.one._spare) <= zenoh_pipe.SPARE
+
+
+def test_large_messages_are_lent_where_they_lie() -> None:
+    wire = Wire()
+    data = bytes(range(256)) * 400
+    wire.one.send([b"head", data, b"tail"])
+    assert wire.other.lend(10, 0) is None  # nothing has come yet
+    first = read(wire.other, 100)
+    lent = wire.other.lend(len(data), 96)
+    assert first[:4] == b"head" and lent is not None and lent.readonly and lent == data
+    assert read(wire.other, 4) == b"tail"
+    assert wire.other._taken == len(data) + 8
+
+
+def test_what_would_keep_much_more_than_itself_is_not_lent() -> None:
+    wire = Wire()
+    data = bytes(1000)
+    wire.one.send([data])
+    wire.one.send([data])
+    assert read(wire.other, 10) == data[:10]
+    assert wire.other.lend(400, 0) is None
+    assert wire.other.lend(1000, 0) is None  # a part of it comes later
+    assert wire.other.lend(600, 11) is None  # so much has not come
+    lent = wire.other.lend(600, 10)
+    assert lent == data[:600] and read(wire.other, 1400) == data + data[:400]
+
+
+@given(
+    st.lists(st.sampled_from((1, 100, 20_000, 70_000, 150_000)), max_size=8),
+    st.lists(st.integers(1, 200_000), max_size=8),
+)
+def test_a_stream_reads_the_same_whether_it_is_lent_or_copied(
+    reads: list[int], cuts: list[int]
+) -> None:
+    wire, stream = Wire(), ByteStream()
+    stream.lend = wire.other.lend
+    data = bytes(i % 251 for i in range(997)) * (sum(reads) // 997 + 1)
+    data = data[: sum(reads)]
+    begin = 0
+    for cut in (*cuts, len(data)):
+        wire.one.send([data[begin : begin + cut]])
+        begin += cut
+    found = []
+    for count in reads:
+        steps = stream.read_exact(count)
+        try:
+            while True:
+                next(steps)
+                got = wire.other.try_recv_into(stream.get_buffer())
+                assert got > 0
+                stream.buffer_updated(got)
+        except StopIteration as stop:
+            found.append(bytes(stop.value))
+    assert b"".join(found) == data and not stream.waiting
+    assert wire.other._taken == len(data)
 
 
 def test_a_sender_learns_what_was_taken(monkeypatch: pytest.MonkeyPatch) -> None:
