@@ -47,6 +47,8 @@ def main(functions):
     parser.add_argument("--at", type=json.loads, default={}, help="what the server printed")
     parser.add_argument("--warmup", type=int, default=100)
     parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--side", type=int, default=1024, help="of images, in pixels")
+    parser.add_argument("--prepare", action="store_true", help="images are made in shared memory")
     parser.add_argument("--pause", type=float, default=0.0, help="seconds before each exchange")
     parser.add_argument("--server", type=int, help="process id of the server, to ask what it used")
     parser.add_argument("--core", type=int, help="the only processor core to run on")

@@ -7,7 +7,7 @@ name server configured. Writers are plain Ports (they send in the caller), reade
 import os
 
 from peer import main, ready
-from workload import IMAGE_SIDE, KILOBYTE_TEXT, NUMBER, READERS
+from workload import KILOBYTE_TEXT, NUMBER, READERS
 
 import yarp
 
@@ -88,13 +88,13 @@ def serve_large(options):
 
 def large(options):
     outlet, inlet = client_ports(options, yarp.BufferedPortImageMono())
-    pixels = bytearray(IMAGE_SIDE * IMAGE_SIDE)
+    pixels = bytearray(options.side * options.side)
     image = yarp.ImageMono()
-    image.setExternal(memoryview(pixels), IMAGE_SIDE, IMAGE_SIDE)
+    image.setExternal(memoryview(pixels), options.side, options.side)
 
     def exchange(index, _keep=pixels):  # the image does not hold what it looks at
         outlet.write(image)
-        assert inlet.read().width() == IMAGE_SIDE
+        assert inlet.read().width() == options.side
 
     return exchange
 

@@ -7,7 +7,7 @@ import socket
 import struct
 
 from peer import main, ready
-from workload import IMAGE_SIDE, KILOBYTE_TEXT, NUMBER, READERS
+from workload import KILOBYTE_TEXT, NUMBER, READERS
 
 SMALL = struct.Struct("<id")
 LENGTH = struct.Struct("<i")
@@ -90,7 +90,7 @@ def serve_large(options):
 
 def large(options):
     line = connect(options)
-    image = bytearray(IMAGE_SIDE * IMAGE_SIDE)
+    image = bytearray(options.side * options.side)
 
     def exchange(index):
         line.send_large(image)

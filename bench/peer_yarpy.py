@@ -10,7 +10,7 @@ import threading
 
 import numpy as np
 from peer import main, ready, start_router
-from workload import IMAGE_SIDE, KILOBYTE_TEXT, NUMBER, READERS
+from workload import KILOBYTE_TEXT, NUMBER, READERS
 
 import yarpy
 
@@ -96,17 +96,25 @@ def serve_large(options):
     inlet, outlet = serve_ports(options)
     for message in inlet:
         outlet.write(message.value)
+        del message
 
 
 def large(options):
     outlet, inlet = client_ports(options)
-    image = np.zeros((IMAGE_SIDE, IMAGE_SIDE), np.uint8)
+    shape = (options.side, options.side)
+    image = np.zeros(shape, np.uint8)
 
     def exchange(index):
         outlet.write(image)
-        assert inlet.read().value.width == IMAGE_SIDE
+        assert inlet.read().value.width == options.side
 
-    return exchange
+    def exchange_prepared(index):
+        image = outlet.prepare(shape, np.uint8)
+        image[0, 0] = index % 256
+        outlet.write(image)
+        assert inlet.read().value.array[0, 0] == index % 256
+
+    return exchange_prepared if options.prepare else exchange
 
 
 def serve_flood(options):

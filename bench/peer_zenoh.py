@@ -13,7 +13,7 @@ import time
 
 import zenoh
 from peer import main, ready, start_router
-from workload import IMAGE_SIDE, KILOBYTE_TEXT, NUMBER, READERS
+from workload import KILOBYTE_TEXT, NUMBER, READERS
 
 SMALL = struct.Struct("<id")
 INDEX = struct.Struct("<i")
@@ -143,7 +143,7 @@ def serve_large(options):
 
 def large(options):
     _session, outlet, inlet = connect(options)
-    image = bytes(IMAGE_SIDE * IMAGE_SIDE)
+    image = bytes(options.side * options.side)
 
     def exchange(index, _keep=_session):
         outlet.put(image)

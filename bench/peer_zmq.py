@@ -4,7 +4,7 @@ import struct
 
 import zmq
 from peer import main, ready
-from workload import IMAGE_SIDE, KILOBYTE_TEXT, NUMBER, READERS
+from workload import KILOBYTE_TEXT, NUMBER, READERS
 
 SMALL = struct.Struct("<id")
 INDEX = struct.Struct("<i")
@@ -77,7 +77,7 @@ def serve_large(options):
 
 def large(options):
     outlet, inlet = connect_streams(options)
-    image = bytearray(IMAGE_SIDE * IMAGE_SIDE)
+    image = bytearray(options.side * options.side)
 
     def exchange(index):
         outlet.send(image, copy=False)

@@ -68,6 +68,10 @@ PEERS = (
     Peer("yarpy-tcp", "peer_yarpy.py", "yarpy", ("--carrier", "tcp")),
     Peer("yarpy-fast_tcp", "peer_yarpy.py", "yarpy", ("--carrier", "fast_tcp")),
     Peer("yarpy-memory", "peer_yarpy.py", "yarpy", ("--carrier", "memory")),
+    # The same, where the client fills memory that `port.prepare` gives.
+    Peer(
+        "yarpy-prepare", "peer_yarpy.py", "yarpy", ("--carrier", "memory", "--prepare"), ("large",)
+    ),
     Peer(
         "yarpy-tls",
         "peer_yarpy.py",
@@ -103,6 +107,7 @@ class Bench:
             at = server.wait_line(r"^\{.*\}$", timeout=40, stream="out")[0]
             counts = ("--warmup", str(workload.warmup), "--count", str(workload.count))
             rest = ("--pause", str(workload.pause), "--server", str(server.pid))
+            rest += ("--side", str(workload.side))
             with self.start(peer, "client", workload, 0, "--at", at, *counts, *rest) as client:
                 answer = client.wait_line(r"^\{.*\}$", timeout=60, stream="out")[0]
         return report.Measurement(**json.loads(answer))

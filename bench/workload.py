@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 
 READERS = 50
 KILOBYTE_TEXT = "x" * 1000
-IMAGE_SIDE = 1024  # pixels; a mono image of 1 MiB
 NUMBER = 1.5
 
 
@@ -35,6 +34,8 @@ class Workload:
     count: int
     cores: int = 2
     pause: float = 0.0  # seconds
+    side: int = 1024
+    """Pixels of the square, mono images, if there are any: 1 MiB."""
 
     @property
     def more_is_better(self) -> bool:
@@ -57,6 +58,9 @@ WORKLOADS = {
     "rpc-1-core": replace(_RPC, cores=1),
     "large": _LARGE,
     "large-1-core": replace(_LARGE, cores=1),
+    "large-8": replace(
+        _LARGE, title="8 MiB image there and back, two streams", warmup=10, count=50, side=2896
+    ),
     "flood": Workload(
         "flood", "small messages one way, until the last is read", "messages/s", 2000, 30000
     ),
