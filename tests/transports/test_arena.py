@@ -28,6 +28,7 @@ class Peer:
         self.ledger = memoryview(self.memory).cast("I")
         ours, self.pipe = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
         self.reader = Reader(ledger, ours)
+        os.close(ledger)
 
     def give_back(self, placed: Placed | tuple[int, int]) -> None:
         slot, generation = (

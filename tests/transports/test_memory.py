@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import socket
 import struct
@@ -105,6 +106,26 @@ def test_a_system_without_such_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     assert open_memory(True, 1, "") is None
     with pytest.raises(LocalProtocolError, match="use tcp"):
         open_memory(False, 0, "/out")
+
+
+def test_a_program_without_descriptors_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """None is closed twice, which could be one of another thread by then."""
+    sending = SendingTransport("/out")
+    reading = open_memory(True, sending.port, "")
+    assert reading is not None
+
+    def fails(*arguments: object) -> None:
+        raise OSError(24, "Too many open files")
+
+    before = len(os.listdir("/proc/self/fd"))
+    with monkeypatch.context() as patch:
+        patch.setattr("yarpy.transports.arena.mmap.mmap", fails)
+        with pytest.raises(OSError, match="Too many"):
+            sending.ready()
+    sending.close()
+    reading.close()
+    gc.collect()
+    assert len(os.listdir("/proc/self/fd")) == before - 4  # two of the arena, and the sockets
 
 
 def test_a_reader_that_does_not_come(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -60,6 +60,9 @@ class Driver:
         self._penalty = FIRST_PENALTY
         self.bytes_in = 0
         self.bytes_out = 0
+        self.aside = (
+            0  # of these bytes, what did not go through the transport; the window resets it
+        )
         self._group = group
 
     def run(
@@ -156,6 +159,7 @@ class Driver:
                 self.bytes_out -= len(piece)
             if stream.aside:
                 self.bytes_out += stream.aside
+                self.aside += stream.aside
                 stream.aside = 0
         else:
             for piece in output:

@@ -52,6 +52,9 @@ class Window:
         """A message has left at time `now` (time.perf_counter); whether to `look`."""
         if not self.open:
             self._open(now)
+        elif self._driver.aside:  # what lies in shared memory is not under way
+            self.reach += self._driver.aside
+            self._driver.aside = 0
         self.open += 1
         return self.open % ASK_EVERY == 0
 
@@ -61,6 +64,7 @@ class Window:
         alone = self._carrier.limits.ack_timeout is not None  # each message waits for the last
         self.until = 0.0 if alone else now + WINDOW_SECONDS
         self.reach = self._driver.bytes_out + WINDOW_BYTES
+        self._driver.aside = 0
 
     def wait(self, until: float | None) -> None:
         """Wait until the next message may go. Raises Timeout, LinkClosed."""

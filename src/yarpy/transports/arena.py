@@ -144,15 +144,12 @@ class Placed:
 
 
 class Reader:
-    """What the reader of one connection has given back. `ledger` and `pipe` are descriptors of
-    ours."""
+    """What the reader of one connection has given back. Of the two descriptors the pipe becomes
+    ours. Raises OSError."""
 
     def __init__(self, ledger: int, pipe: int) -> None:
         self._pipe = pipe
-        try:
-            self._memory = mmap.mmap(ledger, LEDGER)
-        finally:
-            os.close(ledger)
+        self._memory = mmap.mmap(ledger, LEDGER)
         self._given_back = memoryview(self._memory).cast("I")
         self.ended = False  # the connection has
 

@@ -65,11 +65,6 @@ def lease_type() -> Any:
     return Lease
 
 
-def leases() -> bool:
-    """Whether there can be any: whether one was made."""
-    return lease_type.cache_info().currsize > 0
-
-
 def place_of(blocks: Sequence[Buffer]) -> Place | None:
     """Where the bytes of these blocks lie one after the other in memory that can be shown to
     others; None if they do not.
@@ -78,57 +73,66 @@ def place_of(blocks: Sequence[Buffer]) -> Place | None:
     put there.
     """
     block = blocks[-1] if blocks else b""
-    if type(block) is not memoryview or len(block) < LARGE or not leases():
+    if type(block) is not memoryview or len(block) < LARGE or "numpy" not in sys.modules:
         return None
-    lease = _lease_of(block)
+    lease = _lease_of(block.obj)
     if lease is None or lease.source is None:
         return None
     source: Source = lease.source
     start = _address(block) - source.address
     first: int = lease.offset
+    room: Room | None = lease.room
     head = blocks[0] if len(blocks) == 2 else b"".join(blocks[:-1])
     begin = start - len(head)
     if begin < first or len(head) > HEADROOM:
         return None
-    room: Room | None = lease.room
-    if head and not (
-        room.begin(bytes(head))
-        if room is not None and start == first + HEADROOM
-        else memoryview(lease)[begin - first : start - first] == head
-    ):
+    if not head:
+        pass
+    elif room is not None and start == first + HEADROOM:
+        if not room.begin(bytes(head)):
+            return None
+    elif memoryview(lease)[begin - first : start - first] != head:
         return None
     if room is None:
         return source, begin, lease
-    _lease_of(block, freeze=True)
+    _forbid(block.obj)
     return source, begin, room
 
 
 def freeze(value: object, blocks: Sequence[Buffer]) -> None:
     """Forbid a program to change what it has filled and written: its readers look at it. `blocks`
     are its bytes."""
-    _lease_of(value, freeze=True)  # of an array, even if it was copied all the same
-    if blocks:
-        _lease_of(blocks[-1], freeze=True)
+    _forbid(value)  # an array, even if it was copied all the same
+    block = blocks[-1] if blocks else b""
+    if type(block) is memoryview and block.obj is not value:
+        _forbid(block.obj)
 
 
-def _lease_of(view: object, freeze: bool = False) -> Any:
-    """What a block or array is a view of, by way of the arrays between; None if that is something
-    else."""
-    lease, numpy = lease_type(), sys.modules["numpy"]
-    one: Any = view
-    between = []
+def _lease_of(one: Any) -> Any:
+    """What something is a view of, by way of the arrays between; None if that is something else."""
+    lease, array = lease_type(), sys.modules["numpy"].ndarray
     while type(one) is not lease:
-        if isinstance(one, numpy.ndarray):
-            between.append(one)
+        if isinstance(one, array):
             one = one.base
         elif type(one) is memoryview:
             one = one.obj
         else:
             return None
-    if freeze:
-        for array in (one, *between):
-            array.setflags(write=False)
     return one
+
+
+def _forbid(one: Any) -> None:
+    """Let what is a view of a lease, and all arrays between, not be written to any more."""
+    lease = _lease_of(one)
+    if lease is None or not lease.flags.writeable:
+        return
+    lease.setflags(write=False)
+    while one is not lease:
+        if type(one) is memoryview:
+            one = one.obj
+        else:
+            one.setflags(write=False)
+            one = one.base
 
 
 def address_of(memory: mmap.mmap) -> int:

@@ -150,8 +150,8 @@ class SendingTransport(MemoryTransport):
             pipe = os.pipe2(os.O_CLOEXEC | os.O_NONBLOCK)
             numbers = [arena.number, ledger, pipe[1], theirs.fileno()]
             _send(self.sock, _WORD, numbers)
-            self._reader = Reader(os.dup(ledger), pipe[0])
-            pipe = pipe[1:]
+            ours, pipe = pipe[0], pipe[1:]
+            self._reader = Reader(ledger, ours)
         finally:
             theirs.close()
             for number in (ledger, *pipe):
