@@ -37,12 +37,14 @@ wheel: $(VENV)/.ready
 	YARPY_COMPILE=1 $(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir dist .
 	@ls dist
 
-# The tests of what is compiled, with the compiled one in place of the sources.
+# The tests of what is compiled, with the compiled one in place of the sources; TESTS=tests takes all.
+TESTS ?= tests/wire tests/data tests/link
+COMPILED := PYTHONPATH=$(CURDIR)/build/compiled
 compiled: wheel
 	rm -rf build/compiled
 	$(BIN)/python -m pip install --quiet --no-deps --no-index --find-links dist --target build/compiled yarpy
-	PYTHONPATH=build/compiled $(BIN)/python tests/support/build.py
-	PYTHONPATH=build/compiled $(PYTEST) tests/wire tests/data tests/link
+	$(COMPILED) $(BIN)/python tests/support/build.py
+	$(COMPILED) $(PYTEST) $(TESTS)
 
 # The same on a loaded machine, with the patience that this takes.
 stress: $(VENV)/.ready

@@ -49,6 +49,15 @@ BESIDE = {
     ("module", "resource"),
     ("views", "sim"),
 }
+# The files that can be compiled.
+_TREE = ast.parse((ROOT / "hatch_build.py").read_text("utf-8"))
+CORE = {
+    f"{word.value}.py"
+    for made in _TREE.body
+    if isinstance(made, ast.Assign) and getattr(made.targets[0], "id", "") == "CORE"
+    for word in ast.walk(made.value)
+    if isinstance(word, ast.Constant)
+}
 # The files of the wire that may know how messages are spelled.
 WIRE_KNOWS_DATA = {"message.py", "framing.py", "datagram.py"}
 
@@ -299,3 +308,23 @@ with yarpy.NameServer() as server, yarpy.Port("/reader") as reader, yarpy.Port("
     print(reader.read(timeout=5).value.to_text())
 """
     assert run_python(code).strip() == "1 two"
+
+
+def test_compiled_classes_have_no_interpreted_children() -> None:
+    """mypyc refuses that, and only when such an object is made."""
+    trees = {path: ast.parse(path.read_text("utf-8")) for path in SOURCE.rglob("*.py")}
+    inside = {path: path.relative_to(SOURCE).as_posix() in CORE for path in trees}
+    found = {
+        path: [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+        for path, tree in trees.items()
+    }
+    core = {node.name for path, nodes in found.items() if inside[path] for node in nodes}
+    assert {"ByteStream", "Receiver"} <= core
+    children = [
+        f"{path.relative_to(SOURCE)}: {node.name}"
+        for path, nodes in found.items()
+        if not inside[path]
+        for node in nodes
+        if {ast.unparse(base).rpartition(".")[2] for base in node.bases} & core
+    ]
+    assert not children

@@ -65,6 +65,7 @@ class Inbound:
         self.carrier = carrier
         self.route: Route = carrier.route
         self.receiver = Receiver(driver, carrier)
+        self.advance = self.receiver.advance  # the next message, whatever it is
         self.counter: Counter = self.receiver.counter
         self.turn = Turn()
         self.successor = carrier  # the carrier that goes on when the peer becomes a reader
@@ -165,7 +166,7 @@ class Inbound:
     def _next(self, deadline: float | None) -> Message | None:
         """The next data message that the monitors let through; None if the link is over first."""
         while not self._quit and not self._reversed:
-            message = self.receiver.advance(deadline)
+            message = self.advance(deadline)
             if message.key == DATA or message.key == CALL:
                 if self.chain is None:
                     return message

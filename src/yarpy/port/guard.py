@@ -25,7 +25,6 @@ from yarpy.link.driver import Driver
 from yarpy.link.handshake import find_carrier
 from yarpy.link.inbound import Inbound, Owner
 from yarpy.link.outbound import Outbound
-from yarpy.link.receiver import Receiver
 from yarpy.names.address import is_local
 from yarpy.port.registration import Registration
 from yarpy.route import CarrierSpec, parse_carrier
@@ -73,30 +72,21 @@ def to_read(spec: CarrierSpec) -> list[str]:
     return [*wanted, "administer"] if spec.log is not None else wanted
 
 
-class _Checked(Receiver):
-    """The receiving end of such a connection: its messages are judged before anybody sees them."""
-
-    def __init__(self, link: GuardedInbound) -> None:
-        super().__init__(link.driver, link.carrier)
-        self._link = link
-
-    def advance(self, deadline: float | None) -> Message:
-        message = super().advance(deadline)
-        if message.key in (DATA, CALL):
-            self._link.judge(message)
-        return message
-
-
 class GuardedInbound(Inbound):
     """A connection of a peer that may not do everything."""
 
     def __init__(self, hub: Hub, driver: Driver, carrier: Carrier) -> None:
         super().__init__(hub, driver, carrier)
         self._hub = hub
-        self.receiver = _Checked(self)
-        self.counter = self.receiver.counter
+        self.advance = self._checked  # messages are judged before anybody sees them
 
-    def judge(self, message: Message) -> None:
+    def _checked(self, deadline: float | None) -> Message:
+        message = self.receiver.advance(deadline)
+        if message.key in (DATA, CALL):
+            self._judge(message)
+        return message
+
+    def _judge(self, message: Message) -> None:
         """Refuse a message that must not come. Raises AccessRefused, which ends the connection."""
         why = self.driver.admission.refusal("write")
         if not why:
