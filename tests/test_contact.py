@@ -55,6 +55,12 @@ def test_what_is_no_address(text: str) -> None:
         parse_contact(text)
 
 
+@pytest.mark.parametrize("text", ["mqtt://broker:1883", "mqtt+sub+tls://b:1884/", "/mqtt://b:1"])
+def test_a_broker_is_no_topic(text: str) -> None:
+    with pytest.raises(AddressError, match="a broker without a topic: mqtt://HOST:PORT/TOPIC"):
+        parse_contact(text)
+
+
 @given(st.text(max_size=40))
 def test_any_text_is_a_contact_or_an_address_error(text: str) -> None:
     try:

@@ -88,7 +88,7 @@ def parse_contact(text: str) -> Contact:
     """Read `/name`, `carrier://name`, `/host:port`, `carrier://host:port[/name]`, `host:port`.
 
     An empty carrier in the result means that none was given. Raises AddressError for an empty text,
-    or none.
+    or none, and for a broker without a topic.
     """
     check_text(text)
     if not text:
@@ -105,6 +105,10 @@ def parse_contact(text: str) -> Contact:
         head, slash, tail = rest[1:].partition("/")
         where = _host_port(head)
         if where is not None:
+            if not tail and is_broker(carrier):
+                raise AddressError(
+                    f'"{BROKER}://{head}" is a broker without a topic: mqtt://HOST:PORT/TOPIC'
+                )
             return Contact(carrier or "tcp", slash + tail if tail else "", *where)
         if head and tail and is_broker(carrier):
             return Contact(carrier, slash + tail, head, 8883 if "+tls" in carrier else 1883)

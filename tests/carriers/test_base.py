@@ -5,13 +5,27 @@ from __future__ import annotations
 import pytest
 
 from yarpy import registry
-from yarpy.carriers.base import Carrier, Indexed
+from yarpy.carriers.base import Carrier, Indexed, refuse_unknown
 from yarpy.carriers.tcp import Tcp
+from yarpy.errors import LocalProtocolError
 from yarpy.link.handshake import recognise
-from yarpy.route import Route
+from yarpy.route import Route, parse_carrier
 from yarpy.testing import CarrierConformance
 from yarpy.wire import framing
 from yarpy.wire.stream import ByteStream
+
+
+@pytest.mark.parametrize(
+    "text", ["facts", "facts+a+b.3", "facts+tls+log.in", "facts+c.1+send.throttle+period_ms.10"]
+)
+def test_known_additions(text: str) -> None:
+    refuse_unknown(parse_carrier(text), ("a", "b.VALUE"))
+
+
+@pytest.mark.parametrize("text", ["facts+c", "facts+a+c.secret", "facts+", "facts+send"])
+def test_unknown_additions_are_named_without_their_values(text: str) -> None:
+    with pytest.raises(LocalProtocolError, match=r'facts knows no "\+(c|send|)", but \+a, \+b.V'):
+        refuse_unknown(parse_carrier(text), ("a", "b.VALUE"))
 
 
 class Facts(Carrier):

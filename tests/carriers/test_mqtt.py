@@ -10,8 +10,8 @@ from yarpy.carriers import mqtt_packet as mqtt
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.mqtt import Mqtt, Reader
 from yarpy.data.bottle import Bottle
-from yarpy.errors import RemoteProtocolError
-from yarpy.route import Route
+from yarpy.errors import LocalProtocolError, RemoteProtocolError
+from yarpy.route import Route, parse_carrier
 from yarpy.testing import End
 from yarpy.wire.message import CALL, DATA, Message, Packet
 
@@ -38,6 +38,21 @@ def accepted(hello: bytes, target: str = "/arm/left", piece: int = 0) -> tuple[E
     end.feed(hello)
     assert end.done
     return end, carrier
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("mqtt+bla", 'no "\\+bla"'),
+        ("mqtt+sub+retian", 'no "\\+retian"'),
+        ("mqtt+qos.2", "QoS 0 and 1"),
+        ("mqtt+sub+qos.x", "QoS 0 and 1"),
+        ("mqtt+password.x", r"\+user.NAME"),
+    ],
+)
+def test_what_no_broker_can_be_asked_for_is_not_dialled(text: str, why: str) -> None:
+    with pytest.raises(LocalProtocolError, match=why):
+        Mqtt.of(parse_carrier(text))
 
 
 def read(end: End, carrier: Carrier, data: bytes) -> Message:

@@ -177,9 +177,6 @@ def test_a_login_is_said() -> None:
         ("mqtt", "/mqtt://broker:1883/a/#"),
         ("mqtt", "/mqtt://broker:1883/a/+/b"),
         ("mqtt+sub", "/127.0.0.1:1883/"),
-        ("mqtt+qos.2", "/mqtt://broker:1883/a"),
-        ("mqtt+sub+qos.x", "/mqtt://broker:1883/a"),
-        ("mqtt+password.x", "/mqtt://broker:1883/a"),
     ],
 )
 def test_what_cannot_be_is_said_before_anything_is_sent(spec: str, target: str) -> None:

@@ -185,7 +185,9 @@ def test_a_broker_in_tls_with_passwords(
 
 def test_targets_that_lead_nowhere_are_explained(broker: Broker, out: yarpy.Port) -> None:
     for target, why in (
-        (f"mqtt://127.0.0.1:{broker.port}", "mqtt://HOST/TOPIC"),
+        (f"mqtt://127.0.0.1:{broker.port}", "mqtt://HOST:PORT/TOPIC"),
+        ("mqtt://127.0.0.1", "mqtt://HOST/TOPIC"),
+        (broker.topic("a", "+bla"), r"no \"\+bla\""),
         (broker.topic("a/#"), "one topic"),
         (broker.topic("a", "+qos.2"), "QoS 0 and 1"),
         ("mqtt://127.0.0.1:1/a", "nobody answers"),

@@ -16,11 +16,12 @@ The initiator of a *push* carrier sends the data; of a pull carrier (`push = Fal
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 from yarpy.data import codec
-from yarpy.errors import AccessRefused
+from yarpy.errors import AccessRefused, LocalProtocolError
 from yarpy.route import CarrierSpec, Route
 from yarpy.wire import framing
 from yarpy.wire.effects import May
@@ -225,6 +226,20 @@ def to_write(route: Route) -> list[str]:
     slash) may only ask; monitors are attached at our end."""
     wanted = ["write"] if route.source.startswith("/") else []
     return [*wanted, "attach"] if route.spec.recv else wanted
+
+
+def refuse_unknown(spec: CarrierSpec, words: Sequence[str]) -> None:
+    """Raise LocalProtocolError for an addition that is none of these words, such as `retain` or
+    `user.NAME`, unless it may be a parameter of a monitor."""
+    if spec.send or spec.recv:
+        return
+    known = {word.partition(".")[0] for word in words} | {"tls", "log"}
+    for token in spec.tokens:
+        word = token.partition(".")[0]  # not what may be a password
+        if word not in known:
+            raise LocalProtocolError(
+                f'{spec.base} knows no "+{word[:40]}", but +{", +".join(words)}'
+            )
 
 
 class Indexed(Carrier):

@@ -19,7 +19,7 @@ from typing import Final
 
 from yarpy.carriers import mqtt_packet as mqtt
 from yarpy.carriers.base import Carrier, Delivery
-from yarpy.carriers.mqtt_broker import Asker, Publisher, Subscriber
+from yarpy.carriers.mqtt_broker import Asker, Publisher, Subscriber, check
 from yarpy.carriers.mqtt_peer import CLEAN, MAX_CONNECT, MAX_HEARD, MAX_TOPIC, RPC, MqttPeer
 from yarpy.carriers.payload import to_payload
 from yarpy.errors import AccessRefused, RemoteProtocolError
@@ -38,6 +38,7 @@ class Mqtt(MqttPeer):
 
     @classmethod
     def of(cls, spec: CarrierSpec) -> type[Carrier]:
+        check(spec)
         if "sub" in spec.tokens:
             return Subscriber
         return Asker if RPC in spec.tokens else Publisher

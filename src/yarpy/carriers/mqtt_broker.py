@@ -11,13 +11,14 @@ from collections import deque
 from typing import Final
 
 from yarpy.carriers import mqtt_packet as mqtt
-from yarpy.carriers.mqtt_peer import CLEAN, MAX_CONNECT, MAX_HEARD, MAX_TOPIC, MqttPeer
+from yarpy.carriers.base import refuse_unknown
+from yarpy.carriers.mqtt_peer import CLEAN, MAX_CONNECT, MAX_HEARD, MAX_TOPIC, RPC, MqttPeer
 from yarpy.carriers.payload import message_of, to_payload
 from yarpy.data import codec
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
 from yarpy.log import readable
-from yarpy.route import Route
+from yarpy.route import CarrierSpec, Route
 from yarpy.wire.message import CALL, SMALL, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
@@ -33,6 +34,7 @@ _REFUSALS: Final = {
     0x86: "the name or the password is wrong: say +user.NAME+password.WORD",
     0x87: "it does not admit us: say +user.NAME+password.WORD",
 }
+_WORDS: Final = ("sub", RPC, "qos.1", "retain", "user.NAME", "password.WORD", "v5", "raw")
 _LOGIN: Final = frozenset((4, 5, 0x86, 0x87))
 
 
@@ -46,6 +48,16 @@ _ENDS: Final = {
     0x95: "a message was too large for it",
     0x97: "it got more than we are allowed to send",
 }
+
+
+def check(spec: CarrierSpec) -> None:
+    """Raise LocalProtocolError for what no broker can be asked for."""
+    refuse_unknown(spec, _WORDS)
+    qos = spec.value("qos")
+    if qos not in (None, "0", "1"):
+        raise LocalProtocolError(f"+qos.{qos[:20]}: a port speaks QoS 0 and 1")
+    if spec.value("password") is not None and spec.value("user") is None:
+        raise LocalProtocolError("a password for a broker needs a name: say +user.NAME")
 
 
 class Client(MqttPeer):
@@ -124,8 +136,6 @@ class Client(MqttPeer):
             None if word is None else unquote_to_bytes(word.encode("utf-8", "surrogateescape"))
             for word in words
         )
-        if password is not None and user is None:
-            raise LocalProtocolError("a password for a broker needs a name: say +user.NAME")
         flags = CLEAN | (0x80 if user is not None else 0) | (0x40 if password is not None else 0)
         body = mqtt.string(b"MQTT") + bytes((self.version, flags))
         body += KEEP_ALIVE.to_bytes(2, "big") + self._properties()
@@ -137,10 +147,7 @@ class Client(MqttPeer):
     @property
     def qos(self) -> int:
         """What the carrier string says, 0 or 1."""
-        text = self.route.spec.value("qos") or "0"
-        if text not in ("0", "1"):
-            raise LocalProtocolError(f"+qos.{text[:20]}: a port speaks QoS 0 and 1")
-        return int(text)
+        return int(self.route.spec.value("qos") == "1")
 
     def encode_quit(self, stream: ByteStream) -> None:
         stream.write(mqtt.packet(mqtt.DISCONNECT))

@@ -17,7 +17,7 @@ from __future__ import annotations
 from typing import ClassVar, Final
 
 from yarpy.carriers import zmtp
-from yarpy.carriers.base import Carrier, Delivery, Limits, to_write
+from yarpy.carriers.base import Carrier, Delivery, Limits, refuse_unknown, to_write
 from yarpy.carriers.payload import message_of, payload_of, to_payload
 from yarpy.errors import AccessRefused, LinkClosed, LocalProtocolError, RemoteProtocolError
 from yarpy.log import readable
@@ -55,6 +55,7 @@ class Zmq(Carrier):
 
     @classmethod
     def of(cls, spec: CarrierSpec) -> type[Carrier]:
+        refuse_unknown(spec, _WORDS)
         found = roles_of(spec)
         if len(found) != 1:
             raise LocalProtocolError(
@@ -448,6 +449,7 @@ def received(key: str, frames: list[Buffer]) -> Message:
 
 #: by what a carrier string says of the side that dials
 ROLES: Final[dict[str, type[Zmq]]] = {kind.role: kind for kind in (Pub, Push, Req, Sub, Pull, Rep)}
+_WORDS: Final = ("pub.TOPIC", "push", "req", "sub.TOPIC", "pull", "rep", "raw")
 #: by the type of a socket: what we are to it, and the role of ours that it has itself
 PARTNER: Final[dict[bytes, tuple[type[Zmq], str]]] = {
     b"SUB": (Pub, "sub"),

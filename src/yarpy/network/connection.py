@@ -50,9 +50,13 @@ def query(name: str, names: NameClient | None = None) -> Contact | None:
 
 def find(name: str, names: NameClient | None = None) -> Contact:
     """As `query`, but an unknown name raises UnknownName, which names the nearest known one."""
-    contact = query(name, names)
+    return _find(Contact("", name), names)
+
+
+def _find(end: Contact, names: NameClient | None) -> Contact:
+    contact = query(end.name, names)
     if contact is None:
-        raise unknown(name, names or DEFAULT.current())
+        raise unknown(end.name, names or DEFAULT.current(), end.carrier)
     return contact
 
 
@@ -122,8 +126,8 @@ class Pairing:
             self.spec = parse_carrier(carrier or "tcp")
             self.ask, self.peer, self.pull, self.open = "", "", False, False
             return
-        here = from_ if from_.placed else find(from_.name, names)
-        there = to if to.placed else find(to.name, names)
+        here = from_ if from_.placed else _find(from_, names)
+        there = to if to.placed else _find(to, names)
         constraint = ""
         for contact in (here, there):
             if not _competent(contact):

@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Final
 
 from yarpy.carriers.base import Carrier
-from yarpy.contact import Contact, is_medium, parse_contact
+from yarpy.contact import Contact, is_broker, is_medium, parse_contact
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import (
@@ -80,17 +80,21 @@ def _told(hub: Hub, wanted: Contact, target: str, error: YarpError) -> YarpError
         return error
     told = isinstance(error, WrongPort) or is_medium(wanted.carrier)
     if isinstance(error, UnknownName) and not told:
-        return unknown(target, hub.service())
+        return unknown(target, hub.service(), wanted.carrier)
     if isinstance(error, LoginRefused):
         return LoginRefused(f'"{hub.name}" is not admitted to "{target}": {error}')
     over = parse_carrier(wanted.carrier).base
     return type(error)(f'"{hub.name}" cannot connect to "{target}" over {over}: {error}')
 
 
-def unknown(name: str, names: object) -> UnknownName:
+def unknown(name: str, names: object, carrier: str = "") -> UnknownName:
     """The error for a name that nobody knows, with the nearest one that somebody does."""
     from difflib import get_close_matches
 
+    if is_broker(carrier):
+        return UnknownName(
+            f'no port "{name}" is registered; is it a broker? its topics are mqtt://HOST/TOPIC'
+        )
     near: list[str] = []
     try:
         known = {contact.name: contact for contact in names.list()}  # type: ignore[attr-defined]

@@ -86,3 +86,7 @@ def test_options() -> None:
     for wrong in ({"middleware": "mqtt"}, {"keep": 3}, {"qos": yarpy.Qos(packets="HIGH")}):
         with pytest.raises(ValueError):
             wrap.on("x", **({"middleware": "mqtt://here"} | wrong))(lambda: 1)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="mqtt://HOST"):
+        wrap.on("x", "mqtt://here/x")(lambda: 1)
+    with pytest.raises(yarpy.LocalProtocolError, match=r'no "\+retian"'):
+        wrap.on("x", "mqtt://here", carrier="retian")(lambda: 1)

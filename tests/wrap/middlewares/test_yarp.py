@@ -40,6 +40,11 @@ class Eye:
 pytestmark = pytest.mark.usefixtures("names")
 
 
+def test_a_carrier_that_there_is_not() -> None:
+    with pytest.raises(yarpy.UnknownPlugin, match="udp"):
+        wrap.on("/x", carrier="udpp")(lambda: 1)
+
+
 def test_any_port_reads_and_is_read() -> None:
     eye = Eye()
     with yarpy.BufferedPort("/view") as view, wrap.publish(eye.look):

@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
+from yarpy.contact import parse_contact
 from yarpy.errors import LinkClosed, Timeout, UnknownName, YarpError
+from yarpy.link.handshake import find_carrier
 from yarpy.port.base import BasePort
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcClient, RpcServer
+from yarpy.route import parse_carrier
 from yarpy.wire.message import Message
 from yarpy.wrap import payload, spelling
 from yarpy.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
@@ -25,8 +28,9 @@ class Mqtt:
     name = "mqtt"
 
     def check(self, way: Way) -> None:
-        if not way.place:
+        if not way.place or "/" in way.place:
             raise ValueError('mqtt needs a broker: "mqtt://HOST", or "mqtt://HOST:PORT"')
+        find_carrier(parse_carrier(parse_contact(_target(way)).carrier))
         if way.keep not in ("latest", "all"):
             raise ValueError('a port keeps "latest" or "all" of what comes')
         way.refuse(qos="what leads to a broker has no thread and no priority of its own")

@@ -12,10 +12,12 @@ import time
 from typing import Any
 
 from yarpy.errors import DecodeError, LinkClosed, Timeout, UnknownName, YarpError
+from yarpy.link.handshake import find_carrier
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.qos import Qos
+from yarpy.route import parse_carrier
 from yarpy.wire.message import Message
 from yarpy.wrap.follower import Follower
 from yarpy.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
@@ -45,6 +47,8 @@ class Yarp:
             raise ValueError('a port keeps "latest" or "all" of what comes')
         if not way.topic.startswith("/"):
             raise ValueError(f'"{way.topic}" is no name of a port: it begins with a slash')
+        if way.carrier:
+            find_carrier(parse_carrier(way.carrier))
 
     def publisher(self, way: Way, shape: Shape) -> PortPublisher:
         port = BufferedPort(way.topic, strict=way.keep == "all")
