@@ -1,8 +1,9 @@
 """Decorated methods beside what they stand for: a plain call, a bare `port.write`, Wrapyfi's JSON.
 
 The reader is a program of its own; the contenders take turns, so that a busy machine is as unkind
-to each, and the median over the rounds is compared. A decorated method stamps what it sends, so a
-bare write with a stamp is beside it, too.
+to each. A ratio compares medians of the same round, and the middle one of these counts. A decorated
+method stamps what it sends, so a bare write with a stamp is beside it, too. `paced` waits 2 ms
+before each, as a control loop does; the others follow each other.
 
     python bench/wrap.py [--rounds 30]
 """
@@ -59,21 +60,37 @@ class Arm:
         return self.value
 
 
-def timed(act: Callable[[], object], count: int) -> float:
-    """Seconds of one call."""
+def timed(act: Callable[[], object], count: int, pause: float = 0.0) -> float:
+    """Microseconds of one call."""
+    if pause:
+        found = []
+        for _ in range(count):
+            time.sleep(pause)
+            begun = time.perf_counter()
+            act()
+            found.append(time.perf_counter() - begun)
+        return statistics.median(found) * 1e6
     begun = time.perf_counter()
     for _ in range(count):
         act()
-    return (time.perf_counter() - begun) / count
+    return (time.perf_counter() - begun) / count * 1e6
 
 
-def medians(acts: dict[str, Callable[[], object]], count: int, rounds: int) -> dict[str, float]:
-    """The median of each over the rounds, in microseconds."""
+def medians(
+    acts: dict[str, Callable[[], object]], count: int, rounds: int, pause: float = 0.0
+) -> dict[str, float]:
+    """The median of each over the rounds, in microseconds, and of the ratios of the others to the
+    first."""
     times: dict[str, list[float]] = {name: [] for name in acts}
     for _ in range(rounds):
         for name, act in acts.items():
-            times[name].append(timed(act, count) * 1e6)
-    return {name: statistics.median(found) for name, found in times.items()}
+            times[name].append(timed(act, count, pause))
+    found = {name: statistics.median(one) for name, one in times.items()}
+    first, *others = times
+    for name in others:
+        pairs = zip(times[name], times[first], strict=True)
+        found[f"{name} / {first}"] = statistics.median(one / base for one, base in pairs)
+    return found
 
 
 @contextmanager
@@ -103,21 +120,26 @@ def stamped(port: yarpy.BufferedPort, value: Any) -> Callable[[], object]:
 
 
 def measure(rounds: int) -> dict[str, float]:
-    """Every number, in microseconds."""
+    """Every number: microseconds, and ratios."""
     found = {}
     arm = Arm(SMALL)
     calls = {"call plain": arm.plain, "call decorated, no mode": arm.small}
     found |= medians(calls, 20_000, rounds)
-    for name, value, count in (("small", SMALL, 500), ("picture", PICTURE, 20)):
+    pace = 0.002
+    for name, value, count, pause in (
+        *(("small", SMALL, 500, 0.0), ("small", SMALL, 50, pace)),
+        *(("picture", PICTURE, 20, 0.0), ("picture", PICTURE, 20, pace)),
+    ):
         arm = Arm(value)
         method = getattr(arm, name)
         with read(method) as bare:
+            paced = ", paced" if pause else ""
             publishing = {
-                f"write {name}": lambda bare=bare, value=value: bare.write(value),
-                f"write {name}, stamped": stamped(bare, value),
-                f"publish {name}": method,
+                f"write {name}{paced}": lambda bare=bare, value=value: bare.write(value),
+                f"write {name}, stamped{paced}": stamped(bare, value),
+                f"publish {name}{paced}": method,
             }
-            found |= medians(publishing, count, rounds)
+            found |= medians(publishing, count, rounds, pause)
     encoding = {
         "frame of a picture": lambda: from_parts(to_parts(Frame(PICTURE, 1, 2.0))),
         "Wrapyfi's text of a picture": lambda: from_text(to_text(PICTURE)),
@@ -130,7 +152,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=30)
     for name, value in measure(parser.parse_args().rounds).items():
-        print(f"{name:28} {value:10.2f} us")
+        print(f"{name:60} {value:10.2f} {'' if '/' in name else 'us'}")
 
 
 if __name__ == "__main__":
