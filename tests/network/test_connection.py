@@ -187,7 +187,7 @@ def test_what_cannot_be_connected(names: LocalNames) -> None:
         assert not network.is_connected("/none", "/in", names=names)
 
 
-@pytest.mark.parametrize("carrier", ["shmem", "mpi", "tpc"])
+@pytest.mark.parametrize("carrier", ["quic", "tpc"])
 def test_what_the_ends_can_do_is_for_them_to_say(carrier: str, names: LocalNames) -> None:
     """Who asks need not have the carrier; a refusal says so, since it may be a slip of the pen."""
     with Port("/out", names=names) as out, Port("/in", names=names):

@@ -67,6 +67,8 @@ def confirmed(
     `carrier`: what is sent next may move something. Raises also WrongPort, LinkClosed, Timeout.
     """
     contact = find(name, names)
+    if is_medium(contact.carrier):
+        return contact  # nobody listens there, and no name service knows it
     known = identity.properties_of(names or DEFAULT.current()) if contact.name else None
     identity.confirm(contact, known, secret(), timeout, parse_carrier(carrier).in_tls)
     return contact

@@ -1,6 +1,7 @@
 """`yarpy rpc`."""
 
 import pytest
+from support.ros2_peer import ros2_router
 
 import yarpy
 from yarpy.cli.verbs.rpc import Target, commands_of, many, print_reply
@@ -191,3 +192,13 @@ def test_a_port_of_yarp_4_gets_its_spelling(here, names, monkeypatch):
         assert target.ask(yarpy.Bottle(["f", 1])) == ["f", 1]
         target.close()
     assert heard == [False, True, None]
+
+
+def test_what_a_service_of_ros2_cannot_take_is_said(monkeypatch):
+    with ros2_router() as number:
+        monkeypatch.setenv("YARPY_ZENOH", f"127.0.0.1:{number}")
+        target = Target("ros2://nobody~std_srvs/srv/SetBool")
+        with pytest.raises(yarpy.DecodeError, match=r"expected 1 elements \(data\), got 2$"):
+            target.ask([1, 2])
+        assert str(target.ask([1])[1]).startswith("nobody serves /nobody")  # and it goes on
+        target.close()

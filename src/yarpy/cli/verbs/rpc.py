@@ -56,7 +56,7 @@ class Target:
         self._port = port
         self._name = name
         self._admin = admin
-        self._of_ros = False  # a node or service of ROS, or its master
+        self._of_ros = False  # a node or service of ROS or ROS 2, or the master of ROS
         self._contact: Contact | None = None  # where it was found
         self._yarp4: bool | None = None  # whether it is of YARP 4; None: nobody asked yet
         self._caller: Caller | None = self._dial()
@@ -117,7 +117,7 @@ class Target:
             caller.close()
 
     def _dial(self) -> Caller:
-        from yarpy.contact import parse_contact
+        from yarpy.contact import is_medium, parse_contact
         from yarpy.network.connection import confirmed
         from yarpy.port.probe import ANONYMOUS, Caller, is_of_ros
         from yarpy.ros.part import services
@@ -126,8 +126,8 @@ class Target:
         name = self._name or ANONYMOUS
         found = self._contact = confirmed(self._port, carrier=carrier)
         self._yarp4 = None
-        self._of_ros = is_of_ros(found)
-        if self._of_ros:
+        self._of_ros = is_of_ros(found) or is_medium(carrier)
+        if is_of_ros(found):
             with suppress(NoNameServer):
                 services(None)  # finds the master, and with it the type server
         return Caller(found, name, carrier=carrier, admin=self._admin)
