@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from support.thrift import CALLS
 
+import yarpy
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError, Timeout, UnknownName
@@ -195,6 +196,24 @@ def test_versions(capt: ModuleType) -> None:
     assert made.remote_version() is None
     assert made.remote_version() == (0, 4, 0, 0)
     assert version(b"rubbish") is None
+    assert version(bytes.fromhex("00010000 01000000 01000000 05000400")) is None  # one number
+
+
+@pytest.mark.parametrize("answer", ["no idea", ["no idea"], [["a", 1]], [], b"blob", True])
+def test_peers_that_know_nothing_of_thrift_are_asked_as_yarp_3(answer: Any) -> None:
+    module = loads("service Arm { double twice(1: double x) }")
+    names = yarpy.LocalNames()
+    asked: list[Any] = []
+
+    def handle(message: yarpy.Message) -> Any:
+        asked.append(message.value)
+        return answer if len(asked) == 1 else [3.0]
+
+    with yarpy.RpcServer("/other", handle, names=names):
+        arm = module.Arm.connect("/other", names=names, timeout=10)
+        assert [arm.twice(1.5), arm.twice(1.5)] == [3.0, 3.0]
+        arm.close()
+    assert asked[1:] == [["twice", 1.5]] * 2
 
 
 def test_clients_of_event_loops(capt: ModuleType) -> None:

@@ -45,6 +45,13 @@ def test_versions() -> None:
     assert end(version_ending(1000), FAILED) == 12
 
 
+def test_one_string_is_no_version() -> None:
+    text = bytes.fromhex("00010000 01000000 04000000 07000000 6e6f2069646561")
+    assert end(version_ending(1000), text) == len(text)
+    nested = bytes.fromhex("00010000 01000000 01010000 02000000 01000000 02000000")
+    assert end(version_ending(1000), nested) == len(nested)
+
+
 def test_who_needs_it(capt: ModuleType) -> None:
     assert ending_of(None) is None and ending_of(capt.Point) is None
     assert ending_of(ListOf(capt.Point)) is None and ending_of(ListOf(ListOf(capt.Point))) is None

@@ -17,7 +17,7 @@ from yarpy.data.value import LIST, STRING, VOCAB32, Buffer
 from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError, Timeout, YarpError
 from yarpy.idl.rosmsg.code import Code
 from yarpy.idl.thrift import reader
-from yarpy.idl.thrift.extent import version_ending
+from yarpy.idl.thrift.extent import is_version, version_ending
 from yarpy.idl.thrift.kind import BOOL, VOCAB, flat
 from yarpy.idl.thrift.method import Method
 from yarpy.idl.thrift.payload import FAILURE, VERSION, Payload
@@ -252,7 +252,7 @@ def refused(method: Method, why: str) -> RemoteProtocolError:
 
 def version(answer: Buffer) -> tuple[int, int, int, int] | None:
     """The versions in an answer; None if it says none."""
-    if len(answer) == _VERSION.size and _VERSION.unpack(answer)[:2] == (LIST, 1):
+    if len(answer) == _VERSION.size and is_version(*_HEAD(answer)):
         return _VERSION.unpack(answer)[2:]
     try:
         found = Bottle.from_bytes(answer)

@@ -1,7 +1,8 @@
 """Where the answer of a method ends, where it is no Bottle: replies come without a length.
 
     list<list<i32>>               C++ writes the tag of the inner elements into the outer list
-    getRemoteProtocolVersion      four numbers of two bytes without tags
+    getRemoteProtocolVersion      four numbers of two bytes without tags, where there is one by now:
+                                  of a list with one element the second two bytes are 0
 
 Rules: as `yarpy.data.walker.Walker`: no byte is read twice, nothing is allocated on a header's
 word. An answer that is another one (`[fail]`) is a Bottle and left to it.
@@ -37,6 +38,12 @@ def version_ending(limit: int) -> Extent:
     return Extent(None, limit)
 
 
+def is_version(code: int, count: int, tag: int) -> bool:
+    """Whether an answer that begins so is a version, of a YARP that is not 0, and not a list of one
+    element with its tag, as others answer questions that they do not know."""
+    return code == LIST and count == 1 and tag >> 16 > 0
+
+
 def _is_odd(kind: Kind, known: set[object]) -> bool:
     if isinstance(kind, (ListOf, SetOf)):
         inner = kind.element
@@ -70,7 +77,7 @@ class Extent:
             if len(view) < 12:
                 return 12
             code, count, tag = _TRIPLE(view)
-            if self._kind is None and code == LIST and count == 1:
+            if self._kind is None and is_version(code, count, tag):
                 self.done = len(view) >= _VERSION
                 return _VERSION
             if self._kind is None or code != LIST or (count == 1 and not tag & GROUP_MASK):
