@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from yarpy.config.access import ALL, FILE, Access, Door, Rule
-from yarpy.config.configuration import conf_directory
+from yarpy.config.configuration import conf_directory, folder
 from yarpy.errors import AddressError
 from yarpy.link.admission import RIGHTS, Gate
 
@@ -52,7 +52,7 @@ def current() -> Access | None:
 def path(environment: Mapping[str, str]) -> Path:
     """Where the file is, or would be."""
     said = environment.get(SETTING)
-    return Path(said).absolute() if said else conf_directory(environment) / FILE
+    return Path(said).absolute() if said else folder(str(conf_directory(environment)), FILE)
 
 
 @lru_cache(maxsize=8)

@@ -19,6 +19,7 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from yarpy.errors import AddressError
@@ -93,18 +94,24 @@ def configuration(environment: Mapping[str, str], directory: Path | None = None)
 # --- directories and files
 
 
+@lru_cache(maxsize=256)
+def folder(*parts: str) -> Path:
+    """A path of these parts. Every port asks for the same few, and making one takes a while."""
+    return Path(*parts)
+
+
 def conf_directory(environment: Mapping[str, str], platform: str = sys.platform) -> Path:
     """Where the configuration of this user lives."""
     if "YARP_CONFIG_HOME" in environment:
-        return Path(environment["YARP_CONFIG_HOME"])
+        return folder(environment["YARP_CONFIG_HOME"])
     if environment.get("XDG_CONFIG_HOME"):
-        return Path(environment["XDG_CONFIG_HOME"], "yarp")
+        return folder(environment["XDG_CONFIG_HOME"], "yarp")
     if platform == "win32" and environment.get("APPDATA"):
-        return Path(environment["APPDATA"], "yarp", "config")
-    home = Path(environment.get("HOME") or environment.get("USERPROFILE") or os.path.curdir)
+        return folder(environment["APPDATA"], "yarp", "config")
+    home = environment.get("HOME") or environment.get("USERPROFILE") or os.path.curdir
     if platform == "darwin":
-        return home / "Library" / "Preferences" / "yarp"
-    return home / ".config" / "yarp"
+        return folder(home, "Library", "Preferences", "yarp")
+    return folder(home, ".config", "yarp")
 
 
 def safe_name(name: str) -> str:

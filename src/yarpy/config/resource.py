@@ -20,7 +20,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from yarpy.config.configuration import conf_directory
+from yarpy.config.configuration import conf_directory, folder
 from yarpy.data.text import plain_text
 
 
@@ -107,10 +107,10 @@ def base_directories(environment: Mapping[str, str]) -> list[Path]:
 def data_home(environment: Mapping[str, str]) -> Path:
     """The data of this user: `YARP_DATA_HOME`, `XDG_DATA_HOME`/yarp, ~/.local/share/yarp."""
     if "YARP_DATA_HOME" in environment:
-        return Path(environment["YARP_DATA_HOME"])
+        return folder(environment["YARP_DATA_HOME"])
     if environment.get("XDG_DATA_HOME"):
-        return Path(environment["XDG_DATA_HOME"], "yarp")
-    return Path(environment.get("HOME") or os.path.curdir, ".local", "share", "yarp")
+        return folder(environment["XDG_DATA_HOME"], "yarp")
+    return folder(environment.get("HOME") or os.path.curdir, ".local", "share", "yarp")
 
 
 def configuration_directories(environment: Mapping[str, str]) -> list[Path]:
@@ -136,9 +136,9 @@ def robot_home(environment: Mapping[str, str], robot: str = "") -> Path:
 
 def _directories(environment: Mapping[str, str], name: str, default: list[str]) -> list[Path]:
     if f"YARP_{name}" in environment:
-        return [Path(part) for part in environment[f"YARP_{name}"].split(os.pathsep) if part]
+        return [folder(part) for part in environment[f"YARP_{name}"].split(os.pathsep) if part]
     parts = [part for part in environment.get(f"XDG_{name}", "").split(os.pathsep) if part]
-    return [Path(part, "yarp") for part in parts] or [Path(part) for part in default]
+    return [folder(part, "yarp") for part in parts] or [folder(part) for part in default]
 
 
 def _listed(directories: Sequence[Path]) -> list[Path]:
@@ -146,7 +146,8 @@ def _listed(directories: Sequence[Path]) -> list[Path]:
     files = [
         file
         for directory in directories
-        for file in sorted((directory / "config" / "path.d").glob("*.ini"))
+        if os.path.isdir(folder := os.path.join(directory, "config", "path.d"))
+        for file in sorted(Path(folder).glob("*.ini"))
     ]
     if not files:
         return []

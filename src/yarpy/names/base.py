@@ -83,19 +83,11 @@ class Medium(Protocol):
         ...
 
 
-@runtime_checkable
-class Batch(Protocol):
-    """A name service that can be told all about a port at once."""
-
-    def introduce(self, name: str, properties: Mapping[str, Values], /) -> None:
-        """Set properties of `name`, then announce it."""
-        ...
-
-
 def introduce(names: NameClient, name: str, properties: Mapping[str, Values]) -> None:
-    """Set properties of `name`, then announce it: at once where the service can take that."""
-    if isinstance(names, Batch):
-        names.introduce(name, properties)
+    """Set properties of `name`, then announce it: at once, if the service has such a method."""
+    at_once = getattr(names, "introduce", None)
+    if at_once is not None:
+        at_once(name, properties)
         return
     for key, values in properties.items():
         names.set(name, key, *values)

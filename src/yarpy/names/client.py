@@ -16,6 +16,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any, Literal, TypeVar
 
 from yarpy.contact import Contact
@@ -179,11 +180,11 @@ class YarpNameClient:
 
     def introduce(self, name: str, properties: Mapping[str, Values]) -> None:
         # One after the other, each would wait for the server to wake up.
+        quoted = _text(name)
         texts = [
-            Bottle(["bot", "set", name, key, *values]).to_text()
-            for key, values in properties.items()
+            f"bot set {quoted} {_text(key)} {_text(*values)}" for key, values in properties.items()
         ]
-        texts.append(Bottle(["announce", name]).to_text())
+        texts.append(f"announce {quoted}")
         for lines in self._ask("acked", lambda line: _acknowledged(line, *texts)):
             if lines and lines[0].startswith(_FAILED):
                 self._succeeded(_bottle(lines))
@@ -416,6 +417,12 @@ def _acknowledged(line: _Line, *commands: str) -> list[list[str]]:
             lines.append(text)
         replies.append(lines)
     return replies
+
+
+@lru_cache(maxsize=64, typed=True)
+def _text(*words: str | int | float) -> str:
+    """Words as a command has them. What all ports of a program say is spelled once."""
+    return Bottle(words).to_text()
 
 
 def _bottle(lines: list[str]) -> Bottle:
