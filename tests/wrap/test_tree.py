@@ -74,7 +74,7 @@ def test_unknown_and_odd_tags_stay_what_they_are() -> None:
 def test_pickles_are_never_read() -> None:
     """Not even those that do no harm."""
     data = pickle.dumps([1], protocol=5).decode("latin-1")
-    for tag in ("PandasData", "TraxArray", "PyArrowArray", "PytorchTensor", "PaddleTensor"):
+    for tag in ("PandasData", "TraxArray", "PyArrowArray", "PaddleTensor"):
         with pytest.raises(yarpy.DecodeError, match="runs code"):
             from_text(json.dumps({"__wrapyfi__": [tag, data]}))
 

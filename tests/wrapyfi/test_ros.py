@@ -80,13 +80,18 @@ def clean(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     MiddlewareCommunicator.close_all_instances()
 
 
-@pytest.fixture
-def graph(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RosGraph]:
-    with ros_graph(tmp_path) as found:
-        monkeypatch.setenv("ROS_MASTER_URI", found.uri)
-        monkeypatch.setenv("ROS_IP", "127.0.0.1")
+@pytest.fixture(scope="module")
+def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
+    with ros_graph(tmp_path_factory.mktemp("ros")) as found:
         yield found
-        MiddlewareCommunicator.close_all_instances()
+
+
+@pytest.fixture
+def graph(master: RosGraph, monkeypatch: pytest.MonkeyPatch) -> Iterator[RosGraph]:
+    monkeypatch.setenv("ROS_MASTER_URI", master.uri)
+    monkeypatch.setenv("ROS_IP", "127.0.0.1")
+    yield master
+    MiddlewareCommunicator.close_all_instances()
 
 
 @pytest.fixture

@@ -38,10 +38,9 @@ PLAIN: Final = frozenset((str, int, float, bool, type(None)))
 _ARRAYS: Final = frozenset(
     ("numpy.ndarray", "TensorflowTensor", "JAXTensor", "MXNetTensor", "CuPyArray")
 )
-#: ... and those whose payload is a pickle
-_PICKLED: Final = frozenset(
-    ("PytorchTensor", "TraxArray", "PandasData", "PyArrowArray", "PaddleTensor")
-)
+#: ... and those whose payload is a pickle, of which only the files of torch are read
+_PICKLED: Final = frozenset(("TraxArray", "PandasData", "PyArrowArray", "PaddleTensor"))
+_TORCH: Final = "PytorchTensor"
 
 
 # ------------------------------------------------------------------------------------ to JSON
@@ -221,6 +220,10 @@ def _untagged(whole: dict[str, Any], content: list[Any], buffers: Sequence[NDArr
         if type(payload) is dict:
             return _bought(payload, buffers)
         return from_npy(_bytes(payload))
+    if tag == _TORCH:
+        from yarpy.wrap.tensor import as_floats, read
+
+        return as_floats(read(_bytes(payload)))
     if tag in _PICKLED:
         raise DecodeError(
             f"a {tag} comes as a pickle, which runs code of its sender when it is read: "

@@ -225,7 +225,7 @@ def theirs(message: Any) -> Any:
     known = getattr(sys.modules.get(f"{package}.msg"), name, None)
     if known is None or getattr(known, "_md5sum", "") != message._md5sum:
         return message
-    return known().deserialize(bytes(message.to_ros()))
+    return known().deserialize(b"".join(message.to_ros()))
 
 
 class FieldedService:

@@ -8,8 +8,9 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from wrapyfi.utils._tensors import gathered, planted
 from wrapyfi.utils.core_utils import PluginRegistrar
-from yarpy.wrap.tree import TAG, Planter, untag
+from yarpy.wrap.tree import PLAIN, TAG, Planter, untag
 
 
 class JsonEncoder(json.JSONEncoder):
@@ -40,6 +41,10 @@ class _Planter(Planter):
             if done:
                 tag = tree[TAG]
                 return {TAG: [tag[0], *(super(_Planter, self).plant(one) for one in tag[1:])]}
+        if type(value) not in PLAIN and hasattr(value, "shape"):
+            found = planted(value)
+            if found is not None:
+                return {TAG: found}
         return super().plant(value, depth)
 
 
@@ -58,4 +63,7 @@ class JsonDecodeHook:
                 done, found = plugin(**self._options).decode(content[0], content)
                 if done:
                     return found
+            tensor = gathered(content, self._options)
+            if tensor is not None:
+                return tensor
         return untag(obj)
