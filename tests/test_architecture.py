@@ -27,7 +27,7 @@ LAYERS: list[set[str]] = [
     {"link", "monitors", "qos"},
     {"config"},
     {"names"},
-    {"port", "ros", "ros2", "devices", "record"},
+    {"port", "ros", "ros2", "zenoh", "devices", "record"},
     {"network", "module", "resource", "aio", "wrap", "realtime"},
     {"views", "sim", "nameserver"},
     {"cli", "testing"},

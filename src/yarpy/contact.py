@@ -20,10 +20,12 @@ Brokers of MQTT have topics, which are no ports, and a usual number:
     >>> parse_contact("mqtt+tls://broker/robot/arm").label
     '/mqtt://broker:8883/robot/arm'
 
-Topics of ROS 2 have no address at all, but perhaps a type:
+Topics of ROS 2 have no address at all, but perhaps a type; keys of Zenoh have neither:
 
     >>> parse_contact("ros2://camera/image~sensor_msgs/msg/Image").label
     '/ros2://camera/image'
+    >>> parse_contact("zenoh+sub://robot/arm").label
+    '/zenoh://robot/arm'
 """
 
 from __future__ import annotations
@@ -37,7 +39,7 @@ from yarpy.errors import AddressError
 BROKER: Final = "mqtt"
 ZENOH: Final = ".zenoh"  # ends the host of an address inside Zenoh: `a1b2.zenoh:10002`
 #: carriers whose ends have names and no addresses, and that no name service knows
-MEDIA: Final = frozenset({"ros2"})
+MEDIA: Final = frozenset({"ros2", "zenoh"})
 
 _HOST_PORT = re.compile(r"^[^:/]+:\d+$")
 _IPV6_PORT = re.compile(r"^\[[0-9A-Fa-f:.%]+\]:\d+$")
@@ -101,7 +103,7 @@ def parse_contact(text: str) -> Contact:
         carrier, rest = text[:base].removeprefix("/"), text[base + 1 :]
         if rest.startswith("//"):
             rest = rest[1:]
-    if rest.startswith("/"):
+    if rest.startswith("/") and not is_medium(carrier):
         head, slash, tail = rest[1:].partition("/")
         where = _host_port(head)
         if where is not None:

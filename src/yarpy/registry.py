@@ -36,6 +36,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
         "mqtt": "yarpy.carriers.mqtt:Mqtt",
         "ros2": "yarpy.carriers.ros2:Ros2",
+        "zenoh": "yarpy.carriers.zenoh:Zenoh",
         "rossrv": "yarpy.carriers.rossrv:RosSrv",
         "tcpros": "yarpy.carriers.tcpros:TcpRos",
         "websocket": "yarpy.carriers.websocket:WebSocket",
@@ -80,7 +81,10 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         for name in ("Yarp", "Mqtt", "Ros", "Ros2", "WebSocket", "Zenoh", "ZeroMq")
     },
     # What carriers go over that have no connections of their own.
-    "media": {"ros2": "yarpy.ros2.medium:open_medium"},
+    "media": {
+        "ros2": "yarpy.ros2.medium:open_medium",
+        "zenoh": "yarpy.zenoh.medium:open_medium",
+    },
     # What ports may be part of beside their connections; it has ports of its own, too.
     "graphs": {"ros": "yarpy.ros.part:part_of"},
     # What typed clients call with: `yarpy.idl` is pure, and so below all ports.

@@ -135,6 +135,11 @@ class Pairing:
             if not _competent(contact):
                 constraint = contact.carrier
         given = carrier or _written(target) or _written(source)
+        if is_medium(given) and not (is_medium(from_.carrier) or is_medium(to.carrier)):
+            base = parse_carrier(given).base
+            raise LocalProtocolError(
+                f"{base} leads to what is no port: one end is {base}://..., else leave it out"
+            )
         self.spec = parse_carrier(given or constraint or "tcp")
         # Which carrier is then for the source to say.
         self.open = not (given or constraint or to.reachable)
@@ -276,7 +281,9 @@ def _pulls(spec: CarrierSpec) -> bool:
 
 
 _PULLED = frozenset({"h264"})
-_FOREIGN = frozenset({"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http", "zmq", "mqtt", "ros2"})
+_FOREIGN = frozenset(
+    {"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http", "zmq", "mqtt", "ros2", "zenoh"}
+)
 
 
 def join(

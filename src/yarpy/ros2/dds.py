@@ -26,11 +26,11 @@ from yarpy.idl.ros2msg.library import hash_of
 from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
 from yarpy.log import logger
 from yarpy.ros2 import kind as kinds
-from yarpy.ros2.inbox import Inbox
 from yarpy.ros2.key import NO_HASH, Key
 from yarpy.ros2.name import Node
 from yarpy.ros2.qos import KEEP_ALL, Qos
 from yarpy.ros2.token import PUBLISHER, SUBSCRIBER, Token
+from yarpy.transports.inbox import Inbox
 
 log = logger("yarpy.ros2")
 

@@ -21,12 +21,12 @@ from yarpy.log import logger, readable
 from yarpy.ros2 import kind as kinds
 from yarpy.ros2.attachment import Attachment, parse_attachment
 from yarpy.ros2.description import describe
-from yarpy.ros2.inbox import Inbox
 from yarpy.ros2.key import NO_HASH, Key
 from yarpy.ros2.name import Node
 from yarpy.ros2.participant import Declared, Participant
 from yarpy.ros2.qos import KEEP_ALL, Qos
 from yarpy.ros2.token import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Token, gid
+from yarpy.transports.inbox import Inbox
 
 log = logger("yarpy.ros2")
 

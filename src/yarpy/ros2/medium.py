@@ -15,12 +15,12 @@ from yarpy.errors import AddressError, LocalProtocolError, UnknownName
 from yarpy.log import logger
 from yarpy.ros2.dds import WORD, open_dds
 from yarpy.ros2.endpoint import Client, Endpoint, Publisher, Server, Subscriber
-from yarpy.ros2.inbox import Inbox
 from yarpy.ros2.key import domain
 from yarpy.ros2.name import check_node, check_topic, node_of
 from yarpy.ros2.participant import take_part
 from yarpy.ros2.qos import profile
 from yarpy.route import CarrierSpec, Route
+from yarpy.transports.inbox import Inbox
 
 log = logger("yarpy.ros2")
 

@@ -1,7 +1,7 @@
 """The inbox of an endpoint: threads of a middleware put there what comes, a connection takes it.
 
-Rules: there is a limit, in messages and in bytes; the oldest go first, and are counted. What is
-read first is the endpoint itself, which the carrier is greeted with.
+Rules: what comes has a `size`, in bytes. There is a limit, in messages and in bytes; the oldest go
+first, and are counted. What is read first is the endpoint itself: carriers are greeted with it.
 """
 
 from __future__ import annotations
@@ -12,12 +12,11 @@ from collections.abc import Callable, Sequence
 from queue import Empty, SimpleQueue
 from typing import Any, Final
 
-from yarpy.carriers.ros2 import Incoming, Outgoing
 from yarpy.errors import YarpError
 from yarpy.transports.base import ObjectTransport
 
 MOST_BYTES: Final = 1 << 28  # of messages that wait to be read
-_END: Final = Incoming(b"")  # only wakes who waits
+_END: Final = object()  # only wakes who waits
 
 
 class Inbox(ObjectTransport):
@@ -92,6 +91,6 @@ class Inbox(ObjectTransport):
             except Exception as error:
                 raise BrokenPipeError(f"it cannot be sent: {error}") from error
 
-    def give(self, item: Outgoing) -> None:
+    def give(self, item: Any) -> None:
         """Send a message."""
         raise NotImplementedError

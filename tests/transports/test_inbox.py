@@ -7,8 +7,8 @@ import pytest
 
 from yarpy.carriers.ros2 import Incoming, Outgoing
 from yarpy.errors import LocalProtocolError
-from yarpy.ros2 import inbox
-from yarpy.ros2.inbox import Inbox
+from yarpy.transports import inbox
+from yarpy.transports.inbox import Inbox
 
 
 class Bare(Inbox):

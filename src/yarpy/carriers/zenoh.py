@@ -1,0 +1,179 @@
+"""zenoh: keys of Zenoh, for programs that know Zenoh and nothing of YARP.
+
+    yarpy connect /out zenoh://robot/arm         puts what the port writes
+    yarpy connect zenoh://robot/** /in           the port subscribes; * and ** as in Zenoh
+    yarpy connect /client zenoh+srv://robot/arm  the port asks: a get, with a payload
+    yarpy connect zenoh+srv://robot/arm /server  the port answers such questions: a queryable
+
+    zenoh+raw://...                              payloads are YARP's own spelling
+
+Rules: `payload.py` says what a payload holds. There is no connection of its own: `greet` is handed
+the endpoint, and then what goes and comes are objects (`Outgoing`, `Incoming`), which `yarpy.zenoh`
+sends and receives.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final, cast
+
+from yarpy.carriers.base import Carrier, Delivery, Limits
+from yarpy.carriers.payload import JPEG, message_of, payload_of, to_payload
+from yarpy.data import codec
+from yarpy.data.value import Vocab
+from yarpy.route import CarrierSpec, Route
+from yarpy.wire.message import CALL, DATA, Encoded, Message, Packet
+from yarpy.wire.steps import Steps
+from yarpy.wire.stream import Buffer, ByteStream, ObjectStream
+
+SERVICE: Final = "srv"
+LISTENS: Final = "sub"
+RAW: Final = "raw"
+
+JSON: Final = "application/json"
+PICTURE: Final = "image/jpeg"
+BYTES: Final = "zenoh/bytes"  # which says nothing
+_UNTOLD: Final = (bytes, bytearray, memoryview, Encoded)  # the last holds anything
+
+
+@dataclass(slots=True)
+class Outgoing:
+    """A message, question or answer that goes. `encoding`: its type, as Zenoh writes it. `to`: what
+    it answers."""
+
+    payload: Buffer
+    encoding: str = BYTES
+    to: Any = None
+
+    @property
+    def size(self) -> int:
+        return len(self.payload)
+
+
+@dataclass(slots=True)
+class Incoming:
+    """A message, question or answer that came. `asked`: the question, to be answered. `failure`:
+    why there is no answer."""
+
+    payload: Buffer
+    asked: Any = None
+    failure: str = ""
+
+    @property
+    def size(self) -> int:
+        return len(self.payload)
+
+
+class Zenoh(Carrier):
+    """A port that puts; or one of the classes below."""
+
+    name = "zenoh"
+    foreign = True
+    nameless = True
+    replies = False
+    medium = "zenoh"
+    delivery = Delivery(coalesces=False)
+
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        self.raw = RAW in route.spec.tokens
+
+    @classmethod
+    def of(cls, spec: CarrierSpec) -> type[Carrier]:
+        serves = SERVICE in spec.tokens
+        if LISTENS in spec.tokens:
+            return Server if serves else Subscriber
+        return Asker if serves else cls
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        yield from self._read(stream)  # the endpoint itself
+
+    def prepare(self, packet: Packet) -> bool:
+        if self.raw:
+            return super().prepare(packet)
+        to_payload(packet)
+        return True
+
+    def encode(self, stream: ByteStream, packet: Packet) -> None:
+        self._write(stream, self._said(packet))
+
+    def _said(self, packet: Packet) -> Outgoing:
+        if self.raw:
+            return Outgoing(_joined(packet.blocks))
+        payload = to_payload(packet)
+        return Outgoing(payload, encoding_of(payload, packet.value))
+
+    def _heard(self, key: str, came: Incoming) -> Message:
+        if self.raw:
+            return Message(key, came.payload)
+        return message_of(key, [came.payload])
+
+    def _write(self, stream: ByteStream, item: Outgoing) -> None:
+        assert isinstance(stream, ObjectStream)
+        stream.write_object(item)
+
+    def _read(self, stream: ByteStream) -> Steps[Incoming]:
+        assert isinstance(stream, ObjectStream)
+        return cast(Incoming, (yield from stream.read_object()))
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        """Only closing ends it."""
+
+
+class Subscriber(Zenoh):
+    """The port reads what is put."""
+
+    push = False
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        return self._heard(DATA, (yield from self._read(stream)))
+
+
+class Asker(Zenoh):
+    """The port asks."""
+
+    replies = True
+    limits = Limits(message_timeout=None)
+
+    def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
+        came = yield from self._read(stream)
+        if came.failure:
+            return Message(CALL, b"".join(codec.encode([Vocab("fail"), came.failure])))
+        return self._heard(CALL, came)
+
+
+class Server(Zenoh):
+    """The port answers."""
+
+    push = False
+    replies = True
+
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        self._asked: Any = None
+
+    def decode(self, stream: ByteStream) -> Steps[Message]:
+        came = yield from self._read(stream)
+        self._asked = came.asked
+        return self._heard(CALL, came)
+
+    def encode_reply(self, stream: ByteStream, value: object) -> None:
+        asked, self._asked = self._asked, None
+        if self.raw:
+            self._write(stream, Outgoing(_joined(codec.encode(value)), to=asked))
+        else:
+            payload = payload_of(value)
+            self._write(stream, Outgoing(payload, encoding_of(payload, value), asked))
+
+
+def encoding_of(payload: Buffer, value: object) -> str:
+    """What Zenoh calls the type of a payload that was made of a value."""
+    if payload[:3] == JPEG:
+        return PICTURE
+    if isinstance(value, list | tuple) and len(value) == 1:
+        value = value[0]
+    return BYTES if isinstance(value, _UNTOLD) else JSON
+
+
+def _joined(blocks: list[Buffer] | tuple[Buffer, ...]) -> Buffer:
+    return blocks[0] if len(blocks) == 1 else b"".join(blocks)
