@@ -10,6 +10,10 @@ bytes on the loopback of a network namespace in which nothing else runs. Measure
     outage      the middle router killed and started again: until names are back on both sides, and
                 until messages arrive again over a connection from one end of the chain to the other
 
+With `--bare` the programs are sessions of eclipse-zenoh alone, which declare what names need at
+least: a queryable and a liveliness token for each. What that takes nobody undercuts who has such
+names.
+
 Needs root and iproute2. Everything runs on the processors of one computer, so routers, programs and
 who measures take time from each other; there is no network delay.
 """
@@ -24,6 +28,8 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+
+import zenoh
 
 from yarpy.names import direct
 from yarpy.names.zenoh import ZenohNames
@@ -56,13 +62,49 @@ def work(worker: int, options: argparse.Namespace, start: float, ready, stop) ->
     opened = []
     for number in numbers:
         time.sleep(max(0.0, start + WITHIN * number / options.programs - time.time()))
-        names = ZenohNames(place(number))
+        names = (BareNames if options.bare else ZenohNames)(place(number))
         opened.append(names)
         for index in range(each):
             names.register(f"/p{number}/port{index}", "tcp", "127.0.0.1", 10000 + index)
     ready.put(time.time())
     stop.wait()
     os._exit(0)  # as if the computer were switched off: closing is not measured
+
+
+class BareNames:
+    """The least that can be done for names, with eclipse-zenoh alone."""
+
+    def __init__(self, where: str) -> None:
+        said = {
+            "mode": "client",
+            "connect": {"endpoints": [where]},
+            "scouting": {"multicast": {"enabled": False}},
+        }
+        self.session = zenoh.open(zenoh.Config.from_json5(json.dumps(said)))
+        self.declared = []
+
+    def register(self, name: str, *where) -> None:
+        key, text = f"bare/name{name}", f"{name} {where}"
+        answer = zenoh.handlers.Callback(lambda query: query.reply(key, text), indirect=False)
+        self.declared.append(self.session.declare_queryable(key, answer))
+        token = f"bare/port/{self.session.zid()}{name}"
+        self.declared.append(self.session.liveliness().declare_token(token))
+
+    def entry(self, name: str):
+        return next((one for one in self.asked(f"bare/name{name}")), None)
+
+    def list(self) -> list:
+        return [*self.asked("bare/name/**")]
+
+    def asked(self, key: str):
+        replies = self.session.get(
+            key,
+            zenoh.handlers.FifoChannel(100_000),
+            target=zenoh.QueryTarget.ALL,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            timeout=3.0,
+        )
+        return (reply.ok.payload.to_bytes() for reply in replies if reply.ok is not None)
 
 
 def traffic() -> tuple[int, int]:
@@ -226,12 +268,14 @@ def outage(options, observers, routers) -> dict:
 
 def measure(options: argparse.Namespace) -> None:
     routers = [router(number) for number in range(3)]
-    observers = [ZenohNames(f"tcp/127.0.0.1:{FIRST + number}") for number in range(3)]
+    kind = BareNames if options.bare else ZenohNames
+    observers = [kind(f"tcp/127.0.0.1:{FIRST + number}") for number in range(3)]
     workers: list = []
     try:
         print(json.dumps({"joining": joining(options, observers, workers)}, indent=1), flush=True)
         print(json.dumps({"look-ups": lookups(options, observers)}, indent=1), flush=True)
-        print(json.dumps({"outage": outage(options, observers, routers)}, indent=1), flush=True)
+        if not (options.bare or options.no_outage):
+            print(json.dumps({"outage": outage(options, observers, routers)}, indent=1), flush=True)
     finally:
         for each in (*routers, *workers):
             each.kill()
@@ -243,6 +287,8 @@ def main() -> None:
     parser.add_argument("--names", type=int, default=10_000)
     parser.add_argument("--programs", type=int, default=200)
     parser.add_argument("--lookups", type=int, default=3000)
+    parser.add_argument("--bare", action="store_true", help="with eclipse-zenoh alone")
+    parser.add_argument("--no-outage", action="store_true", help="leave the outage out")
     parser.add_argument(MARK, action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.inside:
