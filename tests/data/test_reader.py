@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from support.message import bottles, kinds, walk
 from support.vectors import binaries, rows
 
-from yarpy.data.bottle import Bottle, Property, read_bottle
+from yarpy.data import reader
+from yarpy.data.bottle import Bottle, Property, read_bottle, read_leading_bottle
 from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
 from yarpy.data.walker import Walker
 from yarpy.data.writer import list_blocks
@@ -218,3 +219,25 @@ def check_agreement(message):
         assert read_bottle(message[:need]) == read_bottle(b"".join(list_blocks(bottle))) or (
             "nan" in repr(bottle)
         )
+
+
+NUMBERS = st.lists(
+    st.one_of(st.integers(-(2**40), 2**40), st.integers(-9, 9), st.floats(allow_nan=False)),
+    max_size=5,
+)
+
+
+@given(st.lists(st.tuples(NUMBERS, st.binary(max_size=9)), max_size=8))
+def test_messages_of_the_same_size_need_not_be_of_the_same_kind(messages):
+    for numbers, rest in messages:
+        message = Bottle(numbers).to_bytes()
+        for found in (read_bottle(message + rest), read_leading_bottle(message + rest)):
+            bottle, end = found if isinstance(found, tuple) else (found, len(message))
+            assert (bottle, kinds(bottle), end) == (numbers, kinds(numbers), len(message))
+
+
+def test_plans_do_not_pile_up():
+    message = Bottle([1, 2.5]).to_bytes()
+    for size in range(2 * reader._PLANS):
+        assert read_leading_bottle(message + bytes(size)) == ([1, 2.5], len(message))
+    assert 0 < len(reader._plans) <= reader._PLANS

@@ -65,12 +65,14 @@ def read_list(make_list: type[L], make_dict: Callable[[L], Any], view: Buffer) -
     size = len(view)
     if size < 8:
         raise Truncated(f"a Bottle takes at least 8 bytes, here are {size}", 8)
-    buffer = bytes(view) if size <= _SMALL else memoryview(view)
-    code, count = _read_pair(buffer)
     items = make_list()
     try:
-        room = None if size <= _SMALL else _room(size)
-        _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room, make_list, make_dict)
+        if size <= _SMALL:
+            _read_small(bytes(view), items, make_list, make_dict)
+        else:
+            buffer, room = memoryview(view), _room(size)
+            code, count = _read_pair(buffer)
+            _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room, make_list, make_dict)
     except struct_error:
         raise Truncated(f"the Bottle goes on beyond its {size} bytes", size + 1) from None
     return items
@@ -80,16 +82,59 @@ def read_leading(
     make_list: type[L], make_dict: Callable[[L], Any], buffer: bytes
 ) -> tuple[L, int] | None:
     """The list that `buffer` begins with and the bytes it takes; None if it is incomplete."""
-    if len(buffer) < 8:
+    if not 8 <= len(buffer) <= _SMALL:
         return None
-    code, count = _read_pair(buffer)
     items = make_list()
     try:
-        room = None if len(buffer) <= _SMALL else _room(len(buffer))
-        end = _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room, make_list, make_dict)
+        end = _read_small(buffer, items, make_list, make_dict)
     except (struct_error, DecodeError):
         return None
     return items, end
+
+
+def _read_small(buffer: bytes, items: L, make_list: type[L], make_dict: Callable[[L], Any]) -> int:
+    """Append the elements of the list at the start of `buffer` to `items`; gives where it ends.
+
+    Messages of a kind follow each other: if the last one of the same size and count held plain
+    numbers alone, this one is taken apart in the same way, and the tags in it show whether that was
+    right.
+    """
+    code, count = _read_pair(buffer)
+    planned = code == LIST and 0 < count <= _PLANNED
+    if planned:
+        key = len(buffer), count
+        plan = _plans.get(key)
+        if plan is not None:
+            parts = plan.unpack_from(buffer)
+            if parts[::2] == plan.tags:
+                items.extend(parts[1::2])
+                return plan.end
+    end = _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, None, make_list, make_dict)
+    if planned and _NUMBERS.issuperset(map(type, items)):
+        fresh = _Plan([INT32 if type(item) is int else FLOAT64 for item in items])
+        if fresh.end == end:  # else there was an int of 64 bits
+            if len(_plans) >= _PLANS:
+                _plans.clear()
+            _plans[key] = fresh
+    return end
+
+
+class _Plan:
+    """How a list is taken apart whose elements have the tags INT32 and FLOAT64."""
+
+    __slots__ = ("end", "tags", "unpack_from")
+
+    def __init__(self, tags: list[int]) -> None:
+        layout = Struct("<8x" + "".join("i" + FIXED[tag][0] for tag in tags))
+        self.tags = tuple(tags)
+        self.unpack_from = layout.unpack_from
+        self.end = layout.size
+
+
+_PLANNED: Final = 24  # elements of a list that has a plan
+_PLANS: Final = 512  # kept; their number is the peers' choice
+_NUMBERS: Final = frozenset((int, float))
+_plans: Final[dict[tuple[int, int], _Plan]] = {}
 
 
 def _room(size: int) -> list[int] | None:

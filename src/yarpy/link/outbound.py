@@ -74,6 +74,16 @@ class Outbound:
         self._listener = None if steps is None else Listener(self.sender, steps)
         self._queue: Background[Any] | None = None
         self._follow: Following | None = None
+        self._decide()
+
+    def _decide(self) -> None:
+        """What `send` may pass straight on: as nearly always, there is nothing else to look at."""
+        self._plain = (
+            self.chain is None
+            and self._queue is None
+            and self.limit is None
+            and not self.carrier.delivery.lossy
+        )
 
     def ride(self, chain: Chain | None) -> None:
         """Monitors get to see its messages. Raises LocalProtocolError for one that wants to know
@@ -83,6 +93,7 @@ class Outbound:
             self._follow = Following(self.sender, chain, self._send_queued)
             self.start_background()
             chain.watch(lambda: 0 if self._queue is None else self._queue.pending)
+        self._decide()
 
     @property
     def broken(self) -> bool:
@@ -105,6 +116,9 @@ class Outbound:
         time.monotonic). What has, follows by itself. `passed`: monitors have seen it. Raises
         LinkClosed.
         """
+        if self._plain and deadline is None:
+            self.sender.send(packet)
+            return True
         due = None
         if self.limit is not None:
             due = time.monotonic() + time_left(packet, self.limit)
@@ -241,6 +255,7 @@ class Outbound:
             self.limit = qos.deadline
         else:
             self.limit = None
+        self._decide()
 
     def _is_in_time(self, due: float) -> bool:
         """Whether there is time left until `due`; if not, the message is dropped, and counted."""
@@ -285,6 +300,7 @@ class Outbound:
                 if self._follow is not None:
                     send = self._follow.send
                 self._queue = Background(send, self.counter)
+                self._decide()
                 self.thread = threading.Thread(
                     target=self._run, args=(self._queue,), name=f"yarpy {self.route}", daemon=True
                 )

@@ -50,6 +50,8 @@ _FILLER: Final = b"\xff" * 8
 _PLAIN: Final = INDEX + b"\x02\x01" + _FILLER  # two blocks, as nearly every message has
 _PLAIN_SIZE: Final = len(_PLAIN) + 12  # + two lengths + the reply's length
 _HEAD_SIZE: Final = len(_PLAIN)
+# What follows it: two lengths, the reply's, and of the port command the `~` and the key.
+_FOLLOWS: Final = struct.Struct("<2i8x2B")
 # The whole index of a message with so many blocks: their lengths, and the reply's.
 _LENGTHS: Final = [struct.Struct(f"<8s2B8s{count + 1}i") for count in range(8)]
 
@@ -155,14 +157,14 @@ def parse_plain(stream: ByteStream) -> Message | None:
     start = head + _PLAIN_SIZE
     if stream.tail < start + 8:
         return None
-    command, size = _TWO.unpack_from(buffer, head + _HEAD_SIZE)
+    command, size, mark, code = _FOLLOWS.unpack_from(buffer, head + _HEAD_SIZE)
     end = start + command + size
     if not 8 <= size < LARGE or stream.tail < end:
         return None
     if command != 8:
         return _parse_stamped(stream, start, start + command, end)
-    key = _CHARACTERS.get(buffer[start + 5])
-    if key is None or buffer[start + 4] != 0x7E:
+    key = _CHARACTERS.get(code)
+    if key is None or mark != 0x7E:
         return None
     stream.head = end
     return Message(key, bytes(buffer[start + 8 : end]))
