@@ -34,7 +34,7 @@ NAME: Final = "memory"
 _PLACE: Final = struct.Struct("<Q")
 _REFERENCE: Final = struct.Struct("<4scxH3I2Q")
 _MARK: Final = b"\0MEM"  # no other message begins with a NUL
-_KEYS: Final = (b"D", b"d")
+_KEYS: Final = {b"D": "D", b"d": "d"}
 
 
 class Memory(Indexed):
@@ -100,8 +100,10 @@ class Memory(Indexed):
         return self._placed(packet) is not None or super().prepare(packet)
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
-        parcel = self._placed(packet)
-        memory = self._memory
+        memory, blocks = self._memory, packet.blocks
+        parcel = None
+        if memory is not None and (len(blocks) > 1 or len(blocks[0]) >= LARGE):
+            parcel = self._placed(packet)
         where = -1 if parcel is None or memory is None else memory.lend(parcel)
         if parcel is None or where < 0:
             stream.write(*framing.encode(packet))
@@ -116,7 +118,8 @@ class Memory(Indexed):
         memory, framed = self._memory, packet.framed
         if memory is None or (framed is not None and len(framed) == 1):
             return None
-        parcel: Parcel | None = packet.forms.get(memory.key)
+        forms = packet.forms
+        parcel: Parcel | None = forms.get(memory.key)
         if parcel is None:
             blocks = packet.blocks
             size = sum(map(len, blocks))
@@ -124,34 +127,37 @@ class Memory(Indexed):
                 return None
             parcel = memory.place(blocks, size)
             if parcel is not None:
-                packet.forms[memory.key] = parcel
+                forms[memory.key] = parcel
         return parcel
 
     def parse(self, stream: ByteStream) -> Message | None:
         if stream.buffer[stream.head]:
             return framing.parse_plain(stream)
-        if stream.waiting < _REFERENCE.size:
+        waiting, start = stream.tail - stream.head, stream.head + _REFERENCE.size
+        if waiting < _REFERENCE.size:
             return None
-        mark, key, where, slot, generation, length, offset, size = _REFERENCE.unpack_from(
+        mark, code, where, slot, generation, length, offset, size = _REFERENCE.unpack_from(
             stream.buffer, stream.head
         )
-        if mark != _MARK or key not in _KEYS or length > framing.MAX_COMMAND:
+        key = _KEYS.get(code)
+        if mark != _MARK or key is None or length > framing.MAX_COMMAND:
             raise RemoteProtocolError("a reference to shared memory that cannot be read")
         if size > stream.limit:
             raise RemoteProtocolError(
                 f"a message of {size} bytes; the limit is {stream.limit} bytes"
             )
         end = _REFERENCE.size + length
-        if stream.waiting < end:
+        if waiting < end:
             return None
         if not isinstance(stream, SharedStream):
             raise RemoteProtocolError("a reference to memory that is not shared")
-        start = stream.head + _REFERENCE.size
-        envelope = stream.buffer[start : start + length].decode("utf-8", "replace").strip()
+        envelope = ""
+        if length:
+            envelope = stream.buffer[start : start + length].decode("utf-8", "replace").strip()
         stream.head += end
         stream.came_aside += size
         payload = stream.memory.take(where, slot, generation, offset, size)
-        return Message(key.decode(), payload, envelope)
+        return Message(key, payload, envelope)
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         if not stream.waiting:

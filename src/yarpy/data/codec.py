@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from struct import Struct
 from typing import Any, Final, TypeVar, cast
 
@@ -89,12 +90,11 @@ def encode(obj: Any) -> Blocks:
         return list_blocks(obj)
     if obj is None:
         return (_EMPTY,)
-    if hasattr(obj, "__array_interface__"):
-        from yarpy.data import array
-
-        numpy = sys.modules["numpy"]
+    numpy = sys.modules.get("numpy")
+    if numpy is not None and isinstance(obj, (numpy.ndarray, numpy.generic)):
+        array = sys.modules.get("yarpy.data.array") or import_module("yarpy.data.array")
         if isinstance(obj, numpy.ndarray) and obj.ndim:
-            return array.blocks(obj)
+            return cast(Blocks, array.blocks(obj))
         return value_blocks(array.scalar(obj))
     try:
         return value_blocks(obj)

@@ -55,9 +55,6 @@ def lease_type() -> Any:
         room: Room | None = None
         ended: Callable[[], object] | None = None  # called with its end
 
-        def __array_finalize__(self, _: object) -> None:
-            """Arrays that numpy makes of it are ordinary ones."""
-
         def __del__(self) -> None:
             if self.ended is not None:
                 self.ended()
