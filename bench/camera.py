@@ -1,7 +1,8 @@
 """A camera to several programs: how many of its pictures arrive, and what each costs.
 
 One program writes pictures at a rate, as a camera comes; the readers are programs of their own that
-take the newest one and look at some of its pixels. The carriers take turns.
+take the newest one and look at some of its pixels. "prepared": the camera fills memory that
+`port.prepare` gives. The carriers take turns.
 
     python bench/camera.py [--rate 60] [--readers 3] [--seconds 5] [--rounds 3] [--size 3840x2160]
 """
@@ -17,7 +18,8 @@ import numpy as np
 
 import yarpy
 
-CARRIERS = ("memory", "tcp")
+PREPARED = "memory, prepared"
+CARRIERS = (PREPARED, "memory", "tcp")
 READER = """
 import sys, yarpy
 port = yarpy.BufferedPort(sys.argv[1])
@@ -44,15 +46,21 @@ def watch(carrier: str, options: argparse.Namespace) -> tuple[float, float]:
             for program, name in zip(programs, names, strict=True):
                 assert program.stdout is not None
                 program.stdout.readline()
-                out.connect(name, carrier)
+                out.connect(name, carrier.partition(",")[0])
+
+            def shoot() -> None:
+                """Write a picture, which the camera puts where it is to be."""
+                taken = out.prepare(picture.shape) if carrier == PREPARED else picture
+                taken[::32, ::32] = count % 256
+                out.write(taken)
+
+            count = 0
             for _ in range(5):
-                out.write(picture)
+                shoot()
             before = sum(map(_used, ["self", *(program.pid for program in programs)]))
             start = due = time.perf_counter()
-            count = 0
             while time.perf_counter() - start < options.seconds:
-                picture[0, 0, 0] = count % 256
-                out.write(picture)
+                shoot()
                 count += 1
                 due += 1 / options.rate
                 time.sleep(max(0.0, due - time.perf_counter()))
