@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 from support.patience import patience
@@ -131,3 +132,27 @@ def test_missing_name_says_what_there_is() -> None:
     with pytest.raises(AttributeError, match="no attribute 'Network_nothing'"):
         yarp.Network_nothing
     assert not hasattr(yarp, "__path_hook__")
+
+
+def test_log_is_forwarded_where_the_environment_says_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import logging
+
+    import yarp
+
+    made: list[logging.LogRecord] = []
+    before = logging.getLogRecordFactory()
+
+    def make(*arguments: Any, **more: Any) -> logging.LogRecord:
+        made.append(before(*arguments, **more))
+        return made[-1]
+
+    monkeypatch.setattr(logging, "_logRecordFactory", make)
+    yarp.Log().warning("unseen")
+    monkeypatch.setenv("YARP_FORWARD_LOG_ENABLE", "1")
+    yarp.Log().warning("100 % hot")
+    yarp.Log.trace("deep")
+    assert [(one.getMessage(), one.levelno) for one in made] == [("100 % hot", 30), ("deep", 5)]
+    said = capsys.readouterr()
+    assert (said.out, said.err) == ("[TRACE] deep\n", "[WARNING] unseen\n[WARNING] 100 % hot\n")

@@ -5,10 +5,16 @@ Rules: control characters that a terminal would obey are escaped.
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterable
+from typing import Final
 
 from yarpy.log import readable
+
+_NUMBERS: Final = {
+    "TRACE": 5, "DEBUG": 10, "INFO": 20, "WARNING": 30, "ERROR": 40, "FATAL": 50
+}  # fmt: skip
 
 
 def say(level: str, text: str) -> None:
@@ -16,6 +22,20 @@ def say(level: str, text: str) -> None:
     stream = sys.stderr if level in ("WARNING", "ERROR", "FATAL") else sys.stdout
     stream.write(f"[{level}] {readable(text)}\n")
     stream.flush()
+    if os.environ.get("YARP_FORWARD_LOG_ENABLE"):
+        _forward(level, text)
+
+
+def _forward(level: str, text: str) -> None:
+    """Make a record of it, which yarpy forwards; nobody else needs to see it again."""
+    import logging
+
+    log = logging.getLogger("yarp")
+    if log.propagate:
+        log.propagate = False
+        log.setLevel(1)
+        log.addHandler(logging.NullHandler())
+    log.log(_NUMBERS[level], "%s", text)
 
 
 def print_lines(lines: Iterable[str]) -> None:

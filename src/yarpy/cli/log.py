@@ -15,9 +15,9 @@ from typing import Final
 
 import click
 
+from yarpy.config.configuration import flag
+
 _COLOURS: Final = {"INFO": "blue", "WARNING": "yellow", "ERROR": "red", "CRITICAL": "red"}
-_YES: Final = frozenset({"1", "true", "yes", "on"})
-_NO: Final = frozenset({"0", "false", "no", "off"})
 
 
 def show(level: int = logging.INFO) -> None:
@@ -38,12 +38,6 @@ def chosen(environment: Mapping[str, str], level: int) -> int:
     if flag(environment, "YARP_VERBOSE", False):
         return logging.DEBUG
     return level
-
-
-def flag(environment: Mapping[str, str], name: str, default: bool) -> bool:
-    """A yes or no among the variables; anything else counts as not said."""
-    text = environment.get(name, "").lower()
-    return default if text not in _YES | _NO else text in _YES
 
 
 class _Form(logging.Formatter):

@@ -31,6 +31,7 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
         "view": Verb("look at images in a browser", "view --connect /icubSim/cam/left"),
         "scope": Verb("look at numbers as curves in a browser", "scope /icubSim/inertial"),
         "dash": Verb("see and change the whole network in a browser", "dash"),
+        "log": Verb("see what the programs of the network log", "log --level WARNING"),
         "panel": Verb("see and move a robot in a browser", "panel /icubSim"),
         "hear": Verb("play what a port says, or record it", "hear /ears --record ears.wav"),
         "speak": Verb("send a WAV file or the microphone to ports", "speak /mouth --play hi.wav"),

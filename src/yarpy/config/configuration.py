@@ -29,6 +29,8 @@ ROOT = "/root"
 ZENOH = "zenoh"
 MODES = ("yarp", "ros", "local", ZENOH)
 
+_YES = frozenset({"1", "true", "yes", "on"})
+_NO = frozenset({"0", "false", "no", "off"})
 _UNSAFE = re.compile(r"[^0-9A-Za-z]")
 
 
@@ -208,6 +210,12 @@ def default_port(environment: Mapping[str, str]) -> int:
 
 
 # --- ports
+
+
+def flag(environment: Mapping[str, str], name: str, default: bool) -> bool:
+    """A yes or no among the variables; anything else counts as not said."""
+    text = environment.get(name, "").lower()
+    return default if text not in _YES | _NO else text in _YES
 
 
 def port_name(name: str, environment: Mapping[str, str]) -> str:

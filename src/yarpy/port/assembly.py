@@ -13,7 +13,7 @@ from yarpy.config.configuration import port_number
 from yarpy.contact import check_text
 from yarpy.names.base import NameClient
 from yarpy.names.node_name import Category
-from yarpy.port import admin, command, disconnecting, fork, reconnect
+from yarpy.port import admin, command, disconnecting, fork, log_forwarding, reconnect
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.hub import Crew, Hub
 from yarpy.port.mailbox import Mailbox
@@ -79,4 +79,5 @@ def open_hub(
         except BaseException:
             hub.close()
             raise
+    log_forwarding.begin(open_hub)
     return hub
