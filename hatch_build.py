@@ -26,8 +26,13 @@ import sys
 from mypyc.build import mypycify
 from setuptools import setup
 config, made, *files = sys.argv[1:]
+# The files alone: where pip builds there are no other libraries.
+alone = ["--follow-imports", "silent", "--ignore-missing-imports"]
 modules = mypycify(
-    ["--config-file", config, *files], opt_level="2", group_name="yarpy", target_dir=made + "/c"
+    ["--config-file", config, *alone, *files],
+    opt_level="2",
+    group_name="yarpy",
+    target_dir=made + "/c",
 )
 setup(
     name="yarpy",
@@ -40,6 +45,10 @@ setup(
 
 class CompiledCore(BuildHookInterface[Any]):
     """Puts compiled modules beside their sources."""
+
+    def dependencies(self) -> list[str]:
+        """What pip makes ready before it builds: `YARPY_COMPILE=1 pip install .`."""
+        return ["mypy~=2.4", "setuptools>=65"] if _wanted() else []
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Compile into a temporary folder; hatchling takes the modules from there."""

@@ -334,7 +334,7 @@ def sound(reply: Reply) -> None:
         event.to_bytes()
 
 
-@settings(max_examples=400)
+@settings(max_examples=150)
 @given(st.lists(st.tuples(st.sampled_from(VERBS), st.lists(ITEMS, max_size=6)), max_size=6))
 def test_any_command_is_answered(commands: list[tuple[str, list[Any]]]) -> None:
     service = new_service()
