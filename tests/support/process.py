@@ -187,24 +187,31 @@ class Process:
 
 
 def descendants(pid: int) -> list[int]:
-    """Process ids of the children, grandchildren ... of `pid`, the deepest first (Linux)."""
+    """Process ids of the children, grandchildren ... of `pid`, the deepest first (Linux); also of
+    those that lost their parent, if they stayed in its session."""
     children: dict[int, list[int]] = {}
-    for child, parent in _parents():
+    companions = []
+    for child, parent, session in _processes():
         children.setdefault(parent, []).append(child)
+        if session == pid != child:
+            companions.append(child)
 
     def walk(parent: int) -> Iterator[int]:
         for child in children.get(parent, ()):
             yield from walk(child)
             yield child
 
-    return list(walk(pid))
+    found = list(walk(pid))
+    return [*found, *(one for one in companions if one not in found)]
 
 
-def _parents() -> Iterator[tuple[int, int]]:
+def _processes() -> Iterator[tuple[int, int, int]]:
+    """Each process, its parent, and its session."""
     for entry in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError):
             # The second field, the name in brackets, may itself hold blanks and brackets.
-            yield int(entry.parent.name), int(entry.read_text().rpartition(")")[2].split()[1])
+            fields = entry.read_text().rpartition(")")[2].split()
+            yield int(entry.parent.name), int(fields[1]), int(fields[3])
 
 
 def _send(pid: int, number: int) -> None:

@@ -82,6 +82,18 @@ def test_whole_family_ends_even_if_it_does_not_want_to(method: str) -> None:
     process.stop()
 
 
+def test_who_lost_its_parent_ends_too() -> None:
+    code = "import os, time\nif os.fork() == 0: print('child', os.getpid()); time.sleep(60)"
+    with python(code) as process:
+        child = int(process.wait_line(r"child (\d+)")[1])
+        assert process._popen.wait(10) == 0
+        assert is_running(child)
+    deadline = time.monotonic() + 5
+    while is_running(child) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not is_running(child)
+
+
 def test_interpreter_exit_ends_what_was_forgotten(tmp_path: os.PathLike[str]) -> None:
     support = os.path.dirname(os.path.dirname(__file__))
     code = (
