@@ -25,7 +25,8 @@ from yarpy import ros2
 from yarpy.names.default import DEFAULT
 from yarpy.ros2.attachment import Attachment
 from yarpy.ros2.kind import key_of
-from yarpy.transports.zenoh import close, open_router, share
+from yarpy.transports.zenoh import close, share
+from yarpy.transports.zenoh_router import open_router
 
 TURNS = 5
 FLOOD = 20_000

@@ -22,7 +22,8 @@ from yarpy.errors import AccessRefused, LocalProtocolError, YarpError
 from yarpy.names import direct
 from yarpy.names.zenoh import ZenohNames
 from yarpy.transports import zenoh_exchange
-from yarpy.transports.zenoh import close, open_router
+from yarpy.transports.zenoh import close
+from yarpy.transports.zenoh_router import open_router
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 

@@ -19,7 +19,7 @@ from yarpy.names import zenoh_key
 from yarpy.names.base import NameClient
 from yarpy.names.default import default_client, on_zenoh
 from yarpy.names.zenoh import ZenohNames
-from yarpy.transports.zenoh import open_router
+from yarpy.transports.zenoh_router import open_router
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 

@@ -13,7 +13,8 @@ import yarpy
 from yarpy.errors import NoNameServer, YarpError
 from yarpy.names import direct
 from yarpy.names.zenoh import ZenohNames
-from yarpy.transports.zenoh import close, open_router
+from yarpy.transports.zenoh import close
+from yarpy.transports.zenoh_router import open_router
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 

@@ -328,3 +328,15 @@ def test_connection_to_an_address_is_known_by_the_name_that_is_there(names: Loca
         assert yarpy.is_connected("/out", "/in", names=names)
         assert yarpy.disconnect("/out", "/in", names=names)
         assert not out.outputs
+
+
+def test_who_has_no_server_is_told_of_one() -> None:
+    from yarpy.names.ros import RosNames
+
+    for names, told in (
+        (yarpy.LocalNames(), "`yarpy server` starts one"),
+        (yarpy.ZenohNames("tcp/127.0.0.1:1"), "`yarpy server --zenoh`"),
+        (RosNames(None), "/TOPIC@/NODE"),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(LocalProtocolError, match=told):
+            network.ask_server(names, ["topic", "list"])

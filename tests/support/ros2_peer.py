@@ -31,7 +31,8 @@ LATCHED = ":1:,1:,:,:,,"
 @contextlib.contextmanager
 def ros2_router() -> Iterator[int]:
     """A router of Zenoh on the loopback; its number."""
-    from yarpy.transports.zenoh import close, open_router
+    from yarpy.transports.zenoh import close
+    from yarpy.transports.zenoh_router import open_router
 
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))

@@ -13,9 +13,10 @@ from support.wait import wait_until
 
 from yarpy.contact import host_zid, zid_host
 from yarpy.transports import zenoh_exchange
-from yarpy.transports.zenoh import Lease, close, open_router, share
+from yarpy.transports.zenoh import Lease, close, share
 from yarpy.transports.zenoh_exchange import Exchange, dial_inside, join, know, leave
 from yarpy.transports.zenoh_pipe import ZenohPipe
+from yarpy.transports.zenoh_router import open_router
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 

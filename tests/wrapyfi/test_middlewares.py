@@ -79,7 +79,8 @@ def peer(mware: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterato
 
 def _start_zenoh(peer: Peer, stack: ExitStack, monkeypatch: Any, folder: Path) -> None:
     zenoh = pytest.importorskip("zenoh")
-    from yarpy.transports.zenoh import close, open_router
+    from yarpy.transports.zenoh import close
+    from yarpy.transports.zenoh_router import open_router
 
     port = free_port()
     stack.callback(close, open_router([f"tcp/127.0.0.1:{port}"]))

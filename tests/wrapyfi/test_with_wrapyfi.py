@@ -156,7 +156,8 @@ def _servers(stack: ExitStack, folder: Path) -> dict[str, str]:
     pytest.importorskip("socketio")
     from support.socketio_server import SocketIoServer
 
-    from yarpy.transports.zenoh import close, open_router
+    from yarpy.transports.zenoh import close
+    from yarpy.transports.zenoh_router import open_router
 
     broker = Broker(folder)
     stack.callback(broker.stop)

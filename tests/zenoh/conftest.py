@@ -14,7 +14,8 @@ from yarpy.names.default import DEFAULT
 @pytest.fixture(scope="module")
 def router() -> Iterator[str]:
     """Its address; this process finds it."""
-    from yarpy.transports.zenoh import close, open_router
+    from yarpy.transports.zenoh import close
+    from yarpy.transports.zenoh_router import open_router
 
     where = f"tcp/127.0.0.1:{free_port()}"
     opened = open_router([where])

@@ -9,7 +9,7 @@ process it runs in. Nothing is printed.
 
 `YARPY_SERVER=HOST:PORT` takes precedence over every file and may list several, separated by commas.
 Names on Zenoh, without a server, are `zenoh`, `zenoh+tcp://ROUTER:7447`, `zenoh+lan` there (see
-`transports/zenoh.py`), or the mode `zenoh` in a file.
+`transports/zenoh_place.py`), or the mode `zenoh` in a file.
 """
 
 from __future__ import annotations

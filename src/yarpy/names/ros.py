@@ -25,6 +25,8 @@ class RosNames:
     """A `NameClient` that asks the master, which is found under `name` itself."""
 
     allocates = False
+    #: for those who want a topic or a persistent connection of YARP
+    instead = "in a topic of ROS ports take part by their names (/TOPIC@/NODE)"
 
     def __init__(self, master: RosMaster, name: str = "/ros") -> None:
         self.master = master

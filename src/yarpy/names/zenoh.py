@@ -29,8 +29,9 @@ from yarpy.names.base import Contacts, Strings
 from yarpy.names.direct import ANYWHERE, Ways, machine
 from yarpy.names.zenoh_key import Entry, name_key, newest, port_token
 from yarpy.transports.bind import listening_host
-from yarpy.transports.zenoh import CALLS, Lease, load, share
+from yarpy.transports.zenoh import Lease, share
 from yarpy.transports.zenoh_exchange import Exchange, Welcome, join, know, leave, undeclare
+from yarpy.transports.zenoh_library import CALLS, load
 
 if TYPE_CHECKING:
     import zenoh
@@ -68,6 +69,11 @@ class ZenohNames:
     """
 
     allocates = False
+    #: for those who want a topic or a persistent connection
+    instead = (
+        "`yarpy server --zenoh` is one where names are on Zenoh; say where it is, with "
+        "YARPY_SERVER=HOST:PORT"
+    )
 
     def __init__(self, where: str = "", namespace: str = ROOT) -> None:
         self.where = where

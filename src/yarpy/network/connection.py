@@ -407,8 +407,8 @@ def ask_server(names: NameClient | None, command: Sequence[Any]) -> Bottle:
     request = getattr(client, "request", None)
     if request is None:
         raise LocalProtocolError(
-            "topics and persistent connections need a name server of YARP; in a topic of ROS ports "
-            "take part by their names (/TOPIC@/NODE)"
+            "topics and persistent connections need a name server of YARP, which remembers them: "
+            + getattr(client, "instead", "`yarpy server` starts one")
         )
     reply: Bottle = request(list(command))
     if reply and plain_text(reply[0]) == "fail":

@@ -14,7 +14,7 @@ from yarpy.idl.ros2msg.hash import full_name, ros_name
 from yarpy.ros2.key import domain
 from yarpy.ros2.participant import CONFIGURATION, take_part
 from yarpy.ros2.token import NODE, PUBLISHER, SUBSCRIBER, Token
-from yarpy.transports.zenoh import SETTING
+from yarpy.transports.zenoh_place import SETTING
 
 RMW: Final = "RMW_IMPLEMENTATION"
 OURS: Final = "rmw_zenoh_cpp"

@@ -19,7 +19,8 @@ from yarpy.ros2.key import Key
 from yarpy.ros2.name import Node
 from yarpy.ros2.qos import Qos
 from yarpy.ros2.token import NODE, Token
-from yarpy.transports.zenoh import Lease, place, share
+from yarpy.transports.zenoh import Lease, share
+from yarpy.transports.zenoh_place import place
 
 log = logger("yarpy.ros2")
 

@@ -28,7 +28,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.contact import ZENOH, host_zid, zid_host
 from yarpy.log import logger
-from yarpy.transports.zenoh import CALLS, ENDING, Lease, load, share
+from yarpy.transports.zenoh import Lease, share
+from yarpy.transports.zenoh_library import CALLS, ENDING, load
 from yarpy.transports.zenoh_pipe import MESSAGES, WAKE, ZenohPipe
 
 if TYPE_CHECKING:

@@ -15,8 +15,9 @@ from typing import Any, Final
 from yarpy.carriers.zenoh import Incoming, Outgoing
 from yarpy.log import logger, readable
 from yarpy.transports.inbox import Inbox
-from yarpy.transports.zenoh import CALLS, Lease, load
+from yarpy.transports.zenoh import Lease
 from yarpy.transports.zenoh_exchange import undeclare
+from yarpy.transports.zenoh_library import CALLS, load
 
 log = logger("yarpy.zenoh")
 

@@ -16,7 +16,8 @@ from yarpy.contact import Contact
 from yarpy.errors import AddressError, NoNameServer
 from yarpy.names.default import DEFAULT, on_zenoh
 from yarpy.route import Route
-from yarpy.transports.zenoh import SETTING, share
+from yarpy.transports.zenoh import share
+from yarpy.transports.zenoh_place import SETTING
 from yarpy.zenoh.endpoint import Asker, Endpoint, Publisher, Server, Subscriber
 
 LONGEST: Final = 4096  # letters of a key

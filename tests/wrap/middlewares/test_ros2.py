@@ -37,7 +37,8 @@ class Robot:
 
 @pytest.fixture
 def router(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    from yarpy.transports.zenoh import close, open_router
+    from yarpy.transports.zenoh import close
+    from yarpy.transports.zenoh_router import open_router
 
     where = f"tcp/127.0.0.1:{free_port()}"
     opened = open_router([where])

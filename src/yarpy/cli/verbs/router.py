@@ -27,7 +27,9 @@ from yarpy.cli.stderr import warn
 @click.option("--config", "file", metavar="FILE", help="A configuration of Zenoh.")
 def command(where: tuple[str, ...], connect: tuple[str, ...], file: str | None) -> int:
     """Run a router of Zenoh, at WHERE: `tcp/0.0.0.0:7447`; else for this computer alone."""
-    from yarpy.transports.zenoh import HERE, close, open_router, unjoined
+    from yarpy.transports.zenoh import close
+    from yarpy.transports.zenoh_place import HERE
+    from yarpy.transports.zenoh_router import open_router, unjoined
 
     router = open_router(where, connect, file or "")
     try:

@@ -10,7 +10,8 @@ import time
 from typing import Any
 
 from yarpy.errors import LinkClosed, PortClosed, Timeout, UnknownName
-from yarpy.transports.zenoh import Lease, load, share
+from yarpy.transports.zenoh import Lease, share
+from yarpy.transports.zenoh_library import load
 from yarpy.wrap import payload
 from yarpy.wrap.inbox import Inbox
 from yarpy.wrap.middleware import Answer, Failure, Item, Received, Way, question_of

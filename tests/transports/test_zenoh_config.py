@@ -1,0 +1,50 @@
+"""Configurations of Zenoh: files, and what the environment says last."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from support.port import free_port
+
+from yarpy.errors import (
+    AddressError,
+    MissingFile,
+)
+from yarpy.transports.zenoh import share
+from yarpy.transports.zenoh_router import open_router
+
+pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
+
+
+@pytest.fixture(autouse=True)
+def _nothing_configured(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("YARPY_ZENOH", "YARPY_TLS", "YARPY_TLS_DIR", "ZENOH_CONFIG_OVERRIDE"):
+        monkeypatch.delenv(name, raising=False)
+
+
+@pytest.fixture
+def router() -> Iterator[str]:
+    """The address of a router."""
+    where = f"tcp/127.0.0.1:{free_port()}"
+    session = open_router([where])
+    yield where
+    session.close()
+
+
+def test_an_override_comes_last(router: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", f'connect/endpoints=["{router}"]')
+    with share(f"tcp/127.0.0.1:{free_port()}") as lease:
+        assert not lease.session.is_closed()
+    monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", "no/such=1")
+    with pytest.raises(AddressError, match="ZENOH_CONFIG_OVERRIDE"):
+        share(router)
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    with pytest.raises(MissingFile, match="no configuration file"):
+        share(str(tmp_path / "none.json5"))
+    (tmp_path / "bad.json5").write_text("{mode: ")
+    with pytest.raises(AddressError, match="no configuration of Zenoh"):
+        share(str(tmp_path / "bad.json5"))
