@@ -34,6 +34,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "name_ser": "yarpy.carriers.name_ser:NameSer",
         "http": "yarpy.carriers.http.carrier:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
+        "mpi": "yarpy.carriers.mpi:Mpi",
         "mqtt": "yarpy.carriers.mqtt:Mqtt",
         "ros2": "yarpy.carriers.ros2:Ros2",
         "zenoh": "yarpy.carriers.zenoh:Zenoh",

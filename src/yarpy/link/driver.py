@@ -351,9 +351,19 @@ class Driver:
                 from yarpy.transports.shmem import open_shmem
 
                 return open_shmem(effect.listen, local, remote, effect.port)
+            if effect.kind in ("mpi", "bcast"):
+                return _open_mpi(effect, transport)
             if effect.kind == "inproc":
                 return open_inproc(effect.listen, local, remote)
         raise LocalProtocolError(f"{effect} is not something a connection can do")
+
+
+def _open_mpi(effect: Open, transport: Transport) -> Any:
+    if hasattr(transport, "host"):
+        raise LocalProtocolError(f"TLS protects nothing that {effect.kind} sends: take tls")
+    from yarpy.transports.mpi import open_mpi
+
+    return open_mpi(effect.listen, getattr(transport, "sock", None), effect.group)
 
 
 def _sooner(deadline: float | None, seconds: float | None) -> float | None:

@@ -35,12 +35,17 @@ class Stalled(AssertionError):
 
 
 class Handle:
-    """A simulated place opened for a carrier: it has only a number."""
+    """A simulated place opened for a carrier: it has only a number and names."""
 
     def __init__(self, effect: Open) -> None:
         self.effect = effect
         numbered = effect.listen and effect.kind in ("udp", "shmem")
         self.port = UDP_PORT if numbered else effect.port
+        self.program = "acceptor" if effect.listen else "initiator"  # as MPI has it
+        self.place = "" if effect.listen else "somewhere"
+
+    def close(self) -> None:
+        """Nothing to release."""
 
 
 class Shelf:

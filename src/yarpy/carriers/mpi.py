@@ -1,0 +1,55 @@
+"""mpi: greets over TCP, then both move into a communicator of MPI.
+
+    greeting    MPI_____ | three lines: the sender's name, its program, where MPI finds it
+
+Rules: C++ YARP's own. No index and no acknowledgements: a port command, then the payload, as on a
+unix_stream. Modifiers are not sent. MPI joins no two ports of one program.
+"""
+
+from __future__ import annotations
+
+from yarpy.carriers.base import MAGIC_SIZE
+from yarpy.carriers.unix_stream import UnixStream
+from yarpy.errors import RemoteProtocolError
+from yarpy.wire import framing
+from yarpy.wire.effects import Open, Switch
+from yarpy.wire.steps import Steps
+from yarpy.wire.stream import ByteStream
+
+MAX_LINE = 4096  # what MPI calls a port has some hundred bytes
+
+
+class Mpi(UnixStream):
+    """Port commands and payloads as messages of MPI from one program to another."""
+
+    name = "mpi"
+    magic = b"MPI_____"
+    introduces = False
+
+    @classmethod
+    def recognises(cls, first: bytes) -> int:
+        return MAGIC_SIZE if first == cls.magic else 0
+
+    def greet(self, stream: ByteStream) -> Steps[None]:
+        handle = yield Open(self.name, listen=False, group=self.route.source)
+        lines = (self.route.source, handle.program, handle.place)
+        stream.write(self.magic + "".join(f"{line}\r\n" for line in lines).encode())
+        yield Switch(handle, ByteStream(stream.limit))
+
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
+        source = yield from _line(stream)
+        yield from self.introduce(stream, source)
+        program = yield from _line(stream)
+        place = yield from _line(stream)
+        handle = yield Open(self.name, listen=True, group=place)
+        if program == handle.program:
+            handle.close()
+            why = f"{self.name} joins no two ports of one program: take local or tcp"
+            stream.write(framing.encode_refusal(why))
+            raise RemoteProtocolError(why)
+        yield Switch(handle, ByteStream(stream.limit))
+
+
+def _line(stream: ByteStream) -> Steps[str]:
+    line = yield from stream.read_line(MAX_LINE)
+    return bytes(line).decode("utf-8", "replace")
