@@ -68,6 +68,14 @@ PEERS = (
     Peer("yarpy-tcp", "peer_yarpy.py", "yarpy", ("--carrier", "tcp")),
     Peer("yarpy-fast_tcp", "peer_yarpy.py", "yarpy", ("--carrier", "fast_tcp")),
     Peer("yarpy-memory", "peer_yarpy.py", "yarpy", ("--carrier", "memory")),
+    Peer(
+        "yarpy-memory-spin",
+        "peer_yarpy.py",
+        "yarpy",
+        ("--carrier", "memory", "--spin"),
+        ("stream",),
+        needs_core=True,
+    ),
     # The same, where the client fills memory that `port.prepare` gives.
     Peer(
         "yarpy-prepare", "peer_yarpy.py", "yarpy", ("--carrier", "memory", "--prepare"), ("large",)

@@ -91,6 +91,7 @@ GOALS = (
     Goal("large", "yarpy-tcp", "cpp-tcp", 0.35),
     Goal("large", "yarpy-tcp", "raw", 1.3),
     Goal("stream", "yarpy-memory", "raw", 1.0),
+    Goal("stream", "yarpy-memory-spin", "raw", 0.3),
     Goal("large", "yarpy-memory", "raw", 0.3),
     Goal("large", "yarpy-memory", "cpp-tcp", 0.35),
     Goal("stream", "yarpy-tls", "yarpy-tcp", 1.3),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -126,3 +127,31 @@ def test_there_and_back_without_a_copy(
         assert copied == []
         del array
         wait_until(lambda: len(arena_._spans) <= 3)  # all others were used again
+
+
+@shares
+def test_who_passes_on_may_be_killed(server: yarpy.NameServer) -> None:
+    """What others look at by then stays as it is, and comes back after that."""
+    with (
+        Process([sys.executable, "-c", ECHO], env=os.environ) as echo,
+        yarpy.Port("/out") as out,
+        yarpy.BufferedPort("/in") as came,
+    ):
+        echo.wait_line("^open$")
+        out.connect("/echo/in")
+        yarpy.connect("/echo/out", "/in")
+        arena = arena_of("/out")
+        array = out.prepare((500, 400))
+        array[...] = 1
+        out.write(array)
+        del array
+        message = came.read(10)
+        os.kill(echo.pid, signal.SIGKILL)
+        echo.wait()
+        wait_until(lambda: not out.outputs and not came.inputs)
+        assert arena.used == 1
+        for _ in range(5):
+            out.prepare((500, 400))[...] = 2
+        assert (message.value.array == 1).all()
+        del message
+        wait_until(lambda: arena.used == 0)
