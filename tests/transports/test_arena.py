@@ -178,6 +178,26 @@ def test_slots_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [placed is not None for placed in kept] == [True, True, True, False]
 
 
+def test_a_system_with_little_memory_is_left_some(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It would kill a program."""
+    free = 11 * PAGE
+    monkeypatch.setattr(module, "free_memory", lambda: free)
+    arena = Arena("/out", 100 * PAGE)
+    kept = [arena.place([bytes(PAGE)], PAGE)]
+    free = 4 * PAGE
+    kept.append(arena.place([bytes(PAGE)], PAGE))
+    free = 3 * PAGE
+    assert arena.place([bytes(PAGE)], PAGE) is None
+    assert arena.prepare(PAGE) is None
+    assert all(kept)
+    kept.pop()
+    assert arena.place([bytes(PAGE)], PAGE) is not None  # it has that already
+    said = [one.getMessage() for one in caplog.records if one.levelname == "WARNING"]
+    assert "hardly any memory left" in said[0]
+
+
 def test_a_system_without_memory_to_give(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(*arguments: object) -> int:
         raise OSError(28, "No space left on device")

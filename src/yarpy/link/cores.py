@@ -12,8 +12,7 @@ import os
 from functools import cache
 from pathlib import Path
 
-ROOT = Path("/sys/fs/cgroup")
-OWN = Path("/proc/self/cgroup")
+from yarpy.transports.cgroup import OWN, ROOT, groups
 
 
 def cores() -> int:
@@ -24,26 +23,11 @@ def cores() -> int:
 @cache
 def share(root: Path, own: Path) -> float:
     """The least of the limits of our group and those that it is in; infinite without one."""
-    try:
-        groups = own.read_text().splitlines()
-    except OSError:
-        return math.inf  # no Linux
-    found = [math.inf]
-    for line in groups:
-        _, kinds, path = [*line.split(":", 2), "", ""][:3]
-        if not kinds:
-            for folder in _upwards(root, path):
-                found.append(_second(folder / "cpu.max"))
-        elif "cpu" in kinds.split(","):
-            for folder in _upwards(root / "cpu", path):
-                found.append(_first(folder))
-    return min(found)
-
-
-def _upwards(root: Path, path: str) -> list[Path]:
-    """The folder of a group and those above it. In a container the group is often the root."""
-    parts = [part for part in path.split("/") if part not in ("", "..")]
-    return [root.joinpath(*parts[:count]) for count in range(len(parts) + 1)]
+    found = [
+        _second(folder / "cpu.max") if version == 2 else _first(folder)
+        for version, folder in groups("cpu", root, own)
+    ]
+    return min(found, default=math.inf)
 
 
 def _second(file: Path) -> float:

@@ -25,6 +25,7 @@ from weakref import WeakValueDictionary
 
 from yarpy.errors import LocalProtocolError
 from yarpy.log import logger
+from yarpy.transports.cgroup import free_memory
 from yarpy.transports.lease import HEADROOM, Source, address_of, lease_type, place_of
 from yarpy.wire.stream import Buffer
 
@@ -210,7 +211,7 @@ class Arena:
         self._slots = [*range(SLOTS - 1, -1, -1)]  # that are free
         self._generation = 0
         self._backed = 0  # bytes that the system has given us
-        self._full = False
+        self._full = self._scarce = False
 
     @property
     def descriptors(self) -> tuple[int, ...]:
@@ -332,9 +333,14 @@ class Arena:
     def _back(self, end: int) -> bool:
         """Have the system give us memory up to there, so that writing it cannot fail."""
         if end > self._backed:
+            # The system would kill a program rather than say no, and programs need memory, too.
+            self._scarce = end - self._backed > free_memory() / 4
+            if self._scarce:
+                return False
             try:
                 os.posix_fallocate(self.number, self._backed, end - self._backed)
             except OSError:
+                self._scarce = True
                 return False
             self._backed = end
         return True
@@ -344,12 +350,15 @@ class Arena:
         if self._full or size > self.size:
             return
         self._full = True
+        why = f"readers keep {len(self._loans)} large messages"
+        if self._scarce:
+            why += ", and this computer or container has hardly any memory left"
         log.warning(
-            "%s: readers keep %d large messages, so that there is no room for one of %d bytes in "
-            "shared memory: it is sent as a copy, as over tcp. A program that keeps pictures for "
-            "long should copy them (array.copy())",
+            "%s: %s, so that there is no room for one of %d bytes in shared memory: it is sent as "
+            "a copy, as over tcp. A program that keeps pictures for long should copy them "
+            "(array.copy())",
             self.name,
-            len(self._loans),
+            why,
             size,
         )
 
