@@ -23,31 +23,32 @@ from typing import Any, Final
 from yarpy.data import codec, jpeg
 from yarpy.data.image import Image, is_image
 from yarpy.data.json import from_json, to_json
+from yarpy.data.json_plain import plain_json
 from yarpy.data.value import Buffer
 from yarpy.errors import DecodeError
-from yarpy.wire.message import Encoded, Message, Packet
+from yarpy.wire.message import UNSET, Encoded, Message, Packet
 
 JPEG: Final = b"\xff\xd8\xff"
 #: pixels that a JPEG file holds as they are, but for what compression loses
 COLOURS: Final = frozenset(("mono", "rgb", "bgr", "rgba", "bgra"))
 _BYTES: Final = (bytes, bytearray, memoryview)
 _PLAIN: Final = (str, int, float, Mapping, Image)
-_KEY: Final = "payload"
-_UNSET: Final = object()
 
 
 def to_payload(packet: Packet) -> Buffer:
     """What a packet is to others, made once for all of them. Raises TypeError, ValueError or
     OverflowError for what cannot be sent."""
-    forms = packet.forms
-    found: Buffer | None = forms.get(_KEY)
+    found = packet.foreign
     if found is None:
-        found = forms[_KEY] = payload_of(packet.value, packet.envelope)
+        found = packet.foreign = payload_of(packet.value, packet.envelope)
     return found
 
 
 def payload_of(value: Any, envelope: bytes = b"") -> Buffer:
     """What a value is to others."""
+    text = plain_json(value)
+    if text is not None and text.isascii():
+        return text.encode()
     if isinstance(value, (list, tuple)):
         if len(value) == 1 and isinstance(value[0], _BYTES):
             return bytes(value[0])
@@ -89,22 +90,18 @@ def value_of(data: Buffer) -> Any:
 class PayloadMessage(Message):
     """A message of several frames or one, mostly one, in the bytes of others."""
 
-    __slots__ = ("_decoded",)
-
-    def __init__(self, key: str, payload: tuple[Buffer, ...], envelope: str = "") -> None:
-        Message.__init__(self, key, payload, envelope, "foreign")
-        self._decoded: Any = _UNSET
+    __slots__ = ()
 
     @property
     def value(self) -> Any:
         """The value of the payload; of several frames, a list of theirs."""
-        if self._decoded is _UNSET:
+        if self._value is UNSET:
             if len(self.payload) == 1:
-                self._decoded = value_of(self.payload[0])
+                self._value = value_of(self.payload[0])
             else:
                 parts = [value_of(part) for part in self.payload]
-                self._decoded = codec.decode(b"".join(codec.encode(parts)))
-        return self._decoded
+                self._value = codec.decode(b"".join(codec.encode(parts)))
+        return self._value
 
     def to_bytes(self) -> Buffer:
         return b"".join(codec.encode(self.value))
@@ -132,4 +129,4 @@ def message_of(key: str, frames: Sequence[Buffer]) -> Message:
     envelope = ""
     if len(frames) == 1 and frames[0][:3] == JPEG:
         envelope = jpeg.comment(frames[0])
-    return PayloadMessage(key, tuple(frames), envelope)
+    return PayloadMessage(key, tuple(frames), envelope, "foreign")

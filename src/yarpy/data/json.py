@@ -34,6 +34,7 @@ Outer: TypeAlias = Literal["auto", "list", "dict"]
 
 _TYPE: Final = "type"
 _SMALL: Final = 1 << 62
+_SPACE: Final = " \t\n\r"  # of JSON
 _FREE: Final = 1 << 10  # characters that are too few to count their elements
 _C1 = re.compile(r"[\x80-\x9f]")  # control characters, which a terminal obeys
 
@@ -62,7 +63,10 @@ def from_json(text: str | bytes | bytearray | memoryview) -> Any:
         data = text if isinstance(text, str) else bytes(text).decode("utf-8")
         if len(data) > _FREE and sum(map(data.count, ",[{")) > (most := limits().elements):
             raise DecodeError(f"JSON of more than {most} elements (YARPY_MAX_ELEMENTS)")
-        found = _read(data)
+        data = data.strip(_SPACE)
+        found, end = _reader().raw_decode(data)
+        if end != len(data):
+            raise DecodeError(f"this is not JSON: there is more behind it, {data[end:][:20]!r}")
     except RecursionError:
         raise DecodeError(f"JSON nested more than {MAX_DEPTH} deep") from None
     except DecodeError:
@@ -71,17 +75,6 @@ def from_json(text: str | bytes | bytearray | memoryview) -> Any:
         raise DecodeError(f"this is not JSON: {error}") from None
     value = plain_value(found)
     return _message(found, 0) if value is NOT_PLAIN else value
-
-
-def _read(text: str) -> Any:
-    reader = _reader()
-    try:
-        found, end = reader.raw_decode(text)
-        if end == len(text):
-            return found
-    except ValueError:
-        pass
-    return reader.decode(text)  # with space around it, or it says what is wrong
 
 
 @cache

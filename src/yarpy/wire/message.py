@@ -37,7 +37,7 @@ UNSENDABLE: Final = (TypeError, ValueError, OverflowError)
 
 SMALL: Final = 2048  # bytes; larger messages gain nothing from coalescing
 
-_UNSET: Final = object()
+UNSET: Final = object()  # the value of a message that nobody has looked at
 _COPIED: Final = ("key", "envelope", "spelling", "text", "source")
 
 
@@ -96,7 +96,7 @@ class Packet:
     `key` is the port command: `D` data, `d` data with a reply wanted, `a` administrative.
     """
 
-    __slots__ = ("_blocks", "_forms", "_line", "envelope", "framed", "key", "value")
+    __slots__ = ("_blocks", "_forms", "_line", "envelope", "foreign", "framed", "key", "value")
 
     def __init__(self, value: object, envelope: bytes = b"", key: str = DATA) -> None:
         self.value = value
@@ -105,6 +105,7 @@ class Packet:
         self._blocks: tuple[Buffer, ...] | None = None
         self._line: bytes | None = None
         self.framed: list[Buffer] | None = None  # kept by the framing that several carriers share
+        self.foreign: Buffer | None = None  # ... and by the payloads of those for other programs
         self._forms: dict[object, Any] | None = None
 
     @property
@@ -215,7 +216,7 @@ class Message:
         self.text = text  # what followed a port command; behind data, the form of the answer: JSON
         self.source = ""
         self.answer: Answer | None = None  # set by the link of a question
-        self._value: object = _UNSET
+        self._value: object = UNSET
 
     @classmethod
     def decoded(cls, key: str, payload: bytes, value: object) -> Message:
@@ -251,7 +252,7 @@ class Message:
     def __setstate__(self, state: dict[str, Any]) -> None:
         for name, value in state.items():
             setattr(self, name, value)
-        self.answer, self._value = None, _UNSET
+        self.answer, self._value = None, UNSET
 
     def to_bytes(self) -> Buffer:
         """The payload's binary spelling."""
@@ -266,7 +267,7 @@ class Message:
 
         Raises DecodeError if the payload is not what it claims to be.
         """
-        if self._value is _UNSET:
+        if self._value is UNSET:
             if self.spelling == "binary":
                 self._value = codec.decode(self.payload)
             elif self.spelling == "text":
