@@ -18,7 +18,7 @@ from yarpy.carriers.tcp import FastTcp, Tcp
 from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed
 from yarpy.link import window
-from yarpy.link.sender import BURST, LASTING
+from yarpy.link.sender import BURST, LASTING, Sender
 from yarpy.wire import framing
 from yarpy.wire.message import Packet
 
@@ -65,6 +65,22 @@ def test_burst_is_gathered_and_nothing_is_left_behind() -> None:
     wait_until(lambda: len(transport.said) == count * size)
     assert transport.sends < count
     assert link.counter.messages == count
+    link.close()
+
+
+def test_a_send_takes_no_less_than_its_transport_says() -> None:
+    """Most of it may be done in threads of others: then a writer floods that seems slower."""
+    link, transport = open_link(FastTcp)
+    transport.cost = 30.0  # type: ignore[attr-defined]
+    sender = Sender(link.driver, link.carrier)
+    for number in range(BURST):
+        sender.send(Packet([number]))
+        time.sleep(0.001)
+    assert sender._cost == 30.0 and transport.sends == BURST
+    sender.send(Packet([BURST]))
+    sender.send(Packet([BURST]))
+    assert sender._rush == BURST
+    sender.give_up()
     link.close()
 
 

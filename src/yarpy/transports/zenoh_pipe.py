@@ -93,6 +93,7 @@ class ZenohPipe:
     """One end of a pipe. `eager`: it is no use to poll, Python's lock is in the way."""
 
     eager: Final = False
+    cost: Final = 15e-6  # seconds that a send takes at least, most of them in threads of Zenoh
 
     def __init__(self, local: Address, remote: Address, line: Line) -> None:
         self.local = local
