@@ -155,3 +155,24 @@ def test_who_passes_on_may_be_killed(server: yarpy.NameServer) -> None:
         assert (message.value.array == 1).all()
         del message
         wait_until(lambda: arena.used == 0)
+
+
+@shares
+def test_a_forked_process_gives_back_nothing_of_its_parent() -> None:
+    """What waits in a port there is dropped there alone."""
+    names = yarpy.LocalNames()
+    with (
+        yarpy.Port("/out", names=names) as out,
+        yarpy.BufferedPort("/in", names=names, strict=True) as came,
+    ):
+        out.connect("/in", "memory")
+        for number in range(3):
+            out.write(np.full((400, 400), number, np.uint8))
+        wait_until(lambda: came.waiting == 3)
+        child = os.fork()
+        if not child:
+            os._exit(0)
+        assert os.waitpid(child, 0)[1] == 0
+        assert arena_of("/out").used == 3
+        for number in range(3):
+            assert (came.read(5).value.array == number).all()

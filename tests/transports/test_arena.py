@@ -271,6 +271,20 @@ def test_it_ends_while_readers_still_look(peer: Peer) -> None:
         gc.enable()
 
 
+def test_a_forked_process_has_arenas_of_its_own() -> None:
+    """Two that write into one would not know of each other."""
+    arena = arena_of("/one")
+    child = os.fork()
+    if not child:
+        code = 1
+        try:
+            code = 0 if arena_of("/one") is not arena else 2
+        finally:
+            os._exit(code)
+    assert os.waitpid(child, 0)[1] == 0
+    assert arena_of("/one") is arena
+
+
 def test_a_port_has_one_arena_for_as_long_as_it_is_used() -> None:
     one = arena_of("/one")
     assert arena_of("/one") is one

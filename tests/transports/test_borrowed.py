@@ -207,6 +207,29 @@ def test_a_file_beyond_all_measure_is_refused() -> None:
     refused(sealed_memory("a", 1 << 40), ledger, pipe, "at most")
 
 
+def test_a_forked_process_gives_nothing_back() -> None:
+    """It has a copy of every view, and its end, or one less, means nothing."""
+    seen = Seen()
+    placed = seen.arena.place([b"parent"], 6)
+    assert placed is not None
+    assert seen.borrowed is not None
+    view = seen.borrowed.take(0, 3, 7, placed.offset, 6)
+    child = os.fork()
+    if not child:
+        code = 1
+        try:
+            code = 0 if view == b"parent" else 2
+            del view
+            gc.collect()
+        finally:
+            os._exit(code)
+    assert os.waitpid(child, 0)[1] == 0
+    assert seen.ledger[3] == 0
+    del view
+    assert seen.ledger[3] == 7
+    os.close(seen.pipe)
+
+
 def test_a_copy_of_a_view_is_an_ordinary_array() -> None:
     shown = Seen()
     placed = shown.arena.place([b"0123456789"], 10)

@@ -137,7 +137,9 @@ class Outbound:
                 return False
             packet = seen
         if self._queue is not None:
-            packet.snapshot(self.carrier.spelling)  # what cannot be sent is the writer's error
+            if not self.carrier.prepare(packet):  # what cannot be sent is the writer's error
+                self.counter.drops += 1
+                return False
             if self._queue.wait_put(self._dated(packet), deadline):
                 return True
             if self._queue.stopped:

@@ -292,7 +292,7 @@ class Arena:
         self._loans.append(loan)
         if loan.foreign:
             self._relayed += 1
-            _RELAYING.add(self)
+            _ARENAS.relaying.add(self)
         return loan
 
     def _take(self, size: int) -> Extent | None:
@@ -325,7 +325,7 @@ class Arena:
                 if loan.foreign:
                     self._relayed -= 1
                     if not self._relayed:
-                        _RELAYING.discard(self)
+                        _ARENAS.relaying.discard(self)
         if self._mapped.freed:
             self._mapped.freed = False
             self._spans = [span for span in self._spans if span.used]
@@ -394,28 +394,42 @@ def _copy(room: memoryview, block: Buffer) -> None:
     np.copyto(np.frombuffer(room, np.uint8), np.frombuffer(block, np.uint8))
 
 
-#: that have lent what lies in other memory, which their readers may look at when they themselves
-#: are not needed any more
-_RELAYING: Final[set[Arena]] = set()
+class _Arenas:
+    """Those of this process: by the names of their ports, and those that have lent what lies in
+    other memory. Readers may look at that when the port itself is not needed any more."""
+
+    def __init__(self) -> None:
+        self.start_over()
+
+    def start_over(self) -> None:
+        """In a forked process: what the parent writes to is the parent's alone."""
+        self.relaying: set[Arena] = set()
+        self._named: WeakValueDictionary[str, Arena] = WeakValueDictionary()
+        self._opening = threading.Lock()  # one arena for each name
+
+    def of(self, name: str) -> Arena:
+        """See `arena_of`."""
+        with self._opening:
+            found = self._named.get(name)
+            if found is None:
+                found = self._named[name] = Arena(name)
+            return found
 
 
-def tidy() -> None:
-    """Give back to other programs what our readers have done with. To be called now and then: it is
-    not told to us."""
-    if _RELAYING:
-        for arena in tuple(_RELAYING):
-            arena.tidy()
-
-
-_ARENAS: Final[WeakValueDictionary[str, Arena]] = WeakValueDictionary()
-_OPENING: Final = threading.Lock()
+_ARENAS: Final = _Arenas()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_ARENAS.start_over)
 
 
 def arena_of(name: str) -> Arena:
     """The arena of the port called `name`, which all its connections share. Raises
     LocalProtocolError."""
-    with _OPENING:
-        found = _ARENAS.get(name)
-        if found is None:
-            found = _ARENAS[name] = Arena(name)
-        return found
+    return _ARENAS.of(name)
+
+
+def tidy() -> None:
+    """Give back to other programs what our readers have done with. To be called now and then: it is
+    not told to us."""
+    if _ARENAS.relaying:
+        for arena in tuple(_ARENAS.relaying):
+            arena.tidy()

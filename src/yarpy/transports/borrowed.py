@@ -4,7 +4,7 @@ Rules: what comes from there is not trusted: a file that could become shorter un
 system answers by killing who reads it, is refused, and so is a place outside of it. A payload is
 given back when the last view of it is gone, in whatever thread that happens: by a number in the
 ledger, which takes no lock and no system call. A sender may show us memory that it has received
-from others; then we hold their pipe, too, so that they know.
+from others; then we hold their pipe, too, so that they know. A forked process gives nothing back.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Final
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.transports.arena import F_GET_SEALS, F_SEAL_SHRINK, LEDGER, SLOTS, sealed_memory
-from yarpy.transports.lease import address_of, lease_type
+from yarpy.transports.lease import LENDERS, address_of, lease_type
 
 LARGEST: Final = 1 << 32  # bytes of a file that we map
 OTHERS: Final = 8  # files of other programs that one sender shows us at a time
@@ -69,6 +69,7 @@ class Borrowed:
         finally:
             os.close(ledger)
         self._given_back = memoryview(self._ledger).cast("I")
+        LENDERS.add(self)
 
     def show(self, number: int, shown: Shown) -> None:
         """From now on `number`, up to OTHERS, is that memory of another program."""
@@ -91,6 +92,10 @@ class Borrowed:
     def give_back(self, slot: int, generation: int) -> None:
         """Nobody looks at that payload any more."""
         self._given_back[slot] = generation
+
+    def disown(self) -> None:
+        """From now on nothing is given back."""
+        self._given_back = memoryview(bytearray(LEDGER)).cast("I")
 
 
 def _checked(number: int) -> int:

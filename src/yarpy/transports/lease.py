@@ -9,10 +9,12 @@ by its address, and nothing has to be registered.
 from __future__ import annotations
 
 import mmap
+import os
 import sys
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, Final, Protocol, TypeAlias
+from weakref import WeakSet
 
 from yarpy.wire.stream import LARGE, Buffer
 
@@ -37,6 +39,26 @@ class Room(Protocol):
     def begin(self, head: bytes) -> bool:
         """Put that in front of the array; False if something else is there."""
 
+
+class Lender(Protocol):
+    """Who is told what we have done with."""
+
+    def disown(self) -> None:
+        """From now on it is not."""
+
+
+LENDERS: Final[WeakSet[Lender]] = WeakSet()
+
+
+def _leave_to_parent() -> None:
+    """In a forked process, which has a copy of each view of its parent: what ends here does not end
+    there. It is registered before what closes the parent's ports here (`port/fork.py`)."""
+    for lender in tuple(LENDERS):
+        lender.disown()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_leave_to_parent)
 
 Place: TypeAlias = tuple[Source, int, object]
 """Where a payload lies already: in what, at which offset; and what keeps it there."""
