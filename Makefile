@@ -22,9 +22,10 @@ $(VENV)/.ready: $(VENV)/.base compat/pyproject.toml
 demo: $(VENV)/.base
 	$(BIN)/yarpy demo $(DEMO)
 
-# Two at a time, each with whole files: most tests wait for something. What is quick comes first, so
+# Some at a time, each with whole files: most tests wait for something. What is quick comes first, so
 # that a mistake in it is known within a minute.
-PYTEST := $(BIN)/python -m pytest -n 2 --dist loadfile
+WORKERS ?= 3
+PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 test: pure links programs
 
 pure links programs: $(VENV)/.ready

@@ -171,8 +171,8 @@ def opening(options: argparse.Namespace, cpp: CppYarp | None) -> dict[str, dict[
         with program(code, count, where, env=env, python=python) as fact:
             found[who] = {**fact(), "ports": count}
 
-    def yarpy_opens(who: str, where: str, env: Environment) -> None:
-        measure(who, OPENING, options.ports, where, env, sys.executable)
+    def yarpy_opens(who: str, where: str, env: Environment, count: int = options.ports) -> None:
+        measure(who, OPENING, count, where, env, sys.executable)
 
     def cpp_opens(who: str, env: Environment) -> None:
         assert cpp is not None
@@ -186,7 +186,7 @@ def opening(options: argparse.Namespace, cpp: CppYarp | None) -> dict[str, dict[
             assert other is not None
             cpp_opens("C++, yarpy server", other)
         with cpp_server(cpp) as (own, _):
-            yarpy_opens("yarpy, yarpserver", "server", own)
+            yarpy_opens("yarpy, yarpserver", "server", own, options.cpp_ports)
         with cpp_server(cpp) as (_, other):
             cpp_opens("C++, yarpserver", other)
     return found

@@ -43,6 +43,13 @@ def ratio(mine: Rounds, other: Rounds) -> float:
     return statistics.median(a / b for a, b in pairs)
 
 
+def processor_ratio(mine: Rounds, other: Rounds) -> float | None:
+    """The same of the processor's time; None where nobody counted it."""
+    pairs = zip(mine, other, strict=False)
+    found = [a.processor / b.processor for a, b in pairs if a.processor and b.processor]
+    return statistics.median(found) if found else None
+
+
 def summary(rounds: Rounds, workload: Workload) -> dict[str, float | None]:
     """What the JSON file keeps of a peer, in the workload's unit; `processor` in microseconds."""
     scale = 1.0 if workload.more_is_better else 1e-3
@@ -70,7 +77,7 @@ class Outcome:
 
     @property
     def reached(self) -> bool:
-        if WORKLOADS[self.workload].more_is_better:
+        if WORKLOADS[self.workload].more_is_better and not self.goal.processor:
             return self.measured >= self.goal.factor
         return self.measured <= self.goal.factor
 
@@ -79,8 +86,14 @@ def outcomes(results: Results, goals: Sequence[Goal] = GOALS) -> Iterator[Outcom
     """Every goal whose two peers ran, once for each workload that asks the same of them."""
     for goal in goals:
         for name, peers in results.items():
-            if WORKLOADS[name].function == goal.function and {goal.peer, goal.against} <= {*peers}:
-                yield Outcome(goal, name, ratio(peers[goal.peer], peers[goal.against]))
+            if WORKLOADS[name].function != goal.function:
+                continue
+            if not {goal.peer, goal.against} <= {*peers}:
+                continue
+            compare = processor_ratio if goal.processor else ratio
+            measured = compare(peers[goal.peer], peers[goal.against])
+            if measured is not None:
+                yield Outcome(goal, name, measured)
 
 
 def table(results: Results) -> Iterator[str]:
@@ -110,10 +123,10 @@ def table(results: Results) -> Iterator[str]:
         yield ""
         yield "goals: ratio of medians, paired by round"
     for outcome in reached:
-        sign = ">=" if WORKLOADS[outcome.workload].more_is_better else "<="
-        pair = f"{outcome.goal.peer} / {outcome.goal.against}"
+        more = WORKLOADS[outcome.workload].more_is_better and not outcome.goal.processor
+        sign = ">=" if more else "<="
         yield (
-            f"  {outcome.workload:15}{pair:32}{outcome.measured:7.2f}"
+            f"  {outcome.workload:15}{outcome.goal.title:48}{outcome.measured:7.2f}"
             f"   goal {sign} {outcome.goal.factor:<5g} {'reached' if outcome.reached else 'missed'}"
         )
 

@@ -303,7 +303,7 @@ def document(
         "goals": [
             {
                 "workload": outcome.workload,
-                "ratio_of": f"{outcome.goal.peer} / {outcome.goal.against}",
+                "ratio_of": outcome.goal.title,
                 "goal": outcome.goal.factor,
                 "measured": outcome.measured,
                 "reached": outcome.reached,

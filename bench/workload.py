@@ -71,12 +71,18 @@ WORKLOADS = {
 @dataclass(frozen=True)
 class Goal:
     """`peer` shall need at most (or, for a rate, reach at least) `factor` times `against`,
-    in every workload that asks for `function`."""
+    in every workload that asks for `function`; `processor`: of the processor's time."""
 
     function: str
     peer: str
     against: str
     factor: float
+    processor: bool = False
+
+    @property
+    def title(self) -> str:
+        """What is compared, for people."""
+        return f"{self.peer} / {self.against}" + ", processor time" * self.processor
 
 
 GOALS = (
@@ -106,4 +112,9 @@ GOALS = (
     Goal("rpc", "compat-tcp", "cpp-tcp", 0.6),
     Goal("flood", "compat-tcp", "cpp-tcp", 2.0),
     Goal("flood", "compat-fast_tcp", "cpp-fast_tcp", 2.0),
+    *(
+        Goal(function, f"yarpy-{carrier}", f"cpp-{carrier}", 1.0, processor=True)
+        for function in ("stream", "rpc", "flood")
+        for carrier in ("tcp", "fast_tcp")
+    ),
 )

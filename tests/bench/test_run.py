@@ -45,6 +45,16 @@ def test_goals_know_which_way_is_better(workload: str, mine: int, reached: bool)
     assert not list(report.outcomes({workload: {"a": rounds([mine])}}, [goal]))
 
 
+def test_processor_time_counts_by_itself() -> None:
+    mine, other = ([report.Measurement([1.0], ran)] for ran in (30.0, 20.0))
+    goal = Goal("flood", "a", "b", 1.0, processor=True)
+    [outcome] = report.outcomes({"flood": {"a": mine, "b": other}}, [goal])
+    assert (outcome.measured, outcome.reached) == (1.5, False)
+    assert goal.title == "a / b, processor time"
+    unknown = {"flood": {"a": mine, "b": rounds([1])}}
+    assert not list(report.outcomes(unknown, [goal]))
+
+
 def test_goals_count_in_each_placement() -> None:
     measured = {"a": rounds([1]), "b": rounds([2])}
     results = {"stream": measured, "stream-1-core": measured, "rpc": measured}

@@ -43,6 +43,10 @@ CREATE TABLE IF NOT EXISTS live (id INTEGER PRIMARY KEY, name TEXT UNIQUE, stamp
 CREATE TABLE IF NOT EXISTS structures (name TEXT PRIMARY KEY, yarp TEXT);
 """
 _TAG = "INSERT INTO tags (rid, ns, name, value) VALUES (?, ?, CAST(? AS TEXT), CAST(? AS TEXT))"
+# Many fields by one statement: others in this process may run Python meanwhile.
+_FIELDS = "INSERT INTO tags (rid, name, value) VALUES "
+_FIELD = "(?, CAST(? AS TEXT), CAST(? AS TEXT))"
+_AT_ONCE = 200  # any SQLite takes 999 values
 _IS = "= CAST(? AS TEXT)"
 
 
@@ -134,14 +138,11 @@ class PortTable:
             if row is None:
                 row = _inserted(connection.execute(_TAG, (None, None, b"port", _bytes(name))))
                 self._port_ids[name] = row
-            connection.executemany(
-                _TAG,
-                [
-                    (row, None, _bytes(key), _bytes(value))
-                    for key, values in fields.items()
-                    for value in values
-                ],
-            )
+            rows = [(_bytes(key), _bytes(one)) for key, values in fields.items() for one in values]
+            for start in range(0, len(rows), _AT_ONCE):
+                some = rows[start : start + _AT_ONCE]
+                words = [word for pair in some for word in (row, *pair)]
+                connection.execute(_FIELDS + ", ".join([_FIELD] * len(some)), words)
 
     def _save_pools(self, changes: PortChanges) -> None:
         connection = self.connection
