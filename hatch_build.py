@@ -19,7 +19,8 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 CORE = (
     *("data/codec", "data/reader", "data/walker", "data/writer"),
     *("wire/framing", "wire/shared_stream", "wire/stream"),
-    *("link/counter", "link/driver", "link/receiver", "link/sender", "link/turn", "link/window"),
+    *("link/counter", "link/driver", "link/inbound", "link/outbound", "link/receiver"),
+    *("link/sender", "link/turn", "link/window", "port/reader"),
 )
 _COMPILE = """
 import sys
