@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
-from yarpy.errors import LinkClosed, RemoteProtocolError, Timeout, YarpError
+from yarpy.errors import AccessRefused, LinkClosed, RemoteProtocolError, Timeout, YarpError
 from yarpy.link.driver import Driver
 from yarpy.link.receiver import Receiver
 from yarpy.link.timing import Timing, chain_of, expected
@@ -23,6 +23,8 @@ from yarpy.qos import NOTHING_ASKED, Qos, Sched
 from yarpy.wire.message import CALL, DATA, QUIT, Message
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from yarpy.link.counter import Counter
     from yarpy.monitors.chain import Chain
     from yarpy.route import Route
@@ -65,7 +67,9 @@ class Inbound:
         self.carrier = carrier
         self.route: Route = carrier.route
         self.receiver = Receiver(driver, carrier)
-        self.advance = self.receiver.advance  # the next message, whatever it is
+        # The next message, and the answer to a port command: a guard takes their place.
+        self.advance = self.receiver.advance
+        self.answer: Callable[[Message], Bottle | list[str] | None] = self.carry_out
         self.counter: Counter = self.receiver.counter
         self.turn = Turn()
         self.successor = carrier  # the carrier that goes on when the peer becomes a reader
@@ -181,10 +185,11 @@ class Inbound:
     def _obey(self, message: Message) -> None:
         """A port command that is not data."""
         self._asker = threading.get_ident()
-        self.receiver.obey(message, self._answer)
+        self.receiver.obey(message, self.answer)
         self._asker = 0
 
-    def _answer(self, message: Message) -> Bottle | list[str] | None:
+    def carry_out(self, message: Message) -> Bottle | list[str] | None:
+        """Do what a port command says; the answer."""
         if message.key == "a":
             answered = self.owner.administer(self, message)
             self._quit = self._quit or getattr(answered, "is_last", False)
@@ -325,7 +330,7 @@ class Inbound:
 
     def _tell(self, error: YarpError) -> None:
         """The one log line for a connection that ends on an error."""
-        if not self._closing:
+        if not (self._closing or isinstance(error, AccessRefused)):  # which was logged already
             log.warning(
                 "%s: connection from %s over %s closed: %s",
                 self.owner.name,

@@ -62,7 +62,9 @@ def inbound(hub: Hub, driver: Driver, carrier: Carrier) -> Inbound:
         if why := admission.refusal(right):
             driver.transport.close()
             raise AccessRefused(why)
-    return GuardedInbound(hub, driver, carrier)
+    link = Inbound(hub, driver, carrier)
+    Guard(hub, link)
+    return link
 
 
 def to_read(spec: CarrierSpec) -> list[str]:
@@ -72,41 +74,45 @@ def to_read(spec: CarrierSpec) -> list[str]:
     return [*wanted, "administer"] if spec.log is not None else wanted
 
 
-class GuardedInbound(Inbound):
-    """A connection of a peer that may not do everything."""
+class Guard:
+    """Stands in the way of a connection whose peer may not do everything."""
 
-    def __init__(self, hub: Hub, driver: Driver, carrier: Carrier) -> None:
-        super().__init__(hub, driver, carrier)
+    def __init__(self, hub: Hub, link: Inbound) -> None:
         self._hub = hub
-        self.advance = self._checked  # messages are judged before anybody sees them
+        self._link = link
+        link.advance = self.advance  # messages are judged before anybody sees them
+        link.answer = self.answer
 
-    def _checked(self, deadline: float | None) -> Message:
-        message = self.receiver.advance(deadline)
+    def advance(self, deadline: float | None) -> Message:
+        """The next message that may come. Raises AccessRefused."""
+        message = self._link.receiver.advance(deadline)
         if message.key in (DATA, CALL):
             self._judge(message)
         return message
 
     def _judge(self, message: Message) -> None:
         """Refuse a message that must not come. Raises AccessRefused, which ends the connection."""
-        why = self.driver.admission.refusal("write")
+        link = self._link
+        why = link.driver.admission.refusal("write")
         if not why:
             return
-        receiver = self.receiver
+        receiver = link.receiver
         if message.key == CALL and receiver.open_question(message):
             message.reply(Refused(why))
-        elif self.carrier.spelling == "text":
-            self.carrier.encode_lines(self.driver.stream, [why])
-            self.driver.flush()
+        elif link.carrier.spelling == "text":
+            link.carrier.encode_lines(link.driver.stream, [why])
+            link.driver.flush()
         receiver.counter.drops += 1
         raise AccessRefused(why)
 
-    def _answer(self, message: Message) -> Bottle | list[str] | None:
+    def answer(self, message: Message) -> Bottle | list[str] | None:
+        """What a port command is answered: it is carried out, or refused."""
         right = self._right(message)
-        why = self.driver.admission.refusal(right) if right else ""
+        why = self._link.driver.admission.refusal(right) if right else ""
         if not why:
-            return super()._answer(message)
+            return self._link.carry_out(message)
         if message.key == ADMIN:
-            by_ros = self.carrier.foreign and _verb(message) in TOLD
+            by_ros = self._link.carrier.foreign and _verb(message) in TOLD
             return Plain([-1, why, 0]) if by_ros else Refused(why)
         if message.key == "*":
             return [f"This is {self._hub.name} at tcp://{self._address}/", why]
@@ -115,10 +121,6 @@ class GuardedInbound(Inbound):
     @property
     def _address(self) -> str:
         return self._hub.registration.contact.address
-
-    def _tell(self, error: YarpError) -> None:
-        if not isinstance(error, AccessRefused):  # which was logged when it was refused
-            super()._tell(error)
 
     # -- what a request needs ---------------------------------------------------------------------
 
@@ -130,8 +132,8 @@ class GuardedInbound(Inbound):
         if key == "*":
             return ASK
         if key == "r":
-            allows = self.driver.admission.allows
-            return next((one for one in to_read(self.route.spec) if not allows(one)), "")
+            allows = self._link.driver.admission.allows
+            return next((one for one in to_read(self._link.route.spec) if not allows(one)), "")
         if key == ADMIN:
             return self._right_to_ask(message)
         if key == "/":
@@ -162,7 +164,7 @@ class GuardedInbound(Inbound):
     def _right_to_add(self, target: str) -> str:
         wanted = parse_contact(target)
         spec = parse_carrier(wanted.carrier)
-        admission = self.driver.admission
+        admission = self._link.driver.admission
         try:
             receives = not find_carrier(spec).push  # such a connection brings messages to us
         except YarpError:
@@ -189,13 +191,13 @@ class GuardedInbound(Inbound):
 
     def _goes_to_peer(self, name: str) -> bool:
         """Whether our outputs of that name, if any, lead to the computer of the peer."""
-        peer = self.driver.admission.peer
+        peer = self._link.driver.admission.peer
         found = [link for link in self._hub.outputs if link.route.target == name]
         return bool(found) and all(_is_of(peer, _remote(link)) for link in found)
 
     def _comes_from_peer(self, name: str) -> bool:
         """Whether our inputs of that name, if any, come from the computer of the peer."""
-        peer = self.driver.admission.peer
+        peer = self._link.driver.admission.peer
         found = [link for link in self._hub.inputs if link.route.source == name]
         return bool(found) and all(
             link.driver.admission.peer.address == peer.address or _is_of(peer, _remote(link))
