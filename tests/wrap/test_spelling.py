@@ -9,6 +9,7 @@ import pytest
 
 import yarpy
 from yarpy.wire.message import CALL, DATA, Message, Packet
+from yarpy.wrap import payload, spelling
 from yarpy.wrap.array import Image
 from yarpy.wrap.hint import shape_of
 from yarpy.wrap.middleware import Failure, Item
@@ -121,3 +122,15 @@ def test_failures_are_told_as_yarp_does() -> None:
     assert failure_of(other) == Failure("", "no such motor: 7")
     for value in (["fail", "x"], [yarpy.Vocab("fail")], [yarpy.Vocab("ok"), 1], "fail"):
         assert failure_of(Message(DATA, b"".join(Packet(value).blocks))) is None
+
+
+def test_a_picture_is_compressed_once_for_all_middlewares(monkeypatch: pytest.MonkeyPatch) -> None:
+    compressed = []
+    to_jpeg = spelling.to_jpeg
+    monkeypatch.setattr(spelling, "to_jpeg", lambda *a: compressed.append(a) or to_jpeg(*a))
+    shape = shape_of(Annotated[np.ndarray, Image("bgr", jpeg=80)])
+    item = Item(shape.dump(np.zeros((8, 16, 3), "u1")), shape)
+    item.forms = {}
+    form_of("native", shape)(item)
+    assert payload.joined(item) in payload.parts(item)
+    assert len(compressed) == 1

@@ -7,10 +7,11 @@ that goes away is dialled again until it is back. `reliable` is QoS 1; what else
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, TypeVar
 
 from yarpy.contact import parse_contact
-from yarpy.errors import LinkClosed, Timeout, UnknownName, YarpError
+from yarpy.errors import LinkClosed, UnknownName, YarpError
 from yarpy.link.handshake import find_carrier
 from yarpy.port.base import BasePort
 from yarpy.port.port import BufferedPort
@@ -19,6 +20,7 @@ from yarpy.route import parse_carrier
 from yarpy.wire.message import Message
 from yarpy.wrap import payload, spelling
 from yarpy.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.wrap.port_end import PortEnd
 from yarpy.wrap.shape import Shape
 
 
@@ -69,49 +71,26 @@ def _connected(port: P, target: str) -> P:
     return port
 
 
-class MqttPublisher:
+class MqttPublisher(PortEnd):
     def __init__(self, way: Way) -> None:
-        self._encoding = way.encoding
-        self._port = _connected(BufferedPort("", strict=way.keep == "all"), _target(way))
+        port = BufferedPort("", strict=way.keep == "all")
+        super().__init__(_connected(port, _target(way)), way)
+        self._form = partial(payload.joined, encoding=way.encoding)
 
     def publish(self, item: Item) -> int:
-        data = item.form(f"bytes {self._encoding}", lambda one: payload.joined(one, self._encoding))
-        return self._port.write(data)
-
-    def wait(self, timeout: float | None) -> bool:
-        """Only the broker can be waited for: it does not say who has subscribed."""
-        return self._port.wait_for_outputs(1, timeout)
-
-    @property
-    def stats(self) -> dict[str, Any]:
-        return self._port.stats
-
-    def close(self) -> None:
-        self._port.close()
+        return self.port.write(item.form(f"bytes {self.way.encoding}", self._form))
 
 
-class MqttListener:
+class MqttListener(PortEnd):
     def __init__(self, way: Way, shape: Shape) -> None:
-        self._way = way
-        self._shape = shape
         port = BufferedPort("", strict=way.keep == "all")
-        self._port = _connected(port, _target(way, "sub"))
+        super().__init__(_connected(port, _target(way, "sub")), way)
+        self._shape = shape
 
     def listen(self, timeout: float | None) -> Received:
-        try:
-            message = self._port.read(timeout)
-        except Timeout:
-            raise Timeout(f'nothing came from "{self._way.topic}" within {timeout:.3g} s') from None
-        found = payload.unpack(message.as_(bytes), self._shape)
-        found.middleware = self._way.middleware
+        found = payload.unpack(self.read(timeout).as_(bytes), self._shape)
+        found.middleware = self.way.middleware
         return found
-
-    @property
-    def stats(self) -> dict[str, Any]:
-        return self._port.stats
-
-    def close(self) -> None:
-        self._port.close()
 
 
 class MqttServer:

@@ -11,7 +11,7 @@ import threading
 import time
 from typing import Any
 
-from yarpy.errors import DecodeError, LinkClosed, Timeout, UnknownName, YarpError
+from yarpy.errors import DecodeError, LinkClosed, UnknownName, YarpError
 from yarpy.link.handshake import find_carrier
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.port import BufferedPort
@@ -21,6 +21,7 @@ from yarpy.route import parse_carrier
 from yarpy.wire.message import Message
 from yarpy.wrap.follower import Follower
 from yarpy.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.wrap.port_end import PortEnd
 from yarpy.wrap.shape import Shape
 from yarpy.wrap.spelling import (
     FORMS,
@@ -84,11 +85,11 @@ def _give(port: BufferedPort, qos: Qos) -> None:
     port.on_connection(on_connection)
 
 
-class PortPublisher:
+class PortPublisher(PortEnd):
     """Writes to a port of its own."""
 
     def __init__(self, port: BufferedPort, way: Way, shape: Shape) -> None:
-        self.port = port
+        super().__init__(port, way)
         self._name = way.encoding
         self._form = form_of(way.encoding, shape)
         self._write = port.write
@@ -98,45 +99,26 @@ class PortPublisher:
         value = make(item) if item.forms is None else item.form(self._name, make)
         return self._write(value, f"{item.count} {item.time:.6f}")
 
-    def wait(self, timeout: float | None) -> bool:
-        return self.port.wait_for_outputs(1, timeout)
 
-    @property
-    def stats(self) -> dict[str, Any]:
-        return self.port.stats
-
-    def close(self) -> None:
-        self.port.close()
-
-
-class PortListener:
+class PortListener(PortEnd):
     """Reads a port of its own, which follows the topic."""
 
     def __init__(
         self, port: BufferedPort, way: Way, shape: Shape, follower: Follower | None = None
     ) -> None:
-        self.port = port
-        self._way = way
+        super().__init__(port, way)
         self._shape = shape
         self._follower = follower
 
     def listen(self, timeout: float | None) -> Received:
-        try:
-            message = self.port.read(timeout)
-        except Timeout:
-            raise Timeout(f'nothing came from "{self._way.topic}" within {timeout:.3g} s') from None
-        found = received(message, self._shape)
-        found.middleware = self._way.middleware
+        found = received(self.read(timeout), self._shape)
+        found.middleware = self.way.middleware
         return found
-
-    @property
-    def stats(self) -> dict[str, Any]:
-        return self.port.stats
 
     def close(self) -> None:
         if self._follower is not None:
             self._follower.close()
-        self.port.close()
+        super().close()
 
 
 class PortServer:
