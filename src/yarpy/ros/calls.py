@@ -28,6 +28,14 @@ SHORTEST: Final = 0.001  # seconds for what has no time left
 ENOUGH: Final = 1.0  # seconds for a master to say whether there is a service
 
 
+class ServiceFailed(RemoteProtocolError):
+    """The server of a service failed; `reason` is what it says."""
+
+    def __init__(self, name: str, reason: str) -> None:
+        super().__init__(f"{name} failed: {reason}")
+        self.reason = reason
+
+
 class Calls:
     """The services that `node` calls."""
 
@@ -60,7 +68,7 @@ class Calls:
         reason = reply.value
         text = str(reason[1]) if len(reason) > 1 else "it does not say why"
         if isinstance(reason[0], Vocab):
-            raise RemoteProtocolError(f"{name} failed: {text}")
+            raise ServiceFailed(name, text)
         raise RemoteProtocolError(f"{name} answers nothing that can be read")
 
     def _connected(self, line: _Line, name: str, kind: Service, clock: _Clock) -> Outbound:

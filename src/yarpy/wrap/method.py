@@ -26,7 +26,15 @@ from yarpy.errors import AddressError, DecodeError, LocalProtocolError
 from yarpy.qos import Qos
 from yarpy.registry import middlewares
 from yarpy.wrap.hint import shape_of
-from yarpy.wrap.middleware import ENCODINGS, Encoding, Keep, Middleware, Way
+from yarpy.wrap.middleware import (
+    ENCODINGS,
+    Encoding,
+    Keep,
+    Middleware,
+    Parameter,
+    Signature,
+    Way,
+)
 from yarpy.wrap.shape import ANY, Shape
 
 Kind: TypeAlias = Literal["function", "coroutine", "generator", "async generator"]
@@ -81,11 +89,11 @@ class Output:
         if not fitting:
             raise ValueError(f'keep={self.keep!r} is neither "latest", "all" nor a number')
 
-    def ways(self, topic: str) -> list[Way]:
+    def ways(self, topic: str, signature: Signature | None = None) -> list[Way]:
         """What each middleware is told; `topic` is this output's topic or source."""
-        return [self._way(one, topic) for one in self.middlewares]
+        return [self._way(one, topic, signature) for one in self.middlewares]
 
-    def _way(self, middleware: str, topic: str) -> Way:
+    def _way(self, middleware: str, topic: str, signature: Signature | None) -> Way:
         name, _, place = middleware.partition("://")
         return Way(
             topic,
@@ -96,6 +104,7 @@ class Output:
             self.keep,
             self.reliable,
             self.encoding,
+            signature,
         )
 
 
@@ -166,7 +175,9 @@ class Method:
 
     def add(self, output: Output) -> None:
         """One more decorator, above those that are there. Raises what cannot be."""
-        for way in output.ways(output.topic):
+        names = [*self.signature.parameters]
+        called = self.called(names[:1] in (["self"], ["cls"])) if self._read else None
+        for way in output.ways(output.topic, called):
             try:
                 middleware_of(way).check(way)
             except (TypeError, ValueError) as error:
@@ -215,6 +226,20 @@ class Method:
                 f"{self.qualname} takes {len(found)} arguments, and gets {len(self.outputs)} values"
             )
         return found[: len(self.outputs)]
+
+    def called(self, bound: bool) -> Signature:
+        """What the method takes and returns; `bound`: its first parameter is its object."""
+        self.read_hints()
+        found: list[Parameter] = []
+        variable = ""
+        for name, parameter in [*self.signature.parameters.items()][bound:]:
+            if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
+                variable = variable or name
+                continue
+            keyword_only = parameter.kind is parameter.KEYWORD_ONLY
+            shape = self.parameters[name]
+            found.append(Parameter(name, shape, parameter.default, keyword_only))
+        return Signature(self.qualname, tuple(found), self.result, variable)
 
     def dump(
         self, instance: Any, args: Sequence[Any], kwargs: Mapping[str, Any]

@@ -30,11 +30,40 @@ Keep: TypeAlias = "Literal['latest', 'all'] | int"
 ENCODINGS: Final = ("native", "frame", "wrapyfi")
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Parameter:
+    """A parameter of a method; `default` is inspect.Parameter.empty where there is none."""
+
+    name: str
+    shape: Shape
+    default: Any
+    keyword_only: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Signature:
+    """What a method takes, without its object, and returns.
+
+    variable: the name of a parameter that takes any number of arguments, or "".
+    """
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    result: Shape
+    variable: str = ""
+
+    @property
+    def positional(self) -> tuple[Parameter, ...]:
+        """Those that can be given by their place."""
+        return tuple(one for one in self.parameters if not one.keyword_only)
+
+
 @dataclass(frozen=True, slots=True)
 class Way:
     """One middleware for one value: where it goes, and how.
 
     place: what stands behind the name in "mqtt://broker:1883", or "".
+    signature: of the method, where it is known: for middlewares whose requests have types.
     """
 
     topic: str
@@ -45,6 +74,7 @@ class Way:
     keep: Keep = "latest"
     reliable: bool = False
     encoding: Encoding = "native"
+    signature: Signature | None = None
 
     def refuse(self, **needed: str) -> None:
         """Raise ValueError for an option that this middleware does not have: `carrier="why"`."""

@@ -336,7 +336,7 @@ class Serve(Mode):
             self._loop = None
         self._servers: list[Server] = []
         try:
-            for way in outputs[0].ways(outputs[0].topic):
+            for way in outputs[0].ways(outputs[0].topic, method.called(self.bound)):
                 server = middleware_of(way).server(way, method.name, self.answer)
                 self._servers.append(server)
         except BaseException:
@@ -406,7 +406,7 @@ class Call(Mode):
     def __init__(self, method: Method, instance: Any, outputs: Sequence[Output]) -> None:
         super().__init__(method, instance, outputs)
         method.read_hints()
-        way = outputs[0].ways(outputs[0].topic)[0]
+        way = outputs[0].ways(outputs[0].topic, method.called(self.bound))[0]
         self._client: Client = middleware_of(way).client(way, method.result)
         self._pool: ThreadPoolExecutor | None = None
 

@@ -27,9 +27,18 @@ class Robot:
     def see(self) -> tuple[Picture, dict, str]:
         return np.full((2, 4, 3), (1, 2, 3), "u1"), {"t": (1, None)}, "hello"
 
-    @wrap.on("/ask", "ros")
-    def ask(self) -> str:
-        return ""
+    @wrap.on("/ask", "ros", timeout=PATIENCE)
+    def ask(self, word: str, more: dict | None = None) -> dict:
+        if not word:
+            raise ValueError("nothing: was said")
+        return {"word": word, "more": more}
+
+    @wrap.on("/switch", "ros", timeout=PATIENCE)
+    def switch(self, data: bool) -> tuple[bool, str]:
+        return data, "done"
+
+    @wrap.on("/other~std_srvs/SetBool", "ros", timeout=PATIENCE)
+    def other(self, data: bool) -> tuple[bool, str]: ...
 
 
 @pytest.mark.parametrize(
@@ -50,13 +59,14 @@ def test_types_of_sensors() -> None:
     assert type_of(shape_of(yarpy.PointCloud)) == "sensor_msgs/PointCloud2"
 
 
-def test_services_are_refused() -> None:
-    for mode in (wrap.serve, wrap.call):
-        with pytest.raises(yarpy.LocalProtocolError, match="a service of ROS has a type"):
-            mode(Robot().ask)
+def test_what_is_refused() -> None:
     for wrong in ({"carrier": "udp"}, {"keep": 3}, {"qos": yarpy.Qos(packets="HIGH")}):
         with pytest.raises(ValueError):
             wrap.on("/x", "ros", **wrong)(lambda: 1)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match='the parameter "c": std_srvs/SetBool has data'):
+        wrap.on("/x~std_srvs/SetBool", "ros")(lambda c: None)
+    with pytest.raises(yarpy.UnknownType):
+        wrap.on("/x~nobody/Has", "ros")(lambda c: None)
 
 
 @pytest.mark.usefixtures("names")
@@ -78,4 +88,52 @@ def test_topics(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             echo.wait_line('data: "hello"', timeout=PATIENCE)
     finally:
         wrap.off(there.see).close()
+        graph.close()
+
+
+SERVER = """
+import rospy, std_srvs.srv
+rospy.init_node("server")
+def answer(asked):
+    if not asked.data:
+        raise ValueError("too dark")
+    return [True, "light"]
+rospy.Service("/other", std_srvs.srv.SetBool, answer)
+print("ready", flush=True)
+rospy.spin()
+"""
+
+
+@pytest.mark.usefixtures("names")
+def test_services(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_IP", "127.0.0.1")
+    graph = RosGraph(tmp_path)
+    try:
+        here, there, place = Robot(), Robot(), f"ros://127.0.0.1:{graph.port}"
+        with (
+            wrap.serve(here.ask, middleware=place),
+            wrap.serve(here.switch, middleware=place),
+            wrap.call(there.ask, middleware=place),
+            wrap.call(there.switch, middleware=place),
+            wrap.call(there.other, middleware=place),
+        ):
+            peer = graph.python(SERVER)
+            assert there.ask("x", {"a": [1, None]}) == {"word": "x", "more": {"a": [1, None]}}
+            assert there.ask(word="y") == {"word": "y", "more": None}
+            with pytest.raises(wrap.RemoteError) as caught:
+                there.ask("")
+            assert (caught.value.type, caught.value.text) == ("ValueError", "nothing: was said")
+            assert there.switch(True) == (True, "done")
+            assert 'message: "done"' in graph.tool("rosservice", "call", "/switch", "true")
+            peer.wait_line("ready", timeout=PATIENCE, stream="out")
+            assert there.other(True) == (True, "light")
+            with pytest.raises(wrap.RemoteError, match="too dark"):
+                there.other(False)
+        with pytest.raises(yarpy.LocalProtocolError, match="is a service"):
+            wrap.publish(there.other, middleware=place)
+        wrap.call(there.ask, middleware=place)
+        with pytest.raises(yarpy.Timeout, match="nobody served"):
+            there.ask("x", timeout=0.3)
+        wrap.off(there.ask).close()
+    finally:
         graph.close()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import pytest
 from support.patience import patience
-from support.port import free_port
+from support.process import Process
+from support.ros2_peer import peer_command, peer_environment, ros2_router
 from support.wait import wait_until
 
 import yarpy
@@ -30,21 +32,26 @@ class Robot:
     def see(self) -> tuple[Picture, dict, str]:
         return np.full((2, 4, 3), (1, 2, 3), "u1"), {"t": (1, None)}, "hello"
 
-    @wrap.on("/ask", "ros2")
-    def ask(self) -> str:
-        return ""
+    @wrap.on("/ask", "ros2", timeout=PATIENCE)
+    def ask(self, word: str, numbers: list[float] = [0.5]) -> dict:  # noqa: B006
+        if not word:
+            raise ValueError("nothing: was said")
+        return {"word": word, "numbers": numbers}
+
+    @wrap.on("/look", "ros2", timeout=PATIENCE)
+    def look(self, size: int) -> Picture:
+        return np.full((size, 4, 3), (1, 2, 3), "u1")
+
+    @wrap.on("/add~example_interfaces/srv/AddTwoInts", "ros2", timeout=PATIENCE)
+    def add(self, a: int, b: int) -> int:
+        return a + b
 
 
 @pytest.fixture
-def router(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    from yarpy.transports.zenoh import close
-    from yarpy.transports.zenoh_router import open_router
-
-    where = f"tcp/127.0.0.1:{free_port()}"
-    opened = open_router([where])
-    monkeypatch.setenv("YARPY_ZENOH", where)
-    yield
-    close(opened)
+def router(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
+    with ros2_router() as port:
+        monkeypatch.setenv("YARPY_ZENOH", f"tcp/127.0.0.1:{port}")
+        yield port
 
 
 @pytest.mark.usefixtures("names", "router")
@@ -74,9 +81,46 @@ def test_topics() -> None:
 def test_targets_and_what_is_refused() -> None:
     target = target_of(Way("/camera/image", carrier="domain.7+node.me"), shape_of(Picture))
     assert target == "ros2+domain.7+node.me://camera/image~sensor_msgs/msg/Image"
-    for mode in (wrap.serve, wrap.call):
-        with pytest.raises(yarpy.LocalProtocolError, match="a service of ROS 2 has a type"):
-            mode(Robot().ask)
+    with pytest.raises(TypeError, match=r'"a": int64 in example_interfaces/.*says str'):
+        wrap.on("/x~example_interfaces/srv/AddTwoInts", "ros2")(_wrong)
     for wrong in ({"middleware": "ros2://here"}, {"keep": 3}):
         with pytest.raises(ValueError):
             wrap.on("/x", **({"middleware": "ros2"} | wrong))(lambda: 1)  # type: ignore[arg-type]
+
+
+def _wrong(a: str, b: int) -> int: ...
+
+
+@pytest.mark.usefixtures("names")
+def test_services(router: int) -> None:
+    here, there = Robot(), Robot()
+    with (
+        wrap.serve(here.ask),
+        wrap.serve(here.look),
+        wrap.call(there.ask),
+        wrap.call(there.look),
+    ):
+        assert there.ask("x", [1.0, 2.5]) == {"word": "x", "numbers": [1.0, 2.5]}
+        assert there.ask("x") == {"word": "x", "numbers": [0.5]}
+        with pytest.raises(wrap.RemoteError) as caught:
+            there.ask("")
+        assert (caught.value.type, caught.value.text) == ("ValueError", "nothing: was said")
+        assert there.look(2)[1, 3].tolist() == [1, 2, 3]
+    wrap.call(there.ask)
+    with pytest.raises(yarpy.UnknownName, match="nobody serves"):
+        there.ask("x", timeout=0.3)
+    wrap.off(there.ask).close()
+
+
+@pytest.mark.usefixtures("names")
+def test_services_beside_another_implementation(router: int, tmp_path: Path) -> None:
+    pytest.importorskip("zenoh_ros2_sdk")
+    known = peer_environment(tmp_path)
+    here, there = Robot(), Robot()
+    with wrap.serve(here.add), Process(peer_command(router, "call", "/add"), env=known) as peer:
+        peer.wait_line("ready", timeout=PATIENCE, stream="out")
+        peer.write_line("5 37")
+        peer.wait_line("^42$", timeout=PATIENCE, stream="out")
+    serve = peer_command(router, "serve", "/add")
+    with wrap.call(there.add), Process(serve, env=known) as peer:
+        assert there.add(2, b=3) == 5

@@ -42,9 +42,7 @@ string raw_file_contents
 }
 
 SERVICES: Final = {
-    "std_srvs/Empty": "---\n",
-    "std_srvs/Trigger": "---\nbool success\nstring message\n",
-    "std_srvs/SetBool": "bool data\n---\nbool success\nstring message\n",
+    **{name: text for name, text in standard.SERVICES.items() if name.startswith("std_srvs/")},
     "type_description_interfaces/GetTypeDescription": """\
 string type_name
 string type_hash

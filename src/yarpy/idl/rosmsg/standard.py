@@ -66,6 +66,9 @@ bool is_dense
 #: by which a type server is asked, and by which the simulated robot is moved: neither needs a
 #: definition that somebody has
 SERVICES: Final = {
+    "std_srvs/Empty": "---\n",
+    "std_srvs/Trigger": "---\nbool success\nstring message\n",
+    "std_srvs/SetBool": "bool data\n---\nbool success\nstring message\n",
     "test_roscpp/TestStringString": "string str\n---\nstring str\n",
     "gazebo_msgs/SetModelConfiguration": """\
 string model_name

@@ -6,23 +6,26 @@
     everything else                                  std_msgs/String with JSON, as Wrapyfi has it
 
 Rules: a place is a master, "ros://localhost:11311"; without one it is ROS_MASTER_URI's. One node
-for each process and master. Services have types, which no hint gives: `serve` and `call`
-are refused.
+for each process and master. Which service a method is says `service.py`.
 """
 
 from __future__ import annotations
 
 import os
 import threading
-from typing import Any
+import time
+from typing import Any, Final
 
 from yarpy.data.stamp import Stamp
 from yarpy.errors import DecodeError, LocalProtocolError, Timeout
+from yarpy.idl.rosmsg.library import default_library
 from yarpy.idl.rosmsg.message import Message as RosMessage
+from yarpy.ros.calls import ServiceFailed
 from yarpy.ros.node import Node
 from yarpy.wire.message import Message
 from yarpy.wrap.array import Picture
-from yarpy.wrap.middleware import Answer, Client, Item, Received, Server, Way
+from yarpy.wrap.middleware import Answer, Item, Received, Way
+from yarpy.wrap.service import Service, Types, error_of, handled, topic_and_type
 from yarpy.wrap.shape import Scalar, Shape, Wired
 from yarpy.wrap.tree import from_text, to_text
 
@@ -46,6 +49,8 @@ class Ros:
         )
         if way.keep not in ("latest", "all"):
             raise ValueError('a subscriber keeps "latest" or "all" of what comes')
+        if "~" in way.topic and way.signature is not None:
+            Service(way, TYPES)
 
     def publisher(self, way: Way, shape: Shape) -> RosPublisher:
         return RosPublisher(way, shape)
@@ -53,18 +58,24 @@ class Ros:
     def listener(self, way: Way, shape: Shape) -> RosListener:
         return RosListener(way, shape)
 
-    def server(self, way: Way, name: str, answer: Answer) -> Server:
-        raise _no_service(way)
+    def server(self, way: Way, name: str, answer: Answer) -> RosServer:
+        return RosServer(way, answer)
 
-    def client(self, way: Way, shape: Shape) -> Client:
-        raise _no_service(way)
+    def client(self, way: Way, shape: Shape) -> RosClient:
+        return RosClient(way)
 
 
-def _no_service(way: Way) -> LocalProtocolError:
-    return LocalProtocolError(
-        f'"{way.topic}": a service of ROS has a type, which no hint gives; use '
-        "yarpy.ros.Node.service and call, or another middleware"
-    )
+TYPES: Final = Types(
+    "[A-Za-z][A-Za-z0-9_]*", default_library, lambda library: library.catalogue.sources
+)
+
+
+def topic_of(way: Way) -> str:
+    """The topic of messages. Raises LocalProtocolError for the name of a service."""
+    topic, type_ = topic_and_type(way.topic)
+    if type_:
+        raise LocalProtocolError(f'"{way.topic}" is a service: it can be served and called')
+    return topic
 
 
 def type_of(shape: Shape) -> Any:
@@ -116,7 +127,7 @@ class RosPublisher:
         self._texts = as_text(shape)
         self._node = _use(way, self)
         try:
-            self._port = self._node.publisher(way.topic, type_of(shape))
+            self._port = self._node.publisher(topic_of(way), type_of(shape))
         except BaseException:
             _leave(way, self)
             raise
@@ -145,7 +156,8 @@ class RosListener:
         self._texts = as_text(shape)
         self._node = _use(way, self)
         try:
-            self._port = self._node.subscriber(way.topic, self._kind, newest=way.keep == "latest")
+            newest = way.keep == "latest"
+            self._port = self._node.subscriber(topic_of(way), self._kind, newest=newest)
         except BaseException:
             _leave(way, self)
             raise
@@ -177,4 +189,52 @@ class RosListener:
 
     def close(self) -> None:
         self._port.close()
+        _leave(self._way, self)
+
+
+class RosServer:
+    """A service; its method runs in the thread of the connection."""
+
+    def __init__(self, way: Way, answer: Answer) -> None:
+        self._way = way
+        service = Service(way, TYPES)
+        self._node = _use(way, self)
+        try:
+            self._port = self._node.service(
+                service.topic, service.kind, lambda asked: handled(service, asked, answer)
+            )
+        except BaseException:
+            _leave(way, self)
+            raise
+
+    def close(self) -> None:
+        self._port.close()
+        _leave(self._way, self)
+
+
+class RosClient:
+    """Calls of a service take turns."""
+
+    def __init__(self, way: Way) -> None:
+        self._way = way
+        self._service = Service(way, TYPES)
+        self._node = _use(way, self)
+
+    def call(
+        self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
+    ) -> Any:
+        service = self._service
+        question = service.request(args, kwargs)
+        begun = time.monotonic()
+        # As elsewhere: with a timeout it waits for a server that is not there yet.
+        if timeout is not None and not self._node.wait_for_service(service.topic, timeout):
+            raise Timeout(f'nobody served "{service.topic}" within {timeout:.3g} s')
+        left = None if timeout is None else max(timeout - (time.monotonic() - begun), 0.001)
+        try:
+            found = self._node.call(service.topic, service.kind, question, timeout=left)
+        except ServiceFailed as error:
+            raise error_of(error.reason) from error
+        return service.value(found)
+
+    def close(self) -> None:
         _leave(self._way, self)

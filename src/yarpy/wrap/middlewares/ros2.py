@@ -1,22 +1,28 @@
 """ROS 2: topics of the types that hints stand for, over its Zenoh router. No ROS is needed.
 
-Rules: types are those of `ros`, as `std_msgs/msg/String`. What the carrier takes (`domain.7`,
-`qos.sensor`, docs/ros2.md) is said by `carrier=`. Services have types of their own, which no hint
-gives: `serve` and `call` are refused.
+Rules: types are those of `ros`, as `std_msgs/msg/String`, and so are services. What the carrier
+takes (`domain.7`, `qos.sensor`, docs/ros2.md) is said by `carrier=`.
 """
 
 from __future__ import annotations
 
 import os
-from typing import Any
+import time
+from typing import Any, Final
 
 from yarpy.data.stamp import Stamp
-from yarpy.errors import LocalProtocolError, Timeout, YarpError
+from yarpy.errors import LinkClosed, Timeout, UnknownName, YarpError
+from yarpy.idl.ros2msg.library import default_library
 from yarpy.port.port import BufferedPort
-from yarpy.wrap.middleware import Answer, Client, Item, Received, Server, Way
-from yarpy.wrap.middlewares.ros import as_text, type_of
+from yarpy.port.rpc import RpcClient, RpcServer
+from yarpy.wire.message import Message
+from yarpy.wrap.middleware import Answer, Item, Received, Way
+from yarpy.wrap.middlewares.ros import as_text, topic_of, type_of
+from yarpy.wrap.service import Service, Types, error_of, handled
 from yarpy.wrap.shape import Shape
 from yarpy.wrap.tree import from_text, to_text
+
+_PAUSE: Final = 0.05  # seconds between two looks for a server
 
 
 class Ros2:
@@ -31,6 +37,8 @@ class Ros2:
         )
         if way.keep not in ("latest", "all"):
             raise ValueError('a subscriber keeps "latest" or "all" of what comes')
+        if "~" in way.topic and way.signature is not None:
+            Service(way, TYPES)
 
     def publisher(self, way: Way, shape: Shape) -> Ros2Publisher:
         return Ros2Publisher(way, shape)
@@ -38,30 +46,29 @@ class Ros2:
     def listener(self, way: Way, shape: Shape) -> Ros2Listener:
         return Ros2Listener(way, shape)
 
-    def server(self, way: Way, name: str, answer: Answer) -> Server:
-        raise _no_service(way)
+    def server(self, way: Way, name: str, answer: Answer) -> Ros2Server:
+        return Ros2Server(way, answer)
 
-    def client(self, way: Way, shape: Shape) -> Client:
-        raise _no_service(way)
+    def client(self, way: Way, shape: Shape) -> Ros2Client:
+        return Ros2Client(way)
 
 
-def _no_service(way: Way) -> LocalProtocolError:
-    return LocalProtocolError(
-        f'"{way.topic}": a service of ROS 2 has a type, which no hint gives; connect an RpcServer '
-        "or an RpcClient to ros2://, or take another middleware"
-    )
+TYPES: Final = Types("[a-z](?:_?[a-z0-9])*", default_library, lambda library: library.sources)
 
 
 def target_of(way: Way, shape: Shape) -> str:
     """The topic as something to connect to, with its type."""
     kind = type_of(shape)
-    name = kind if isinstance(kind, str) else kind._type
+    return _target(way, topic_of(way), kind if isinstance(kind, str) else kind._type, "msg")
+
+
+def _target(way: Way, topic: str, name: str, kind: str) -> str:
     package, _, type_ = name.partition("/")
-    full = name if "/" in type_ else f"{package}/msg/{type_}"
+    full = name if "/" in type_ else f"{package}/{kind}/{type_}"
     carrier = "+".join(("ros2", *filter(None, way.carrier.split("+"))))
     if "node." not in carrier:
         carrier += f"+node.yarpy_wrap_{os.getpid()}"
-    return f"{carrier}://{way.topic.strip('/')}~{full}"
+    return f"{carrier}://{topic.strip('/')}~{full}"
 
 
 class Ros2Publisher:
@@ -118,3 +125,60 @@ class Ros2Listener:
 
     def close(self) -> None:
         self._port.close()
+
+
+class Ros2Server:
+    """A service; its method runs in the thread of the connection."""
+
+    def __init__(self, way: Way, answer: Answer) -> None:
+        service = Service(way, TYPES)
+
+        def told(message: Message) -> Any:
+            return handled(service, getattr(message, "ros", None), answer)
+
+        self._port = RpcServer("", told, register=False)
+        try:
+            self._port.listen_to(_target(way, service.topic, service.kind.name, "srv"))
+        except YarpError:
+            self._port.close()
+            raise
+
+    def close(self) -> None:
+        self._port.close()
+
+
+class Ros2Client:
+    def __init__(self, way: Way) -> None:
+        self._service = Service(way, TYPES)
+        self._client = RpcClient()
+        try:
+            self._client.connect(_target(way, self._service.topic, self._service.kind.name, "srv"))
+        except YarpError:
+            self._client.close()
+            raise
+
+    def call(
+        self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
+    ) -> Any:
+        service = self._service
+        question = service.request(args, kwargs)
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while True:
+            left = None if deadline is None else max(deadline - time.monotonic(), 0.001)
+            message = self._client.ask(question, left)
+            found = getattr(message, "ros", None)
+            if found is not None:
+                return service.value(found)
+            reason = message.value if message is not None else None
+            if not isinstance(reason, list) or len(reason) < 2:
+                raise LinkClosed(f'"{service.topic}" gave no answer')
+            text = str(reason[1])
+            if not text.startswith("nobody serves"):
+                raise error_of(text)
+            # As elsewhere: with a timeout it waits for a server that is not there yet.
+            if deadline is None or time.monotonic() + _PAUSE >= deadline:
+                raise UnknownName(text)
+            time.sleep(_PAUSE)
+
+    def close(self) -> None:
+        self._client.close()
