@@ -13,6 +13,7 @@ from support.wait import wait_until
 import yarpy
 from yarpy import wrap
 from yarpy.transports import zenoh as sessions
+from yarpy.transports.zenoh_router import open_router
 from yarpy.wrap.middleware import Way
 from yarpy.wrap.middlewares.zenoh import key_of
 
@@ -39,7 +40,7 @@ class Arm:
 @pytest.fixture(scope="module")
 def place() -> Iterator[str]:
     where = f"tcp/127.0.0.1:{free_port()}"
-    router = sessions.open_router([where])
+    router = open_router([where])
     yield where
     sessions.close(router)
 
