@@ -2,6 +2,7 @@
 
 import json
 import logging
+import os
 import sys
 import time
 from collections.abc import Iterator
@@ -9,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support import dds_peer
+from support import dds_peer, fast_dds
+from support.cpp_venv import MissingPeer
 from support.patience import patience
 from support.process import Process
 from support.wait import wait_until
@@ -81,6 +83,48 @@ def test_with_a_program_of_another_kind() -> None:
         assert "grüße" in hears.said
         says.write_line("hello from there")
         assert reader.read(timeout=patience(10.0)).value == "hello from there"
+
+
+def test_with_fast_dds(tmp_path: Path) -> None:
+    """The library that nodes of ROS 2 use by default."""
+    try:
+        program = str(fast_dds.build(tmp_path))
+    except MissingPeer as missing:
+        pytest.skip(str(missing))
+    with (
+        Process([program, "hear", f"/chatter{os.getpid()}"]) as hears,
+        Process([program, "say", f"/news{os.getpid()}"]) as says,
+        yarpy.Port("/out") as out,
+        yarpy.BufferedPort("/in", strict=True) as reader,
+    ):
+        for each in (hears, says):
+            each.wait_line("^ready$", stream="out")
+        out.connect(f"ros2+dds+qos.all://chatter{os.getpid()}", timeout=patience(20.0))
+        for _ in range(200):  # the type was named, so nobody need have been found
+            out.write("grüße")
+            if "grüße" in hears.stdout:
+                break
+            time.sleep(patience(0.05))
+        for number in range(300):
+            out.write(f"number {number}")
+        out.write("x" * 60_000, wait=True)
+        hears.wait_line("^x{60000}$", stream="out")
+        heard = sum("number" in line for line in hears.stdout.splitlines())
+        assert heard + out.stats["outputs"][0]["drops"] == 300
+        reader.connect(f"ros2+dds+qos.all+sub://news{os.getpid()}", timeout=patience(20.0))
+        for _ in range(200):  # until the other side has found us, too
+            says.write_line("first")
+            try:
+                reader.read(timeout=patience(0.05))
+                break
+            except yarpy.Timeout:
+                continue
+        for number in range(300):
+            says.write_line(f"ä {number}")
+        found = [reader.read(timeout=patience(10.0)).ros.data for _ in range(300)]
+        while found[0] == "first":
+            found = [*found[1:], reader.read(timeout=patience(10.0)).ros.data]
+        assert found == [f"ä {number}" for number in range(300)]
 
 
 def test_what_others_promise_is_taken() -> None:

@@ -39,7 +39,8 @@ PATIENCE: Final = 2.0  # seconds for others to be found
 _LONG: Final = 10.0  # seconds of each wait that has no end
 BLOCKING: Final = 100  # milliseconds that a reliable writer waits for slow readers
 LOCAL: Final = """\
-<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast></General><Discovery>
+<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>
+<AllowMulticast>false</AllowMulticast></General><Discovery>
 <ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
 <Peers><Peer address="localhost"/></Peers></Discovery></Domain></CycloneDDS>"""
 
