@@ -116,6 +116,15 @@ def traffic() -> tuple[int, int]:
     raise OSError("no loopback")
 
 
+def processor(processes) -> float:
+    """Seconds for which they have run so far."""
+    ticks = 0
+    for each in processes:
+        words = Path(f"/proc/{each.pid}/stat").read_text().rpartition(")")[2].split()
+        ticks += int(words[11]) + int(words[12])
+    return ticks / os.sysconf("SC_CLK_TCK")
+
+
 def found(names: ZenohNames, sample: list[str]) -> int:
     return sum(names.entry(name) is not None for name in sample)
 
@@ -130,10 +139,10 @@ def until(condition, limit: float = 60.0) -> float:
     return time.perf_counter() - begin
 
 
-def joining(options, observers, workers: list) -> dict:
+def joining(options, observers, routers, workers: list) -> dict:
     context = multiprocessing.get_context("spawn")
     ready, stop = context.Queue(), context.Event()
-    before, start = traffic(), time.time() + 3.0
+    before, start, ran = traffic(), time.time() + 3.0, processor(routers)
     workers += [
         context.Process(target=work, args=(n, options, start, ready, stop), daemon=True)
         for n in range(WORKERS)
@@ -141,6 +150,7 @@ def joining(options, observers, workers: list) -> dict:
     for worker in workers:
         worker.start()
     last = max(ready.get(timeout=120) for _ in workers)
+    worked = processor(workers)
     each = options.names // options.programs
     everything = each * options.programs
     seen = until(lambda: all(len(names.list()) == everything for names in observers))
@@ -153,6 +163,8 @@ def joining(options, observers, workers: list) -> dict:
         "of them behind the last": round(seen, 2),
         "packets": after[0] - before[0],
         "bytes": after[1] - before[1],
+        "seconds of a processor, programs until then": round(worked, 1),
+        "seconds of a processor, routers altogether": round(processor(routers) - ran, 1),
         "packets for each name": round((after[0] - before[0]) / everything, 2),
     }
 
@@ -272,7 +284,10 @@ def measure(options: argparse.Namespace) -> None:
     observers = [kind(f"tcp/127.0.0.1:{FIRST + number}") for number in range(3)]
     workers: list = []
     try:
-        print(json.dumps({"joining": joining(options, observers, workers)}, indent=1), flush=True)
+        print(
+            json.dumps({"joining": joining(options, observers, routers, workers)}, indent=1),
+            flush=True,
+        )
         print(json.dumps({"look-ups": lookups(options, observers)}, indent=1), flush=True)
         if not (options.bare or options.no_outage):
             print(json.dumps({"outage": outage(options, observers, routers)}, indent=1), flush=True)
