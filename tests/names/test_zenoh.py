@@ -236,3 +236,17 @@ def test_a_file_chooses_it(tmp_path: Any) -> None:
     (server,) = configuration({}, tmp_path).servers
     names = default_client(server)
     assert isinstance(names, ZenohNames) and names.where == "robot.lab:7447"
+
+
+def test_two_of_one_session_lose_names_to_each_other(near: ZenohNames) -> None:
+    twin = ZenohNames(near.where)
+    lost: list[str] = []
+    near.on_lost = lost.append
+    try:
+        near.register("/twin", "tcp", "127.0.0.1", 1001)
+        twin.register("/twin", "tcp", "127.0.0.1", 1002)
+        wait_until(lambda: lost == ["/twin"])
+        assert near.query("/twin") == twin.query("/twin")
+        assert twin.query("/twin").port == 1002  # type: ignore[union-attr]
+    finally:
+        twin.close()

@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
+from weakref import WeakSet
 
 from yarpy.config.configuration import ROOT
 from yarpy.contact import Contact
@@ -40,11 +41,13 @@ log = logger("yarpy.names")
 
 PATIENCE: Final = 3.0  # seconds for an answer; those that are there answer in milliseconds
 FUTURE: Final = 60 * 10**9  # ns by which the clocks of two computers may differ
+KEEP: Final = 1.0  # seconds for which the addresses of this computer are believed
 ANSWERS: Final = 100_000  # programs that may answer one question
 LISTED: Final = 200_000  # names in a list
 MAX_PROPERTY: Final = 1 << 16  # bytes of a property's values
 
 _numbers = itertools.count(1)
+_EVERYBODY: Final = WeakSet["ZenohNames"]()
 
 
 @dataclass(slots=True)
@@ -85,6 +88,8 @@ class ZenohNames:
         self._exchange: Exchange | None = None  # of connections through Zenoh
         self.on_lost: Callable[[str], object] = lambda name: None  # in a thread of its own
         self._ways = Ways()
+        self._addresses: tuple[tuple[str, ...], float] = (), 0.0  # ours, and until when
+        _EVERYBODY.add(self)
         self._lock = threading.RLock()  # guards the above; never held while an answer is awaited
 
     # -- the NameClient ---------------------------------------------------------------------------
@@ -106,18 +111,28 @@ class ZenohNames:
             host = _group(lease.zid, port)
         elif not host or (is_loopback(host) and not listening_host()):
             host = outward_address()
-        bound = listening_host()
-        reached = [bound] if bound else local_addresses()
         entry = Entry(
             Contact(carrier or "tcp", name, host, port),
             lease.zid,
             time.time_ns(),
             machine(),
             port,
-            tuple(one for one in reached if not is_loopback(one))[: zenoh_key.ADDRESSES],
+            self._reached(),
         )
         self._announce(lease, _Own(entry, port_type or ""))
         return entry.contact
+
+    def _reached(self) -> tuple[str, ...]:
+        """The addresses by which ports of ours may be dialled from other computers."""
+        bound = listening_host()
+        if bound:
+            return () if is_loopback(bound) else (bound,)
+        found, until = self._addresses
+        if time.monotonic() >= until:  # many ports open at once
+            every = (one for one in local_addresses() if not is_loopback(one))
+            found = tuple(every)[: zenoh_key.ADDRESSES]
+            self._addresses = found, time.monotonic() + KEEP
+        return found
 
     def unregister(self, name: str) -> None:
         """Only names of this program can be taken back; others end with theirs."""
@@ -271,13 +286,18 @@ class ZenohNames:
         own.declared.append(session.liveliness().declare_token(port_token(self.base, own.entry)))
         with self._lock:
             self._own[name] = own
-        self._claim(session, own.entry)
+        # Those of this session are told without Zenoh, which would ask the new one, too.
+        self._claim(session, own.entry, load().Locality.REMOTE)
+        for other in [*_EVERYBODY]:
+            if other is not self and other.base == self.base:
+                other.lose(own.entry)
 
     def _answer(self, own: _Own, key: str, query: Any) -> None:
         """Somebody asks for a port of ours. Runs in a thread of Zenoh."""
         try:
             if query.payload is not None:
-                self._yield(own, query.payload.to_bytes())
+                said = zenoh_key.decode(query.payload.to_bytes(), zenoh_key.LONGEST)
+                self._yield(own, newest(said, own.entry.contact.name))
                 return
             wanted = query.parameters.get("key")
             if wanted:
@@ -296,7 +316,9 @@ class ZenohNames:
         except Exception as error:
             log.debug("a list of names could not be sent: %s", error)
 
-    def _claim(self, session: zenoh.Session, entry: Entry) -> None:
+    def _claim(
+        self, session: zenoh.Session, entry: Entry, where: zenoh.Locality | None = None
+    ) -> None:
         """Let older ports of that name know that it has a new owner. Nobody waits for an
         answer."""
         zenoh = load()
@@ -305,12 +327,20 @@ class ZenohNames:
             zenoh.handlers.Callback(lambda reply: None, indirect=False),
             payload=zenoh_key.encode([entry]),
             target=zenoh.QueryTarget.ALL,
+            allowed_destination=where,
             timeout=PATIENCE,
         )
 
-    def _yield(self, own: _Own, said: bytes) -> None:
+    def lose(self, entry: Entry) -> None:
+        """A port of ours lets go of its name if it is older than that one of this session."""
+        with self._lock:
+            own = self._own.get(entry.contact.name)
+            lease = self._lease
+        if own is not None and lease is not None and lease.zid == entry.zid:
+            self._yield(own, entry)
+
+    def _yield(self, own: _Own, entry: Entry | None) -> None:
         name = own.entry.contact.name
-        entry = newest(zenoh_key.decode(said, zenoh_key.LONGEST), name)
         if entry is None or entry.age <= own.entry.age or entry.start > time.time_ns() + FUTURE:
             return
         with self._lock:
