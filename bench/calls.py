@@ -21,6 +21,8 @@ from pathlib import Path
 from workload import NUMBER
 
 import yarpy
+from yarpy.link.handshake import find_carrier
+from yarpy.route import parse_carrier
 
 SOURCE = Path(yarpy.__file__).parent
 ROUNDS = 9
@@ -161,7 +163,8 @@ def main() -> None:
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     bench.one_way()
-    bench.rpc()
+    if find_carrier(parse_carrier(bench.carrier)).replies:
+        bench.rpc()
 
 
 if __name__ == "__main__":
