@@ -13,7 +13,7 @@ def test_bytes_come_as_in_any_stream_and_the_memory_is_beside_it() -> None:
     assert run(stream.read_exact(3), stream, [b"a", b"bc"]) == b"abc"
     parcel = stream.memory.place([b"large", b"r"], 6)
     assert parcel is not None
-    assert (
-        stream.memory.take(parcel.slot, parcel.generation, parcel.offset, parcel.size) == b"larger"
-    )
+    where = stream.memory.lend(parcel)
+    taken = stream.memory.take(where, parcel.slot, parcel.generation, parcel.offset, parcel.size)
+    assert taken == b"larger"
     assert (stream.limit, stream.aside, stream.came_aside) == (100, 0, 0)
