@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+import time
 import urllib.request
 
 import pytest
@@ -77,6 +78,33 @@ def test_connections_are_made_awaited_and_told_in_the_loop():
         assert threads == {threading.get_ident()}
 
     asyncio.run(asyncio.wait_for(main(), 30))
+
+
+def test_missed_deadlines_are_told_in_the_loop():
+    async def main():
+        heard = asyncio.Queue()
+        threads = []
+
+        def hear(event):
+            threads.append(threading.current_thread())
+            heard.put_nowait(event)
+
+        async with aio.Port("/aio/in") as reader, aio.Port("/aio/out") as writer:
+            await writer.connect("/aio/in")
+            assert await reader.wait_for_inputs(timeout=10)
+            reader.inputs[0].qos = yarpy.Qos(deadline=0.02)
+            reader.on_deadline(hear)
+            writer.port.write([1], yarpy.Stamp(1, time.time() - 0.5))
+            event = await asyncio.wait_for(heard.get(), 10)
+            assert (event.source, event.silent) == ("/aio/out", False)
+            assert event.lateness > 0.4
+            assert threads == [threading.main_thread()]
+            reader.on_deadline(None)
+            writer.port.write([2], yarpy.Stamp(2, time.time() - 0.5))
+            assert [(await reader.read(timeout=10)).value for _ in range(2)] == [[1], [2]]
+            assert heard.empty()
+
+    asyncio.run(main())
 
 
 def test_administrative_messages_and_pages_are_answered_in_the_loop():

@@ -9,6 +9,7 @@ import asyncio
 import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
 from inspect import isawaitable
 from types import TracebackType
 from typing import Any, Final, Generic, Self, TypeVar
@@ -17,9 +18,11 @@ from yarpy.contact import Contact
 from yarpy.errors import PortClosed
 from yarpy.port import base
 from yarpy.port.connection import ConnectionEvent, PortConnection
+from yarpy.port.deadline import DeadlineEvent
 from yarpy.wire.message import Message
 
 P = TypeVar("P", bound=base.BasePort)
+E = TypeVar("E")
 
 _POLL: Final = 0.005  # seconds between looks while waiting for connections
 
@@ -135,6 +138,11 @@ class BasePort(Generic[P]):
         """Call `callback` in the loop whenever a connection comes or goes."""
         self._on_connection = callback
 
+    def on_deadline(self, callback: Callable[[DeadlineEvent], object] | None) -> None:
+        """Call `callback` in the loop whenever a message comes after the deadline of its
+        connection, or none comes that should; see `yarpy.Port.on_deadline`."""
+        self.port.on_deadline(callback and partial(self._call_soon, callback))
+
     def on_admin(self, callback: Callable[[Message], object] | None) -> None:
         """Let `callback` answer administrative messages; see `yarpy.Port.on_admin`."""
         self.port.on_admin(callback and self._ask_loop(callback))
@@ -144,12 +152,15 @@ class BasePort(Generic[P]):
         self.port.on_page(callback and self._ask_loop(callback))
 
     def _tell(self, event: ConnectionEvent) -> None:
-        """A connection came or went, in its thread, which does not wait."""
-        if self._on_connection is None:
-            return
+        """A connection came or went, in its thread."""
+        if self._on_connection is not None:
+            self._call_soon(self._on_connection, event)
+
+    def _call_soon(self, callback: Callable[[E], object], event: E) -> None:
+        """Call `callback` in the loop; the thread of the connection does not wait."""
         assert self._loop is not None
         try:
-            self._loop.call_soon_threadsafe(self._on_connection, event)
+            self._loop.call_soon_threadsafe(callback, event)
         except RuntimeError:
             pass  # the loop is closed
 
