@@ -35,6 +35,7 @@ SHIPPED: Final[dict[str, dict[str, str]]] = {
         "http": "yarpy.carriers.http.carrier:Http",
         "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
         "mpi": "yarpy.carriers.mpi:Mpi",
+        "bcast": "yarpy.carriers.mpi:Bcast",
         "mqtt": "yarpy.carriers.mqtt:Mqtt",
         "ros2": "yarpy.carriers.ros2:Ros2",
         "zenoh": "yarpy.carriers.zenoh:Zenoh",

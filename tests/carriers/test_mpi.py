@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from yarpy.carriers.mpi import Mpi
+from yarpy.carriers.mpi import Bcast, Mpi
 from yarpy.errors import LinkClosed, RemoteProtocolError
 from yarpy.route import Route
 from yarpy.testing import End
@@ -21,6 +21,19 @@ class TestMpi(DialogueConformance):
     carrier = Mpi
 
 
+class TestBcast(DialogueConformance):
+    carrier = Bcast
+
+
+def test_bcast_says_goodbye_to_one_reader_only() -> None:
+    carrier, stream = Bcast(Route("/out", "/in", "bcast")), ByteStream()
+    carrier.encode_quit(stream)
+    assert stream.take_output() == []
+    end = End()
+    end.begin(carrier.greet(end.stream))
+    assert end.take() == b"MPIBCAST" + GREETING[8:]
+
+
 def test_greeting_is_that_of_cpp() -> None:
     """Three lines, and the sender's name without modifiers."""
     end = End()
@@ -28,7 +41,7 @@ def test_greeting_is_that_of_cpp() -> None:
     assert end.done
     assert end.take() == GREETING
     assert [(place.kind, place.listen, place.group) for place in end.opened] == [
-        ("mpi", False, "/out")
+        ("mpi", False, "/in<-/out")
     ]
 
 
@@ -40,7 +53,7 @@ def test_welcome(piece: int) -> None:
     assert end.done
     assert carrier.route.source == "/out"
     assert [(place.kind, place.listen, place.group) for place in end.opened] == [
-        ("mpi", True, "tag#0$description#5")
+        ("mpi", True, "/in<-/out")
     ]
     assert end.take() == b""
 

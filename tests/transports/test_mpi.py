@@ -15,10 +15,10 @@ from typing import Any
 import pytest
 from support.wait import wait_until
 
-from yarpy.errors import AccessRefused, LocalProtocolError, RemoteProtocolError
+from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.transports import mpi as transport
-from yarpy.transports.mpi import Line, MpiTransport, explained, open_mpi
-from yarpy.wire import framing
+from yarpy.transports import mpi_bcast, mpi_end
+from yarpy.transports.mpi import MpiTransport
 
 
 class Failed(Exception):
@@ -120,6 +120,13 @@ def lines() -> Iterator[tuple[socket.socket, socket.socket]]:
         yield near, far
 
 
+def opened(listen: bool, sock: socket.socket) -> MpiTransport:
+    end = mpi_bcast.open_mpi("mpi", listen, sock, "/in<-/out")
+    assert isinstance(end, MpiTransport)
+    end.place = "somewhere"
+    return end
+
+
 Ends = tuple[MpiTransport, MpiTransport]
 
 
@@ -131,8 +138,8 @@ def pair(
     second: list[bytes] = []
     comms = Comm(0, first, second), Comm(1, second, first)
     library = Library(lambda rank: comms[rank])
-    monkeypatch.setattr(transport, "library", lambda: library)
-    ends = open_mpi(False, lines[0], ""), open_mpi(True, lines[1], "somewhere")
+    monkeypatch.setattr(mpi_bcast, "library", lambda: library)
+    ends = opened(False, lines[0]), opened(True, lines[1])
     for sock, end in zip(lines, ends, strict=True):
         assert (end.local, end.remote) == (sock.getsockname(), sock.getpeername())
         sock.close()
@@ -167,7 +174,7 @@ def test_where_messages_are_cut_means_nothing(pair: Ends) -> None:
 
 
 def test_large_ones_go_in_pieces(pair: Ends, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(transport, "MOST", 10)
+    monkeypatch.setattr(mpi_end, "MOST", 10)
     pair[0].send([bytes(7), b"0123456789", memoryview(b"abcdefghij" * 2)])
     came = b"".join(take(pair[1]) for _ in range(4))
     assert came == bytes(7) + b"0123456789" + b"abcdefghij" * 2
@@ -237,53 +244,14 @@ def test_mpi_fails(pair: Ends) -> None:
             action()
 
 
-def test_cpp_does_not_keep_the_line(lines: tuple[socket.socket, socket.socket]) -> None:
-    """So its end says nothing."""
-    line = Line(lines[0])
-    line.settle()
-    assert not line.cut
-    lines[1].close()
-    assert not line.cut
-    assert line._sock is None or not line.cut
-    line.close()
-
-
-def test_a_peer_that_refuses(lines: tuple[socket.socket, socket.socket]) -> None:
-    line = Line(lines[0])
-    line.watch()
-    lines[1].sendall(framing.encode_refusal("it has no MPI"))
-    with pytest.raises(RemoteProtocolError, match="it has no MPI"):
-        wait_until(lambda: line.watch(), what="it is told")
-    line.close()
-
-
-def test_a_peer_that_we_may_not_talk_to(lines: tuple[socket.socket, socket.socket]) -> None:
-    line = Line(lines[0])
-    lines[1].sendall(framing.encode_refusal(f"{framing.REFUSED}: no"))
-    with pytest.raises(AccessRefused):
-        wait_until(lambda: line.watch(), what="it is told")
-    line.close()
-
-
-def test_a_peer_that_hangs_up(
-    lines: tuple[socket.socket, socket.socket], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(transport, "LATE", 0.05)
-    line = Line(lines[0])
-    lines[1].close()
-    with pytest.raises(RemoteProtocolError, match="does not take this carrier"):
-        wait_until(lambda: line.watch(), what="it is noticed")
-    line.close()
-
-
 def test_a_peer_that_does_not_come(
     lines: tuple[socket.socket, socket.socket], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     event = threading.Event()
     library = Library(lambda rank: event.wait())
-    monkeypatch.setattr(transport, "library", lambda: library)
+    monkeypatch.setattr(mpi_bcast, "library", lambda: library)
     monkeypatch.setattr(transport, "MEETING", 0.05)
-    end = open_mpi(False, lines[0], "")
+    end = opened(False, lines[0])
     with pytest.raises(TimeoutError):
         end.ready()
     assert library.lost == 1
@@ -295,8 +263,8 @@ def test_too_many_come(
     lines: tuple[socket.socket, socket.socket], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     library = Library(lambda rank: Comm(0, [], [], size=3))
-    monkeypatch.setattr(transport, "library", lambda: library)
-    end = open_mpi(False, lines[0], "")
+    monkeypatch.setattr(mpi_bcast, "library", lambda: library)
+    end = opened(False, lines[0])
     with pytest.raises(RemoteProtocolError, match="and not two"):
         end.ready()
     end.close()
@@ -308,17 +276,14 @@ def test_mpi_refuses(
     def refuse(rank: int) -> None:
         raise Failed("Invalid communicator,\nerror stack:")
 
-    monkeypatch.setattr(transport, "library", lambda: Library(refuse))
-    end = open_mpi(True, lines[0], "somewhere")
+    monkeypatch.setattr(mpi_bcast, "library", lambda: Library(refuse))
+    end = opened(True, lines[0])
     with pytest.raises(LocalProtocolError, match=r"Invalid communicator.*mpiexec -n 1"):
         end.ready()
     end.close()
-    assert "openmpi-bin" in str(explained(Failed("x")))
 
 
 def test_what_it_is_not(pair: Ends) -> None:
     with pytest.raises(LocalProtocolError, match="use tcp"):
         pair[0].set_dscp(8)
     assert (pair[0].tos(), pair[0].taken(1, 1)) == (0, None)
-    with pytest.raises(LocalProtocolError, match="take tcp"):
-        open_mpi(False, None, "")

@@ -1,6 +1,6 @@
-"""mpi: greets over TCP, then both move into a communicator of MPI.
+"""mpi and bcast: greet over TCP, then move into a communicator of MPI.
 
-    greeting    MPI_____ | three lines: the sender's name, its program, where MPI finds it
+    greeting    MPI_____, MPIBCAST | three lines: the sender's name, its program, where MPI finds it
 
 Rules: C++ YARP's own. No index and no acknowledgements: a port command, then the payload, as on a
 unix_stream. Modifiers are not sent. MPI joins no two ports of one program.
@@ -31,7 +31,7 @@ class Mpi(UnixStream):
         return MAGIC_SIZE if first == cls.magic else 0
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        handle = yield Open(self.name, listen=False, group=self.route.source)
+        handle = yield Open(self.name, listen=False, group=self._pair)
         lines = (self.route.source, handle.program, handle.place)
         stream.write(self.magic + "".join(f"{line}\r\n" for line in lines).encode())
         yield Switch(handle, ByteStream(stream.limit))
@@ -41,13 +41,31 @@ class Mpi(UnixStream):
         yield from self.introduce(stream, source)
         program = yield from _line(stream)
         place = yield from _line(stream)
-        handle = yield Open(self.name, listen=True, group=place)
+        handle = yield Open(self.name, listen=True, group=self._pair)
         if program == handle.program:
             handle.close()
             why = f"{self.name} joins no two ports of one program: take local or tcp"
             stream.write(framing.encode_refusal(why))
             raise RemoteProtocolError(why)
+        handle.place = place
         yield Switch(handle, ByteStream(stream.limit))
+
+    @property
+    def _pair(self) -> str:
+        """As C++ has it where one reader of several leaves."""
+        return f"{self.route.target}<-{self.route.source}"
+
+
+class Bcast(Mpi):
+    """From one port to all its readers at once, by what MPI has for that."""
+
+    name = "bcast"
+    magic = b"MPIBCAST"
+    replies = False
+    broadcast = True
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        """Not to all: the one that is meant is told by the transport."""
 
 
 def _line(stream: ByteStream) -> Steps[str]:

@@ -361,9 +361,9 @@ class Driver:
 def _open_mpi(effect: Open, transport: Transport) -> Any:
     if hasattr(transport, "host"):
         raise LocalProtocolError(f"TLS protects nothing that {effect.kind} sends: take tls")
-    from yarpy.transports.mpi import open_mpi
+    from yarpy.transports.mpi_bcast import open_mpi
 
-    return open_mpi(effect.listen, getattr(transport, "sock", None), effect.group)
+    return open_mpi(effect.kind, effect.listen, getattr(transport, "sock", None), effect.group)
 
 
 def _sooner(deadline: float | None, seconds: float | None) -> float | None:

@@ -5,99 +5,24 @@
     both          merge that into one communicator of two
 
 Rules: bytes go as messages of any length with tag 0; where they are cut means nothing. MPI can only
-be asked again and again whether something has come: less often the longer nothing does. It does not
-tell that the other program has died. So two programs of yarpy keep the TCP connection on which they
-met (`Line`); C++ closes it, and its death goes unnoticed.
+be asked again and again whether something has come: less often the longer nothing does.
 """
 
 from __future__ import annotations
 
-import socket
 import threading
 import time
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from typing import Any, Final
 
-from yarpy.errors import LocalProtocolError, RemoteProtocolError
-from yarpy.log import readable
-from yarpy.transports.base import MSG_DONTWAIT, Address
-from yarpy.transports.mpi_library import HINT, Library, in_time, library
-from yarpy.wire.framing import refused
+from yarpy.errors import RemoteProtocolError
+from yarpy.transports.mpi_end import LEAVING, MEETING, Line, MpiEnd, explained, pieces
+from yarpy.transports.mpi_library import Library, in_time
 from yarpy.wire.stream import Buffer
 
-MEETING: Final = 10.0  # seconds for the two sides to meet
-LEAVING: Final = 2.0  # seconds for the last message to leave
 GLANCE: Final = 0.2  # seconds between looks whether the other side still lives
-MOST: Final = 1 << 26  # bytes of a single message
 _EAGER: Final = 1e-4  # seconds in which MPI is asked without a pause
 _SHORTEST, _LONGEST = 20e-6, 2e-3  # seconds between questions
-_HELLO: Final = b"\n"
-_LINE: Final = 1000  # bytes that a peer may say instead
-LATE: Final = 1.0  # seconds for the end of the line to have a good reason
-
-
-class Line:
-    """The TCP connection on which the two met: who keeps it shows that it lives."""
-
-    def __init__(self, sock: socket.socket) -> None:
-        self._sock: socket.socket | None = sock.dup()
-        self._sock.setblocking(True)
-        self.local: Address = sock.getsockname()[:2]
-        self.remote: Address = sock.getpeername()[:2]
-        self._kept = False  # by the other side, too
-        self._since = 0.0
-
-    def watch(self) -> None:
-        """While the two look for each other. Raises RemoteProtocolError if the peer does not."""
-        said = self._peek()
-        if said and not said.startswith(_HELLO):
-            line = said.partition(b"\n")[0].rstrip()
-            answer = readable(line.decode("utf-8", "replace"))
-            raise refused(line) or RemoteProtocolError(f'the peer answers "{answer[:80]}"')
-        if said == b"" and self.late():
-            raise RemoteProtocolError("the peer hung up; it does not take this carrier")
-
-    def settle(self) -> None:
-        """Both have met: tell the other side that we keep the line."""
-        self._since = 0.0
-        if self._sock is not None:
-            with suppress(OSError):  # C++ has closed it
-                self._sock.sendall(_HELLO)
-
-    @property
-    def cut(self) -> bool:
-        """Whether the other side, which had kept the line, has gone."""
-        said = self._peek()
-        if said and not self._kept and self._sock is not None:
-            self._kept = self._sock.recv(len(_HELLO)) == _HELLO
-            said = self._peek()
-        if said == b"" and not self._kept:
-            self.close()
-        return said == b"" and self._kept
-
-    def late(self) -> bool:
-        """Whether a moment has passed since this was asked for the first time."""
-        self._since = self._since or time.monotonic()
-        return time.monotonic() - self._since > LATE
-
-    def _peek(self) -> bytes | None:
-        """What has come; None if nothing has, or nothing can."""
-        sock = self._sock
-        if sock is None:
-            return None
-        try:
-            return sock.recv(_LINE, socket.MSG_PEEK | MSG_DONTWAIT)
-        except BlockingIOError:
-            return None
-        except OSError:
-            return b""
-
-    def close(self) -> None:
-        """Hang up."""
-        sock, self._sock = self._sock, None
-        if sock is not None:
-            sock.close()
 
 
 class Rest:
@@ -117,45 +42,17 @@ class Rest:
         time.sleep(self._pause if until is None else min(self._pause, until - now))
 
 
-def open_mpi(listen: bool, sock: socket.socket | None, place: str) -> MpiTransport:
-    """Our side of a connection that greeted over TCP; `place` is where the peer has said it is, if
-    it dialled us. Raises LocalProtocolError where there is no MPI."""
-    if sock is None:
-        raise LocalProtocolError("mpi begins with a connection over TCP itself: take tcp")
-    mpi = library()
-    try:
-        return MpiTransport(mpi, Line(sock), "" if listen else mpi.mpi.Open_port(), place)
-    except mpi.mpi.Exception as error:
-        raise explained(error) from error
-
-
-def explained(error: Exception) -> LocalProtocolError:
-    """What MPI says, and what may be the reason."""
-    said = " ".join(str(error).split())
-    return LocalProtocolError(f'MPI says "{said[:120]}"; {HINT}')
-
-
-class MpiTransport:
+class MpiTransport(MpiEnd):
     """Our end; connected once `ready` has returned."""
 
-    port = 0
-
-    def __init__(self, mpi: Library, line: Line, place: str, peers_place: str) -> None:
-        self._library = mpi
-        self._mpi = mpi.mpi
-        self._line = line
-        self.program = mpi.program
-        self.place = place  # where MPI finds us
-        self._peers_place = peers_place
+    def __init__(self, library: Library, line: Line, place: str) -> None:
+        super().__init__(library, line, place)
         self._comm: Any = None
         self._other = 0
         self._going: Any = None  # a message that MPI has not sent yet, and its bytes
         self._bytes = b""
         self._came = memoryview(b"")  # of a message that was larger than what was asked for
-        self._limit: float | None = None
-        self._send_limit: float | None = None
         self._glance = 0.0
-        self._interrupted = False
         self._lock = threading.Lock()  # nobody may ask a communicator that is being left
 
     # -- how the two meet -------------------------------------------------------------------------
@@ -177,36 +74,19 @@ class MpiTransport:
 
     def _meet(self) -> Any:
         alone = self._mpi.COMM_SELF.Dup()
-        if self.place:
+        if self._dialled:
             between = alone.Accept(self.place)
             self._mpi.Close_port(self.place)
         else:
-            between = alone.Connect(self._peers_place)
+            between = alone.Connect(self.place)
         between.Set_errhandler(self._mpi.ERRORS_RETURN)
-        comm = between.Merge(not self.place)
+        comm = between.Merge(not self._dialled)
         comm.Set_errhandler(self._mpi.ERRORS_RETURN)
         between.Disconnect()
         alone.Free()
         return comm
 
-    # -- facts ------------------------------------------------------------------------------------
-
-    @property
-    def local(self) -> Address:
-        return self._line.local
-
-    @property
-    def remote(self) -> Address:
-        return self._line.remote
-
-    def set_dscp(self, tos: int) -> None:
-        raise LocalProtocolError("packets of MPI have no priority of ours; use tcp for that")
-
-    def tos(self) -> int:
-        return 0
-
-    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        return None
+    # -- reading ----------------------------------------------------------------------------------
 
     def ended(self) -> bool:
         return self._interrupted or self._comm is None or self._line.cut
@@ -218,8 +98,6 @@ class MpiTransport:
             return self._interrupted
         self._glance = now + GLANCE
         return self.ended()
-
-    # -- reading ----------------------------------------------------------------------------------
 
     def recv_into(self, view: memoryview) -> int:
         until = None if self._limit is None else time.monotonic() + self._limit
@@ -271,20 +149,9 @@ class MpiTransport:
     def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
         if not self._sent():
             return list(buffers)
-        taken: list[Buffer] = []
-        left: list[Buffer] = []
-        size = 0
-        for buffer in buffers:
-            room = MOST - size
-            if room >= len(buffer):
-                taken.append(buffer)
-            else:
-                view = memoryview(buffer)
-                taken.append(view[:room])
-                left.append(view[room:])
-            size += len(taken[-1])
-        if size:
-            self._bytes = b"".join(taken)
+        data, left = pieces(buffers)
+        if data:
+            self._bytes = data
             with self._lock:
                 comm = self._comm
                 if self._interrupted or comm is None:
@@ -331,14 +198,6 @@ class MpiTransport:
         return ConnectionResetError(f"MPI: {error}")
 
     # -- the end ----------------------------------------------------------------------------------
-
-    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
-        self._limit = seconds
-        if sends:
-            self._send_limit = seconds
-
-    def interrupt(self) -> None:
-        self._interrupted = True
 
     def close(self) -> None:
         with self._lock:
