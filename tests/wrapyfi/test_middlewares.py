@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import json
 import logging
+import threading
 import time
+import types
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -18,7 +20,7 @@ import numpy as np
 import pytest
 from support.broker import Broker, needs_mosquitto
 from support.patience import patience
-from support.port import free_port
+from support.port import free_block, free_port
 from support.wait import wait_until
 
 import yarpy
@@ -26,11 +28,13 @@ import yarpy
 pytest.importorskip("zmq")
 
 from wrapyfi.connect.wrapper import MiddlewareCommunicator
+from wrapyfi.middlewares._side import Arrivals
 
 register = MiddlewareCommunicator.register
 PATIENCE = patience(15.0)
 IMAGE = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
 SAMPLES = np.array([0.5, -0.5, 1.0, 0.0], np.float32)
+MODES = ("publish", "listen", "request", "reply")
 NAMES = ("zenoh", "mqtt", "websocket")
 
 
@@ -313,3 +317,56 @@ def test_a_public_broker_is_told(
     assert found == "mqtt+sub+user.me+password.a%2Bb%2Fc://broker.emqx.io:1883//t"
     assert "everybody can read it" in caplog.text
     assert _target({"broker_address": "here"}, "t") == "mqtt://here:1883/t"
+
+
+@pytest.mark.usefixtures("names")
+@pytest.mark.parametrize(
+    ("mware", "mode"),
+    [
+        *[(mware, mode) for mware in ("yarp", "zeromq") for mode in MODES],
+        *[(mware, mode) for mware in ("mqtt", "websocket") for mode in MODES[:2]],
+    ],
+)
+def test_closing_ends_waiting(mware: str, mode: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """For nobody, who never comes, without a timeout."""
+    pytest.importorskip("socketio")
+    monkeypatch.delenv("WRAPYFI_TIMEOUT", raising=False)
+    number = free_block(4)
+    for name in ("MQTT_BROKER", "WEBSOCKET_SOCKET", "ZEROMQ_SOCKET_PUB", "ZEROMQ_SOCKET_SUB"):
+        number += 1
+        monkeypatch.setenv(f"WRAPYFI_{name}_PORT", str(number))
+    monkeypatch.setenv("WRAPYFI_MQTT_BROKER_ADDRESS", "127.0.0.1")
+    # The brokers of one test keep what nobody has answered, also for the next one.
+    monkeypatch.setenv("WRAPYFI_ZEROMQ_SOCKET_IP", f"127.{number % 250}.7.{MODES.index(mode) + 1}")
+    one = Pair()
+    one.activate_communication("native", mode)
+    ended: list[Exception] = []
+
+    def wait() -> None:
+        try:
+            one.native(1, mware=mware)
+        except yarpy.YarpError as error:
+            ended.append(error)
+
+    thread = threading.Thread(target=wait, daemon=True)
+    thread.start()
+    time.sleep(0.1)
+    one.close()
+    thread.join(PATIENCE)
+    assert not thread.is_alive() and ended
+
+
+def test_what_is_not_taken_goes() -> None:
+    for kind, kept in (("NativeObject", 100), ("Image", 10)):
+        side = types.SimpleNamespace(in_topic="/t", options={}, kind=kind)
+        arrivals = Arrivals(side)
+        for number in range(300):
+            arrivals.arrived(number)
+        assert [arrivals.receive(0) for _ in range(kept)] == list(range(300 - kept, 300))
+        with pytest.raises(yarpy.Timeout):
+            arrivals.receive(0)
+    side.options["queue_size"] = 2
+    arrivals = Arrivals(side, 5)
+    for number in range(3):
+        arrivals.arrived(number)
+    assert [arrivals.receive(0), arrivals.receive(0)] == [1, 2]

@@ -3,11 +3,12 @@
 A middleware is a `Medium`: how each type is spelled (`Form`), and what carries that. `offer` makes
 the classes of it and registers them. What carries is opened by the first call that communicates:
 
-    out(publisher)      wait(timeout) -> whether somebody listens; send(spelled); close()
-    into(listener)      wait(timeout) -> whether somebody publishes; receive(timeout) -> what came;
+    out(publisher)      wait(seconds) -> whether somebody listens; send(spelled); close()
+    into(listener)      wait(seconds) -> whether somebody publishes; receive(timeout) -> what came;
                         close()
     serving(server)     take() -> (what came, answer), answer(spelled | Failure); close()
-    asking(client)      ask(spelled, timeout) -> what came; close()
+    asking(client)      wait(seconds) -> whether somebody serves; ask(spelled, timeout) -> what
+                        came; close()
 
 Rules: whatever waits raises Timeout, and PortClosed when it is closed meanwhile. A request is what
 the form of NativeObject makes of `[args, kwargs]`. A request that cannot be read, and an answer
@@ -36,8 +37,9 @@ from yarpy.wrap.middleware import Failure, Received, question_of
 
 #: what `Form.value` gives for a message that listeners are not told of
 SKIP = object()
-#: values that a listener has not taken yet, where a library delivers them
-KEPT = 100
+_LOOK = 0.2  # seconds between two looks whether something that waits was closed
+#: pictures and sounds, or values, that a listener has not taken yet
+KEPT = (10, 100)
 
 
 class Form(Protocol):
@@ -81,6 +83,19 @@ class Nothing(metaclass=SingletonOptimized):
         return None
 
 
+def _awaited(part: Any, wanted: Callable[[], bool]) -> bool:
+    """Wait for somebody as long as is allowed, while `wanted`. Raises PortClosed."""
+    limit = patience()
+    deadline = None if limit is None else time.monotonic() + limit
+    while wanted():
+        left = _LOOK if deadline is None else min(deadline - time.monotonic(), _LOOK)
+        if part.wait(max(left, 0.0)):
+            return True
+        if deadline is not None and time.monotonic() >= deadline:
+            return False
+    raise yarpy.PortClosed("this was closed")
+
+
 class _Sending(Publisher):
     medium: ClassVar[Medium]
     kind: ClassVar[str]
@@ -99,9 +114,10 @@ class _Sending(Publisher):
         self._out: Any = None
 
     def establish(self, repeats: int = -1, **kwargs: Any) -> bool:
-        if self._out is None:
-            self._out = self.medium.out(self)
-        if self.should_wait and not self._out.wait(patience()):
+        out = self._out
+        if out is None:
+            out = self._out = self.medium.out(self)
+        if self.should_wait and not _awaited(out, lambda: self._out is out):
             raise yarpy.Timeout(f'nobody listens to "{self.out_topic}"')
         return self.check_establishment(True)
 
@@ -138,12 +154,14 @@ class _Taking(Listener):
         self._in: Any = None
 
     def establish(self, repeats: int = -1, **kwargs: Any) -> bool:
-        if self._in is None:
-            self._in = self.medium.into(self)
-        there = self._in.wait(patience() if self.should_wait else 0.0)
-        if self.should_wait and not there:
+        into = self._in
+        if into is None:
+            into = self._in = self.medium.into(self)
+        if not self.should_wait:
+            return self.check_establishment(into.wait(0.0))
+        if not _awaited(into, lambda: self._in is into):
             raise yarpy.Timeout(f'nobody publishes "{self.in_topic}"')
-        return self.check_establishment(there)
+        return self.check_establishment(True)
 
     def listen(self) -> Any:
         if not self.established and not self.establish():
@@ -257,7 +275,10 @@ class _Asking(Client):
         spelled = self._request.spelled([args, kwargs])
         if not self.established:
             self.establish()
-        return self.form.value(self._client.ask(spelled, patience()))
+        client = self._client
+        if not _awaited(client, lambda: self._client is client):
+            raise yarpy.Timeout(f'nobody serves "{self.in_topic}"')
+        return self.form.value(client.ask(spelled, patience()))
 
     def close(self) -> None:
         if self._client is not None:
@@ -296,17 +317,19 @@ def offer(medium: Medium) -> None:
 
 
 class Arrivals:
-    """What came to a listener by the threads of a library: so many are kept, the oldest go."""
+    """What came to a listener by the threads of a library: `queue_size` values are kept, without
+    it `usual` or `KEPT`, and the oldest go."""
 
-    def __init__(self, topic: str, keep: int = KEPT) -> None:
-        self._came_to = topic
-        self._inbox = Inbox(keep)
+    def __init__(self, side: Any, usual: int | str = 0) -> None:
+        self._came_to = side.in_topic
+        keep = side.options.get("queue_size") or usual or KEPT[side.kind == "NativeObject"]
+        self._inbox = Inbox(max(int(keep), 1))
 
     def arrived(self, came: Any) -> None:
         with suppress(yarpy.PortClosed):
             self._inbox.put(Received(came))
 
-    def wait(self, timeout: float | None) -> bool:
+    def wait(self, seconds: float) -> bool:
         """Publishers are not waited for, as it was."""
         return True
 
@@ -359,16 +382,3 @@ class Desk:
                     found[1](failure)
         except queue.Empty:
             self._asked.put(None)
-
-
-def when_there(attempt: Callable[[], Any]) -> Any:
-    """What `attempt` returns, as soon as there is somebody to ask."""
-    limit = patience()
-    deadline = None if limit is None else time.monotonic() + limit
-    while True:
-        try:
-            return attempt()
-        except (yarpy.UnknownName, yarpy.LinkClosed):
-            if deadline is not None and time.monotonic() > deadline:
-                raise
-            time.sleep(0.1)

@@ -67,11 +67,11 @@ class _Dialled:
             logging.debug("[wrapyfi] no broker yet: %s", error)
         return self._connected
 
-    def wait(self, timeout: float | None) -> bool:
+    def wait(self, seconds: float) -> bool:
         """Wait for the broker; it does not say who has subscribed."""
-        deadline = None if timeout is None else time.monotonic() + timeout
+        deadline = time.monotonic() + seconds
         while not self._dial():
-            if deadline is not None and time.monotonic() >= deadline:
+            if time.monotonic() >= deadline:
                 return False
             time.sleep(_PAUSE / 4)
         return True

@@ -73,10 +73,6 @@ class _Use:
         node.close()
 
 
-def _depth(options: dict[str, Any]) -> int:
-    return max(int(options.get("queue_size") or os.environ.get("WRAPYFI_ROS_QUEUE_SIZE", 5)), 1)
-
-
 # ------------------------------------------------------------------------------------ topics
 
 
@@ -89,8 +85,8 @@ class _Out(_Use):
             self.leave()
             raise
 
-    def wait(self, timeout: float | None) -> bool:
-        return self._port.wait_for_outputs(1, timeout)
+    def wait(self, seconds: float) -> bool:
+        return self._port.wait_for_outputs(1, seconds)
 
     def send(self, spelled: Any) -> None:
         self._port.write(self._port.type(spelled) if isinstance(spelled, str) else spelled)
@@ -102,7 +98,7 @@ class _Out(_Use):
 
 class _In(Arrivals, _Use):
     def __init__(self, side: Any) -> None:
-        Arrivals.__init__(self, side.in_topic, _depth(side.options))
+        Arrivals.__init__(self, side, os.environ.get("WRAPYFI_ROS_QUEUE_SIZE", 5))
         _Use.__init__(self, side.options)
         texts = side.form.type == TextForm.type
         try:
@@ -142,7 +138,7 @@ class _PropertyOut(_Use):
         self._name = side.out_topic
         self._persistent = side.options.get("persistent", True)
 
-    def wait(self, timeout: float | None) -> bool:
+    def wait(self, seconds: float) -> bool:
         return True
 
     def send(self, spelled: Any) -> None:
@@ -164,7 +160,7 @@ class _PropertyIn(_Use):
         self._name = side.in_topic
         self._closed = threading.Event()
 
-    def wait(self, timeout: float | None) -> bool:
+    def wait(self, seconds: float) -> bool:
         return True
 
     def receive(self, timeout: float | None) -> Any:
@@ -257,9 +253,10 @@ class _Asking(_Use):
         self._topic = side.in_topic
         self._service = _service(side)
 
+    def wait(self, seconds: float) -> bool:
+        return self.node.wait_for_service(self._topic, seconds)
+
     def ask(self, spelled: Any, timeout: float | None) -> Any:
-        if not self.node.wait_for_service(self._topic, timeout):
-            raise yarpy.Timeout(f'nobody serves "{self._topic}"')
         question = self._service.question(spelled)
         return self._service.content(
             self.node.call(self._topic, self._service.kind, question, timeout=timeout)

@@ -11,7 +11,6 @@ from __future__ import annotations
 import os
 import re
 import threading
-import time
 from functools import partial
 from importlib.util import find_spec
 from typing import Any
@@ -38,7 +37,6 @@ if not (find_spec("zenoh") and find_spec("xxhash")):
 
 _PACKAGE = "wrapyfi_ros2_interfaces"
 _AUDIO = f"{_PACKAGE}/ROS2AudioMessage"
-_LOOK = 0.2  # seconds until a publisher that waits for subscribers can be closed
 
 default_library().sources.append(Interfaces())
 
@@ -70,15 +68,8 @@ class _Watch:
         self._closed = threading.Event()
         self._part = take_part(domain(None))
 
-    def wait(self, timeout: float | None) -> bool:
-        deadline = None if timeout is None else time.monotonic() + timeout
-        while not self._closed.is_set():
-            left = _LOOK if deadline is None else min(deadline - time.monotonic(), _LOOK)
-            if self._part.graph.wait(self._topic, self._awaited, timeout=max(left, 0.0)):
-                return True
-            if deadline is not None and time.monotonic() >= deadline:
-                return False
-        raise yarpy.PortClosed("this was closed")
+    def wait(self, seconds: float) -> bool:
+        return bool(self._part.graph.wait(self._topic, self._awaited, timeout=seconds))
 
     def end(self) -> None:
         if not self._closed.is_set():
@@ -108,8 +99,7 @@ class _Out(_Watch):
 
 class _In(Arrivals):
     def __init__(self, side: Any) -> None:
-        depth = side.options.get("queue_size") or os.environ.get("WRAPYFI_ROS2_QUEUE_SIZE", 5)
-        super().__init__(side.in_topic, max(int(depth), 1))
+        super().__init__(side, os.environ.get("WRAPYFI_ROS2_QUEUE_SIZE", 5))
         texts = side.form.type == TextForm.type
 
         def heard(message: Any) -> None:
@@ -173,8 +163,6 @@ class _Asking(_Watch):
             raise
 
     def ask(self, spelled: Any, timeout: float | None) -> Any:
-        if not self.wait(timeout):
-            raise yarpy.Timeout(f'nobody serves "{self._topic}"')
         message = self._port.ask(self._service.question(spelled), timeout)
         failed = None if message is None else failure_of(message)
         if failed is not None:

@@ -106,11 +106,11 @@ class _Session:
             self.client = _clients[self._id]
             self.client.users.append(self)
 
-    def wait(self, timeout: float | None) -> bool:
+    def wait(self, seconds: float) -> bool:
         """Wait for the server; it does not say who listens."""
-        deadline = None if timeout is None else time.monotonic() + timeout
+        deadline = time.monotonic() + seconds
         while not self.client.connected:
-            if deadline is not None and time.monotonic() >= deadline:
+            if time.monotonic() >= deadline:
                 return False
             time.sleep(_PAUSE / 10)
         return True
@@ -144,13 +144,13 @@ class _Out(_Session):
 
 class _In(Arrivals, _Session):
     def __init__(self, side: Any) -> None:
-        Arrivals.__init__(self, side.in_topic)
+        Arrivals.__init__(self, side)
         _Session.__init__(self, side.options)
         self._topic = side.in_topic
         self.client.subscribe(self, self._topic)
 
-    def wait(self, timeout: float | None) -> bool:
-        return _Session.wait(self, timeout)
+    def wait(self, seconds: float) -> bool:
+        return _Session.wait(self, seconds)
 
     def heard(self, data: Any) -> None:
         try:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import logging
 import random
+import time
 from base64 import b64decode, b64encode
 from typing import Any
 
@@ -18,7 +19,7 @@ import numpy as np
 
 import yarpy
 from wrapyfi.middlewares._form import Native, Picture, Sound
-from wrapyfi.middlewares._side import SKIP, Desk, Medium, Nothing, offer, when_there
+from wrapyfi.middlewares._side import SKIP, Desk, Medium, Nothing, offer
 from yarpy.network.connection import ask_server
 from yarpy.wrap.follower import Follower
 from yarpy.wrap.middleware import Failure
@@ -114,8 +115,8 @@ class _Out:
         except yarpy.YarpError as error:
             logging.debug("[wrapyfi] %s is not subscribed: %s", target, error)
 
-    def wait(self, timeout: float | None) -> bool:
-        return self._port.wait_for_outputs(1, timeout)
+    def wait(self, seconds: float) -> bool:
+        return self._port.wait_for_outputs(1, seconds)
 
     def send(self, spelled: Any) -> None:
         if isinstance(spelled, tuple):
@@ -140,8 +141,8 @@ class _In:
         self._port = yarpy.BufferedPort(_own(side.in_topic), strict=side.kind == "AudioChunk")
         self._follower = Follower(self._port, side.in_topic, side.carrier or "tcp")
 
-    def wait(self, timeout: float | None) -> bool:
-        return self._follower.wait(timeout) and self._follower.connected
+    def wait(self, seconds: float) -> bool:
+        return self._follower.wait(seconds) and self._follower.connected
 
     def receive(self, timeout: float | None) -> yarpy.Message:
         if timeout != 0:
@@ -209,11 +210,18 @@ class _Serving(Desk):
 class _Asking:
     def __init__(self, side: Any) -> None:
         self._topic = side.in_topic
-        self._port = when_there(
-            lambda: yarpy.RpcClient(
-                self._topic, name=_own(self._topic), carrier=side.carrier or "tcp"
-            )
-        )
+        self._carrier = side.carrier or "tcp"
+        self._port: Any = None
+
+    def wait(self, seconds: float) -> bool:
+        if self._port is None:
+            try:
+                self._port = yarpy.RpcClient(
+                    self._topic, name=_own(self._topic), carrier=self._carrier
+                )
+            except (yarpy.UnknownName, yarpy.LinkClosed):
+                time.sleep(min(seconds, 0.1))
+        return self._port is not None
 
     def ask(self, spelled: Any, timeout: float | None) -> yarpy.Message:
         message = self._port.ask(spelled, timeout)
@@ -225,7 +233,8 @@ class _Asking:
         return message
 
     def close(self) -> None:
-        self._port.close()
+        if self._port is not None:
+            self._port.close()
 
 
 offer(

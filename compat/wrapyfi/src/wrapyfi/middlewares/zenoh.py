@@ -108,7 +108,7 @@ class _Out(_Session):
         self._publisher: Any = self.session.declare_publisher(_key(side.out_topic))
         self._fresh = True
 
-    def wait(self, timeout: float | None) -> bool:
+    def wait(self, seconds: float) -> bool:
         """Listeners are not waited for, as it was; the session is there."""
         return True
 
@@ -133,7 +133,7 @@ class _Out(_Session):
 
 class _In(Arrivals, _Session):
     def __init__(self, side: Any) -> None:
-        Arrivals.__init__(self, side.in_topic)
+        Arrivals.__init__(self, side)
         _Session.__init__(self, side.options)
         self._subscriber: Any = self.session.declare_subscriber(
             _key(side.in_topic),

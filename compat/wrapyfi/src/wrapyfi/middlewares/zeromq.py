@@ -131,7 +131,7 @@ class _In(In):
     def __init__(self, side: Any) -> None:
         super().__init__(side.in_topic, _broker(side.options)[0])
 
-    def wait(self, timeout: float | None) -> bool:
+    def wait(self, seconds: float) -> bool:
         """Publishers are not waited for: the broker is there."""
         return True
 
@@ -268,6 +268,10 @@ class _Asking(_Socket):
     def __init__(self, side: Any) -> None:
         host, front, _ = _numbers(side.options)
         super().__init__(zmq.REQ, f"tcp://{host}:{front}")
+
+    def wait(self, seconds: float) -> bool:
+        """Servers are not waited for: the broker keeps what is asked."""
+        return True
 
     def ask(self, spelled: list[bytes], timeout: float | None) -> list[bytes]:
         self.send(spelled)
