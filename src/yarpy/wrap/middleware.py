@@ -82,6 +82,11 @@ class Way:
             if getattr(self, name) != getattr(_PLAIN, name):
                 raise ValueError(f"{name}={getattr(self, name)!r} on {self.middleware}: {why}")
 
+    def refuse_numbers(self) -> None:
+        """Raise ValueError for a number of values to keep, where the ends are ports."""
+        if self.keep not in ("latest", "all"):
+            raise ValueError('a port keeps "latest" or "all" of what comes')
+
 
 _PLAIN: Final = Way("")
 

@@ -33,8 +33,7 @@ class Mqtt:
         if not way.place or "/" in way.place:
             raise ValueError('mqtt needs a broker: "mqtt://HOST", or "mqtt://HOST:PORT"')
         find_carrier(parse_carrier(parse_contact(_target(way)).carrier))
-        if way.keep not in ("latest", "all"):
-            raise ValueError('a port keeps "latest" or "all" of what comes')
+        way.refuse_numbers()
         way.refuse(qos="what leads to a broker has no thread and no priority of its own")
 
     def publisher(self, way: Way, shape: Shape) -> MqttPublisher:

@@ -20,11 +20,13 @@ from yarpy.data.stamp import Stamp
 from yarpy.errors import DecodeError, LocalProtocolError, Timeout
 from yarpy.idl.rosmsg.library import default_library
 from yarpy.idl.rosmsg.message import Message as RosMessage
+from yarpy.port.port import MessagePort
 from yarpy.ros.calls import ServiceFailed
 from yarpy.ros.node import Node
 from yarpy.wire.message import Message
 from yarpy.wrap.array import Picture
 from yarpy.wrap.middleware import Answer, Item, Received, Way
+from yarpy.wrap.port_end import PortEnd
 from yarpy.wrap.service import Service, Types, error_of, handled, topic_and_type
 from yarpy.wrap.shape import Scalar, Shape, Wired
 from yarpy.wrap.tree import from_text, to_text
@@ -47,8 +49,7 @@ class Ros:
             carrier="topics of ROS go over tcpros",
             qos="a topic's connections are made by ROS",
         )
-        if way.keep not in ("latest", "all"):
-            raise ValueError('a subscriber keeps "latest" or "all" of what comes')
+        way.refuse_numbers()
         if "~" in way.topic and way.signature is not None:
             Service(way, TYPES)
 
@@ -121,75 +122,75 @@ def _leave(way: Way, user: object) -> None:
         node.close()
 
 
-class RosPublisher:
-    def __init__(self, way: Way, shape: Shape) -> None:
-        self._way = way
+class Writer(PortEnd):
+    """Publishes to a topic of either ROS."""
+
+    def __init__(self, port: MessagePort, way: Way, shape: Shape) -> None:
+        super().__init__(port, way)
         self._texts = as_text(shape)
-        self._node = _use(way, self)
-        try:
-            self._port = self._node.publisher(topic_of(way), type_of(shape))
-        except BaseException:
-            _leave(way, self)
-            raise
 
     def publish(self, item: Item) -> int:
         value = to_text(item.plain) if self._texts else item.plain
-        return self._port.write(value, Stamp(item.count, item.time))
-
-    def wait(self, timeout: float | None) -> bool:
-        return self._port.wait_for_outputs(1, timeout)
-
-    @property
-    def stats(self) -> dict[str, Any]:
-        return self._port.stats
-
-    def close(self) -> None:
-        self._port.close()
-        _leave(self._way, self)
+        return self.port.write(value, Stamp(item.count, item.time))
 
 
-class RosListener:
-    def __init__(self, way: Way, shape: Shape) -> None:
-        self._way = way
+class Reader(PortEnd):
+    """Listens to a topic of either ROS."""
+
+    def __init__(self, port: MessagePort, way: Way, shape: Shape) -> None:
+        super().__init__(port, way)
         self._shape = shape
-        self._kind = type_of(shape)
         self._texts = as_text(shape)
-        self._node = _use(way, self)
+
+    def listen(self, timeout: float | None) -> Received:
+        message = self.read(timeout)
+        stamp = message.stamp
+        count, time = (stamp.count, stamp.time) if stamp is not None else (None, None)
+        value = self._value(message)
+        return Received(value, count, time, message.source, self.way.middleware)
+
+    def _value(self, message: Message) -> Any:
+        shape = self._shape
+        return shape.load(from_text(message.as_(str)) if self._texts else shape.read(message))
+
+
+class RosPublisher(Writer):
+    def __init__(self, way: Way, shape: Shape) -> None:
+        node = _use(way, self)
         try:
-            newest = way.keep == "latest"
-            self._port = self._node.subscriber(topic_of(way), self._kind, newest=newest)
+            super().__init__(node.publisher(topic_of(way), type_of(shape)), way, shape)
         except BaseException:
             _leave(way, self)
             raise
 
-    def listen(self, timeout: float | None) -> Received:
+    def close(self) -> None:
+        super().close()
+        _leave(self.way, self)
+
+
+class RosListener(Reader):
+    def __init__(self, way: Way, shape: Shape) -> None:
+        node = _use(way, self)
         try:
-            message = self._port.read(timeout)
-        except Timeout:
-            raise Timeout(f'nothing came from "{self._way.topic}" within {timeout:.3g} s') from None
-        stamp = message.stamp
-        count, time = (stamp.count, stamp.time) if stamp is not None else (None, None)
-        value = self._value(message)
-        return Received(value, count, time, message.source, self._way.middleware)
+            newest = way.keep == "latest"
+            port = node.subscriber(topic_of(way), type_of(shape), newest=newest)
+            super().__init__(port, way, shape)
+        except BaseException:
+            _leave(way, self)
+            raise
 
     def _value(self, message: Message) -> Any:
         shape = self._shape
-        if self._texts:
-            return shape.load(from_text(message.as_(str)))
-        if isinstance(shape, Wired) and issubclass(shape.kind, RosMessage):
-            found = getattr(message, "ros", None)
-            if not isinstance(found, shape.kind):
-                raise DecodeError(f"expected {shape.name}, got {message!r}")
-            return found
-        return shape.load(shape.read(message))
-
-    @property
-    def stats(self) -> dict[str, Any]:
-        return self._port.stats
+        if not (isinstance(shape, Wired) and issubclass(shape.kind, RosMessage)):
+            return super()._value(message)
+        found = getattr(message, "ros", None)
+        if not isinstance(found, shape.kind):
+            raise DecodeError(f"expected {shape.name}, got {message!r}")
+        return found
 
     def close(self) -> None:
-        self._port.close()
-        _leave(self._way, self)
+        super().close()
+        _leave(self.way, self)
 
 
 class RosServer:

@@ -10,17 +10,15 @@ import os
 import time
 from typing import Any, Final
 
-from yarpy.data.stamp import Stamp
-from yarpy.errors import LinkClosed, Timeout, UnknownName, YarpError
+from yarpy.errors import LinkClosed, UnknownName, YarpError
 from yarpy.idl.ros2msg.library import default_library
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.wire.message import Message
-from yarpy.wrap.middleware import Answer, Item, Received, Way
-from yarpy.wrap.middlewares.ros import as_text, topic_of, type_of
+from yarpy.wrap.middleware import Answer, Way
+from yarpy.wrap.middlewares.ros import Reader, Writer, topic_of, type_of
 from yarpy.wrap.service import Service, Types, error_of, handled
 from yarpy.wrap.shape import Shape
-from yarpy.wrap.tree import from_text, to_text
 
 _PAUSE: Final = 0.05  # seconds between two looks for a server
 
@@ -35,8 +33,7 @@ class Ros2:
             place="YARPY_ZENOH says where the router of ROS 2 is",
             qos="a topic's connections are made by ROS; say qos.NAME by carrier=",
         )
-        if way.keep not in ("latest", "all"):
-            raise ValueError('a subscriber keeps "latest" or "all" of what comes')
+        way.refuse_numbers()
         if "~" in way.topic and way.signature is not None:
             Service(way, TYPES)
 
@@ -71,60 +68,24 @@ def _target(way: Way, topic: str, name: str, kind: str) -> str:
     return f"{carrier}://{topic.strip('/')}~{full}"
 
 
-class Ros2Publisher:
+class Ros2Publisher(Writer):
     def __init__(self, way: Way, shape: Shape) -> None:
-        self._texts = as_text(shape)
-        self._port = BufferedPort("", strict=way.keep == "all")
+        super().__init__(BufferedPort("", strict=way.keep == "all"), way, shape)
         try:
-            self._port.connect(target_of(way, shape))
+            self.port.connect(target_of(way, shape))
         except YarpError:
-            self._port.close()
+            self.close()
             raise
 
-    def publish(self, item: Item) -> int:
-        value = to_text(item.plain) if self._texts else item.plain
-        return self._port.write(value, Stamp(item.count, item.time))
 
-    def wait(self, timeout: float | None) -> bool:
-        """Only the topic can be waited for: it is there at once."""
-        return self._port.wait_for_outputs(1, timeout)
-
-    @property
-    def stats(self) -> dict[str, Any]:
-        return self._port.stats
-
-    def close(self) -> None:
-        self._port.close()
-
-
-class Ros2Listener:
+class Ros2Listener(Reader):
     def __init__(self, way: Way, shape: Shape) -> None:
-        self._way = way
-        self._shape = shape
-        self._texts = as_text(shape)
-        self._port = BufferedPort("", strict=way.keep == "all")
+        super().__init__(BufferedPort("", strict=way.keep == "all"), way, shape)
         try:
-            self._port.listen_to(target_of(way, shape))
+            self.port.listen_to(target_of(way, shape))
         except YarpError:
-            self._port.close()
+            self.close()
             raise
-
-    def listen(self, timeout: float | None) -> Received:
-        try:
-            message = self._port.read(timeout)
-        except Timeout:
-            raise Timeout(f'nothing came from "{self._way.topic}" within {timeout:.3g} s') from None
-        stamp, shape = message.stamp, self._shape
-        count, time = (stamp.count, stamp.time) if stamp is not None else (None, None)
-        plain = from_text(message.as_(str)) if self._texts else shape.read(message)
-        return Received(shape.load(plain), count, time, message.source, self._way.middleware)
-
-    @property
-    def stats(self) -> dict[str, Any]:
-        return self._port.stats
-
-    def close(self) -> None:
-        self._port.close()
 
 
 class Ros2Server:

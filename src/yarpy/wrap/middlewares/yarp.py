@@ -44,8 +44,7 @@ class Yarp:
 
     def check(self, way: Way) -> None:
         way.refuse(place="names lead to ports; the name server is configured, see docs/names.md")
-        if way.keep not in ("latest", "all"):
-            raise ValueError('a port keeps "latest" or "all" of what comes')
+        way.refuse_numbers()
         if not way.topic.startswith("/"):
             raise ValueError(f'"{way.topic}" is no name of a port: it begins with a slash')
         if way.carrier:
