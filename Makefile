@@ -24,7 +24,7 @@ demo: $(VENV)/.base
 
 # Some at a time, each with whole files: most tests wait for something. What is quick comes first, so
 # that a mistake in it is known within a minute.
-WORKERS ?= 3
+WORKERS ?= 2
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 test: pure links programs
 
