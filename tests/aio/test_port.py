@@ -34,6 +34,19 @@ def test_messages_are_awaited_and_iterated():
     asyncio.run(main())
 
 
+def test_arrays_are_prepared():
+    async def main():
+        async with aio.Port("/aio/out") as writer, aio.Port("/aio/in") as reader:
+            await writer.connect("/aio/in")
+            array = writer.prepare((200, 400))
+            array[...] = 7
+            await writer.write(array)
+            assert ((await reader.read(timeout=2)).value.array == 7).all()
+            assert not array.flags.writeable
+
+    asyncio.run(main())
+
+
 def test_latest_keeps_the_newest_and_counts_the_others():
     async def main():
         async with aio.Port("/aio/in", latest=True) as reader:

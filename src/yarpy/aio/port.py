@@ -10,6 +10,7 @@ import asyncio
 from collections import deque
 from collections.abc import AsyncIterator, Callable
 from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from yarpy.aio.base import BasePort
 from yarpy.aio.inbox import Arrival, Door
@@ -22,6 +23,9 @@ from yarpy.port.connection import ConnectionEvent
 from yarpy.port.port import MessagePort
 from yarpy.wire.message import Message
 from yarpy.wire.stream import DEFAULT_LIMIT
+
+if TYPE_CHECKING:
+    from numpy.typing import DTypeLike, NDArray
 
 
 class Port(BasePort["_Port"]):
@@ -91,6 +95,11 @@ class Port(BasePort["_Port"]):
                     await self._arrived.wait()
         except TimeoutError:
             raise Timeout(f'nothing came to "{self.name}" within {timeout} s') from None
+
+    def prepare(self, shape: int | tuple[int, ...], dtype: DTypeLike = "u1") -> NDArray[Any]:
+        """A new array to fill and write that programs on this computer get without a copy; see
+        `yarpy.Port.prepare`."""
+        return self.port.prepare(shape, dtype)
 
     async def write(
         self,
