@@ -19,8 +19,8 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 CORE = (
     *("data/codec", "data/reader", "data/walker", "data/writer"),
     *("wire/framing", "wire/shared_stream", "wire/stream"),
-    *("link/counter", "link/driver", "link/inbound", "link/outbound", "link/receiver"),
-    *("link/sender", "link/turn", "link/window", "port/reader"),
+    *("link/counter", "link/driver", "link/outbound", "link/receiver", "link/sender"),
+    *("link/turn", "link/window"),
 )
 _COMPILE = """
 import sys
