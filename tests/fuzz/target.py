@@ -170,6 +170,10 @@ def _references(data: bytes) -> None:
     end.feed(data)
 
 
+_MPI = tuple(
+    magic + b"/out\r\nvm____pid____4711\r\ntag#0$description#5\r\n"
+    for magic in (b"MPI_____", b"MPIBCAST")
+)
 _MEETING = b"YARPYMEM\x03\0\0\0/w\0" + bytes(8)
 _REFERENCE = struct.pack("<4sc3x3I2Q", b"\0MEM", b"D", 0, 1, 5, 0, 20000) + b"1 0.5"
 
@@ -533,7 +537,7 @@ TARGETS = {
     "references": Target(_references, (_REFERENCE, *_said("a")[:40])),
     "accepting": Target(
         _accept(),
-        (*_said("a"), _SUBSCRIBER, *_SOCKETS, *_CLIENTS, _MEETING),
+        (*_said("a"), _SUBSCRIBER, *_SOCKETS, *_CLIENTS, _MEETING, *_MPI),
         refusals=(YarpError, Stalled),
     ),
     "accepting tcpros": Target(
@@ -577,7 +581,7 @@ TARGETS = {
         for name in (
             *("tcp", "fast_tcp", "text", "text_ack", "http", "xmlrpc", "mjpeg", "websocket"),
             *("tcpros", "rossrv"),
-            *("unix_stream", "memory", "udp", "mcast", "name_ser"),
+            *("unix_stream", "memory", "shmem", "mpi", "bcast", "udp", "mcast", "name_ser"),
         )
     },
 }
