@@ -141,6 +141,16 @@ def test_a_writer_that_closes_after_a_move(pair: tuple[Ring, Ring]) -> None:
     assert reader.read_into(memoryview(bytearray(8))) == 0
 
 
+def test_moves_of_a_writer_that_has_died(number: int) -> None:
+    writer = Ring(number, True, alive)
+    reader = Ring(number, False, alive)
+    writer.forget()
+    for power in range(1, 4):
+        writer.write([bytes(10000 << power)], 10000 << power)
+    assert [key for key in keys() if key >> 16 and key & 0xFFFF == number & 0xFFFF]
+    reader.close()  # and nothing by the writer: see `number`
+
+
 def test_a_reader_is_woken(pair: tuple[Ring, Ring]) -> None:
     writer, reader = pair
     thread = threading.Thread(target=reader.wait, args=(60.0,))

@@ -230,6 +230,8 @@ class Ring:
 
     def close(self) -> None:
         """Tell the other side that this is the end, and leave nothing behind."""
+        with suppress(OSError, RemoteProtocolError):
+            self._follow()  # to where a writer that has died had moved: nobody else knows
         try:
             self._acquire()
         except OSError:
