@@ -373,6 +373,7 @@ class Hub:
 
     def add_output_link(self, link: Outbound) -> None:
         """Take a greeted connection as an output; one to the same port is replaced by it."""
+        self.kept.give(link)  # before anything is sent
         with self.lock:
             if self.closing:
                 link.driver.transport.close()
@@ -380,7 +381,6 @@ class Hub:
             link.intake.budget = self.budget
             self.outputs = (*self.outputs, link)
             self._elect()
-        self.kept.give(link)
         self.callbacks.report(link, created=True)
         if link.carrier.connectionless:
             self.crew.reconnect.wake()
