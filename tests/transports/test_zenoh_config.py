@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,24 +12,11 @@ from yarpy.errors import (
     MissingFile,
 )
 from yarpy.transports.zenoh import share
-from yarpy.transports.zenoh_router import open_router
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 
 
-@pytest.fixture(autouse=True)
-def _nothing_configured(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("YARPY_ZENOH", "YARPY_TLS", "YARPY_TLS_DIR", "ZENOH_CONFIG_OVERRIDE"):
-        monkeypatch.delenv(name, raising=False)
-
-
-@pytest.fixture
-def router() -> Iterator[str]:
-    """The address of a router."""
-    where = f"tcp/127.0.0.1:{free_port()}"
-    session = open_router([where])
-    yield where
-    session.close()
+pytestmark = pytest.mark.usefixtures("unconfigured")
 
 
 def test_an_override_comes_last(router: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from support.port import free_port
 from support.wait import wait_until
+from support.zenoh_session import ask, listening
 
 from yarpy.errors import (
     LinkClosed,
@@ -23,42 +21,7 @@ from yarpy.transports.zenoh_router import open_router, unjoined
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 
 
-@pytest.fixture(autouse=True)
-def _nothing_configured(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("YARPY_ZENOH", "YARPY_TLS", "YARPY_TLS_DIR", "ZENOH_CONFIG_OVERRIDE"):
-        monkeypatch.delenv(name, raising=False)
-
-
-@pytest.fixture
-def router() -> Iterator[str]:
-    """The address of a router."""
-    where = f"tcp/127.0.0.1:{free_port()}"
-    session = open_router([where])
-    yield where
-    session.close()
-
-
-def ask(session: Any, key: str) -> list[bytes]:
-    return [reply.ok.payload.to_bytes() for reply in session.get(key, timeout=5)]
-
-
-def listening() -> set[str]:
-    """The listening sockets of this process, as numbers of the system."""
-    own = {link for fd in Path("/proc/self/fd").glob("*") if (link := linked(fd))}
-    found = set()
-    for table in ("tcp", "tcp6", "udp"):
-        for line in Path(f"/proc/self/net/{table}").read_text().splitlines()[1:]:
-            words = line.split()
-            if words[3] in ("0A", "07") and f"socket:[{words[9]}]" in own:
-                found.add(f"{table} {words[1]}")
-    return found
-
-
-def linked(path: Path) -> str:
-    try:
-        return os.readlink(path)
-    except OSError:  # closed meanwhile
-        return ""
+pytestmark = pytest.mark.usefixtures("unconfigured")
 
 
 def test_a_router_of_a_chain_passes_on_what_the_next_one_has(router: str) -> None:

@@ -8,18 +8,18 @@
     ros2://chatter~std_msgs/msg/String          says the type, which the graph knows otherwise
     ros2+domain.7+node.arm+qos.sensor://...     `qos`: default, sensor, latched, all
 
-Rules: there is no connection of its own: `greet` is handed the topic (`Topic`), and then what goes
-and comes are objects (`Outgoing`, `Incoming`), which `yarpy.ros2` sends and receives. A message
-that is not of the type is not sent, and counted.
+Rules: those of `hosted`; `yarpy.ros2` has the endpoints (`Topic`). A message that is not of the
+type is not sent, and counted.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final, Protocol, cast
+from typing import Any, Protocol
 
-from yarpy.carriers.base import Carrier, Delivery, Limits
+from yarpy.carriers.base import Carrier, Limits
+from yarpy.carriers.hosted import Hosted, failure
 from yarpy.carriers.ros2_body import encode_body, message_of, time_of, value_of
 from yarpy.carriers.ros_body import has_header
 from yarpy.data import codec
@@ -28,15 +28,12 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.log import logger
-from yarpy.route import CarrierSpec, Route
+from yarpy.route import Route
 from yarpy.wire.message import CALL, DATA, UNSENDABLE, Encoded, Message, Packet
 from yarpy.wire.steps import Steps
-from yarpy.wire.stream import Buffer, ByteStream, ObjectStream
+from yarpy.wire.stream import Buffer, ByteStream
 
 log = logger("yarpy.link")
-
-SERVICE: Final = "srv"
-LISTENS: Final = "sub"
 
 
 class Topic(Protocol):
@@ -91,15 +88,11 @@ class Incoming:
         return len(self.body)
 
 
-class Ros2(Carrier):
+class Ros2(Hosted):
     """A publisher; or one of the classes below."""
 
     name = "ros2"
-    foreign = True
-    nameless = True
-    replies = False
     medium = "ros2"
-    delivery = Delivery(coalesces=False)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
@@ -107,11 +100,8 @@ class Ros2(Carrier):
         self._told = ""  # of a message that does not fit
 
     @classmethod
-    def of(cls, spec: CarrierSpec) -> type[Carrier]:
-        serves = SERVICE in spec.tokens
-        if LISTENS in spec.tokens:
-            return Server if serves else Subscriber
-        return Asker if serves else cls
+    def roles(cls) -> tuple[type[Carrier], type[Carrier], type[Carrier]]:
+        return Subscriber, Asker, Server
 
     @property
     def kind(self) -> Any:
@@ -119,8 +109,7 @@ class Ros2(Carrier):
         return None if self.topic is None else self.topic.kind
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        assert isinstance(stream, ObjectStream)
-        self.topic = cast(Topic, (yield from stream.read_object()))
+        self.topic = yield from self.read_object(stream)
 
     def prepare(self, packet: Packet) -> bool:
         try:
@@ -140,24 +129,13 @@ class Ros2(Carrier):
             self.lost += 1
             return
         self._told = ""
-        self._write(stream, Outgoing(kind, body, time_of(packet)))
+        self.write_object(stream, Outgoing(kind, body, time_of(packet)))
 
     def _body(self, packet: Packet) -> tuple[Any, tuple[Buffer, ...]]:
         topic = self.topic
         assert topic is not None
         kind = topic.kind or topic.settle(value_of(packet))
         return kind, encode_body(packet, kind, topic.clock)
-
-    def _write(self, stream: ByteStream, item: Outgoing) -> None:
-        assert isinstance(stream, ObjectStream)
-        stream.write_object(item)
-
-    def _read(self, stream: ByteStream) -> Steps[Incoming]:
-        assert isinstance(stream, ObjectStream)
-        return cast(Incoming, (yield from stream.read_object()))
-
-    def encode_quit(self, stream: ByteStream) -> None:
-        """Only closing ends it."""
 
     def _complain(self, text: str) -> None:
         """Say why a message is not sent, once for as long as they follow each other."""
@@ -173,7 +151,7 @@ class Subscriber(Ros2):
     push = False
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
-        came = yield from self._read(stream)
+        came = yield from self.read_object(stream)
         kind = self.kind
         return message_of(DATA, came.body, kind, has_header(kind), came.number, came.time)
 
@@ -188,7 +166,7 @@ class Asker(Ros2):
         topic = self.topic
         assert topic is not None
         body = encode_body(packet, topic.kind.Request, topic.clock)
-        self._write(stream, Outgoing(topic.kind, body, time_of(packet)))
+        self.write_object(stream, Outgoing(topic.kind, body, time_of(packet)))
 
     def prepare(self, packet: Packet) -> bool:
         topic = self.topic
@@ -198,9 +176,9 @@ class Asker(Ros2):
         return True
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
-        came = yield from self._read(stream)
+        came = yield from self.read_object(stream)
         if came.failure:
-            return Message(CALL, b"".join(codec.encode([Vocab("fail"), came.failure])))
+            return failure(came.failure)
         return message_of(CALL, came.body, self.kind.Response, False, came.number, came.time)
 
 
@@ -216,11 +194,13 @@ class Server(Ros2):
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         while True:
-            came = yield from self._read(stream)
+            came = yield from self.read_object(stream)
             try:
                 self.kind.Request.from_ros(came.body)
             except DecodeError as error:  # its asker is told; others go on
-                self._write(stream, Outgoing(self.kind, (), to=came.asked, failure=str(error)))
+                self.write_object(
+                    stream, Outgoing(self.kind, (), to=came.asked, failure=str(error))
+                )
                 self.lost += 1
                 continue
             self._asked = came.asked
@@ -238,7 +218,7 @@ class Server(Ros2):
                     raise
                 reason = f"the service gave no answer ({error})"
         asked, self._asked = self._asked, None
-        self._write(stream, Outgoing(topic.kind, body, to=asked, failure=reason or ""))
+        self.write_object(stream, Outgoing(topic.kind, body, to=asked, failure=reason or ""))
 
 
 def _reason(value: object) -> str | None:

@@ -7,27 +7,23 @@
 
     zenoh+raw://...                              payloads are YARP's own spelling
 
-Rules: `payload.py` says what a payload holds. There is no connection of its own: `greet` is handed
-the endpoint, and then what goes and comes are objects (`Outgoing`, `Incoming`), which `yarpy.zenoh`
-sends and receives.
+Rules: those of `hosted`; `yarpy.zenoh` has the endpoints. `payload` says what a payload holds.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final, cast
+from typing import Any, Final
 
-from yarpy.carriers.base import Carrier, Delivery, Limits
+from yarpy.carriers.base import Carrier, Limits
+from yarpy.carriers.hosted import Hosted, failure
 from yarpy.carriers.payload import JPEG, message_of, payload_of, to_payload
 from yarpy.data import codec
-from yarpy.data.value import Vocab
-from yarpy.route import CarrierSpec, Route
+from yarpy.route import Route
 from yarpy.wire.message import CALL, DATA, Encoded, Message, Packet
 from yarpy.wire.steps import Steps
-from yarpy.wire.stream import Buffer, ByteStream, ObjectStream
+from yarpy.wire.stream import Buffer, ByteStream
 
-SERVICE: Final = "srv"
-LISTENS: Final = "sub"
 RAW: Final = "raw"
 
 JSON: Final = "application/json"
@@ -64,29 +60,22 @@ class Incoming:
         return len(self.payload)
 
 
-class Zenoh(Carrier):
+class Zenoh(Hosted):
     """A port that puts; or one of the classes below."""
 
     name = "zenoh"
-    foreign = True
-    nameless = True
-    replies = False
     medium = "zenoh"
-    delivery = Delivery(coalesces=False)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self.raw = RAW in route.spec.tokens
 
     @classmethod
-    def of(cls, spec: CarrierSpec) -> type[Carrier]:
-        serves = SERVICE in spec.tokens
-        if LISTENS in spec.tokens:
-            return Server if serves else Subscriber
-        return Asker if serves else cls
+    def roles(cls) -> tuple[type[Carrier], type[Carrier], type[Carrier]]:
+        return Subscriber, Asker, Server
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        yield from self._read(stream)  # the endpoint itself
+        yield from self.read_object(stream)  # the endpoint itself
 
     def prepare(self, packet: Packet) -> bool:
         if self.raw:
@@ -95,7 +84,7 @@ class Zenoh(Carrier):
         return True
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
-        self._write(stream, self._said(packet))
+        self.write_object(stream, self._said(packet))
 
     def _said(self, packet: Packet) -> Outgoing:
         if self.raw:
@@ -108,17 +97,6 @@ class Zenoh(Carrier):
             return Message(key, came.payload)
         return message_of(key, [came.payload])
 
-    def _write(self, stream: ByteStream, item: Outgoing) -> None:
-        assert isinstance(stream, ObjectStream)
-        stream.write_object(item)
-
-    def _read(self, stream: ByteStream) -> Steps[Incoming]:
-        assert isinstance(stream, ObjectStream)
-        return cast(Incoming, (yield from stream.read_object()))
-
-    def encode_quit(self, stream: ByteStream) -> None:
-        """Only closing ends it."""
-
 
 class Subscriber(Zenoh):
     """The port reads what is put."""
@@ -126,7 +104,7 @@ class Subscriber(Zenoh):
     push = False
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
-        return self._heard(DATA, (yield from self._read(stream)))
+        return self._heard(DATA, (yield from self.read_object(stream)))
 
 
 class Asker(Zenoh):
@@ -136,9 +114,9 @@ class Asker(Zenoh):
     limits = Limits(message_timeout=None)
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
-        came = yield from self._read(stream)
+        came = yield from self.read_object(stream)
         if came.failure:
-            return Message(CALL, b"".join(codec.encode([Vocab("fail"), came.failure])))
+            return failure(came.failure)
         return self._heard(CALL, came)
 
 
@@ -153,17 +131,17 @@ class Server(Zenoh):
         self._asked: Any = None
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
-        came = yield from self._read(stream)
+        came = yield from self.read_object(stream)
         self._asked = came.asked
         return self._heard(CALL, came)
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
         asked, self._asked = self._asked, None
         if self.raw:
-            self._write(stream, Outgoing(_joined(codec.encode(value)), to=asked))
+            self.write_object(stream, Outgoing(_joined(codec.encode(value)), to=asked))
         else:
             payload = payload_of(value)
-            self._write(stream, Outgoing(payload, encoding_of(payload, value), asked))
+            self.write_object(stream, Outgoing(payload, encoding_of(payload, value), asked))
 
 
 def encoding_of(payload: Buffer, value: object) -> str:

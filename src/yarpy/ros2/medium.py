@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from yarpy.carriers.ros2 import LISTENS, SERVICE
+from yarpy.carriers.hosted import LISTENS, SERVICE
 from yarpy.contact import Contact
 from yarpy.errors import AddressError, LocalProtocolError, UnknownName
 from yarpy.log import logger

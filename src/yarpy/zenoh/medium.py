@@ -11,7 +11,7 @@ import os
 import re
 from typing import Final
 
-from yarpy.carriers.zenoh import LISTENS, SERVICE
+from yarpy.carriers.hosted import LISTENS, SERVICE
 from yarpy.contact import Contact
 from yarpy.errors import AddressError, NoNameServer
 from yarpy.names.default import DEFAULT, on_zenoh

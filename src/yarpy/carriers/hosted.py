@@ -1,0 +1,62 @@
+"""Hosted: what carriers have in common that send and receive by another middleware.
+
+Rules: there is no connection of their own: `greet` is handed the endpoint, and then what goes and
+comes are objects, which whoever made the endpoint sends and receives. A carrier is a port that
+sends, or one of three other classes: a reader, who asks, who answers.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from yarpy.carriers.base import Carrier, Delivery
+from yarpy.data import codec
+from yarpy.data.value import Vocab
+from yarpy.route import CarrierSpec
+from yarpy.wire.message import CALL, Message
+from yarpy.wire.steps import Steps
+from yarpy.wire.stream import ByteStream, ObjectStream
+
+#: additions of a carrier's name
+SERVICE: Final = "srv"
+LISTENS: Final = "sub"
+
+
+class Hosted(Carrier):
+    """The end of a port at a middleware."""
+
+    foreign = True
+    nameless = True
+    replies = False
+    delivery = Delivery(coalesces=False)
+
+    @classmethod
+    def roles(cls) -> tuple[type[Carrier], type[Carrier], type[Carrier]]:
+        """Who reads, who asks, who answers."""
+        raise NotImplementedError
+
+    @classmethod
+    def of(cls, spec: CarrierSpec) -> type[Carrier]:
+        reader, asker, server = cls.roles()
+        serves = SERVICE in spec.tokens
+        if LISTENS in spec.tokens:
+            return server if serves else reader
+        return asker if serves else cls
+
+    def write_object(self, stream: ByteStream, item: object) -> None:
+        """Have the endpoint send that."""
+        assert isinstance(stream, ObjectStream)
+        stream.write_object(item)
+
+    def read_object(self, stream: ByteStream) -> Steps[Any]:
+        """What the endpoint has received; at first, itself."""
+        assert isinstance(stream, ObjectStream)
+        return (yield from stream.read_object())
+
+    def encode_quit(self, stream: ByteStream) -> None:
+        """Only closing ends it."""
+
+
+def failure(reason: str) -> Message:
+    """The reply of a question that has none: `[fail] "reason"`."""
+    return Message(CALL, b"".join(codec.encode([Vocab("fail"), reason])))

@@ -1,0 +1,27 @@
+"""What carriers have in common that another middleware carries; `test_ros2`, `test_zenoh` do it."""
+
+import pytest
+
+from yarpy.carriers.hosted import Hosted, failure
+from yarpy.carriers.ros2 import Ros2
+from yarpy.carriers.zenoh import Zenoh
+from yarpy.route import parse_carrier
+from yarpy.wire.message import CALL
+
+
+@pytest.mark.parametrize("carrier", [Ros2, Zenoh])
+def test_additions_choose_the_role(carrier: type[Hosted]) -> None:
+    reader, asker, server = carrier.roles()
+    found = {
+        words: carrier.of(parse_carrier(carrier.name + words))
+        for words in ("", "+sub", "+srv", "+srv+sub")
+    }
+    assert found == {"": carrier, "+sub": reader, "+srv": asker, "+srv+sub": server}
+    assert (reader.push, asker.push, server.push) == (False, True, False)
+    assert (reader.replies, asker.replies, server.replies) == (False, True, True)
+
+
+def test_a_question_without_an_answer() -> None:
+    message = failure("nobody is there")
+    assert message.key == CALL
+    assert message.value == ["fail", "nobody is there"]
