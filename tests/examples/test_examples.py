@@ -176,13 +176,13 @@ def test_module(server: yarpy.NameServer):
             "mirroring.py",
             [["publish", "hello"]],
             ["listen"],
-            r"^\{'said by': 'publish', 'text': 'hello'\}$",
+            r"^\{'text': 'hello', 'said by': 'publish'\}$",
         ),
         (
             "mirroring.py",
             [["serve"]],
             ["call", "hello"],
-            r"^\{'said by': 'serve', 'text': 'HELLO'\}$",
+            r"^\{'text': 'HELLO', 'said by': 'serve'\}$",
         ),
         ("forwarding.py", [["start"], ["middle"]], ["end"], r"^message \d+, handed on$"),
         (

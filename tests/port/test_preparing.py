@@ -7,6 +7,7 @@ import signal
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -36,6 +37,42 @@ def server(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[yarpy.Na
         for key, value in server.environment.items():
             monkeypatch.setenv(key, value)
         yield server
+
+
+@pytest.mark.parametrize(
+    ("shape", "dtype", "error"),
+    [
+        ((300, 300), object, TypeError),
+        (9, [("a", "u1"), ("b", object)], TypeError),
+        (("a", 3), "u1", TypeError),
+        (3.5, "u1", TypeError),
+        ((-1, 30_000), "u1", ValueError),
+    ],
+)
+def test_what_cannot_be_prepared(shape: Any, dtype: Any, error: type[Exception]) -> None:
+    """Python's objects would be pointers of this process."""
+    with yarpy.Port("/out", names=yarpy.LocalNames()) as out, pytest.raises(error):
+        out.prepare(shape, dtype)
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "memory"])
+def test_received_pictures_stay_what_they_are(
+    carrier: str, server: yarpy.NameServer, tmp_path: Path
+) -> None:
+    """Of each only the array is kept; over memory, more of them than find room there."""
+    with (
+        yarpy.Port("/pictures/out") as out,
+        yarpy.BufferedPort("/pictures/in", strict=True) as in_,
+    ):
+        out.connect("/pictures/in", carrier)
+        kept = []
+        for number in range(300):
+            out.write(np.full((60, 100, 3), number % 256, "u1"))
+            message = in_.read(timeout=5)
+            assert message is not None
+            kept.append(message.value.array)
+            del message
+        assert [int(array[7, 7, 1]) for array in kept] == [n % 256 for n in range(300)]
 
 
 @pytest.mark.parametrize("here", [True, False])

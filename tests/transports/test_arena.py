@@ -212,6 +212,21 @@ def test_a_system_without_memory_to_give(monkeypatch: pytest.MonkeyPatch) -> Non
         Arena("/out", 4 * PAGE)
 
 
+def test_what_cannot_be_mapped_is_closed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(12, "Cannot allocate memory")
+
+    closed: list[int] = []
+    with monkeypatch.context() as patch:
+        patch.setattr(module.mmap, "mmap", refuse)
+        patch.setattr(module.os, "close", closed.append)
+        patch.setattr(module, "sealed_memory", lambda *_: 12345)
+        with pytest.raises(LocalProtocolError, match="no memory to share"):
+            Arena("/out")
+        gc.collect()
+    assert closed.count(12345) == 1
+
+
 def test_room_that_a_program_fills_itself(peer: Peer) -> None:
     arena = Arena("/out", 1 << 20)
     lease = arena.prepare(20000)

@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -127,6 +128,18 @@ def test_part_of_a_message_keeps_its_buffer() -> None:
     for byte in (b"b", b"c", b"d"):
         receive_large(stream, byte)
     assert bytes(part) == b"a" * 100
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_array_of_a_message_keeps_its_buffer(whole: bool) -> None:
+    """One that is made by `numpy.ndarray` holds the bytearray, and no view of it."""
+    stream = ByteStream()
+    view = receive_large(stream, b"a")
+    array = np.ndarray((100, 100), np.uint8, view if whole else view[5:], 7)
+    del view
+    for byte in (b"b", b"c", b"d", b"e", b"f"):
+        receive_large(stream, byte)
+    assert (array == ord("a")).all()
 
 
 def test_flood_of_large_messages_takes_the_memory_of_two() -> None:

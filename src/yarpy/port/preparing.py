@@ -7,6 +7,7 @@ memory of our own, of which a copy is sent.
 from __future__ import annotations
 
 import math
+from operator import index
 from typing import TYPE_CHECKING, Any
 
 from yarpy.errors import LocalProtocolError
@@ -26,11 +27,17 @@ class Preparing:
         self.begun = False  # there were arrays
 
     def array(self, name: str, shape: int | tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
-        """A new array, for the port called `name`; its contents are undefined."""
+        """A new array, for the port called `name`; its contents are undefined. Raises TypeError,
+        ValueError as numpy does, and for Python objects, which cannot lie there."""
         import numpy as np
 
         kind = np.dtype(dtype)
-        size = kind.itemsize * math.prod(shape if isinstance(shape, tuple) else (shape,))
+        if kind.hasobject:
+            raise TypeError(f"an array of type {kind} holds Python objects, which cannot be sent")
+        lengths = tuple(map(index, shape if isinstance(shape, (tuple, list)) else (shape,)))
+        if min(lengths, default=0) < 0:
+            raise ValueError(f"an array of the shape {lengths} has a negative length")
+        size = kind.itemsize * math.prod(lengths)
         lease = None
         if size >= LARGE and available():
             try:
@@ -41,7 +48,7 @@ class Preparing:
         if lease is None:
             lease = lease_type()(HEADROOM + size, "u1")
         self.begun = True
-        return np.ndarray(shape, kind, lease, HEADROOM)
+        return np.ndarray(lengths, kind, lease, HEADROOM)
 
     def end(self) -> None:
         """The port closes."""

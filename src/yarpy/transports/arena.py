@@ -187,6 +187,8 @@ class Reader:
 class Arena:
     """Memory of the port called `name`. Raises LocalProtocolError where there is none to be had."""
 
+    number = -1  # of its file; closed with the object
+
     def __init__(self, name: str, size: int = SIZE) -> None:
         self.name = name
         self.size = size
@@ -200,7 +202,6 @@ class Arena:
             self._memory = mmap.mmap(self.number, size)
             _forbid_writing(self.number)
         except (OSError, ValueError) as error:
-            os.close(self.number)
             raise LocalProtocolError(f"no memory to share ({error}); use tcp") from error
         self._mapped = _Mapped(self._memory)
         self.view = self._mapped.view
@@ -370,9 +371,8 @@ class Arena:
             )
 
     def __del__(self) -> None:
-        number = getattr(self, "number", -1)
-        if number >= 0:
-            os.close(number)
+        if self.number >= 0:
+            os.close(self.number)
 
 
 def _forbid_writing(number: int) -> None:

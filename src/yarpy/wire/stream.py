@@ -10,6 +10,7 @@ nothing holds it.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable
 from typing import Final, Protocol, TypeAlias, TypeVar
 
@@ -44,8 +45,8 @@ def _parts_hold() -> bool:
 def _is_free(buffer: bytearray) -> bool:
     """Whether no view of it is left: a bytearray refuses to be resized while a view of it lives.
 
-    One byte less and one more moves no memory. Reference counts would tell less: a view holds one
-    reference however many hold the view, and each version of Python counts its own differently.
+    One byte less and one more moves no memory. Reference counts alone would tell less: a view holds
+    one reference however many hold the view.
     """
     try:
         buffer.append(buffer.pop())
@@ -54,7 +55,28 @@ def _is_free(buffer: bytearray) -> bool:
     return True
 
 
-_REUSES: Final = _parts_hold()
+def _first_free(buffers: list[bytearray], size: int, references: int) -> bytearray | None:
+    """A buffer of that size that nobody has but the list.
+
+    An array that numpy makes of a view (`numpy.ndarray(shape, dtype, view)`) keeps the bytearray
+    and no view of it, so references count, too: at most so many.
+    """
+    for buffer in buffers:
+        if len(buffer) == size and sys.getrefcount(buffer) <= references and _is_free(buffer):
+            return buffer
+    return None
+
+
+def _unused() -> int:
+    """The references that `_first_free` sees of a buffer that only the list has: each version of
+    Python, and the compiled core, count those of the function itself differently. 0: no buffer is
+    reused."""
+    if not _parts_hold() or not hasattr(sys, "getrefcount"):
+        return 0
+    return next(count for count in range(1, 100) if _first_free([bytearray(1)], 1, count))
+
+
+_UNUSED: Final = _unused()
 
 
 class Walk(Protocol):
@@ -338,11 +360,11 @@ class ByteStream:
 
     def _spare_buffer(self, size: int) -> bytearray:
         """A buffer for `size` bytes: a used one whose message is gone, else a new one."""
-        for buffer in self._spare:
-            if len(buffer) == size and _is_free(buffer):
-                return buffer
+        found = _first_free(self._spare, size, _UNUSED)
+        if found is not None:
+            return found
         fresh = bytearray(min(size, max(FIRST_GRANT, self._proven, self.tail - self.head)))
-        if _REUSES:
+        if _UNUSED:
             self._spare = [*self._spare[-2:], fresh]
         return fresh
 
