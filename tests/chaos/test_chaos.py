@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from chaos.experiments import Row, all_of
 from chaos.network import Missing
 from chaos.soak import soak
+from support.patience import patience
+from support.process import Process
 
 pytestmark = pytest.mark.timeout(180)
+
+KILLS = Path(__file__).with_name("kills.py")
 
 
 @pytest.mark.parametrize("experiment", all_of(0.03))
@@ -21,6 +28,18 @@ def test_experiment(experiment: Callable[[], Row]) -> None:
     assert row.what
     assert row.times
     assert row.result
+
+
+def test_kills() -> None:
+    """In a program of its own, since it forks."""
+    with Process([sys.executable, KILLS, "10"]) as process:
+        assert process.wait(patience(60)) == 0, process.stderr
+        told = re.findall(
+            r"(memory of ours|descriptors) +(\d+) before +(\d+) after", process.stdout
+        )
+    assert len(told) == 4
+    assert all(before == after for _, before, after in told), process.stdout
+    assert process.stdout.count("5 readers were connected") == 2
 
 
 def test_soak(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,0 +1,167 @@
+"""Kills: writers and readers of shared memory that are killed in the middle of large messages, and
+what is left behind.
+
+    python tests/chaos/kills.py [COUNT]     COUNT (1000) of each carrier, `memory` and `shmem`
+
+Rules: half of those who are killed write, half read. The port that they talk to goes on, and the
+pictures that it gets are whole. What the system still has of them is counted before and after.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from glob import glob
+
+import numpy as np
+
+import yarpy
+
+SIDE = 600  # pixels: 360 kB
+CARRIERS = ("memory", "shmem")
+
+
+def left() -> dict[str, int]:
+    """What there is of shared memory, and of this process's descriptors."""
+    segments = subprocess.run(["ipcs", "-m"], capture_output=True, text=True, check=True).stdout
+    return {
+        "files in /dev/shm": len(os.listdir("/dev/shm")),
+        "segments (ipcs -m)": sum(line.startswith("0x") for line in segments.splitlines()),
+        "files SHMEM_*": len(glob(os.path.join(tempfile.gettempdir(), "SHMEM_*"))),
+        "memory of ours": len(_ours("maps")),
+        "descriptors": len(os.listdir("/proc/self/fd")),
+    }
+
+
+def _ours(table: str) -> list[str]:
+    with open(f"/proc/self/{table}") as file:
+        return [line for line in file if "memfd:yarpy" in line]
+
+
+def be_killed(role: str, number: int, carrier: str) -> None:
+    """A program that does nothing but read, or write, pictures."""
+    if role == "reads":
+        kept = []
+        with yarpy.BufferedPort(f"/kills/reader{number}", strict=True) as port:
+            for message in port:
+                kept = [*kept[-5:], message.value.array]
+    else:
+        picture = np.full((SIDE, SIDE), 7, np.uint8)
+        with yarpy.Port(f"/kills/writer{number}") as port:
+            port.connect("/kills/sink", carrier)
+            while True:
+                port.write(picture)
+
+
+@contextmanager
+def nursery(environment: dict[str, str], carrier: str) -> Iterator[Callable[[str, int], int]]:
+    """Starts such programs within a millisecond: by a process that has imported everything."""
+    here, there = os.pipe(), os.pipe()
+    mother = os.fork()
+    if mother == 0:
+        os.environ.update(environment)
+        os.close(here[1])
+        signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+        for line in os.fdopen(here[0]):
+            role, number = line.split()
+            child = os.fork()
+            if child == 0:
+                try:
+                    be_killed(role, int(number), carrier)
+                except yarpy.YarpError as error:
+                    print(f"{role} {number}: {error}", file=sys.stderr)
+                finally:
+                    os._exit(0)
+            os.write(there[1], f"{child}\n".encode())
+        os._exit(0)
+    os.close(here[0])
+    os.close(there[1])
+    answers = os.fdopen(there[0])
+
+    def start(role: str, number: int) -> int:
+        os.write(here[1], f"{role} {number}\n".encode())
+        return int(answers.readline())
+
+    try:
+        yield start
+    finally:
+        os.close(here[1])
+        answers.close()
+        os.waitpid(mother, 0)
+
+
+def kill(count: int, carrier: str) -> tuple[int, int]:
+    """Kill so many; how many readers were connected, and how many whole pictures came of writers.
+    Raises AssertionError for one that is not whole."""
+    chance = random.Random(1)
+    came = connected = 0
+    picture = np.full((SIDE, SIDE), 7, np.uint8)
+
+    def take(message: yarpy.Message) -> None:
+        nonlocal came
+        assert (message.value.array == 7).all(), "a picture is not whole"
+        came += 1
+
+    # Before there is any thread here: a forked process has none.
+    environment = _server_environment()
+    with (
+        nursery(environment, carrier) as start,
+        yarpy.NameServer(int(environment["YARPY_SERVER"].rpartition(":")[2])),
+        yarpy.Port("/kills/out") as out,
+        yarpy.BufferedPort("/kills/sink", callback=take),
+    ):
+        for number in range(count // 2):
+            victims = [start(role, number) for role in ("reads", "writes")]
+            deadline = time.monotonic() + 10
+            while time.monotonic() < deadline:
+                try:
+                    out.connect(f"/kills/reader{number}", carrier)
+                except yarpy.YarpError:
+                    time.sleep(0.01)
+                    continue
+                connected += 1
+                break
+            until = time.monotonic() + chance.random() * 0.05
+            while time.monotonic() < until:
+                out.write(picture)
+            for victim in victims:
+                os.kill(victim, signal.SIGKILL)
+            out.disconnect(f"/kills/reader{number}")
+    gc.collect()
+    return connected, came
+
+
+def _server_environment() -> dict[str, str]:
+    """A number that a name server may have in a moment."""
+    import socket
+
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return {"YARPY_SERVER": f"127.0.0.1:{probe.getsockname()[1]}"}
+
+
+def main() -> None:
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    for carrier in CARRIERS:
+        before, began = left(), time.monotonic()
+        connected, came = kill(count, carrier)
+        seconds = time.monotonic() - began
+        print(
+            f"{carrier}: {count} killed in {seconds:.0f} s; {connected} readers were connected, "
+            f"{came} whole pictures came"
+        )
+        after = left()
+        for what, number in before.items():
+            print(f"  {what:20} {number:5} before {after[what]:5} after")
+
+
+if __name__ == "__main__":
+    main()
