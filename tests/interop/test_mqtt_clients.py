@@ -71,6 +71,16 @@ def test_ports_meet_at_a_broker(
     wait_until(lambda: not reader.inputs)
 
 
+@pytest.mark.parametrize("added", ["", "+sub", "+qos.1"])
+def test_listening_to_a_topic_subscribes(
+    broker: Broker, out: yarpy.Port, reader: yarpy.BufferedPort, added: str
+) -> None:
+    reader.listen_to(broker.topic("q/#", added))
+    out.connect(broker.topic("q/a"))
+    out.write([1])
+    assert reader.read(timeout=WAIT).value == yarpy.Bottle([1])
+
+
 def test_clients_of_the_broker_see_a_port(
     broker: Broker, out: yarpy.Port, reader: yarpy.BufferedPort
 ) -> None:

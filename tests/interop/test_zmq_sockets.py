@@ -139,6 +139,16 @@ def test_a_sub_gets_pictures(out: yarpy.Port, sockets: Sockets) -> None:
     assert (picture.width, picture.height) == (64, 48)
 
 
+def test_listening_to_a_socket_subscribes(reader: yarpy.BufferedPort, sockets: Sockets) -> None:
+    pub, at = sockets.bound(zmq.XPUB)
+    reader.listen_to(f"zmq+sub.arm://{at}")
+    assert pub.recv() == b"\1arm"
+    pub.send_multipart([b"arm", b"[1]"])
+    assert reader.read(timeout=WAIT).value == [1]
+    with pytest.raises(yarpy.LocalProtocolError, match=r"such as zmq\+sub.TOPIC"):
+        reader.listen_to(f"zmq+push://{at}")
+
+
 def test_a_pull_gets_every_message_in_order(out: yarpy.Port, sockets: Sockets) -> None:
     count = 10_000
     sink = sockets.connected(zmq.PULL, out)

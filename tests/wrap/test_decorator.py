@@ -152,6 +152,14 @@ def test_what_is_not_decorated() -> None:
         wrap.on("/a")(3)
     with pytest.raises(ValueError, match="missing='maybe'"):
         wrap.on("/a", missing="maybe")  # type: ignore[arg-type]
+    for name in ("timeout", "wait"):
+        for seconds in (-1, float("nan")):
+            with pytest.raises(ValueError, match=f"{name}={seconds}: a time to wait"):
+                wrap.on("/a", **{name: seconds})
+        with pytest.raises(TypeError, match=f"{name}='1' is no number"):
+            wrap.on("/a", **{name: "1"})
+    with pytest.raises(TypeError, match="qos=3 is no Qos"):
+        wrap.on("/a", qos=3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"wait of Arm.method is a matter of its decorator"):
         wrap.publish(Arm().method, wait=1)  # type: ignore[call-arg]
 

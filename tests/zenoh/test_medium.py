@@ -61,3 +61,39 @@ def test_two_ports_are_not_connected_over_it(names: yarpy.LocalNames) -> None:
     refused = pytest.raises(LocalProtocolError, match="zenoh leads to what is no port")
     with yarpy.Port("/out"), yarpy.BufferedPort("/in"), refused:
         yarpy.connect("/out", "/in", "zenoh")
+
+
+@pytest.mark.parametrize("carrier", ["zenoh", "zenoh+raw", "ros2", "ros2+qos.sensor", "ros2+dds"])
+def test_a_port_connects_itself_to_no_port_over_it(carrier: str, names: yarpy.LocalNames) -> None:
+    with yarpy.Port("/out") as out, yarpy.BufferedPort("/in") as reader:
+        why = "leads to what is no port: one end is"
+        for ask in (out.connect, reader.listen_to):
+            with pytest.raises(LocalProtocolError, match=why):
+                ask("/in" if ask == out.connect else "/out", carrier)
+        answer = yarpy.admin("/out", yarpy.Vocab("add"), "/in", carrier)
+        assert answer[0] == -1
+        assert why in answer[1]
+        assert not out.outputs
+
+
+@pytest.mark.parametrize("target", ["zenoh://in", "ros2://in", "mqtt://127.0.0.1:1/in"])
+def test_another_carrier_than_the_target_says_is_refused(
+    target: str, names: yarpy.LocalNames
+) -> None:
+    with yarpy.Port("/out") as out, yarpy.BufferedPort("/in"):
+        for ask in (out.connect, out.listen_to):
+            with pytest.raises(LocalProtocolError, match="conflict between tcp and"):
+                ask(target, "tcp")
+        answer = yarpy.admin("/out", yarpy.Vocab("add"), target, "tcp")
+        assert answer[0] == -1
+        assert "conflict between tcp and" in answer[1]
+        assert not out.outputs
+
+
+def test_what_is_added_by_the_carrier_counts(router: str, names: yarpy.LocalNames) -> None:
+    with yarpy.Port("/out") as out:
+        out.connect("zenoh://robot/arm", "zenoh+raw")
+        assert [one.route.carrier for one in out._hub.outputs] == ["zenoh+raw"]
+        assert out.disconnect("zenoh://robot/arm")
+        assert yarpy.admin("/out", yarpy.Vocab("add"), "zenoh://robot/arm", "zenoh+raw")[0] == 0
+        assert [one.route.carrier for one in out._hub.outputs] == ["zenoh+raw"]

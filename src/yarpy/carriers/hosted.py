@@ -7,9 +7,9 @@ sends, or one of three other classes: a reader, who asks, who answers.
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
-from yarpy.carriers.base import Carrier, Delivery
+from yarpy.carriers.base import Carrier, Delivery, refuse_unknown
 from yarpy.data import codec
 from yarpy.data.value import Vocab
 from yarpy.route import CarrierSpec
@@ -28,6 +28,7 @@ class Hosted(Carrier):
     foreign = True
     nameless = True
     replies = False
+    words: ClassVar[tuple[str, ...]] = ()  # what may be added to its name
     delivery = Delivery(coalesces=False)
 
     @classmethod
@@ -37,6 +38,7 @@ class Hosted(Carrier):
 
     @classmethod
     def of(cls, spec: CarrierSpec) -> type[Carrier]:
+        refuse_unknown(spec, cls.words)
         reader, asker, server = cls.roles()
         serves = SERVICE in spec.tokens
         if LISTENS in spec.tokens:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from yarpy.carriers.base import Carrier, Limits
-from yarpy.carriers.hosted import Hosted, failure
+from yarpy.carriers.hosted import LISTENS, SERVICE, Hosted, failure
 from yarpy.carriers.ros2_body import encode_body, message_of, time_of, value_of
 from yarpy.carriers.ros_body import has_header
 from yarpy.data import codec
@@ -93,6 +93,7 @@ class Ros2(Hosted):
 
     name = "ros2"
     medium = "ros2"
+    words = (SERVICE, LISTENS, "domain.N", "node.NAME", "qos.NAME", "dds", "distro.humble")
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)

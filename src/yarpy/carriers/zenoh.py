@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from yarpy.carriers.base import Carrier, Limits
-from yarpy.carriers.hosted import Hosted, failure
+from yarpy.carriers.hosted import LISTENS, SERVICE, Hosted, failure
 from yarpy.carriers.payload import JPEG, message_of, payload_of, to_payload
 from yarpy.data import codec
 from yarpy.route import Route
@@ -65,6 +65,7 @@ class Zenoh(Hosted):
 
     name = "zenoh"
     medium = "zenoh"
+    words = (SERVICE, LISTENS, RAW)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)

@@ -30,7 +30,7 @@ from yarpy.names.default import DEFAULT, secret
 from yarpy.network.dialled import address_in, leads_to
 from yarpy.port import identity, probe, refusal
 from yarpy.port.choosing import offers_memory
-from yarpy.port.connecting import unknown
+from yarpy.port.connecting import agreed, refuse_medium, unknown
 from yarpy.route import CarrierSpec, masked, parse_carrier
 
 _CONFIRMING = 2.0  # seconds for a port to say its name
@@ -135,19 +135,13 @@ class Pairing:
             if not _competent(contact):
                 constraint = contact.carrier
         given = carrier or _written(target) or _written(source)
-        if is_medium(given) and not (is_medium(from_.carrier) or is_medium(to.carrier)):
-            base = parse_carrier(given).base
-            raise LocalProtocolError(
-                f"{base} leads to what is no port: one end is {base}://..., else leave it out"
-            )
+        if not (is_medium(from_.carrier) or is_medium(to.carrier)):
+            refuse_medium(given)
         self.spec = parse_carrier(given or constraint or "tcp")
         # Which carrier is then for the source to say.
         self.open = not (given or constraint or to.reachable)
         if given and constraint:
-            fixed = parse_carrier(constraint)
-            if self.spec.base != fixed.base:
-                raise LocalProtocolError(f"conflict between {self.spec} and {fixed}")
-            self.spec = fixed.plus(*(one for one in self.spec.tokens if one not in fixed.tokens))
+            self.spec = agreed(given, constraint)
         heard = is_broker(from_.carrier) or is_medium(from_.carrier)
         if heard and "sub" not in self.spec.tokens:
             self.spec = self.spec.plus("sub")

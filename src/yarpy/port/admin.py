@@ -119,11 +119,9 @@ def _version(hub: Hub, request: Bottle) -> Bottle:
 
 def _add(hub: Hub, request: Bottle) -> Bottle:
     dest, carrier = _text(request, 1), _text(request, 2)
-    if carrier:
-        dest = f"{carrier}:/{dest}"
-    elif ":/" in dest and "://" not in dest:
+    if not carrier and ":/" in dest and "://" not in dest:
         return Bottle([-1, f"Do not know how to connect to {dest}\r\n"])
-    done, line = command.connect(hub, dest)
+    done, line = command.connect(hub, dest, carrier)
     return Bottle([0 if done else -1, f"{line}\r\n"])
 
 

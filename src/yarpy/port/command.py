@@ -11,7 +11,7 @@ from yarpy.errors import YarpError
 from yarpy.link.inbound import Inbound
 from yarpy.log import logger
 from yarpy.port import refusal
-from yarpy.port.connecting import dial
+from yarpy.port.connecting import dial, joined
 from yarpy.port.disconnecting import disconnect_input, disconnect_output
 from yarpy.port.hub import Hub
 from yarpy.route import masked
@@ -57,11 +57,13 @@ def obey(hub: Hub, link: Inbound, message: Message) -> list[str]:
     return [*NOT_UNDERSTOOD]
 
 
-def connect(hub: Hub, text: str) -> tuple[bool, str]:
+def connect(hub: Hub, text: str, carrier: str = "") -> tuple[bool, str]:
     """Connect `hub` to the destination `text` (`/name`, `carrier://name`, `/host:port`); whether
     that was possible, and the line that says so."""
-    shown = masked(text)
+    shown = masked(f"{carrier}:/{text}" if carrier else text)
     try:
+        text = joined(text, carrier)
+        shown = masked(text)
         wanted = parse_contact(text)
         spec = dial(hub, wanted)
     except YarpError as error:

@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import Final
 
 from yarpy.carriers.base import Carrier
+from yarpy.carriers.hosted import LISTENS
 from yarpy.contact import Contact, is_broker, is_medium, parse_contact
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -59,7 +60,22 @@ def connect(
     Port.connect. `patience`: seconds for which its listener may be silent, less than usual."""
     wanted = parse_contact(target)
     if not wanted.carrier or ":/" not in target:  # what is written in front of a target counts
+        refuse_medium(carrier)
         wanted = replace(wanted, carrier=carrier)
+    elif _is_topic(wanted):
+        wanted = replace(wanted, carrier=agreed(carrier, wanted.carrier).whole)
+    _connect(hub, wanted, target, timeout, lost, patience)
+
+
+def _connect(
+    hub: Hub,
+    wanted: Contact,
+    target: str,
+    timeout: float | None = None,
+    lost: Route | None = None,
+    patience: float | None = None,
+) -> None:
+    """As `connect`; `target` is what the program calls it."""
     find_carrier(parse_carrier(wanted.carrier))  # no time makes that one come
     deadline = None if timeout is None else time.monotonic() + timeout
     while True:
@@ -110,11 +126,40 @@ def unknown(name: str, names: object, carrier: str = "") -> UnknownName:
     return UnknownName(f'no port "{name}" is registered: {hint} (`yarpy name list` shows all)')
 
 
+def _is_topic(contact: Contact) -> bool:
+    """Whether it is no port but a topic, key or service, which only one protocol leads to."""
+    return is_medium(contact.carrier) or is_broker(contact.carrier)
+
+
+def refuse_medium(carrier: str) -> None:
+    """Raise LocalProtocolError for a carrier that leads to no port, where one is named."""
+    if is_medium(carrier):
+        base = parse_carrier(carrier).base
+        raise LocalProtocolError(
+            f"{base} leads to what is no port: one end is {base}://..., else leave it out"
+        )
+
+
+def agreed(given: str, fixed: str) -> CarrierSpec:
+    """The carrier of an end that speaks `fixed` alone, with what is added to the one that is given,
+    if any. Raises LocalProtocolError if that is another one."""
+    wanted, spec = parse_carrier(given or fixed), parse_carrier(fixed)
+    if wanted.base != spec.base:
+        raise LocalProtocolError(f"conflict between {wanted} and {spec}")
+    return spec.plus(*(one for one in wanted.tokens if one not in spec.tokens))
+
+
 def joined(dest: str, carrier: str) -> str:
-    """Destination and carrier as one text, the way C++ puts them together."""
+    """Destination and carrier as one text, the way C++ puts them together.
+
+    Raises LocalProtocolError for two that do not go together."""
     if not carrier:
         return dest
     bare = parse_contact(dest) if dest else None
+    if bare is not None and _is_topic(bare):
+        carrier = agreed(carrier, bare.carrier).whole
+    else:
+        refuse_medium(carrier)
     if bare is not None and bare.carrier and not bare.reachable:
         dest = bare.name
     if bare is not None and bare.reachable:
@@ -125,10 +170,21 @@ def joined(dest: str, carrier: str) -> str:
 def subscribe(hub: Hub, source: str, carrier: str) -> None:
     """Ask the port `source` to send to `hub`; see BasePort.listen_to."""
     contact = parse_contact(source)
-    if is_medium(contact.carrier):
-        connect(hub, str(replace(contact, carrier=f"{contact.carrier}+sub")), "", None)
+    if _is_topic(contact):
+        spec = agreed(carrier, contact.carrier)
+        spec = spec if LISTENS in spec.tokens else spec.plus(LISTENS)
+        _connect(hub, replace(contact, carrier=spec.whole), source)
         return
-    if not contact.reachable:
+    if contact.reachable:
+        kind = find_carrier(parse_carrier(contact.carrier))
+        if not kind.push:
+            connect(hub, source, carrier, None)
+            return
+        if kind.name == "zmq":
+            raise LocalProtocolError(
+                f'"{masked(source)}" is for writing: say what to read, such as zmq+sub.TOPIC'
+            )
+    else:
         names = hub.service()
         found = names.query(contact.name) if names is not None else None
         if found is None:

@@ -156,6 +156,7 @@ class RpcClient(BasePort):
         self._last: Route | None = None  # of the last call; the next has to reach the same port
         if target:
             try:
+                carrier = _over(target, carrier)
                 connecting.connect(self._hub, target, carrier, None, patience=timeout)
                 self._target, self._carrier = target, carrier
             except YarpError:
@@ -166,6 +167,7 @@ class RpcClient(BasePort):
         self, target: str, carrier: str = "tcp", timeout: float | None = None
     ) -> PortConnection:
         """Choose the server to ask; see Port.connect."""
+        carrier = _over(target, carrier)
         made = super().connect(target, carrier, timeout)
         self._last = None
         self._target, self._carrier = target, carrier
@@ -242,6 +244,11 @@ class RpcClient(BasePort):
             f'"{self.name}" is not connected to a server: connect("/server"), or from outside '
             f"`yarpy connect {self.name} /server`"
         )
+
+
+def _over(target: str, carrier: str) -> str:
+    """The carrier to ask over: tcp, unless the target says another one."""
+    return "" if carrier == "tcp" and ":/" in target else carrier
 
 
 def _is_message(value: object) -> bool:

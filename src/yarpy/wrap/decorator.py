@@ -67,6 +67,11 @@ def on(
     output = Output(topic, names, source, carrier, qos, keep, reliable, encoding)
     if missing not in MISSING:
         raise ValueError(f"missing={missing!r} is none of {', '.join(MISSING)}")
+    for name, seconds in (("timeout", 0.0 if timeout is None else timeout), ("wait", wait)):
+        if not isinstance(seconds, (int, float)):
+            raise TypeError(f"{name}={seconds!r} is no number of seconds")
+        if not seconds >= 0:
+            raise ValueError(f"{name}={seconds!r}: a time to wait is not less than 0 seconds")
 
     def decorate(func: F) -> F:
         decorated, method = _decorated(func)

@@ -88,6 +88,8 @@ class Output:
         fitting = self.keep in ("latest", "all") or (type(self.keep) is int and self.keep > 0)
         if not fitting:
             raise ValueError(f'keep={self.keep!r} is neither "latest", "all" nor a number')
+        if not isinstance(self.qos, Qos | None):
+            raise TypeError(f"qos={self.qos!r} is no Qos: say yarpy.Qos(...)")
 
     def ways(self, topic: str, signature: Signature | None = None) -> list[Way]:
         """What each middleware is told; `topic` is this output's topic or source."""

@@ -86,6 +86,8 @@ def test_targets_and_what_is_refused() -> None:
     for wrong in ({"middleware": "ros2://here"}, {"keep": 3}):
         with pytest.raises(ValueError):
             wrap.on("/x", **({"middleware": "ros2"} | wrong))(lambda: 1)  # type: ignore[arg-type]
+    with pytest.raises(yarpy.LocalProtocolError, match=r'ros2 knows no "\+qso"'):
+        wrap.on("/x", "ros2", carrier="qso.sensor")(lambda: 1)
 
 
 def _wrong(a: str, b: int) -> int: ...

@@ -12,8 +12,10 @@ from typing import Any, Final
 
 from yarpy.errors import LinkClosed, UnknownName, YarpError
 from yarpy.idl.ros2msg.library import default_library
+from yarpy.link.handshake import find_carrier
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcClient, RpcServer
+from yarpy.route import parse_carrier
 from yarpy.wire.message import Message
 from yarpy.wrap.middleware import Answer, Way
 from yarpy.wrap.middlewares.ros import Reader, Writer, topic_of, type_of
@@ -34,6 +36,7 @@ class Ros2:
             qos="a topic's connections are made by ROS; say qos.NAME by carrier=",
         )
         way.refuse_numbers()
+        find_carrier(parse_carrier(_carrier(way)))
         if "~" in way.topic and way.signature is not None:
             Service(way, TYPES)
 
@@ -59,10 +62,14 @@ def target_of(way: Way, shape: Shape) -> str:
     return _target(way, topic_of(way), kind if isinstance(kind, str) else kind._type, "msg")
 
 
+def _carrier(way: Way) -> str:
+    return "+".join(("ros2", *filter(None, way.carrier.split("+"))))
+
+
 def _target(way: Way, topic: str, name: str, kind: str) -> str:
     package, _, type_ = name.partition("/")
     full = name if "/" in type_ else f"{package}/{kind}/{type_}"
-    carrier = "+".join(("ros2", *filter(None, way.carrier.split("+"))))
+    carrier = _carrier(way)
     if "node." not in carrier:
         carrier += f"+node.yarpy_wrap_{os.getpid()}"
     return f"{carrier}://{topic.strip('/')}~{full}"
