@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 import threading
 import time
@@ -111,6 +112,16 @@ def test_chosen_number(names: LocalNames) -> None:
         with pytest.raises(AddressError, match=f"cannot listen on TCP port {number}"):
             Port("/there", names=names, tcp_port=number)
     assert names.query("/there") is None
+
+
+def test_no_file_descriptor_is_left(monkeypatch: pytest.MonkeyPatch, names: LocalNames) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(errno.EMFILE, "Too many open files")
+
+    monkeypatch.setattr("yarpy.link.acceptor.TcpListener", refuse)
+    with pytest.raises(AddressError, match=r"Too many open files\); this program.*ulimit -n"):
+        Port("/here", names=names)
+    assert names.query("/here") is None
 
 
 def test_no_name_server(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -88,7 +88,7 @@ def test_a_peer_that_hangs_up(
     monkeypatch.setattr(mpi_end, "LATE", 0.05)
     line = Line(lines[0])
     lines[1].close()
-    with pytest.raises(RemoteProtocolError, match="does not take this carrier"):
+    with pytest.raises(RemoteProtocolError, match="could not begin, as its log says"):
         wait_until(lambda: line.watch(), what="it is noticed")
     line.close()
 

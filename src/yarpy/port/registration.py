@@ -7,6 +7,7 @@ closes.
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Callable
 from typing import Final
@@ -110,10 +111,14 @@ class Registration:
         except OSError as error:
             bound = listening_host()
             where = f" of {SETTING}={bound}" if bound else ""
+            advice = "choose another number, or 0 for any free one"
+            if error.errno in (errno.EMFILE, errno.ENFILE):
+                advice = "this program has too many files and connections open (ulimit -n)"
+            elif bound:
+                advice += f", and an address of this computer for {SETTING}"
             raise AddressError(
                 f'"{self.name}" cannot listen on TCP port {port}{where} ({error.strerror}); '
-                "choose another number, or 0 for any free one"
-                + (f", and an address of this computer for {SETTING}" if bound else "")
+                f"{advice}"
             ) from error
 
     def tell(self) -> None:

@@ -49,7 +49,9 @@ class Line:
             answer = readable(line.decode("utf-8", "replace"))
             raise refused(line) or RemoteProtocolError(f'the peer answers "{answer[:80]}"')
         if said == b"" and self.late():
-            raise RemoteProtocolError("the peer hung up; it does not take this carrier")
+            raise RemoteProtocolError(
+                f"the peer hung up: it takes no MPI, or could not begin, as its log says; {HINT}"
+            )
 
     def settle(self) -> None:
         """Both have met: tell the other side that we keep the line."""
