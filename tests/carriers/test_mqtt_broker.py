@@ -144,6 +144,13 @@ def test_a_port_asks_at_a_broker() -> None:
     assert end.take().endswith(b"\x30\7\0\1q\0[3]")
 
 
+def test_an_answer_may_take_longer_than_a_message() -> None:
+    _, asker, _ = asking()
+    _, publisher = dialled("mqtt", "/mqtt://broker:1883/q")
+    assert asker.limits.message_timeout is None
+    assert publisher.limits.message_timeout  # an acknowledgement comes at once
+
+
 def test_a_broker_says_that_nobody_is_there() -> None:
     end, carrier, _ = asking()
     carrier.encode(end.stream, Packet([1], key=CALL))

@@ -11,7 +11,7 @@ from collections import deque
 from typing import Final
 
 from yarpy.carriers import mqtt_packet as mqtt
-from yarpy.carriers.base import refuse_unknown
+from yarpy.carriers.base import Limits, refuse_unknown
 from yarpy.carriers.mqtt_peer import CLEAN, MAX_CONNECT, MAX_HEARD, MAX_TOPIC, RPC, MqttPeer
 from yarpy.carriers.payload import message_of, to_payload
 from yarpy.data import codec
@@ -231,6 +231,7 @@ class Asker(Client):
     """A port that asks whoever has subscribed to a broker's topic (version 5)."""
 
     acks = False
+    limits = Limits(message_timeout=None)  # who answers may take as long as it likes
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)

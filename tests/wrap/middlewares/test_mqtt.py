@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -67,12 +68,24 @@ def test_arrays_and_questions(broker: Broker) -> None:
             there.camera(timeout=0.05)
     with wrap.call(there.turn, middleware=place):
         with pytest.raises(yarpy.UnknownName, match="nobody has subscribed to arm/rpc"):
-            there.turn(1, timeout=PATIENCE)
+            there.turn(1, timeout=0.2)
+        with pytest.raises(yarpy.UnknownName, match="nobody has subscribed to arm/rpc"):
+            there.turn(1)
         with wrap.serve(here.turn, middleware=place):
             assert there.turn(1, timeout=PATIENCE) == 1
             assert there.turn(1, np.ones(3), timeout=PATIENCE) == 4
             with pytest.raises(wrap.RemoteError, match="ValueError: too far"):
                 there.turn(91, timeout=PATIENCE)
+
+
+def test_a_server_that_comes_later(broker: Broker) -> None:
+    here, there, place = Arm(), Arm(), f"mqtt://127.0.0.1:{broker.port}"
+    with wrap.call(there.turn, middleware=place), ThreadPoolExecutor(1) as other:
+        answer = other.submit(there.turn, 1, timeout=PATIENCE)
+        with pytest.raises(TimeoutError):
+            answer.result(0.3)
+        with wrap.serve(here.turn, middleware=place):
+            assert answer.result(PATIENCE) == 1
 
 
 def test_broker_that_is_not_there(broker: Broker) -> None:

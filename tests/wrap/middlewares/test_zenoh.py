@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 from support.patience import patience
 from support.port import free_port
+from support.process import Process
 from support.wait import wait_until
 
 import yarpy
@@ -78,20 +81,62 @@ def test_programs_without_decorators(place: str) -> None:
 def test_questions(place: str) -> None:
     here, there, middleware = Arm(), Arm(), f"zenoh://{place}"
     with wrap.call(there.turn, middleware=middleware):
-        with pytest.raises(yarpy.UnknownName, match="nobody serves"):
-            there.turn(1, timeout=PATIENCE)
+        for options in ({}, {"timeout": 0.2}):
+            with pytest.raises(yarpy.UnknownName, match="nobody serves"):
+                there.turn(1, **options)
         with wrap.serve(here.turn, middleware=middleware):
-
-            def answered() -> bool:
-                try:
-                    return there.turn(1, timeout=PATIENCE) == 1
-                except yarpy.UnknownName:
-                    return False
-
-            wait_until(answered)
+            assert there.turn(1, timeout=PATIENCE) == 1
             assert there.turn(1, np.ones(3)) == 4
             with pytest.raises(wrap.RemoteError, match="ValueError: too far"):
                 there.turn(91)
+
+
+def test_a_server_that_comes_later(place: str) -> None:
+    here, there, middleware = Arm(), Arm(), f"zenoh://{place}"
+    with wrap.call(there.turn, middleware=middleware), ThreadPoolExecutor(1) as other:
+        answer = other.submit(there.turn, 1, timeout=PATIENCE)
+        with pytest.raises(TimeoutError):
+            answer.result(0.3)
+        with wrap.serve(here.turn, middleware=middleware):
+            assert answer.result(PATIENCE) == 1
+
+
+SERVER = """
+import os, sys
+from yarpy import wrap
+
+class Arm:
+    @wrap.on("/arm/rpc", "zenoh://" + sys.argv[1])
+    def turn(self, angle: float) -> float:
+        if angle == 0:
+            os._exit(1)
+        while True:
+            sys.stdin.read()
+
+arm = Arm()
+wrap.serve(arm.turn)
+print("ready", flush=True)
+sys.stdin.read()
+"""
+
+
+@pytest.mark.parametrize("options", [{}, {"timeout": PATIENCE}])
+def test_a_server_that_dies(place: str, options: dict[str, float]) -> None:
+    there = Arm()
+    with Process([sys.executable, "-c", SERVER, place]) as server:
+        server.wait_line("ready", timeout=PATIENCE, stream="out")
+        with wrap.call(there.turn, middleware=f"zenoh://{place}"):
+            with pytest.raises(yarpy.LinkClosed, match="went away during the call"):
+                there.turn(0, **options)
+
+
+def test_a_server_that_is_slow(place: str) -> None:
+    there = Arm()
+    with Process([sys.executable, "-c", SERVER, place]) as server:
+        server.wait_line("ready", timeout=PATIENCE, stream="out")
+        with wrap.call(there.turn, middleware=f"zenoh://{place}"):
+            with pytest.raises(yarpy.Timeout, match="did not answer"):
+                there.turn(1, timeout=0.5)
 
 
 def test_keys() -> None:

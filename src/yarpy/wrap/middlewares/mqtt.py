@@ -7,6 +7,7 @@ that goes away is dialled again until it is back. `reliable` is QoS 1; what else
 
 from __future__ import annotations
 
+import time
 from functools import partial
 from typing import Any, TypeVar
 
@@ -22,6 +23,8 @@ from yarpy.wrap import payload, spelling
 from yarpy.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
 from yarpy.wrap.port_end import PortEnd
 from yarpy.wrap.shape import Shape
+
+_PAUSE = 0.1  # seconds between two tries to ask who has not subscribed yet
 
 
 class Mqtt:
@@ -115,12 +118,20 @@ class MqttClient:
     def call(
         self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
     ) -> Any:
-        message = self._client.ask(payload.question(args, kwargs), timeout)
-        if message is None:
-            raise LinkClosed(f'"{self._way.topic}" gave no answer')
-        refused = spelling.failure_of(message) if message.spelling == "binary" else None
-        if refused is not None:  # by the broker: nobody has subscribed
-            raise UnknownName(refused.text)
+        question = payload.question(args, kwargs)
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while True:
+            left = None if deadline is None else max(deadline - time.monotonic(), 0.001)
+            message = self._client.ask(question, left)
+            if message is None:
+                raise LinkClosed(f'"{self._way.topic}" gave no answer')
+            refused = spelling.failure_of(message) if message.spelling == "binary" else None
+            if refused is None:
+                break
+            # By the broker: nobody has subscribed. As elsewhere, with a timeout that is waited for.
+            if deadline is None or time.monotonic() + _PAUSE >= deadline:
+                raise UnknownName(refused.text)
+            time.sleep(_PAUSE)
         data = message.as_(bytes)
         failed = payload.failure_of(data)
         if failed is not None:

@@ -18,6 +18,7 @@ from yarpy.wrap.middleware import Answer, Failure, Item, Received, Way, question
 from yarpy.wrap.shape import Shape
 
 _LONGEST = 3600.0  # seconds: of a question without a timeout
+_MOMENT = 0.1  # seconds: until it is known who serves a key
 
 
 class Zenoh:
@@ -162,34 +163,68 @@ class ZenohServer:
 
 
 class ZenohClient:
+    """Asks a queryable. Whether there is one says what it means when no answer comes."""
+
     def __init__(self, way: Way, shape: Shape) -> None:
         self._way = way
         self._shape = shape
         self._lease: Lease | None = share(way.place)
+        self._querier: Any = self._lease.session.declare_querier(key_of(way))
 
     def call(
         self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
     ) -> Any:
-        if self._lease is None:
-            raise LinkClosed(f'"{self._way.topic}" was closed here')
-        begun = time.monotonic()
-        replies = self._lease.session.get(
-            key_of(self._way),
-            payload=payload.question(args, kwargs),
-            timeout=_LONGEST if timeout is None else timeout,
-        )
-        for reply in replies:
-            if reply.ok is not None:
-                data = reply.ok.payload.to_bytes()
+        topic = self._way.topic
+        question = payload.question(args, kwargs)
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while True:
+            served = self._is_served(deadline)
+            data, late = self._ask(question, deadline)
+            if data is not None:
                 failed = payload.failure_of(data)
                 if failed is not None:
                     raise failed.error()
                 return payload.unpack(data, self._shape).value
-        if timeout is not None and time.monotonic() - begun >= timeout:
-            raise Timeout(f'"{self._way.topic}" did not answer within {timeout:.3g} s')
-        raise UnknownName(f'nobody serves "{self._way.topic}", or it went away during the call')
+            over = deadline is not None and time.monotonic() >= deadline
+            if late or (served and over):
+                raise Timeout(f'"{topic}" did not answer within {timeout or 0:.3g} s')
+            if served:
+                raise LinkClosed(f'who serves "{topic}" went away during the call')
+            # As elsewhere: with a timeout it waits for a server that is not there yet.
+            if deadline is None or over:
+                raise UnknownName(f'nobody serves "{topic}"')
+
+    def _is_served(self, deadline: float | None) -> bool:
+        """Whether anybody serves the key. The routers tell, a moment after one has come."""
+        end = time.monotonic() + _MOMENT
+        if deadline is not None:
+            end = min(end, deadline)
+        while (querier := self._querier) is not None:
+            if querier.matching_status.matching:
+                return True
+            if time.monotonic() >= end:
+                return False
+            time.sleep(0.005)
+        raise self._closed()
+
+    def _ask(self, question: bytes, deadline: float | None) -> tuple[bytes | None, bool]:
+        """The answer, if there is one; and whether it did not come in time."""
+        lease = self._lease
+        if lease is None:
+            raise self._closed()
+        left = _LONGEST if deadline is None else max(deadline - time.monotonic(), 0.001)
+        late = False
+        for reply in lease.session.get(key_of(self._way), payload=question, timeout=left):
+            if reply.ok is not None:
+                return reply.ok.payload.to_bytes(), False
+            late = True  # the library says so itself
+        return None, late
+
+    def _closed(self) -> LinkClosed:
+        return LinkClosed(f'"{self._way.topic}" was closed here')
 
     def close(self) -> None:
+        self._querier = None  # it undeclares itself
         if self._lease is not None:
             self._lease.close()
             self._lease = None
