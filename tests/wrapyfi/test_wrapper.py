@@ -182,6 +182,21 @@ def test_middleware_that_is_not_there_says_why(caplog: pytest.LogCaptureFixture)
     assert one.give() == [None, None]
 
 
+def test_what_wrapyfi_does_not_have_says_so(caplog: pytest.LogCaptureFixture) -> None:
+    pytest.importorskip("zenoh")
+
+    class Lost(MiddlewareCommunicator):
+        @register("NativeObject", "zenoh", "Lost", "/lost")
+        def give(self):
+            return 1
+
+    one = Lost()
+    one.activate_communication(one.give, "request")
+    with caplog.at_level(logging.WARNING):
+        one.give()
+    assert "over zenoh (Wrapyfi has no requests over it)" in caplog.text
+
+
 def test_what_cannot_be_declared() -> None:
     with pytest.raises(NotImplementedError):
         register({"a": 1}, "here", "X", "/x")

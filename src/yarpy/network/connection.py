@@ -53,6 +53,18 @@ def find(name: str, names: NameClient | None = None) -> Contact:
     return _find(Contact("", name), names)
 
 
+def find_port(name: str, names: NameClient | None = None) -> Contact:
+    """As `find`, of what can be asked: a topic of another middleware raises AddressError."""
+    contact = find(name, names)
+    if is_medium(contact.carrier):
+        medium = contact.carrier.partition("+")[0]
+        raise AddressError(
+            f'"{name}" is no port but a topic of {medium}, which cannot be asked; '
+            "`yarpy ping` of the port that is connected to it shows the connection"
+        )
+    return contact
+
+
 def _find(end: Contact, names: NameClient | None) -> Contact:
     contact = query(end.name, names)
     if contact is None:
@@ -367,8 +379,9 @@ def exists(name: str, target: str | None = None, *, names: NameClient | None = N
 
 
 def ping(name: str, *, names: NameClient | None = None) -> list[str]:
-    """What the port says about itself and its connections. Raises UnknownName, LinkClosed."""
-    return probe.describe(find(name, names))
+    """What the port says about itself and its connections. Raises UnknownName, LinkClosed,
+    AddressError for a topic of another middleware."""
+    return probe.describe(find_port(name, names))
 
 
 def wait_for(

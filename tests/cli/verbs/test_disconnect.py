@@ -22,6 +22,15 @@ def test_two_ports(cli, names, carrier):
         assert 'error: "/disconnect/a" is not connected to "/disconnect/b"' in said.stderr
 
 
+@pytest.mark.parametrize("topic", ["mqtt://127.0.0.1:1/in", "zenoh://in"])
+def test_who_can_be_asked_about_a_topic(here, names, topic):
+    with yarpy.Port("/disconnect/c", names=names):
+        for ends in ((topic, "/disconnect/c"), ("/disconnect/c", topic)):
+            said = here("disconnect", *ends)
+            assert said.code == 1
+            assert "`yarpy ping /disconnect/c` shows to what" in said.err
+
+
 def test_unknown_port(here):
     assert here("disconnect", "/nobody", "/neither").code == 1
 

@@ -41,6 +41,14 @@ def test_who_is_not_registered_as_tcp(here, server, names):
     assert here("ping", "/ping/odd").code == 0
 
 
+@pytest.mark.parametrize("topic", ["zenoh://in", "ros2://x"])
+@pytest.mark.parametrize("words", [[], ["--time"]])
+def test_a_topic_is_no_port(here, topic, words):
+    said = here("ping", *words, topic)
+    assert said.code == 1
+    assert f'error: "{topic}" is no port but a topic of {topic.partition(":")[0]}' in said.err
+
+
 def test_nobody(here, names):
     said = here("ping", "/nobody")
     assert (said.code, said.out) == (1, "")

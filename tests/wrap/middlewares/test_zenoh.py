@@ -125,18 +125,22 @@ def test_a_server_that_dies(place: str, options: dict[str, float]) -> None:
     there = Arm()
     with Process([sys.executable, "-c", SERVER, place]) as server:
         server.wait_line("ready", timeout=PATIENCE, stream="out")
-        with wrap.call(there.turn, middleware=f"zenoh://{place}"):
-            with pytest.raises(yarpy.LinkClosed, match="went away during the call"):
-                there.turn(0, **options)
+        with (
+            wrap.call(there.turn, middleware=f"zenoh://{place}"),
+            pytest.raises(yarpy.LinkClosed, match="went away during the call"),
+        ):
+            there.turn(0, **options)
 
 
 def test_a_server_that_is_slow(place: str) -> None:
     there = Arm()
     with Process([sys.executable, "-c", SERVER, place]) as server:
         server.wait_line("ready", timeout=PATIENCE, stream="out")
-        with wrap.call(there.turn, middleware=f"zenoh://{place}"):
-            with pytest.raises(yarpy.Timeout, match="did not answer"):
-                there.turn(1, timeout=0.5)
+        with (
+            wrap.call(there.turn, middleware=f"zenoh://{place}"),
+            pytest.raises(yarpy.Timeout, match="did not answer"),
+        ):
+            there.turn(1, timeout=0.5)
 
 
 def test_keys() -> None:

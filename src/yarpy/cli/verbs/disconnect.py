@@ -24,7 +24,16 @@ def command(source: str, target: str, persist: bool) -> int:
         ask_server(None, ["unsubscribe", source, target])
         return 0
     if not disconnect(source, target):
-        complain(f'"{source}" is not connected to "{target}"; `yarpy ping {source}` shows to what')
+        asked = target if _is_topic(source) else source  # of a port and a topic, the port knows
+        complain(f'"{source}" is not connected to "{target}"; `yarpy ping {asked}` shows to what')
         return 1
     print_line(f"Success: Removed connection from {source} to {target}")
     return 0
+
+
+def _is_topic(name: str) -> bool:
+    """Whether it is something of another middleware, which cannot be asked."""
+    from yarpy.contact import is_broker, is_medium, parse_contact
+
+    carrier = parse_contact(name).carrier
+    return is_broker(carrier) or is_medium(carrier)

@@ -69,7 +69,7 @@ def read_description(lines: Sequence[str]) -> dict[str, Any]:
 
 
 def _measure_time(port: str, as_json: bool) -> int:
-    from yarpy.network.connection import find
+    from yarpy.network.connection import find_port
     from yarpy.port import probe
 
     if not as_json:
@@ -78,7 +78,7 @@ def _measure_time(port: str, as_json: bool) -> int:
     whole: list[float] = []
     for number in range(1, ROUNDS + 1):
         started = time.perf_counter()
-        contact: yarpy.Contact = find(port)
+        contact: yarpy.Contact = find_port(port)
         found = time.perf_counter()
         probe.ask(contact, [yarpy.Vocab("ver")])
         ended = time.perf_counter()

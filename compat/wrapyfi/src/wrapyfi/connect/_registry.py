@@ -70,6 +70,10 @@ class Registry:
         if found is None:
             if middleware not in ("none", "None", "fallback"):
                 reason = missing.get(middleware, "no package brings it")
+                if middleware in SHIPPED and middleware not in missing:
+                    asks = cls.folder in ("clients", "servers")
+                    what = "requests" if asks and middleware not in cls.mwares else "such type"
+                    reason = f"Wrapyfi has no {what} over it"
                 logging.warning(
                     "[wrapyfi] no %s for %s over %s (%s): nothing is sent or received",
                     cls.folder.removesuffix("s"),
