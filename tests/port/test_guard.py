@@ -253,6 +253,10 @@ def test_a_port_is_made_to_receive_only_by_a_writer(
         for spelled in ("mjpeg", ["mjpeg"], "mjpeg+quality.5"):
             answer = yarpy.admin("/view", "add", "/cam", spelled, names=names)
             assert "may not write to /view" in answer[1]
+        # What is dialled is what was judged, however it is spelled.
+        for target, carrier in (("mqtt+sub://127.0.0.1:1/x", "mqtt"), ("zenoh+sub://x", "zenoh")):
+            answer = yarpy.admin("/view", "add", target, carrier, names=names)
+            assert "no carrier" in answer[1] or "may not" in answer[1]
         for carrier in ("mjpeg", "mjpeg+recv.priority"):
             with pytest.raises(yarpy.AccessRefused, match=r"may not (write to|attach monitors to)"):
                 yarpy.connect("/cam", "/view", carrier, names=names)

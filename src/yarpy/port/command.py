@@ -60,10 +60,10 @@ def obey(hub: Hub, link: Inbound, message: Message) -> list[str]:
 def connect(hub: Hub, text: str, carrier: str = "") -> tuple[bool, str]:
     """Connect `hub` to the destination `text` (`/name`, `carrier://name`, `/host:port`); whether
     that was possible, and the line that says so."""
-    shown = masked(f"{carrier}:/{text}" if carrier else text)
+    given, text = text, f"{carrier}:/{text}" if carrier else text  # as `guard` has judged it
+    shown = masked(text)
     try:
-        text = joined(text, carrier)
-        shown = masked(text)
+        joined(given, carrier)
         wanted = parse_contact(text)
         spec = dial(hub, wanted)
     except YarpError as error:
