@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 from typing import Any
 
@@ -54,3 +56,36 @@ def test_each_connection_gets_one_in_its_time(clock: Any) -> None:
         wait_until(lambda: not inlet.inputs)
         pings.look(hubs)
         assert not pings._due
+
+
+def test_whoever_waits_for_an_answer_pings(clock: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, answered = threading.Event(), threading.Event()
+
+    def answer(message: yarpy.Message) -> int:
+        asked.set()
+        answered.wait(60)
+        return 7
+
+    names = yarpy.LocalNames()
+    with (
+        yarpy.RpcServer("/server", answer, names=names),
+        yarpy.RpcClient("/server", names=names) as client,
+        ThreadPoolExecutor(1) as other,
+    ):
+        (link,), hubs = client._hub.outputs, [client._hub]
+        link.carrier.ping_interval = 5.0
+        monkeypatch.setattr(type(link.carrier), "ping", b"~\0\0\0\1~\0\0")
+        pings = ping.Pings()
+        pings.look(hubs)
+        answer_ = other.submit(client.call, 1)
+        try:
+            assert asked.wait(60)
+            wait_until(lambda: link.sender.listens)
+            before = link.driver.bytes_out
+            clock.now = 6.0
+            pings.look(hubs)
+            assert link.driver.bytes_out == before + 8
+        finally:
+            answered.set()
+        assert answer_.result(60) == 7
+        assert not link.sender.listens

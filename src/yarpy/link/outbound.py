@@ -353,6 +353,8 @@ class Outbound:
                 stream.ending = getattr(packet.value, "ending", None)
                 carrier.encode(stream, packet)
                 self.sender.flush(deadline)
+                if carrier.ping_interval:
+                    self.sender.listen(True)
                 if not stream.waiting:
                     driver.fill(deadline)
                 reply = carrier.parse_reply(stream)
@@ -371,6 +373,8 @@ class Outbound:
                     self.sender.give_up()
                 raise
             finally:
+                if self.sender.listens:
+                    self.sender.listen(False)
                 if deadline is not None:
                     driver.transport.limit_waiting(None)
                 if self.broken:

@@ -49,6 +49,8 @@ class Sender:
         self.counter = Counter(since=time.time())
         self.lock = threading.Lock()  # one message at a time on the wire
         self.write_timeout = WriteTimeout(limit)
+        self._pause = threading.Lock()  # of `listens`, so that a ping ends before a message begins
+        self.listens = False  # whoever holds `lock` has asked, and only waits for the answer
         self.broken = False
         self.reason = ""  # why we have ended it
         self.halfway = False  # the rest of a message waits in the stream
@@ -128,10 +130,22 @@ class Sender:
         return self.finish()
 
     def interject(self, data: bytes) -> bool:
-        """Send what is no message, between two of them; False, and nothing has left, where that
-        would take waiting."""
+        """Send what is no message, between two of them or while an answer is waited for; False, and
+        nothing has left, where that would take waiting."""
         if not self.lock.acquire(blocking=False):
-            return False
+            with self._pause:
+                return self.listens and self._interject(data)
+        try:
+            return self._interject(data)
+        finally:
+            self.lock.release()
+
+    def listen(self, whether: bool) -> None:
+        """From now on the answer to a question is waited for, or not any more. The lock is held."""
+        with self._pause:
+            self.listens = whether
+
+    def _interject(self, data: bytes) -> bool:
         try:
             driver = self.driver
             if self.broken or self.halfway or driver.stream.output:
@@ -147,8 +161,6 @@ class Sender:
             return True
         except OSError:
             return True  # whoever writes or looks meets the same end
-        finally:
-            self.lock.release()
 
     def finish(self, deadline: float | None = None) -> bool:
         """Send the rest of a message by `deadline`; whether it has left. Raises LinkClosed."""
