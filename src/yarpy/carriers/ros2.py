@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from yarpy.carriers.base import Carrier, Limits
 from yarpy.carriers.hosted import LISTENS, SERVICE, Hosted, failure
@@ -34,6 +34,8 @@ from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
 log = logger("yarpy.link")
+
+GONE: Final = "who serves"  # so begins why there is no answer, where a server went away meanwhile
 
 
 class Topic(Protocol):

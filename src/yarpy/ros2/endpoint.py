@@ -15,7 +15,7 @@ import time
 from functools import partial
 from typing import Any, ClassVar, Final
 
-from yarpy.carriers.ros2 import Incoming, Outgoing
+from yarpy.carriers.ros2 import GONE, Incoming, Outgoing
 from yarpy.errors import DecodeError, YarpError
 from yarpy.log import logger, readable
 from yarpy.ros2 import kind as kinds
@@ -301,6 +301,8 @@ class Client(Endpoint):
         number, key = self._count, self.key
         assert key is not None
         answered = False
+        servers = self.participant.graph.endpoints(self.name, SERVER)
+        served = any(server.key == key for server in servers)
 
         def heard(reply: Any) -> None:
             nonlocal answered
@@ -312,6 +314,8 @@ class Client(Endpoint):
         def over() -> None:
             if not answered and number == self._count:
                 why = f"nobody serves {self.name} as {kinds.shown(key)}"
+                if served:
+                    why = f"{GONE} {self.name} went away during the call"
                 self.put(Incoming(b"", failure=why), MOST_QUESTIONS)
 
         self.participant.session.get(

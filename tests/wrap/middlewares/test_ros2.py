@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
@@ -112,6 +113,34 @@ def test_services(router: int) -> None:
     with pytest.raises(yarpy.UnknownName, match="nobody serves"):
         there.ask("x", timeout=0.3)
     wrap.off(there.ask).close()
+
+
+SERVER = """
+import os, sys
+from yarpy import wrap
+
+class Robot:
+    @wrap.on("/add~example_interfaces/srv/AddTwoInts", "ros2")
+    def add(self, a: int, b: int) -> int:
+        os._exit(1)
+
+robot = Robot()
+wrap.serve(robot.add)
+print("ready", flush=True)
+sys.stdin.read()
+"""
+
+
+@pytest.mark.usefixtures("names", "router")
+def test_a_server_that_dies() -> None:
+    there = Robot()
+    with Process([sys.executable, "-c", SERVER]) as server:
+        server.wait_line("ready", timeout=PATIENCE, stream="out")
+        with (
+            wrap.call(there.add),
+            pytest.raises(yarpy.LinkClosed, match="went away during the call"),
+        ):
+            there.add(1, 2)
 
 
 @pytest.mark.usefixtures("names")

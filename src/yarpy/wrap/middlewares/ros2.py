@@ -10,6 +10,7 @@ import os
 import time
 from typing import Any, Final
 
+from yarpy.carriers.ros2 import GONE
 from yarpy.errors import LinkClosed, UnknownName, YarpError
 from yarpy.idl.ros2msg.library import default_library
 from yarpy.link.handshake import find_carrier
@@ -141,6 +142,8 @@ class Ros2Client:
             if not isinstance(reason, list) or len(reason) < 2:
                 raise LinkClosed(f'"{service.topic}" gave no answer')
             text = str(reason[1])
+            if text.startswith(GONE):
+                raise LinkClosed(text)
             if not text.startswith("nobody serves"):
                 raise error_of(text)
             # As elsewhere: with a timeout it waits for a server that is not there yet.
