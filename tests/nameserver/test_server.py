@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from support.capture import load_capture
@@ -27,6 +28,19 @@ from yarpy.data.bottle import Bottle
 from yarpy.nameserver.server import MAX_COMMAND, MAX_UNFINISHED, NameServer
 from yarpy.wire import framing
 from yarpy.wire.message import Packet
+
+
+def test_who_is_killed_while_its_question_is_on_the_way() -> None:
+    """Its address is not known any more: the connection has ended, which is no defect."""
+
+    class Gone:
+        @property
+        def remote(self) -> tuple[str, int]:
+            raise OSError(errno.ENOTCONN, "Transport endpoint is not connected")
+
+    link = SimpleNamespace(driver=SimpleNamespace(transport=Gone()))
+    with NameServer() as server, pytest.raises(yarpy.LinkClosed, match="not connected"):
+        server._answer(link, yarpy.Message("D", b""))  # type: ignore[arg-type]
 
 
 def test_who_comes_before_it_is_open_waits(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,7 +19,7 @@ from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError, Timeout, YarpError
+from yarpy.errors import DecodeError, LinkClosed, Timeout, YarpError
 from yarpy.link.inbound import Inbound
 from yarpy.log import logger
 from yarpy.names.address import is_loopback, local_addresses
@@ -202,7 +202,10 @@ class NameServer:
         return host == self.host or is_loopback(host)
 
     def _answer(self, link: Inbound, message: Message) -> None:
-        peer = link.driver.transport.remote[0]
+        try:
+            peer = link.driver.transport.remote[0]
+        except OSError as error:  # killed while its question was on the way
+            raise LinkClosed(str(error)) from error
         if is_loopback(peer):
             peer = self.host  # a program of this host: others reach it as they reach us
         structured = message.text == JSON
