@@ -11,7 +11,8 @@ Unix socket.
 
 Rules: between two programs of yarpy of one user on one computer. Every message is acknowledged. One
 copy of a payload is made for all readers of a port, none where it lies in shared memory already,
-and none at a reader. What finds no room there goes through the socket, as answers do.
+and none at a reader. What finds no room there goes through the socket, as answers do. Once there
+are releases, another form has another greeting: then old and new programs meet over tcp.
 """
 
 from __future__ import annotations
