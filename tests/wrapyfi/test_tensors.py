@@ -35,9 +35,13 @@ def site() -> Path:
     if not (PYTHON.exists() and TORCH.exists()):
         pytest.skip("torch is not installed: apt-get install python3-torch")
     try:
-        return next(prepare().glob("lib/python*/site-packages"))
+        found = next(prepare().glob("lib/python*/site-packages"))
     except MissingPeer as missing:
         pytest.skip(str(missing))
+    version = found.parent.name
+    if not PYTHON.with_name(version).exists():
+        pytest.skip(f"torch is for another Python than {version}, which runs the tests")
+    return found
 
 
 def ours(site: Path, program: str, *words: str) -> Process:
