@@ -47,18 +47,18 @@ class AcceptLoop:
     the loop calls."""
 
     def __init__(self) -> None:
-        self._lock = threading.Lock()  # of who is here, and whether there is a thread
-        self._entrances: set[Entrance] = set()
-        self._due: dict[Entrance, float] = {}  # when `look` is to be called
-        self._newcomers: deque[tuple[socket.socket, Entrance]] = deque()
         self._selector: selectors.BaseSelector | None = None
         self._waker: tuple[socket.socket, socket.socket] | None = None
         self.thread: threading.Thread | None = None
+        self.start_over()
 
     def start_over(self) -> None:
         """Forget everything, in a process whose threads are gone: a forked one."""
         self._stop()
-        self.__init__()  # type: ignore[misc]
+        self._lock = threading.Lock()  # of who is here, and whether there is a thread
+        self._entrances: set[Entrance] = set()
+        self._due: dict[Entrance, float] = {}  # when `look` is to be called
+        self._newcomers: deque[tuple[socket.socket, Entrance]] = deque()
 
     @property
     def entrances(self) -> list[Entrance]:
