@@ -3,8 +3,11 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test pure links programs compiled wheel stress fuzz chaos soak check bench clean
-.NOTPARALLEL: # the stages, in their order
+.PHONY: demo alone test peers pure links compiled wheel stress steady fuzz life rows chaos soak check bench pictures windows clean
+.NOTPARALLEL:
+
+# Tests start many programs; each would compile all of yarpy anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 # What yarpy itself needs, told while it comes.
 $(VENV)/.base: pyproject.toml
@@ -22,14 +25,24 @@ $(VENV)/.ready: $(VENV)/.base compat/pyproject.toml
 demo: $(VENV)/.base
 	$(BIN)/yarpy demo $(DEMO)
 
-# Some at a time, each with whole files: most tests wait for something. What is quick comes first, so
-# that a mistake in it is known within a minute.
-WORKERS ?= 2
-PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
-test: pure links programs
+# What needs no foreign program, the same wherever it runs; `peers` is the rest. Most tests wait for
+# something, so there are more workers than processors.
+WORKERS ?= 4
+PYTEST = $(BIN)/python tests/support/warm.py $(STAGE) && $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+test: $(VENV)/.ready
+	$(PYTEST) -m "not peer"
 
-pure links programs: $(VENV)/.ready
-	$(PYTEST) --stage $@
+# Beside C++ YARP, ROS, browsers and others; -rs says what is missing and how to get it.
+peers: $(VENV)/.ready
+	$(PYTEST) -m peer -rfEs
+
+pure links: STAGE = $@
+pure links: $(VENV)/.ready
+	$(PYTEST) -m "not peer" --stage $(STAGE)
+
+# The core in a copy without any guest or kit; GUESTS="zenoh ros" deletes one after another.
+alone: $(VENV)/.ready
+	$(BIN)/python tests/support/alone.py -n$(WORKERS) $(GUESTS)
 
 # Two wheels: pure Python, and one with a compiled core for this Python and computer.
 wheel: $(VENV)/.ready
@@ -45,17 +58,21 @@ compiled: wheel
 	rm -rf build/compiled
 	$(BIN)/python -m pip install --quiet --no-deps --no-index --find-links dist --target build/compiled yarpy
 	$(COMPILED) $(BIN)/python tests/support/build.py
-	$(COMPILED) $(PYTEST) $(TESTS)
+	$(COMPILED) $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal -m "not peer" $(TESTS)
 
-# The same on a loaded machine, with the patience that this takes.
+# TIMES in a row, and the same beside a busy loop for each processor: no test may fail in any run.
+TIMES ?= 5
+steady: $(VENV)/.ready
+	for run in $$(seq $(TIMES)); do echo "run $$run of $(TIMES)"; $(MAKE) --no-print-directory test || exit; done
+
 stress: $(VENV)/.ready
-	YARPY_TEST_PATIENCE=4 $(BIN)/python tests/support/busy.py $(MAKE) test
+	$(BIN)/python tests/support/busy.py $(MAKE) --no-print-directory steady TIMES=$(TIMES)
 
 # Kills, stops and lies for ten minutes, and the table of docs/reliability.md.
 chaos: $(VENV)/.ready
 	$(BIN)/python tests/chaos/run.py
 
-# How long `soak` and `fuzz` take; hours find more.
+# How long `soak`, `fuzz` and `life` take; hours find more.
 SECONDS ?= 3600
 
 # Whether memory and descriptors stay what they are.
@@ -66,10 +83,29 @@ check: $(VENV)/.ready
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/mypy --platform darwin --cache-dir .mypy_cache/darwin
 
 # Strange input for everything that reads. SEED=N does a run again.
 fuzz: $(VENV)/.ready
 	$(BIN)/python tests/fuzz/run.py $(SECONDS) $(if $(SEED),--seed $(SEED))
+
+# Random programs that open, write, call, interrupt, cancel, fork and end. SEED=N begins with that one.
+life: $(VENV)/.ready
+	$(BIN)/python tests/life/property.py $(SECONDS) $(if $(SEED),--seed $(SEED))
+
+# The README's program and tests of bytes with the Python of Windows, under wine; PATHS="tests/port".
+windows: $(VENV)/.ready
+	$(BIN)/python tests/support/windows.py $(PATHS)
+
+# What the pages look like, for README and docs; needs Chromium.
+pictures: $(VENV)/.ready
+	YARPY_PICTURES=docs/pictures $(BIN)/python -m pytest -q tests/interop/test_pictures.py
+
+# Each promise about starting, interrupting, cancelling, ending: 20 times on one core beside a busy
+# loop. ROW=asyncio takes one of them; `python tests/life/rows.py` names them.
+ROW ?= all
+rows: $(VENV)/.ready
+	$(BIN)/python tests/life/rows.py $(ROW) 20
 
 bench: $(VENV)/.ready
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[bench]'

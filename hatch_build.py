@@ -18,9 +18,18 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 CORE = (
     *("data/codec", "data/reader", "data/walker", "data/writer"),
-    *("wire/framing", "wire/shared_stream", "wire/stream"),
-    *("link/counter", "link/driver", "link/outbound", "link/receiver", "link/sender"),
-    *("link/turn", "link/window"),
+    *("wire/aside_stream", "wire/framing", "wire/lending_stream", "wire/shared_stream"),
+    *("wire/stream", "link/byte_driver", "link/counter", "link/driver", "link/object_driver"),
+    *("link/receive/receiver", "link/receive/turn"),
+    *(
+        "link/send/backlog",
+        "link/send/dated",
+        "link/send/direct",
+        "link/send/followed",
+        "link/send/lossy",
+    ),
+    *("link/send/outbound", "link/send/outbox", "link/send/question", "link/send/queued"),
+    *("link/send/recent", "link/send/sender", "link/send/window"),
 )
 _COMPILE = """
 import sys

@@ -21,7 +21,7 @@ from pathlib import Path
 from workload import NUMBER
 
 import yarpy
-from yarpy.link.handshake import find_carrier
+from yarpy.link.begin.handshake import find_carrier
 from yarpy.route import parse_carrier
 
 SOURCE = Path(yarpy.__file__).parent

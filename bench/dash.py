@@ -21,8 +21,8 @@ from support.browser import FLAGS
 from support.network import large
 
 import yarpy
+from yarpy.kits.views import dash
 from yarpy.network.traffic import Snapshot
-from yarpy.views import dash
 
 ROUNDS = 100
 MOVE = f"""async () => {{

@@ -20,7 +20,9 @@ PREFIX = f"/bench{os.getpid()}"
 def name_service(options):
     """What a client's environment needs to find this process's ports."""
     if not options.router:
-        return yarpy.NameServer().__enter__().environment
+        global _server  # which ends with this process
+        _server = yarpy.NameServer().__enter__()
+        return _server.environment
     environment = {"YARPY_SERVER": "zenoh", "YARPY_ZENOH": start_router()}
     os.environ.update(environment)
     return environment
@@ -36,7 +38,7 @@ def take_no_short_cut(options):
     """With a router: as if there were no other way."""
     if options.router:
         options.carrier = ""  # the one that is chosen then
-        from yarpy.names import direct
+        from yarpy.peers.zenoh import ways as direct
 
         direct.Ways.to = lambda self, entry: entry.through
 

@@ -64,7 +64,7 @@ else:
 def node(role: str, size: int) -> tuple[Any, Any, Any]:
     """A node of yarpy, its publisher and the class of its messages."""
     import yarpy.idl
-    import yarpy.ros
+    import yarpy.peers.ros
 
     kind = yarpy.idl.load("sensor_msgs/Image" if size else "std_msgs/String")
     own = yarpy.ros.Node(f"/yarpy_{role}")

@@ -21,12 +21,12 @@ from typing import Any
 import numpy as np
 
 import yarpy
-from yarpy import ros2
 from yarpy.names.default import DEFAULT
-from yarpy.ros2.attachment import Attachment
-from yarpy.ros2.kind import key_of
-from yarpy.transports.zenoh import close, share
-from yarpy.transports.zenoh_router import open_router
+from yarpy.peers import ros2
+from yarpy.peers.ros2.kind import key_of
+from yarpy.peers.ros2.zenoh.attachment import Attachment
+from yarpy.peers.zenoh.router import open_router
+from yarpy.peers.zenoh.transport import close, share
 
 TURNS = 5
 FLOOD = 20_000
@@ -60,8 +60,8 @@ def bare(what: str, answers: bool) -> Iterator[Callable[[], None]]:
     out, into = ("back", "there") if answers else ("there", "back")
     come = threading.Semaphore(0)
     body, attached = body_of(what), bytes(Attachment(1, 1, bytes(16)))
-    with share() as lease:
-        publisher = lease.session.declare_publisher(key(out, what))
+    with share() as shared:
+        publisher = shared.session.declare_publisher(key(out, what))
 
         def heard(sample: Any) -> None:
             data = bytes(sample.payload)
@@ -70,7 +70,7 @@ def bare(what: str, answers: bool) -> Iterator[Callable[[], None]]:
             else:
                 come.release()
 
-        hears = lease.session.declare_subscriber(key(into, what), Callback(heard, indirect=False))
+        hears = shared.session.declare_subscriber(key(into, what), Callback(heard, indirect=False))
 
         def turn() -> None:
             publisher.put(body, attachment=attached)
@@ -146,7 +146,7 @@ def flood() -> None:
     from zenoh.handlers import Callback
 
     body, attached = body_of("text"), bytes(Attachment(1, 1, bytes(16)))
-    with share() as lease:
+    with share() as shared:
         count = 0
 
         def heard(sample: Any) -> None:
@@ -154,10 +154,10 @@ def flood() -> None:
             bytes(sample.payload)
             count += 1
 
-        hears = lease.session.declare_subscriber(
+        hears = shared.session.declare_subscriber(
             key("flood", "text"), Callback(heard, indirect=False)
         )
-        publisher = lease.session.declare_publisher(key("flood", "text"))
+        publisher = shared.session.declare_publisher(key("flood", "text"))
         started = time.perf_counter()
         for _ in range(FLOOD):
             publisher.put(body, attachment=attached)

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from typing import Any
 
 import yarpy
-from yarpy.idl.thrift.library import loads
+from yarpy.kits.thrift.library import loads
 
 CALLS = 100  # in a row
 

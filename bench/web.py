@@ -46,53 +46,52 @@ def elsewhere(*args: str) -> Iterator[subprocess.Popen[str]]:
         process.terminate()
 
 
-def watch(address: str) -> None:
-    """Count the pictures that come, as a process of its own; prints the number every second."""
+def watch(address: str, interval: float) -> None:
+    """Count the pictures that come, as a process of its own; prints how many a second, every
+    `interval` seconds, or when at least one has come."""
     host, _, port = address.rpartition(":")
     sock = socket.create_connection((host, int(port)))
-    sock.sendall(b"GET /?action=stream HTTP/1.1\r\nHost: x\r\n\r\n")
+    sock.sendall(f"GET /?action=stream HTTP/1.1\r\nHost: {address}\r\n\r\n".encode())
     marks, last, rest = 0, time.monotonic(), b""
     mark = b"\n--boundarydonotcross\r\n"
     while data := sock.recv(1 << 20):
         data = rest + data
         marks += data.count(mark)
         rest = data[-len(mark) + 1 :]
-        if time.monotonic() - last >= 1:
-            print(marks, flush=True)
-            marks, last = 0, last + 1
+        now = time.monotonic()
+        if marks and now - last >= interval:
+            print(marks / (now - last), flush=True)
+            marks, last = 0, now
 
 
-def pictures(seconds: float, watchers: int) -> tuple[float, float]:
-    """Pictures a second that each watcher sees, and the port's milliseconds for each written."""
+def pictures(reports: int, watchers: int, interval: float = 1.0) -> tuple[float, float]:
+    """Pictures a second that each watcher sees, over so many intervals, and the port's milliseconds
+    for each written."""
     image = picture()
     with yarpy.Port("/cam", names=yarpy.LocalNames()) as port:
-        counts: list[list[int]] = [[] for _ in range(watchers)]
+        rates: list[list[float]] = [[] for _ in range(watchers)]
 
         def count(index: int) -> None:
-            with elsewhere(sys.executable, __file__, "--watch", port.address) as process:
+            watching = [sys.executable, __file__, "--watch", port.address]
+            with elsewhere(*watching, "--interval", str(interval)) as process:
                 assert process.stdout is not None
                 for line in process.stdout:
-                    counts[index].append(int(line))
-                    if stop.is_set():
+                    rates[index].append(float(line))
+                    if len(rates[index]) > reports:  # in the first the others are still coming
                         return
 
-        stop = threading.Event()
         threads = [threading.Thread(target=count, args=(index,)) for index in range(watchers)]
         for thread in threads:
             thread.start()
-        port.wait_for_outputs(watchers, timeout=30)
-        end = time.monotonic() + seconds + 1
+        assert port.wait_for_outputs(watchers, timeout=30), "the browsers do not come"
         started, before = time.process_time(), 0
-        while time.monotonic() < end:
+        while any(thread.is_alive() for thread in threads):
             if not port.write(image):
                 time.sleep(0.0005)  # the last one has not left yet
             else:
                 before += 1
         spent = (time.process_time() - started) / max(before, 1)
-        stop.set()
-    for thread in threads:
-        thread.join(10)
-    whole = [sum(each[1:]) / max(len(each) - 1, 1) for each in counts]  # the first is not a second
+    whole = [sum(each[1:]) / reports for each in rates]
     return sum(whole) / watchers, spent * 1000
 
 
@@ -120,15 +119,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--seconds", type=float, default=5.0)
     parser.add_argument("--watch", metavar="ADDRESS", help=argparse.SUPPRESS)
+    parser.add_argument("--interval", type=float, default=1.0, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.watch:
-        watch(options.watch)
+        watch(options.watch, options.interval)
         return
     os.sched_setaffinity(0, {CORES[0]})
     seconds = max(1.0, options.seconds)
     print(f"{'':32}{'per second':>12}{'core time':>14}")
     for watchers in (1, 4):
-        rate, cost = pictures(seconds, watchers)
+        rate, cost = pictures(round(seconds), watchers)
         what = f"pictures, {watchers} browser{'s' * (watchers > 1)}"
         print(f"{what:32}{rate:12.0f}{cost:11.2f} ms")
     for connections in (1, 8):

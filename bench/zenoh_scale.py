@@ -31,8 +31,8 @@ from pathlib import Path
 
 import zenoh
 
-from yarpy.names import direct
-from yarpy.names.zenoh import ZenohNames
+from yarpy.peers.zenoh import ways as direct
+from yarpy.peers.zenoh.names import ZenohNames
 
 WORKERS = 4
 FIRST = 7450  # port number of the first router
@@ -261,19 +261,19 @@ def outage(options, observers, routers) -> dict:
         out.flush(5)
         time.sleep(0.5)
         got += came()
-        past = out.stats["past"]["outputs"]
-        dropped = past["drops"] + sum(one["drops"] for one in out.stats["outputs"])
+        past = out.stats.past.outputs
+        dropped = past.drops + sum(one.drops for one in out.stats.outputs)
         return {
             "seconds until names of the other side were gone": round(gone, 3),
             "seconds from the start of the router until names were back": round(times["names"], 2),
             "... until messages arrived": round(times["stream"], 2),
             "written": sent,
-            "nobody connected": out.stats["unconnected"],
+            "nobody connected": out.stats.unconnected,
             "dropped": dropped,
-            "unconfirmed": past["unconfirmed"],
+            "unconfirmed": past.unconfirmed,
             "arrived": got,
             "lost without being counted": max(
-                0, sent - out.stats["unconnected"] - dropped - past["unconfirmed"] - got
+                0, sent - out.stats.unconnected - dropped - past.unconfirmed - got
             ),
         }
 

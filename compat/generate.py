@@ -58,7 +58,7 @@ def ranked() -> list[tuple[str, int]]:
 
 
 def is_there(name: str) -> bool:
-    """Whether compat has a name, or a method of a class."""
+    """Return whether compat has a name, or a method of a class."""
     import yarp
 
     owner, _, member = name.partition(".")

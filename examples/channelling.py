@@ -13,7 +13,7 @@ from typing import Annotated
 import numpy as np
 
 import yarpy
-from yarpy import wrap
+from yarpy.kits import wrap
 
 Picture = Annotated[np.ndarray, wrap.Image("rgb")]
 

@@ -9,7 +9,7 @@ python examples/forwarding.py end              # listens to the second
 import sys
 import time
 
-from yarpy import wrap
+from yarpy.kits import wrap
 
 
 class Chain:

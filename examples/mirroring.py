@@ -10,7 +10,7 @@ Or ask and answer: `serve` here, `call hello` there; then the arguments are thos
 import sys
 import time
 
-from yarpy import wrap
+from yarpy.kits import wrap
 
 
 class Mirror:

@@ -9,7 +9,7 @@ docs/devices.md.
 import time
 
 import yarpy
-from yarpy.devices import ControlBoard, ControlBoardServer
+from yarpy.kits.devices import ControlBoard, ControlBoardServer
 
 
 class Head:

@@ -38,11 +38,11 @@ def main() -> None:
             read += 1
         out, into = sensor.outputs[0].stats, slow.inputs[0].stats
         print(f"written           {turn + 1}")
-        print(f"  sent            {out['messages']}, dropped by the writer {out['drops']}")
-        print(f"  arrived         {into['messages']}, dropped by the reader {into['drops']}")
+        print(f"  sent            {out.messages}, replaced at the writer {out.replaced}")
+        print(f"  arrived         {into.messages}, replaced at the reader {into.replaced}")
         print(f"  read            {read}")
-        print(f"rate of arrival   {into['rate']:.0f} per second, jitter {into['jitter']:.6f} s")
-        assert turn + 1 == read + out["drops"] + into["drops"]
+        print(f"rate of arrival   {into.rate:.0f} per second, jitter {into.jitter:.6f} s")
+        assert turn + 1 == read + out.replaced + into.replaced
 
 
 if __name__ == "__main__":

@@ -1,43 +1,31 @@
-"""What all tests share: stages, patience, a browser (`support/browser.py`), and signals.
+"""What all tests share: stages, foreign programs (`support/peer.py`), a browser, and signals.
 
-Rules: a stage is a set of folders; what is named in none of them belongs to the last, so nothing is
-left out by being new. `--stage` takes the tests of one stage; without it all are taken.
+Rules: `--stage` takes the tests of one stage (`support/stage.py`). Whether a test
+needs a foreign program is no matter of lists: it says so itself, and gets the marker `peer`. `make
+test` is `pytest -m "not peer"`, `make peers` is `pytest -m peer`.
 """
 
+import logging
+import os
 import signal
+from collections.abc import Generator
 from pathlib import Path
 
 import hypothesis
 import pytest
-from support.patience import FACTOR
+from support import multicast, peer
+from support.stage import STAGES, TESTS, stage_of
 
 from yarpy import log
 
+# zenoh_ros2_sdk imports a wrapper of git, which it needs only for definitions that it downloads.
+os.environ.setdefault("GIT_PYTHON_REFRESH", "quiet")
 hypothesis.settings.register_profile("yarpy", deadline=None)  # the machine may be busy
 hypothesis.settings.load_profile("yarpy")
 pytest_plugins = ["support.browser"]
 
-TESTS = Path(__file__).parent
-STAGES = {
-    # bytes and values, no sockets: seconds
-    "pure": {
-        *("wire", "data", "idl", "carriers", "config", "test_architecture.py", "test_contact.py"),
-        *("test_errors.py", "test_registry.py", "test_route.py"),
-    },
-    # ports, links, names and monitors of one process: a minute
-    "links": {
-        *("transports", "link", "monitors", "names", "nameserver", "port", "network", "testing"),
-        *("aio", "test_qos.py", "test_realtime.py"),
-    },
-    # everything else, from devices to programs, browsers and C++ YARP: minutes
-    "programs": set(),
-}
-
-
-def stage_of(path: Path) -> str:
-    """The stage that a test file belongs to."""
-    top = path.relative_to(TESTS).parts[0]
-    return next((stage for stage, names in STAGES.items() if top in names), "programs")
+LOGGER = logging.getLogger("yarpy")
+UNCONFIGURED = [*LOGGER.handlers], LOGGER.level, LOGGER.propagate
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -52,11 +40,12 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Wait longer where the environment says so; and undo what a shell does to background jobs:
-    programs that tests start would inherit it, and could not be interrupted."""
-    limit = config.getini("timeout")
-    if limit and FACTOR > 1 and config.getoption("timeout", None) is None:
-        config.option.timeout = float(str(limit)) * FACTOR
+    """Undo what a shell does to background jobs: programs that tests start would inherit it, and
+    could not be interrupted."""
+    config.addinivalue_line("markers", "peer(name, ...): needs these foreign programs")
+    if not hasattr(config, "workerinput"):
+        peer.share()
+        multicast.have_it()
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     hang_up = getattr(signal, "SIGHUP", None)
@@ -64,6 +53,28 @@ def pytest_configure(config: pytest.Config) -> None:
         signal.signal(hang_up, signal.SIG_DFL)
 
 
+@pytest.hookimpl(tryfirst=True)  # before -m is applied
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Give the marker `peer` to tests that need one by a fixture."""
+    for item in items:
+        names = peer.needed(item)
+        if names:
+            item.add_marker(pytest.mark.peer(*names))
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Each test may see as many warnings as a program in its first minute."""
+    """Each test sees as many warnings as a program in its first minute, and logs as one that has
+    configured nothing."""
     log._kinds.clear()
+    LOGGER.handlers, LOGGER.propagate = [*UNCONFIGURED[0]], UNCONFIGURED[2]
+    LOGGER.setLevel(UNCONFIGURED[1])
+    peer.enter(peer.needed(item))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown() -> Generator[None, None, None]:
+    try:
+        return (yield)
+    finally:
+        peer.leave()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import logging
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from support.moments import cut, elsewhere, moments
 
 import yarpy.log
 from yarpy.log import BURST, MINUTE, logger, readable
@@ -93,3 +95,53 @@ def test_everybody_logs_that_way() -> None:
             continue
         found = re.search(r"logging\.getLogger\(", path.read_text())
         assert found is None, f"{path} asks for a logger elsewhere than of yarpy.log"
+
+
+def test_without_memory_no_traceback_is_made(caplog: pytest.LogCaptureFixture) -> None:
+    """It would fail itself, and print another one."""
+
+    class Hungry:
+        def __str__(self) -> str:
+            raise MemoryError
+
+    log = logger("yarpy.test")
+    try:
+        raise MemoryError
+    except MemoryError:
+        log.exception("%s: connection %s fails on a defect", "/p", "x")
+    log.error("%s", Hungry())
+    first, second = caplog.records
+    assert first.exc_info is None
+    assert first.getMessage() == "/p: connection x fails on a defect (no memory is left)"
+    assert "no memory to tell" in second.getMessage()
+
+
+def test_no_signal_handler_leaves_a_handler_of_the_log_locked() -> None:
+    """Up to Python 3.12 it may: every thread that logs would wait for it for ever."""
+
+    class Silent(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            pass
+
+    log = logger("yarpy.test.locked")
+    log.propagate = False
+    log.setLevel(logging.INFO)  # warnings that are alike are only counted after a while
+    handler = Silent()
+    log.addHandler(handler)
+    tried = 0
+    try:
+        log.info("before")  # from now on it is known which levels are shown
+        for one in moments():
+            tried += 1
+            with suppress(Exception), one.interrupts(cut, re.compile(r"/logging/__init__\.py$")):
+                log.info("%s moment", tried)
+
+            def others() -> bool:
+                log.info("others")
+                return True
+
+            assert elsewhere(others), f"moment {tried}"
+    finally:
+        log.removeHandler(handler)
+        log.setLevel(logging.NOTSET)
+    assert tried > 10

@@ -9,9 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import pytest
-from support.patience import patience
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import Bottle, LocalNames, ResourceFinder, RpcClient
@@ -64,7 +63,7 @@ def running(module: Module, names: LocalNames, *arguments: str) -> Iterator[list
         yield codes
     finally:
         module.stop()
-        thread.join(patience(10.0))
+        thread.join(HANG)
     assert not thread.is_alive()
 
 
@@ -176,7 +175,7 @@ def test_signal_ends_it_in_good_order(number: signal.Signals) -> None:
     with Process([sys.executable, "-c", PROGRAM]) as process:
         process.wait_line("up")
         process.signal(number)
-        assert process.wait(patience(10.0)) == 0, process.stderr
+        assert process.wait(HANG) == 0, process.stderr
         assert process.stdout.splitlines()[-2:] == ["interrupt", "closed"]
 
 
@@ -187,4 +186,4 @@ def test_fourth_signal_ends_it_at_once() -> None:
             process.signal(signal.SIGINT)
             process.wait_line("interrupt", count=count)
         process.signal(signal.SIGINT)
-        assert process.wait(patience(10.0)) == 128 + signal.SIGINT
+        assert process.wait(HANG) == 128 + signal.SIGINT

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import subprocess
 import sys
@@ -9,15 +10,20 @@ import threading
 from pathlib import Path
 
 import pytest
+from support.guest import is_here
 
 from yarpy import registry
 from yarpy.carriers.base import Carrier
 from yarpy.errors import UnknownPlugin
-from yarpy.registry import SHIPPED, Registry
+from yarpy.facts import CarrierRow, Row
+from yarpy.registry import CarrierRegistry, Registry
+from yarpy.shipped import CARRIERS, SHIPPED
 
 
 def test_everything_shipped_loads_and_is_called_so() -> None:
-    for name in SHIPPED["carriers"]:
+    for name, row in SHIPPED["carriers"].items():
+        if not is_here(row):
+            continue
         carrier = registry.carriers.load(name)
         assert issubclass(carrier, Carrier)
         assert carrier.name == name
@@ -27,7 +33,9 @@ def test_everything_shipped_loads_and_is_called_so() -> None:
 
 
 def test_iteration_gives_them_all() -> None:
-    assert {carrier.name for carrier in registry.carriers} >= set(SHIPPED["carriers"])
+    assert {carrier.name for carrier in registry.carriers} >= {
+        name for name, row in SHIPPED["carriers"].items() if is_here(row)
+    }
 
 
 def test_unknown_name_comes_with_the_nearest() -> None:
@@ -38,7 +46,7 @@ def test_unknown_name_comes_with_the_nearest() -> None:
 
 
 def test_added_by_hand_wins_until_it_is_removed() -> None:
-    own = Registry("carriers")
+    own = CarrierRegistry()
     shipped = own.load("tcp")
     mine = object()
     own.add("tcp", mine)
@@ -53,7 +61,7 @@ def test_added_by_hand_wins_until_it_is_removed() -> None:
 
 
 def test_lookup_of_a_shipped_one_scans_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    own = Registry("carriers")
+    own = CarrierRegistry()
     monkeypatch.setattr(own, "_entries", lambda: pytest.fail("installed packages were scanned"))
     assert own.load("tcp").name == "tcp"
 
@@ -80,7 +88,7 @@ def run(site: Path, code: str) -> str:
 
 
 def test_shipped_one_that_misses_a_library_troubles_nobody() -> None:
-    plugins = Registry("carriers", {**SHIPPED["carriers"], "odd": "yarpy.carriers.no_such:Odd"})
+    plugins = CarrierRegistry({**CARRIERS, "odd": CarrierRow("odd", "yarpy.carriers.no_such:Odd")})
     assert "tcp" in [carrier.name for carrier in plugins]
     with pytest.raises(UnknownPlugin, match=r'"odd" cannot be loaded .*no_such'):
         plugins.load("odd")
@@ -119,7 +127,7 @@ def test_broken_stranger_names_its_package_and_troubles_nobody(tmp_path: Path) -
 
 def test_shipped_plugin_whose_library_is_missing_troubles_nobody() -> None:
     """Every incoming connection asks all carriers whether it is theirs."""
-    own = Registry("carriers", {"odd": "no_such_library.odd:Odd", **SHIPPED["carriers"]})
+    own = CarrierRegistry({"odd": CarrierRow("odd", "no_such_library.odd:Odd"), **CARRIERS})
     with pytest.raises(UnknownPlugin, match="install what is missing"):
         own.load("odd")
     assert "tcp" in [carrier.name for carrier in own]
@@ -128,11 +136,11 @@ def test_shipped_plugin_whose_library_is_missing_troubles_nobody() -> None:
 def test_shipped_name_cannot_be_taken_by_a_stranger(tmp_path: Path) -> None:
     install(tmp_path, "thief", "yarpy.carriers", "tcp = thief:Tcp", "class Tcp: pass\n")
     code = "from yarpy import registry; print(registry.carriers.load('tcp').__module__)"
-    assert run(tmp_path, code) == "yarpy.carriers.tcp"
+    assert run(tmp_path, code) == "yarpy.carriers.own.tcp"
 
 
 def test_several_threads_load_one_class() -> None:
-    own = Registry("carriers")
+    own = CarrierRegistry()
     found: list[object] = []
     threads = [threading.Thread(target=lambda: found.append(own.load("udp"))) for _ in range(8)]
     for thread in threads:
@@ -140,3 +148,70 @@ def test_several_threads_load_one_class() -> None:
     for thread in threads:
         thread.join(5)
     assert len(set(found)) == 1
+
+
+def test_a_connection_imports_the_carrier_that_it_is_of_alone() -> None:
+    """Asking 24 carriers whether it is theirs took as long as a hundred messages."""
+    code = (
+        "import sys\n"
+        "from yarpy import registry\n"
+        "registry.carriers._entries = lambda: sys.exit('installed packages were scanned')\n"
+        "before = set(sys.modules)\n"
+        "found = [kind.name for kind in registry.carriers.beginning(b'CONNECT ')]\n"
+        "print(found, registry.carriers.facts('zenoh').reaches.topic)\n"
+        "rooms = 'yarpy.carriers.', 'yarpy.peers.'\n"
+        "print(sorted(name for name in sys.modules.keys() - before if name.startswith(rooms)))\n"
+    )
+    said, loaded = run(Path("."), code).splitlines()
+    assert said == "['text'] True"
+    assert loaded == "['yarpy.carriers.base', 'yarpy.carriers.own', 'yarpy.carriers.own.text']"
+
+
+def test_strangers_are_asked_where_ours_are_not_certain(tmp_path: Path) -> None:
+    code = (
+        "from yarpy.carriers.base import Carrier\n"
+        "from yarpy.facts import TOPIC\n"
+        "class Other(Carrier):\n"
+        "    name, magic, reaches = 'other', b'GET /oth', TOPIC\n"
+    )
+    install(tmp_path, "stranger", "yarpy.carriers", "other = stranger:Other", code)
+    out = run(
+        tmp_path,
+        "import sys\n"
+        "from yarpy import registry\n"
+        "from yarpy.contact import parse_contact\n"
+        "from yarpy.link.begin.handshake import recognise\n"
+        "print(recognise(b'CONNECT ').name, 'stranger' in sys.modules)\n"
+        "print(recognise(b'GET /oth').name, recognise(b'GET /abc').name)\n"
+        "print(parse_contact('other://a:1/b').placed, registry.carriers.owner('other'))",
+    )
+    assert out.splitlines() == ["text False", "other http", "True stranger"]
+
+
+def test_facts_of_names_that_nobody_knows_are_not_kept() -> None:
+    own = CarrierRegistry()
+    for number in range(100):
+        assert not own.facts(f"nosuch{number}").reaches.foreign
+    assert own.facts("h264").reaches.foreign
+    assert not own.facts("h264").push
+    assert own._facts == {}
+
+
+def test_modules_of_ours_are_imported_where_no_signal_handler_can_cut_that(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Python would keep a module locked for ever whose import was cut in a bad moment."""
+    importing: list[threading.Thread] = []
+
+    def note(name: str) -> object:
+        importing.append(threading.current_thread())
+        return importlib.import_module(name)
+
+    monkeypatch.setattr(registry, "import_module", note)
+    monkeypatch.delitem(sys.modules, "yarpy.carriers.own.mcast", raising=False)
+    shipped = {**CARRIERS, "lost": Row("lost", "yarpy.nowhere:It")}
+    found = Registry("carriers", shipped)
+    assert found.load("mcast").name == "mcast"
+    assert importing[-1] is not threading.main_thread()
+    with pytest.raises(UnknownPlugin, match="cannot be loaded"):
+        found.load("lost")

@@ -6,154 +6,253 @@
         for message in port:
             print(message.value)
 
-Everything public is here; nothing is imported before it is used.
+Everything public is here; nothing is imported before it is used. A name stands here three times:
+for people and type checkers in `__all__` and among the imports, for Python in `_WHERE`. A test
+compares them.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 __version__ = "0.1.0"
 
-_WHERE = {
-    "Port": "yarpy.port.port",
-    "BufferedPort": "yarpy.port.port",
-    "RpcServer": "yarpy.port.rpc",
-    "RpcClient": "yarpy.port.rpc",
-    "Connection": "yarpy.port.connection",
-    "ConnectionEvent": "yarpy.port.connection",
-    "Message": "yarpy.wire.message",
-    "Module": "yarpy.module",
-    "ResourceFinder": "yarpy.resource",
-    "Page": "yarpy.carriers.http.page",
-    "Contact": "yarpy.contact",
-    "Qos": "yarpy.qos",
-    "NameServer": "yarpy.nameserver.server",
-    "LocalNames": "yarpy.nameserver.local",
-    "NameClient": "yarpy.names.base",
-    "YarpNameClient": "yarpy.names.client",
-    "ZenohNames": "yarpy.names.zenoh",
-    "Bottle": "yarpy.data.bottle",
-    "Property": "yarpy.data.bottle",
-    "Vocab": "yarpy.data.value",
-    "Int8": "yarpy.data.value",
-    "Int16": "yarpy.data.value",
-    "Int64": "yarpy.data.value",
-    "Float32": "yarpy.data.value",
-    "Stamp": "yarpy.data.stamp",
-    "Vector": "yarpy.data.vector",
-    "Matrix": "yarpy.data.matrix",
-    "Image": "yarpy.data.image",
-    "FlexImage": "yarpy.data.image",
-    "Sound": "yarpy.data.sound",
-    "PointCloud": "yarpy.data.pointcloud",
-    "connect": "yarpy.network.remote",
-    "disconnect": "yarpy.network.connection",
-    "is_connected": "yarpy.network.connection",
-    "exists": "yarpy.network.connection",
-    "query": "yarpy.network.connection",
-    "ping": "yarpy.network.connection",
-    "wait_for": "yarpy.network.connection",
-    "admin": "yarpy.network.connection",
-    "realtime": "yarpy.realtime",
-    "YarpError": "yarpy.errors",
-    "AddressError": "yarpy.errors",
-    "UnknownName": "yarpy.errors",
-    "WrongPort": "yarpy.errors",
-    "UnknownPlugin": "yarpy.errors",
-    "UnknownType": "yarpy.errors",
-    "MissingFile": "yarpy.errors",
-    "NoNameServer": "yarpy.errors",
-    "PortClosed": "yarpy.errors",
-    "LinkClosed": "yarpy.errors",
-    "Timeout": "yarpy.errors",
-    "RemoteError": "yarpy.errors",
-    "DecodeError": "yarpy.errors",
-    "Truncated": "yarpy.errors",
-    "LocalProtocolError": "yarpy.errors",
-    "NotAllowed": "yarpy.errors",
-    "RemoteProtocolError": "yarpy.errors",
-    "AccessRefused": "yarpy.errors",
-    "LoginRefused": "yarpy.errors",
-}
-
-__all__ = ["__version__", *_WHERE]
+__all__ = [
+    "AccessRefused",
+    "AddressError",
+    "Bottle",
+    "BufferedPort",
+    "Connection",
+    "ConnectionEvent",
+    "ConnectionStats",
+    "Contact",
+    "DeadlineEvent",
+    "DecodeError",
+    "FlexImage",
+    "Float32",
+    "Image",
+    "Int8",
+    "Int16",
+    "Int64",
+    "LinkClosed",
+    "LocalNames",
+    "LocalProtocolError",
+    "LoginRefused",
+    "Matrix",
+    "Message",
+    "MissingFile",
+    "Module",
+    "NameClient",
+    "NameServer",
+    "NoNameServer",
+    "NotAllowed",
+    "Page",
+    "PastStats",
+    "PointCloud",
+    "Port",
+    "PortClosed",
+    "PortStats",
+    "Property",
+    "Qos",
+    "RemoteError",
+    "RemoteProtocolError",
+    "RemoteStats",
+    "ResourceFinder",
+    "RpcClient",
+    "RpcServer",
+    "Sound",
+    "Stamp",
+    "Timeout",
+    "Totals",
+    "Truncated",
+    "UnknownName",
+    "UnknownPlugin",
+    "UnknownType",
+    "Vector",
+    "Vocab",
+    "WrongPort",
+    "YarpError",
+    "YarpNameClient",
+    "__version__",
+    "admin",
+    "connect",
+    "disconnect",
+    "exists",
+    "from_json",
+    "is_connected",
+    "ping",
+    "query",
+    "realtime",
+    "to_json",
+    "wait_for",
+]
 
 if TYPE_CHECKING:
-    from yarpy.carriers.http.page import Page as Page
-    from yarpy.contact import Contact as Contact
-    from yarpy.data.bottle import Bottle as Bottle
-    from yarpy.data.bottle import Property as Property
-    from yarpy.data.image import FlexImage as FlexImage
-    from yarpy.data.image import Image as Image
-    from yarpy.data.matrix import Matrix as Matrix
-    from yarpy.data.pointcloud import PointCloud as PointCloud
-    from yarpy.data.sound import Sound as Sound
-    from yarpy.data.stamp import Stamp as Stamp
-    from yarpy.data.value import Float32 as Float32
-    from yarpy.data.value import Int8 as Int8
-    from yarpy.data.value import Int16 as Int16
-    from yarpy.data.value import Int64 as Int64
-    from yarpy.data.value import Vocab as Vocab
-    from yarpy.data.vector import Vector as Vector
-    from yarpy.errors import AccessRefused as AccessRefused
-    from yarpy.errors import AddressError as AddressError
-    from yarpy.errors import DecodeError as DecodeError
-    from yarpy.errors import LinkClosed as LinkClosed
-    from yarpy.errors import LocalProtocolError as LocalProtocolError
-    from yarpy.errors import LoginRefused as LoginRefused
-    from yarpy.errors import MissingFile as MissingFile
-    from yarpy.errors import NoNameServer as NoNameServer
-    from yarpy.errors import NotAllowed as NotAllowed
-    from yarpy.errors import PortClosed as PortClosed
-    from yarpy.errors import RemoteError as RemoteError
-    from yarpy.errors import RemoteProtocolError as RemoteProtocolError
-    from yarpy.errors import Timeout as Timeout
-    from yarpy.errors import Truncated as Truncated
-    from yarpy.errors import UnknownName as UnknownName
-    from yarpy.errors import UnknownPlugin as UnknownPlugin
-    from yarpy.errors import UnknownType as UnknownType
-    from yarpy.errors import WrongPort as WrongPort
-    from yarpy.errors import YarpError as YarpError
-    from yarpy.module import Module as Module
-    from yarpy.names.base import NameClient as NameClient
-    from yarpy.names.client import YarpNameClient as YarpNameClient
-    from yarpy.names.zenoh import ZenohNames as ZenohNames
-    from yarpy.nameserver.local import LocalNames as LocalNames
-    from yarpy.nameserver.server import NameServer as NameServer
-    from yarpy.network.connection import admin as admin
-    from yarpy.network.connection import disconnect as disconnect
-    from yarpy.network.connection import exists as exists
-    from yarpy.network.connection import is_connected as is_connected
-    from yarpy.network.connection import ping as ping
-    from yarpy.network.connection import query as query
-    from yarpy.network.connection import wait_for as wait_for
-    from yarpy.network.remote import connect as connect
-    from yarpy.port.connection import Connection as Connection
-    from yarpy.port.connection import ConnectionEvent as ConnectionEvent
-    from yarpy.port.port import BufferedPort as BufferedPort
-    from yarpy.port.port import Port as Port
-    from yarpy.port.rpc import RpcClient as RpcClient
-    from yarpy.port.rpc import RpcServer as RpcServer
-    from yarpy.qos import Qos as Qos
-    from yarpy.realtime import realtime as realtime
-    from yarpy.resource import ResourceFinder as ResourceFinder
-    from yarpy.wire.message import Message as Message
+    # Modules, and not in `__all__`: some take what not everybody has installed.
+    from yarpy import aio as aio
+    from yarpy import clock as clock
+    from yarpy import idl as idl
+    from yarpy.carriers.web.http.page import Page
+    from yarpy.contact import Contact
+    from yarpy.data.bottle import Bottle, Property
+    from yarpy.data.json import from_json, to_json
+    from yarpy.data.sig.image import FlexImage, Image
+    from yarpy.data.sig.matrix import Matrix
+    from yarpy.data.sig.pointcloud import PointCloud
+    from yarpy.data.sig.sound import Sound
+    from yarpy.data.sig.vector import Vector
+    from yarpy.data.stamp import Stamp
+    from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
+    from yarpy.errors import (
+        AccessRefused,
+        AddressError,
+        DecodeError,
+        LinkClosed,
+        LocalProtocolError,
+        LoginRefused,
+        MissingFile,
+        NoNameServer,
+        NotAllowed,
+        PortClosed,
+        RemoteError,
+        RemoteProtocolError,
+        Timeout,
+        Truncated,
+        UnknownName,
+        UnknownPlugin,
+        UnknownType,
+        WrongPort,
+        YarpError,
+    )
+    from yarpy.kits import devices as devices
+    from yarpy.kits import record as record
+    from yarpy.kits import wrap as wrap
+    from yarpy.module import Module
+    from yarpy.names.base import NameClient
+    from yarpy.names.client import YarpNameClient
+    from yarpy.nameserver.local import LocalNames
+    from yarpy.nameserver.server import NameServer
+    from yarpy.network.connection import (
+        admin,
+        disconnect,
+        exists,
+        is_connected,
+        ping,
+        query,
+        wait_for,
+    )
+    from yarpy.network.remote import connect
+    from yarpy.peers import ros as ros
+    from yarpy.peers import ros2 as ros2
+    from yarpy.peers import zenoh as zenoh
+    from yarpy.port.connection import Connection, ConnectionEvent
+    from yarpy.port.deadline import DeadlineEvent
+    from yarpy.port.port import BufferedPort, Port
+    from yarpy.port.rpc import RpcClient, RpcServer
+    from yarpy.port.stats import ConnectionStats, PastStats, PortStats, RemoteStats, Totals
+    from yarpy.qos import Qos
+    from yarpy.real_time import realtime
+    from yarpy.resource import ResourceFinder
+    from yarpy.wire.message import Message
+else:
+    # Type checkers do not see the function below: with it every name would be right.
+    _WHERE = {
+        "Port": "yarpy.port.port",
+        "BufferedPort": "yarpy.port.port",
+        "RpcServer": "yarpy.port.rpc",
+        "RpcClient": "yarpy.port.rpc",
+        "Connection": "yarpy.port.connection",
+        "ConnectionEvent": "yarpy.port.connection",
+        "ConnectionStats": "yarpy.port.stats",
+        "PastStats": "yarpy.port.stats",
+        "PortStats": "yarpy.port.stats",
+        "RemoteStats": "yarpy.port.stats",
+        "Totals": "yarpy.port.stats",
+        "Message": "yarpy.wire.message",
+        "Module": "yarpy.module",
+        "ResourceFinder": "yarpy.resource",
+        "Page": "yarpy.carriers.web.http.page",
+        "Contact": "yarpy.contact",
+        "Qos": "yarpy.qos",
+        "NameServer": "yarpy.nameserver.server",
+        "LocalNames": "yarpy.nameserver.local",
+        "NameClient": "yarpy.names.base",
+        "YarpNameClient": "yarpy.names.client",
+        "Bottle": "yarpy.data.bottle",
+        "Property": "yarpy.data.bottle",
+        "Vocab": "yarpy.data.value",
+        "Int8": "yarpy.data.value",
+        "Int16": "yarpy.data.value",
+        "Int64": "yarpy.data.value",
+        "Float32": "yarpy.data.value",
+        "Stamp": "yarpy.data.stamp",
+        "Vector": "yarpy.data.sig.vector",
+        "Matrix": "yarpy.data.sig.matrix",
+        "Image": "yarpy.data.sig.image",
+        "FlexImage": "yarpy.data.sig.image",
+        "Sound": "yarpy.data.sig.sound",
+        "PointCloud": "yarpy.data.sig.pointcloud",
+        "connect": "yarpy.network.remote",
+        "disconnect": "yarpy.network.connection",
+        "is_connected": "yarpy.network.connection",
+        "exists": "yarpy.network.connection",
+        "query": "yarpy.network.connection",
+        "ping": "yarpy.network.connection",
+        "wait_for": "yarpy.network.connection",
+        "admin": "yarpy.network.connection",
+        "realtime": "yarpy.real_time",
+        "YarpError": "yarpy.errors",
+        "AddressError": "yarpy.errors",
+        "UnknownName": "yarpy.errors",
+        "WrongPort": "yarpy.errors",
+        "UnknownPlugin": "yarpy.errors",
+        "UnknownType": "yarpy.errors",
+        "MissingFile": "yarpy.errors",
+        "NoNameServer": "yarpy.errors",
+        "PortClosed": "yarpy.errors",
+        "LinkClosed": "yarpy.errors",
+        "Timeout": "yarpy.errors",
+        "RemoteError": "yarpy.errors",
+        "DecodeError": "yarpy.errors",
+        "Truncated": "yarpy.errors",
+        "LocalProtocolError": "yarpy.errors",
+        "NotAllowed": "yarpy.errors",
+        "RemoteProtocolError": "yarpy.errors",
+        "AccessRefused": "yarpy.errors",
+        "LoginRefused": "yarpy.errors",
+        "DeadlineEvent": "yarpy.port.deadline",
+        "to_json": "yarpy.data.json",
+        "from_json": "yarpy.data.json",
+    }
+    _ROOMS = {
+        "aio": "yarpy.aio",
+        "clock": "yarpy.clock",
+        "idl": "yarpy.idl",
+        "ros": "yarpy.peers.ros",
+        "ros2": "yarpy.peers.ros2",
+        "zenoh": "yarpy.peers.zenoh",
+        "devices": "yarpy.kits.devices",
+        "record": "yarpy.kits.record",
+        "wrap": "yarpy.kits.wrap",
+    }
 
+    def __getattr__(name):
+        from importlib import import_module
 
-def __getattr__(name: str) -> Any:
-    module = _WHERE.get(name)
-    if module is None:
-        if name in ("aio", "devices", "idl", "ros", "wrap"):
-            from importlib import import_module
+        if name in _ROOMS:
+            return import_module(_ROOMS[name])
+        if name not in _WHERE:
+            from difflib import get_close_matches
 
-            return import_module(f"yarpy.{name}")
-        raise AttributeError(f"module 'yarpy' has no attribute {name!r}")
-    from importlib import import_module
-
-    value = getattr(import_module(module), name)
-    globals()[name] = value
-    return value
+            near = get_close_matches(name, [*_WHERE, *_ROOMS], 1)
+            hint = f': did you mean "{near[0]}"?' if near else ""
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
+        # The package first: a thread that begins with a part may get it half done.
+        package, _, part = _WHERE[name].rpartition(".")
+        import_module(package)
+        value = getattr(import_module(f"{package}.{part}"), name)
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:

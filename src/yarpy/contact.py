@@ -32,14 +32,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Final
 
+from yarpy import registry
 from yarpy.errors import AddressError
-
-BROKER: Final = "mqtt"
-ZENOH: Final = ".zenoh"  # ends the host of an address inside Zenoh: `a1b2.zenoh:10002`
-#: carriers whose ends have names and no addresses, and that no name service knows
-MEDIA: Final = frozenset({"ros2", "zenoh"})
+from yarpy.facts import PORT, Reach
 
 _HOST_PORT = re.compile(r"^[^:/]+:\d+$")
 _IPV6_PORT = re.compile(r"^\[[0-9A-Fa-f:.%]+\]:\d+$")
@@ -55,14 +51,20 @@ class Contact:
     port: int = 0
 
     @property
+    def reaches(self) -> Reach:
+        """Return the kind of peer that its carrier leads to."""
+        return reach(self.carrier)
+
+    @property
     def reachable(self) -> bool:
-        """Whether host and port number are known."""
+        """Return whether host and port number are known."""
         return bool(self.host) and self.port > 0
 
     @property
     def placed(self) -> bool:
-        """Whether nobody needs to be asked where it is: it has an address, or needs none."""
-        return self.reachable or is_medium(self.carrier)
+        """Return whether it can be dialled without asking a name server: it has an address, or
+        needs none."""
+        return self.reachable or self.reaches.topic
 
     @property
     def address(self) -> str:
@@ -72,11 +74,13 @@ class Contact:
 
     @property
     def label(self) -> str:
-        """What ports call a connection that was dialled this way: the name, or `/host:port/`."""
-        if self.name and self.reachable and is_broker(self.carrier):
-            return f"/{BROKER}://{self.address}{self.name}"
-        if is_medium(self.carrier):
-            return f"/{self.carrier.partition('+')[0]}:/{self.name.partition('~')[0]}"
+        """Return the name that ports give a connection that was dialled this way: the name, or
+        `/host:port/`."""
+        base, reaches = self.carrier.partition("+")[0], self.reaches
+        if self.name and self.reachable and reaches.broker:
+            return f"/{base}://{self.address}{self.name}"
+        if reaches.topic:
+            return f"/{base}:/{self.name.partition('~')[0]}"
         return self.name or f"/{self.address}/"
 
     def __str__(self) -> str:
@@ -103,17 +107,20 @@ def parse_contact(text: str) -> Contact:
         carrier, rest = text[:base].removeprefix("/"), text[base + 1 :]
         if rest.startswith("//"):
             rest = rest[1:]
-    if rest.startswith("/") and not is_medium(carrier):
+    reaches = reach(carrier)
+    if rest.startswith("/") and not reaches.topic:
         head, slash, tail = rest[1:].partition("/")
         where = _host_port(head)
         if where is not None:
-            if not tail and is_broker(carrier):
+            if not tail and reaches.broker:
+                spoken = carrier.partition("+")[0]
                 raise AddressError(
-                    f'"{BROKER}://{head}" is a broker without a topic: mqtt://HOST:PORT/TOPIC'
+                    f'"{spoken}://{head}" is a broker without a topic: {spoken}://HOST:PORT/TOPIC'
                 )
             return Contact(carrier or "tcp", slash + tail if tail else "", *where)
-        if head and tail and is_broker(carrier):
-            return Contact(carrier, slash + tail, head, 8883 if "+tls" in carrier else 1883)
+        if head and tail and reaches.broker:
+            usual = reaches.number_tls if "+tls" in carrier else reaches.number
+            return Contact(carrier, slash + tail, head, usual)
     elif base < 0:
         # Not a form of C++ (there `host:port` is an unusable name): here it does what it says.
         where = _host_port(rest)
@@ -122,29 +129,10 @@ def parse_contact(text: str) -> Contact:
     return Contact(carrier, rest, "", 0)
 
 
-def is_broker(carrier: str) -> bool:
-    """Whether what is connected over a carrier is a topic of a broker."""
-    return carrier.partition("+")[0] == BROKER
-
-
-def zid_host(zid: str) -> str:
-    """A session of Zenoh as the host of an address.
-
-    >>> zid_host("a1b2")
-    'a1b2.zenoh'
-    """
-    return zid + ZENOH
-
-
-def host_zid(host: str) -> str:
-    """The session of Zenoh that an address leads to, "" if it is an ordinary address."""
-    zid = host.removesuffix(ZENOH)
-    return zid if zid != host else ""
-
-
-def is_medium(carrier: str) -> bool:
-    """Whether what is connected over a carrier has a name and no address."""
-    return carrier.partition("+")[0] in MEDIA
+def reach(carrier: str) -> Reach:
+    """Return what a carrier leads to: ports, where none is named or nobody knows it."""
+    base = carrier.partition("+")[0]
+    return registry.carriers.facts(base).reaches if base else PORT
 
 
 def _host_port(text: str) -> tuple[str, int] | None:

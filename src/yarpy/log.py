@@ -13,6 +13,8 @@ from __future__ import annotations
 
 import re
 import time
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -35,7 +37,37 @@ def logger(name: str) -> logging.Logger:
 
     found = logging.getLogger(name)
     found.addFilter(_screen)  # once, however often
+    if "callHandlers" not in vars(found):
+        # On the logger itself: what `getLogger` makes for this name may be a program's own class.
+        setattr(found, "callHandlers", partial(_call_handlers, found.callHandlers, found))  # noqa: B010
     return found
+
+
+def _call_handlers(call: Callable[..., None], found: logging.Logger, record: object) -> None:
+    """As `call`, the `callHandlers` of a logger; but where a signal handler raises, no handler of
+    the log stays locked, as it may up to Python 3.12: every other thread that logs would wait for
+    ever."""
+    before = [handler for handler in _handlers(found) if _is_ours(handler)]
+    try:
+        call(record)
+    except BaseException:
+        for handler in _handlers(found):
+            if handler not in before and _is_ours(handler):
+                handler.release()
+        raise
+
+
+def _handlers(logger: logging.Logger | None) -> Iterator[logging.Handler]:
+    """Those that get its records."""
+    while logger is not None:
+        yield from logger.handlers
+        logger = logger.parent if logger.propagate else None
+
+
+def _is_ours(handler: logging.Handler) -> bool:
+    """Return whether this thread has the lock of a handler."""
+    owned = getattr(handler.lock, "_is_owned", None)
+    return owned is not None and owned()
 
 
 def readable(text: str, keep: str = "") -> str:
@@ -55,9 +87,14 @@ def _escaped(letter: str) -> str:
 
 
 def _screen(record: logging.LogRecord) -> bool:
-    """Whether a record is shown, made readable."""
-    more = _more(record) if record.levelno >= _WARNING else ""
-    return more is not None and _make_readable(record, more)
+    """Make a record readable and return whether it is shown."""
+    try:
+        more = _more(record) if record.levelno >= _WARNING else ""
+        return more is not None and _make_readable(record, more)
+    except MemoryError:
+        record.msg, record.args = "something happened that there is no memory to tell", ()
+        record.exc_info = record.exc_text = None
+        return True
 
 
 class _Kind:
@@ -74,7 +111,7 @@ _kinds: dict[tuple[str, str, str], _Kind] = {}  # threads that meet here may cou
 
 
 def _more(record: logging.LogRecord) -> str | None:
-    """What to say behind a warning of others like it; None: it is one too many."""
+    """Return what to append to a warning about others like it; None: it is one too many."""
     args = record.args
     about = str(args[0]) if isinstance(args, tuple) and args else ""
     key = record.name, str(record.msg), about
@@ -95,8 +132,14 @@ def _more(record: logging.LogRecord) -> str | None:
 
 
 def _make_readable(record: logging.LogRecord, more: str) -> bool:
+    if record.exc_info and isinstance(record.exc_info[1], MemoryError):
+        # A traceback reads its sources, for which there is no room either.
+        record.exc_info, record.exc_text = None, None
+        more = f" (no memory is left){more}"
     try:
         text = record.getMessage()
+    except MemoryError:
+        raise
     except Exception:
         return True  # the handler reports what is wrong with it
     if more or _HIDDEN.search(text) is not None or _LONE.search(text) is not None:

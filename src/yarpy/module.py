@@ -25,7 +25,7 @@ Rules. `configure` runs first, `close` last, whatever happens between them, exce
 returned False or raised. A module with a name opens `NAME/rpc`, which answers what `respond`
 returns, and knows `help` and `quit`; and `NAME/quit`, by which `yarpy terminate NAME` ends it.
 SIGINT and SIGTERM end it in good order; the fourth of them ends the process at once. `update` is
-called every `period` seconds, and what one call takes too long is not caught up.
+called every `period` seconds by `yarpy.clock`, and what one call takes too long is not caught up.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ from __future__ import annotations
 import os
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from types import FrameType
 from typing import Any, Final, Self
 
+from yarpy import clock
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -54,7 +54,7 @@ log = logger("yarpy.module")
 #: The words that end a module; a vocab holds their first four letters.
 QUIT: Final = frozenset(("quit", "exit", "bye"))
 #: Signals after which the process no longer waits for the module to end.
-PATIENCE: Final = 3
+SIGNALS: Final = 3
 
 
 class Module:
@@ -102,7 +102,7 @@ class Module:
 
     @property
     def stopping(self) -> bool:
-        """Whether it was asked to end."""
+        """Return whether the module was asked to end."""
         return self._ending.is_set()
 
     def stop(self) -> None:
@@ -178,6 +178,7 @@ class Module:
                 self._working = False
 
     def _loop(self) -> None:
+        time = clock.current()
         while not self.stopping:
             begun = time.monotonic()
             try:
@@ -186,7 +187,7 @@ class Module:
             except PortClosed:
                 if not self.stopping:
                     raise
-            self._ending.wait(max(0.0, begun + self.period - time.monotonic()))
+            time.wait(self._ending, begun + self.period - time.monotonic())
 
 
 @contextmanager
@@ -200,7 +201,7 @@ def _signals(stop: Callable[[], None]) -> Iterator[None]:
     def handle(number: int, frame: FrameType | None) -> None:
         nonlocal count
         count += 1
-        if count > PATIENCE:
+        if count > SIGNALS:
             os._exit(128 + number)
         threading.Thread(target=stop, name="yarpy module stop", daemon=True).start()
 

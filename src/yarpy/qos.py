@@ -10,6 +10,7 @@ follow YARP's classes (LOW AF11, NORM 0, HIGH AF42, CRIT VA); the TOS byte is DS
 from __future__ import annotations
 
 import os
+import sys
 from dataclasses import dataclass
 from typing import Final
 
@@ -37,8 +38,8 @@ class Sched:
 
 @dataclass(frozen=True, slots=True)
 class Qos:
-    """What a connection is given, or has: its thread's scheduling, its packets' priority, and when
-    its messages should come.
+    """The quality of service of a connection, asked for or granted: its thread's scheduling, its
+    packets' priority, and when its messages should come.
 
     `policy` is SCHED_OTHER, SCHED_FIFO or SCHED_RR, `priority` 1..99 for the last two, `packets` a
     level (LOW, NORM, HIGH, CRIT), a DSCP class (AF42) or a DSCP number. `deadline` is how many
@@ -82,7 +83,7 @@ class Qos:
 
     @property
     def timed(self) -> bool:
-        """Whether it says when messages should come."""
+        """Return whether it says when messages should come."""
         return not (self.deadline is None and self.rate is None and self.late is None)
 
     @classmethod
@@ -161,7 +162,7 @@ def schedule(thread: int, sched: Sched) -> None:
 
     Raises LocalProtocolError when the kernel refuses, or has no such thing.
     """
-    if not hasattr(os, "sched_setscheduler"):
+    if sys.platform != "linux" or not hasattr(os, "sched_setscheduler"):
         raise LocalProtocolError("this system does not let a program set thread priorities")
     policy = max(sched.policy, 0)
     priority = max(sched.priority, 0) if policy else 0
@@ -179,8 +180,8 @@ def schedule(thread: int, sched: Sched) -> None:
 
 
 def scheduled(thread: int) -> Sched:
-    """What the kernel really does with a thread; -1 where it does not say."""
-    if not hasattr(os, "sched_getscheduler"):
+    """Return the scheduling that the kernel really gives a thread; -1 where it does not say."""
+    if sys.platform != "linux" or not hasattr(os, "sched_getscheduler"):
         return Sched()
     try:
         return Sched(os.sched_getscheduler(thread), os.sched_getparam(thread).sched_priority)

@@ -1,108 +1,37 @@
 """Name -> plug-in: the one place where carriers, types, monitors and commands are looked up.
 
-Rules: our plug-ins and third-party ones come the same way, from packaging entry points (groups
-`yarpy.carriers`, `yarpy.types`, `yarpy.monitors`, `yarpy.commands`, `yarpy.findings`,
-`yarpy.middlewares`). Nothing registers itself by being imported. A lookup loads only what it needs;
-a plug-in that fails to load is an error that names its distribution.
+Rules: a plug-in of another package is an entry point (groups `yarpy.carriers`, `yarpy.transports`,
+`yarpy.types`, `yarpy.monitors`, `yarpy.commands`, `yarpy.findings`, `yarpy.middlewares`,
+`yarpy.devices` ...), one of ours a row of `shipped.py`. Nothing registers itself by being imported.
+A lookup loads only what it needs, and to ask for the facts of a row loads nothing; a plug-in that
+fails to load is an error that names its distribution.
 """
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Iterator, Mapping
-from typing import Any, Final
+from importlib import import_module
+from typing import Any, Final, Generic, TypeVar
 
+from yarpy import fork
 from yarpy.errors import UnknownPlugin
+from yarpy.facts import MAGIC_SIZE, CarrierRow, Row, TransportRow
+from yarpy.shipped import CARRIERS, ELSEWHERE, SHIPPED, TRANSPORTS
 
-_STOCK: Final = "yarpy.monitors.stock"
-
-# What ships with yarpy is listed here as well as in pyproject.toml: a lookup of `tcp` must not cost
-# a scan of every installed distribution (tens of milliseconds), and works from a bare source tree.
-SHIPPED: Final[dict[str, dict[str, str]]] = {
-    "carriers": {
-        "tcp": "yarpy.carriers.tcp:Tcp",
-        "fast_tcp": "yarpy.carriers.tcp:FastTcp",
-        "tls": "yarpy.carriers.tcp:Tls",
-        "udp": "yarpy.carriers.udp:Udp",
-        "mcast": "yarpy.carriers.mcast:Mcast",
-        "text": "yarpy.carriers.text:Text",
-        "text_ack": "yarpy.carriers.text:TextAck",
-        "unix_stream": "yarpy.carriers.unix_stream:UnixStream",
-        "local": "yarpy.carriers.local:Local",
-        "memory": "yarpy.carriers.memory:Memory",
-        "shmem": "yarpy.carriers.shmem:Shmem",
-        "name_ser": "yarpy.carriers.name_ser:NameSer",
-        "http": "yarpy.carriers.http.carrier:Http",
-        "mjpeg": "yarpy.carriers.mjpeg:Mjpeg",
-        "mpi": "yarpy.carriers.mpi:Mpi",
-        "bcast": "yarpy.carriers.mpi:Bcast",
-        "mqtt": "yarpy.carriers.mqtt:Mqtt",
-        "ros2": "yarpy.carriers.ros2:Ros2",
-        "zenoh": "yarpy.carriers.zenoh:Zenoh",
-        "rossrv": "yarpy.carriers.rossrv:RosSrv",
-        "tcpros": "yarpy.carriers.tcpros:TcpRos",
-        "websocket": "yarpy.carriers.websocket:WebSocket",
-        "xmlrpc": "yarpy.carriers.xmlrpc:XmlRpc",
-        "zmq": "yarpy.carriers.zmq:Zmq",
-    },
-    "monitors": {
-        "adaptive": f"{_STOCK}.adaptive:Adaptive",
-        "bayer": f"{_STOCK}.bayer:Bayer",
-        "bottle_compression_zlib": f"{_STOCK}.bottle_compression_zlib:BottleCompressionZlib",
-        "depthimage_compression_zlib": f"{_STOCK}.depthimage_compression_zlib:DepthZlib",
-        "depthimage_to_mono": f"{_STOCK}.depthimage_to_mono:DepthImageToMono",
-        "depthimage_to_rgb": f"{_STOCK}.depthimage_to_rgb:DepthImageToRgb",
-        "depthimage_to_vector": f"{_STOCK}.depthimage_to_vector:DepthImageToVector",
-        "image_compression_jpeg": f"{_STOCK}.image_compression_jpeg:ImageCompressionJpeg",
-        "image_compression_png": f"{_STOCK}.image_compression_png:ImageCompressionPng",
-        "image_rotation": f"{_STOCK}.image_rotation:ImageRotation",
-        "image_to_mono": f"{_STOCK}.image_to_mono:ImageToMono",
-        "portmonitor": "yarpy.monitors.script.portmonitor:portmonitor",
-        "priority": f"{_STOCK}.priority:Priority",
-        "segmentationimage_to_rgb": f"{_STOCK}.segmentationimage_to_rgb:LabelColours",
-        "sensorMeasurements_to_vector": f"{_STOCK}.sensor_measurements_to_vector:SensorPose",
-        "simulated_network_delay": f"{_STOCK}.simulated_network_delay:SimulatedNetworkDelay",
-        "soundfilter_resample": f"{_STOCK}.soundfilter_resample:SoundFilterResample",
-        "sound_marker": f"{_STOCK}.sound_marker:SoundMarker",
-        "throttleDown": f"{_STOCK}.throttle_down:ThrottleDown",
-        # These two have ports of their own, and so live above them.
-        "rpc_monitor": "yarpy.network.rpc_monitor:RpcMonitor",
-        "stats_monitor": "yarpy.network.stats_monitor:StatsMonitor",
-    },
-    # What `yarpy doctor` looks for, in this order.
-    "findings": {
-        name: f"yarpy.network.doctor.{name}:find"
-        for name in (
-            *("server", "name", "address", "program", "connection", "flowing", "monitor"),
-            *("carrier", "content", "dialect", "priority", "kernel"),
-        )
-    },
-    # What methods are decorated with (`yarpy.wrap`).
-    "middlewares": {
-        name.lower(): f"yarpy.wrap.middlewares.{name.lower()}:{name}"
-        for name in ("Yarp", "Mqtt", "Ros", "Ros2", "WebSocket", "Zenoh", "ZeroMq")
-    },
-    # What carriers go over that have no connections of their own.
-    "media": {
-        "ros2": "yarpy.ros2.medium:open_medium",
-        "zenoh": "yarpy.zenoh.medium:open_medium",
-    },
-    # What ports may be part of beside their connections; it has ports of its own, too.
-    "graphs": {"ros": "yarpy.ros.part:part_of"},
-    # What typed clients call with: `yarpy.idl` is pure, and so below all ports.
-    "clients": {"rpc": "yarpy.port.rpc:RpcClient", "aio": "yarpy.aio.rpc:RpcClient"},
-}
+R = TypeVar("R", bound=Row)
 
 
-class Registry:
+class Registry(Generic[R]):
     """Plug-ins of one kind by name. `kind` is `carriers`, `types`, `monitors` or `commands`."""
 
-    def __init__(self, kind: str, shipped: Mapping[str, str] | None = None) -> None:
+    def __init__(self, kind: str, shipped: Mapping[str, R]) -> None:
         self.kind = kind
-        self._shipped = dict(SHIPPED.get(kind, {}) if shipped is None else shipped)
+        self._shipped = dict(shipped)
         self._loaded: dict[str, Any] = {}
         self._foreign: dict[str, Any] | None = None
-        self._lock = threading.RLock()  # two acceptors may meet an unknown protocol at once
+        self._lock = fork.lock()  # two acceptors may meet an unknown protocol at once
 
     def add(self, name: str, plugin: Any) -> None:
         """Add a plug-in by hand (a test, a notebook); it wins over installed ones."""
@@ -127,7 +56,7 @@ class Registry:
             pass
         with self._lock:
             if name in self._shipped:
-                plugin = _resolve(name, self._shipped[name])
+                plugin = _resolve(self._shipped[name])
             else:
                 entry = self._entries().get(name)
                 if entry is None:
@@ -135,6 +64,15 @@ class Registry:
                 plugin = self._load_entry(entry)
             self._loaded[name] = plugin
             return plugin
+
+    def row(self, name: str) -> R | None:
+        """Return what is known of a shipped plug-in without importing it; None for any other."""
+        return self._shipped.get(name)
+
+    def owner(self, name: str) -> str:
+        """Return the distribution that brings a plug-in, "" for yarpy, or if nobody knows."""
+        entry = None if name in self._shipped else self._entries().get(name)
+        return entry.dist.name if entry is not None and entry.dist is not None else ""
 
     def __iter__(self) -> Iterator[Any]:
         """Every plug-in that loads; asking for one of the others by name says why."""
@@ -170,33 +108,154 @@ class Registry:
 
         known = self.names()
         near = get_close_matches(name, known, n=1)
-        hint = f'did you mean "{near[0]}"? ' if near else ""
         singular = self.kind.removesuffix("s")
+        if near:
+            return f'no {singular} "{name}": did you mean "{near[0]}"?'
         return (
-            f'no {singular} "{name}": {hint}known are {", ".join(known) or "none"}; '
+            f'no {singular} "{name}": known are {", ".join(known) or "none"}; '
             f"others come with a package that has the entry point group yarpy.{self.kind}"
         )
 
 
-def _resolve(name: str, target: str) -> Any:
-    from importlib import import_module
+class CarrierRegistry(Registry[CarrierRow]):
+    """The carriers: what they are can be asked before they are imported."""
 
-    module, _, attribute = target.partition(":")
+    def __init__(self, shipped: Mapping[str, CarrierRow] = CARRIERS) -> None:
+        super().__init__("carriers", shipped)
+        self._facts: dict[str, CarrierRow] = {}
+
+    def add(self, name: str, plugin: Any) -> None:
+        super().add(name, plugin)
+        self._facts.pop(name, None)
+
+    def remove(self, name: str) -> None:
+        super().remove(name)
+        self._facts.pop(name, None)
+
+    def facts(self, name: str) -> CarrierRow:
+        """Return the facts of a carrier: of the row if it ships with yarpy, else of its class. One
+        that nobody knows is as `tcp`."""
+        row = self._shipped.get(name) or ELSEWHERE.get(name) or self._facts.get(name)
+        if row is None and (name in self._loaded or name in self._entries()):
+            try:
+                row = self._facts[name] = CarrierRow.of(name, self.load(name))
+            except (UnknownPlugin, AttributeError):
+                pass  # whoever loads it is told
+        return row or CarrierRow(name)
+
+    def beginning(self, first: bytes) -> Iterator[Any]:
+        """Yield every carrier that a connection with these first eight bytes may be of, ours first;
+        nothing else is imported. Strangers are asked where ours are not certain."""
+        certain = False
+        for name in [*self._shipped, *(one for one in self._loaded if one not in self._shipped)]:
+            plugin = self._loaded.get(name)
+            if plugin is None and self._shipped[name].may_begin(first):
+                try:
+                    plugin = self.load(name)
+                except UnknownPlugin:  # asking for it by name says why
+                    continue
+            if plugin is not None:
+                certain = certain or plugin.recognises(first) >= MAGIC_SIZE
+                yield plugin
+        if not certain:
+            for name in self._entries():
+                if name not in self._loaded:
+                    try:
+                        yield self.load(name)
+                    except UnknownPlugin:
+                        continue
+
+
+class TransportRegistry(Registry[TransportRow]):
+    """The transports: which one leads where can be asked before they are imported."""
+
+    def __init__(self, shipped: Mapping[str, TransportRow] = TRANSPORTS) -> None:
+        super().__init__("transports", shipped)
+        self._plain = shipped["tcp"]
+        self._named = [row for row in shipped.values() if row.hosts]
+        self._facts: dict[str, TransportRow] = {}
+
+    def facts(self, name: str) -> TransportRow:
+        """Return the facts of a transport: of the row if it ships with yarpy, else of its class.
+        Raises UnknownPlugin."""
+        row = self._shipped.get(name) or self._facts.get(name)
+        if row is None:
+            row = self._facts[name] = TransportRow.of(name, self.load(name))
+        return row
+
+    def of_host(self, host: str) -> TransportRow:
+        """Return the facts of the transport that leads to a host: of `tcp`, unless the host ends as
+        those of another one do. An IP address is looked up nowhere."""
+        if not ("." in host and host[-1].isalpha()) or ":" in host:
+            return self._plain
+        for row in self._named:
+            if host.endswith(row.hosts) and host != row.hosts:
+                return row
+        for name in dict.fromkeys([*self._entries(), *self._loaded]):
+            if name not in self._shipped:
+                try:
+                    row = self.facts(name)
+                except (UnknownPlugin, AttributeError):  # whoever asks for it by name is told
+                    continue
+                if row.hosts and host.endswith(row.hosts) and host != row.hosts:
+                    return row
+        return self._plain
+
+
+def _resolve(row: Row) -> Any:
+    module, _, attribute = row.target.partition(":")
     try:
-        return getattr(import_module(module), attribute)
+        load = _import_apart if row.home == "core" else import_module
+        return getattr(load(module), attribute)
     except ImportError as error:  # a library that it needs; the others do without
         raise UnknownPlugin(
-            f'"{name}" cannot be loaded ({error}): install what is missing, as `pip install yarpy` '
+            f'"{row.name}" cannot be loaded ({error}): install what is missing, as `{row.advice}` '
             "does"
         ) from error
 
 
-carriers: Final = Registry("carriers")
-types: Final = Registry("types")
-monitors: Final = Registry("monitors")
-commands: Final = Registry("commands")
-findings: Final = Registry("findings")
-media: Final = Registry("media")
-graphs: Final = Registry("graphs")
-clients: Final = Registry("clients")
-middlewares: Final = Registry("middlewares")
+def _import_apart(module: str) -> Any:
+    """Import a module of ours where no signal handler can raise in the middle, as by Ctrl-C: not in
+    the main thread. There, Python would keep the module locked for ever."""
+    if module in sys.modules or threading.current_thread() is not threading.main_thread():
+        return import_module(module)
+    done = threading.Lock()
+    done.acquire()
+    found: list[Any] = []
+    failed: list[BaseException] = []
+
+    def load() -> None:
+        try:
+            found.append(import_module(module))
+        except BaseException as error:
+            failed.append(error)
+        done.release()
+
+    try:
+        threading.Thread(target=load, name=f"yarpy import {module}", daemon=True).start()
+    except RuntimeError:  # there can be no more threads
+        return import_module(module)
+    done.acquire()
+    if failed:
+        raise failed[0]
+    return found[0]
+
+
+carriers: Final = CarrierRegistry()
+transports: Final = TransportRegistry()
+types: Final = Registry("types", SHIPPED["types"])
+monitors: Final = Registry("monitors", SHIPPED["monitors"])
+commands: Final = Registry("commands", SHIPPED["commands"])
+findings: Final = Registry("findings", SHIPPED["findings"])
+graphs: Final = Registry("graphs", SHIPPED["graphs"])
+clients: Final = Registry("clients", SHIPPED["clients"])
+middlewares: Final = Registry("middlewares", SHIPPED["middlewares"])
+names: Final = Registry("names", SHIPPED["names"])
+listings: Final = Registry("listings", SHIPPED["listings"])
+delegates: Final = Registry("delegates", SHIPPED["delegates"])
+idls: Final = Registry("idls", SHIPPED["idls"])
+idl_commands: Final = Registry("idl_commands", SHIPPED["idl_commands"])
+contents: Final = Registry("contents", SHIPPED["contents"])
+interfaces: Final = Registry("interfaces", SHIPPED["interfaces"])
+devices: Final = Registry("devices", SHIPPED["devices"])
+robots: Final = Registry("robots", SHIPPED["robots"])

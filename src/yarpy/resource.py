@@ -82,7 +82,7 @@ class ResourceFinder:
         return self.values.get(key, default)
 
     def check(self, key: str) -> bool:
-        """Whether the option is given, with or without a value."""
+        """Return whether the option is given, with or without a value."""
         return key in self.values
 
     def group(self, key: str) -> Bottle | None:

@@ -48,9 +48,10 @@ Monitors: TypeAlias = tuple[tuple[str, tuple[str, ...]], ...]
 
 @dataclass(frozen=True, slots=True, repr=False)
 class CarrierSpec:
-    """What a carrier string says. `text` may be shown, `whole` has the password too.
+    """A parsed carrier string. `text` may be shown, `whole` has the password too.
 
-    `own`: this program asked for it, not somebody on the network. `chosen`: nobody asked for that
+    `own`: this program asked for it, not somebody on the network. `scripts`: who asked for it may
+    name scripts of a context. `chosen`: nobody asked for that
     protocol, it seemed the best one.
     `base` is the protocol, `tokens` what is added to it. `send` and `recv` are the monitors at
     either end. `log` is the value of `+log`: such a connection gets what a port receives, not what
@@ -65,6 +66,7 @@ class CarrierSpec:
     text: str
     whole: str
     own: bool = field(default=False, compare=False)
+    scripts: bool = field(default=False, compare=False)
     chosen: bool = field(default=False, compare=False)
 
     def value(self, key: str) -> str | None:
@@ -87,7 +89,7 @@ class CarrierSpec:
 
     @property
     def in_tls(self) -> bool:
-        """Whether it asks for TLS."""
+        """Return whether the carrier string asks for TLS."""
         return self.base == "tls" or "tls" in self.tokens
 
     def over(self, base: str) -> CarrierSpec:
@@ -99,7 +101,7 @@ class CarrierSpec:
         return self._as("+".join((base, *self.tokens)))
 
     def _as(self, text: str) -> CarrierSpec:
-        return replace(parse_carrier(text), own=self.own, chosen=self.chosen)
+        return replace(parse_carrier(text), own=self.own, scripts=self.scripts, chosen=self.chosen)
 
     def __str__(self) -> str:
         return self.text
@@ -135,7 +137,7 @@ def parse_carrier(text: str) -> CarrierSpec:
 
 
 def _split(text: str) -> list[str]:
-    """What stands between `+` outside parentheses. Those that do not pair up are ordinary
+    """Return what stands between `+` outside parentheses. Those that do not pair up are ordinary
     characters."""
     if "(" not in text:
         return text.split("+")
@@ -159,10 +161,10 @@ def masked(text: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Declared:
-    """What our port says of itself where a protocol asks for it: the node that it belongs to, its
-    topic or service, the name of its type, and the class of that, as far as it is known. `latched`:
-    who comes late gets the last message. `clock` gives the time for messages without a stamp, in
-    seconds."""
+    """The description that our port gives of itself where a protocol asks for it: the node that it
+    belongs to, its topic or service, the name of its type, and the class of that, as far as it is
+    known. `latched`: who comes late gets the last message. `clock` gives the time for messages
+    without a stamp, in seconds."""
 
     node: str = ""
     topic: str = ""
@@ -177,7 +179,7 @@ UNDECLARED: Final = Declared()
 
 @dataclass(slots=True, init=False)
 class Route:
-    """Who talks to whom over what: one connection. `port` is the accepting side's TCP port,
+    """The two ends of one connection, and its carrier. `port` is the accepting side's TCP port,
     `host` its address, where it was dialled. `peer` is what the port that was dialled calls itself,
     as far as it was asked and can say. `declared` is what our port says of itself."""
 
@@ -214,7 +216,7 @@ class Route:
 
     @property
     def specifier(self) -> str:
-        """What the sender says of itself: its name, and what is added to its carrier."""
+        """Return what the sender says of itself: its name, and what is added to its carrier."""
         _, plus, additions = self.spec.whole.partition("+")
         if not plus:
             return self.source

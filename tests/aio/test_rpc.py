@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+import time
 from urllib.request import urlopen
 
 import pytest
@@ -38,7 +39,8 @@ def test_server_answers_from_the_loop_side_by_side(caplog):
                 ["heard", "a"],
                 ["heard", "b"],
             ]
-            assert (await one.call("fail"))[0] == "fail"
+            with pytest.raises(yarpy.RemoteError, match="ValueError: as it was asked to"):
+                await one.call("fail")
             answers = await asyncio.gather(one.ask(["a"]), two.ask(["b"]))
             assert [answer.value for answer in answers] == [["heard", "a"], ["heard", "b"]]
             assert "/aio/two" in [each.name for each in server.inputs]
@@ -95,5 +97,102 @@ def test_tell_and_pages():
             address = server.port.address
             page = await asyncio.to_thread(lambda: urlopen(f"http://{address}/", timeout=10).read())
             assert page == b"<p>mine</p>"
+
+    asyncio.run(main())
+
+
+async def slowly(message):
+    if message.value == ["slow"]:
+        await asyncio.Event().wait()
+    return message.value
+
+
+def test_call_that_is_cancelled_ends_and_the_next_call_works():
+    async def main():
+        async with aio.RpcServer("/aio/server", slowly), aio.RpcClient("/aio/server") as client:
+            for number in range(5):
+                with pytest.raises(TimeoutError):
+                    await asyncio.wait_for(client.call("slow"), 0.05)
+                assert await asyncio.wait_for(client.call(number), 10) == [number]
+            waiting = [asyncio.create_task(client.call("slow")) for _ in range(4)]
+            last = asyncio.create_task(client.call("last"))
+            await asyncio.sleep(0.05)
+            for task in reversed(waiting):
+                task.cancel()
+            assert await asyncio.wait_for(last, 10) == ["last"]
+            assert all(task.cancelled() for task in waiting)
+
+    asyncio.run(asyncio.wait_for(main(), 60))
+
+
+def test_loop_ends_though_a_call_was_cancelled_and_nothing_was_closed():
+    async def main():
+        server = await aio.RpcServer("/aio/server", slowly).open()
+        client = await aio.RpcClient("/aio/server").open()
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(client.call("slow"), 0.1)
+        return server, client
+
+    started = time.monotonic()
+    server, client = asyncio.run(main())
+    assert time.monotonic() - started < 10
+    client.port.close()
+    server.port.close()
+
+
+def test_servers_that_ask_other_servers_do_not_wait_for_a_free_thread():
+    async def main(clients=24):
+        between = aio.RpcClient("/aio/inner", name="/aio/between")
+
+        async def pass_on(message):
+            return await between.call(*message.value)
+
+        async with (
+            aio.RpcServer("/aio/inner", lambda message: message.value),
+            between,
+            aio.RpcServer("/aio/outer", pass_on),
+        ):
+            callers = [aio.RpcClient("/aio/outer") for _ in range(clients)]
+            answers = await asyncio.gather(
+                *(caller.call(number) for number, caller in enumerate(callers))
+            )
+            assert answers == [[number] for number in range(clients)]
+            await asyncio.gather(*(caller.close() for caller in callers))
+
+    asyncio.run(asyncio.wait_for(main(), 60))
+
+
+def test_a_thousand_calls_at_once():
+    async def main():
+        async with aio.RpcServer("/aio/server", lambda message: message.value):
+            clients = [aio.RpcClient("/aio/server") for _ in range(100)]
+            answers = await asyncio.gather(
+                *(clients[number % 100].call(number) for number in range(1000))
+            )
+            assert answers == [[number] for number in range(1000)]
+            await asyncio.gather(*(client.close() for client in clients))
+
+    asyncio.run(asyncio.wait_for(main(), 100))
+
+
+def test_question_after_the_loop_has_ended_is_answered():
+    async def main():
+        return await aio.RpcServer("/aio/server", slowly).open()
+
+    server = asyncio.run(main())
+    with yarpy.RpcClient("/aio/server") as client:
+        answer = client.ask(["x"], timeout=10)
+        assert answer.value[0] == "fail"
+        assert "loop of this port has ended" in answer.value[1]
+    server.port.close()
+
+
+def test_client_that_is_closed_stays_closed():
+    async def main():
+        client = aio.RpcClient("/aio/nobody")
+        await client.close()
+        assert client.closed
+        with pytest.raises(yarpy.PortClosed, match="closed"):
+            await client.call("x")
 
     asyncio.run(main())

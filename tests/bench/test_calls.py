@@ -1,29 +1,35 @@
-"""The table of a message's function calls comes about; how many they are is not tested."""
+"""The table of a message's function calls comes about, and says that they are few."""
 
+import subprocess
 import sys
 from pathlib import Path
 
-import pytest
+from support.wait import HANG
 
-BENCH = Path(__file__).resolve().parents[2] / "bench"
-sys.path.insert(0, str(BENCH))
-
-import calls  # noqa: E402
+BENCH = Path(__file__).resolve().parents[2] / "bench" / "calls.py"
+ONCE = ("--messages", "50", "--rows", "100")
 
 
-def test_tables(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    bound: list[set[int]] = []
-    monkeypatch.setattr(calls.os, "sched_setaffinity", lambda _, cores: bound.append(cores))
-    monkeypatch.setattr(calls, "ROUNDS", 1)
-    monkeypatch.setattr(sys, "argv", ["calls.py", "--messages", "50", "--rows", "100"])
-    calls.main()
-    printed = capsys.readouterr().out
-    assert [len(cores) for cores in bound] == [1]
-    for title in ("Both sides", "The side that asks", "The side that answers"):
+def test_tables() -> None:
+    # In a program of its own, as it binds itself to one core: with two, whose turn it is is asked
+    # as often as the threads happen to meet.
+    command = (sys.executable, str(BENCH), *ONCE)
+    printed = subprocess.run(
+        command, check=True, capture_output=True, text=True, timeout=HANG
+    ).stdout
+    # With those of the bench, and some for a thread that is interrupted.
+    for title, most in (
+        ("Both sides", 32),
+        ("The side that asks", 30),
+        ("The side that answers", 26),
+    ):
         _, found, rest = printed.partition(f"{title}: ")
         assert found
+        assert int(rest.split()[0]) <= most
         rooms, functions = rest.split("| room |")[1].split("| function |")[:2]
         assert {"| port |", "| functions in C |"} <= {
             line[: line.find("|", 2) + 1] for line in rooms.splitlines()
         }
-        assert "_socket.socket" in functions
+        # One of ours, and one in C; which system call is made at once depends on who is quicker.
+        assert "| link/" in functions
+        assert "' of 'list' objects |" in functions

@@ -18,8 +18,9 @@ def test_table(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[st
     small = ["--rounds", "1", "--seconds", "0.2", "--readers", "1", "--size", "160x120"]
     monkeypatch.setattr(sys, "argv", ["camera.py", *small])
     monkeypatch.setattr(camera, "CARRIERS", ("memory", "tcp"))
-    for name in yarpy.NameServer().environment:
-        monkeypatch.setenv(name, "")
+    with yarpy.NameServer() as server:
+        for name in server.environment:
+            monkeypatch.setenv(name, "")
     camera.main()
     table = capsys.readouterr().out
     for carrier in camera.CARRIERS:

@@ -4,7 +4,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from support.ros import needs_ros
 
 BENCH = Path(__file__).resolve().parents[2] / "bench"
 sys.path.insert(0, str(BENCH))
@@ -12,10 +11,8 @@ sys.path.insert(0, str(BENCH))
 import ros  # noqa: E402
 
 
+@pytest.mark.peer("ros", "rosmaster")
 def test_every_pair(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    needs_ros()
-    if not Path("/usr/bin/rosmaster").exists():
-        pytest.skip("no rosmaster: apt-get install python3-rosmaster")
     monkeypatch.setattr(sys, "argv", ["ros.py", "--seconds", "0.2"])
     for name in ("ROS_MASTER_URI", "ROS_IP", "YARPY_SERVER"):
         monkeypatch.setenv(name, "")

@@ -6,9 +6,9 @@ import pytest
 
 from yarpy import registry
 from yarpy.carriers.base import Carrier, Indexed, refuse_unknown
-from yarpy.carriers.tcp import Tcp
+from yarpy.carriers.own.tcp import Tcp
 from yarpy.errors import LocalProtocolError
-from yarpy.link.handshake import recognise
+from yarpy.link.begin.handshake import recognise
 from yarpy.route import Route, parse_carrier
 from yarpy.testing import CarrierConformance
 from yarpy.wire import framing

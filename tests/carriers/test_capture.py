@@ -26,10 +26,10 @@ from support.replay import (
     silent,
 )
 
-from yarpy.carriers.tcp import Tcp
+from yarpy.carriers.own.tcp import Tcp
 from yarpy.data.bottle import Bottle
 from yarpy.data.stamp import Stamp
-from yarpy.link.handshake import find_carrier
+from yarpy.link.begin.handshake import find_carrier
 from yarpy.route import parse_carrier
 from yarpy.testing import End
 from yarpy.testing.drive import GROUP

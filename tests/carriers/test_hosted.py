@@ -1,14 +1,17 @@
 """What carriers have in common that another middleware carries; `test_ros2`, `test_zenoh` do it."""
 
 import pytest
+from support.guest import guest
 
 from yarpy.carriers.hosted import Hosted, failure
-from yarpy.carriers.ros2 import Ros2
-from yarpy.carriers.zenoh import Zenoh
 from yarpy.errors import LocalProtocolError
-from yarpy.link.handshake import find_carrier
+from yarpy.link.begin.handshake import find_carrier
 from yarpy.route import parse_carrier
 from yarpy.wire.message import CALL
+
+guest("ros2", "zenoh")
+from yarpy.peers.ros2.carrier import Ros2  # noqa: E402
+from yarpy.peers.zenoh.carrier import Zenoh  # noqa: E402
 
 
 @pytest.mark.parametrize("carrier", [Ros2, Zenoh])

@@ -11,9 +11,9 @@ import pytest
 from yarpy.carriers.payload import message_of, payload_of, to_payload, value_of
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
-from yarpy.data.image import Image
+from yarpy.data.sig.image import Image
+from yarpy.data.sig.vector import Vector
 from yarpy.data.value import Vocab
-from yarpy.data.vector import Vector
 from yarpy.errors import DecodeError
 from yarpy.wire.message import DATA, Encoded, Message, Packet
 

@@ -24,7 +24,7 @@ from chaos.stage import PATIENCE, Program, Stage
 from support.wait import wait_until
 
 import yarpy
-from yarpy.carriers.base import MAGIC_SIZE
+from yarpy.facts import MAGIC_SIZE
 from yarpy.names.client import YarpNameClient
 
 HERTZ = 500.0
@@ -134,7 +134,7 @@ def slow_reader(seconds: float) -> Row:
                 longest = max(longest, time.monotonic() - started)
                 number += 1
                 time.sleep(1 / HERTZ)
-            dropped = sum(line["drops"] for line in out.stats["outputs"])
+            dropped = sum(line.drops for line in out.stats.outputs)
         time.sleep(0.2)
     return Row(
         "a receiver that takes 100 ms for a message",
@@ -401,14 +401,20 @@ def all_of(scale: float) -> list[Callable[[], Row]]:
         lambda: crowd(some(10_000), "x", "peers that connect and say one byte"),
         lambda: crowd(some(10_000), "GET / HT", "peers that begin to greet"),
         lambda: clock_jump(max(3.0, 20 * scale)),
-        lambda: cut_link("tcp", max(2.0, 10 * scale)),
-        lambda: cut_link("udp", max(2.0, 10 * scale)),
-        lambda: dead_reader(True, max(2.0, 25 * min(scale, 1.0))),
-        lambda: dead_reader(False, max(2.0, 25 * min(scale, 1.0))),
-        lambda: dead_writer(max(2.0, 25 * min(scale, 1.0))),
-        lambda: stopped_reader_on_a_dead_host(max(2.0, 25 * min(scale, 1.0))),
+        _between_hosts(lambda: cut_link("tcp", max(2.0, 10 * scale))),
+        _between_hosts(lambda: cut_link("udp", max(2.0, 10 * scale))),
+        _between_hosts(lambda: dead_reader(True, max(2.0, 25 * min(scale, 1.0)))),
+        _between_hosts(lambda: dead_reader(False, max(2.0, 25 * min(scale, 1.0)))),
+        _between_hosts(lambda: dead_writer(max(2.0, 25 * min(scale, 1.0)))),
+        _between_hosts(lambda: stopped_reader_on_a_dead_host(max(2.0, 25 * min(scale, 1.0)))),
         lambda: full_disk(some(100)),
     ]
+
+
+def _between_hosts(experiment: Callable[[], Row]) -> Callable[[], Row]:
+    """Note for the tests that it takes network namespaces."""
+    experiment.peers = ("namespaces",)  # type: ignore[attr-defined]
+    return experiment
 
 
 def _names(stage: Stage) -> YarpNameClient:

@@ -13,7 +13,6 @@ import gc
 import os
 import random
 import signal
-import subprocess
 import sys
 import tempfile
 import time
@@ -31,14 +30,27 @@ CARRIERS = ("memory", "shmem")
 
 def left() -> dict[str, int]:
     """What there is of shared memory, and of this process's descriptors."""
-    segments = subprocess.run(["ipcs", "-m"], capture_output=True, text=True, check=True).stdout
+    with open("/proc/sysvipc/shm") as file:
+        segments = len(file.readlines()) - 1  # the first line is a heading
     return {
         "files in /dev/shm": len(os.listdir("/dev/shm")),
-        "segments (ipcs -m)": sum(line.startswith("0x") for line in segments.splitlines()),
+        "segments (ipcs -m)": segments,
         "files SHMEM_*": len(glob(os.path.join(tempfile.gettempdir(), "SHMEM_*"))),
         "memory of ours": len(_ours("maps")),
         "descriptors": len(os.listdir("/proc/self/fd")),
     }
+
+
+def settled(before: dict[str, int]) -> dict[str, int]:
+    """Return what is left once the last threads of closed ports have ended, or after 30 s."""
+    until = time.monotonic() + 30
+    while True:
+        after = left()
+        ours = ("memory of ours", "descriptors")
+        if all(after[what] == before[what] for what in ours) or time.monotonic() > until:
+            return after
+        time.sleep(0.01)
+        gc.collect()
 
 
 def _ours(table: str) -> list[str]:
@@ -62,15 +74,17 @@ def be_killed(role: str, number: int, carrier: str) -> None:
 
 
 @contextmanager
-def nursery(environment: dict[str, str], carrier: str) -> Iterator[Callable[[str, int], int]]:
-    """Starts such programs within a millisecond: by a process that has imported everything."""
+def nursery(carrier: str) -> Iterator[tuple[Callable[[str], None], Callable[[str, int], int]]]:
+    """Starts such programs within a millisecond: by a process that has imported everything. Yields
+    a function that tells it the address of the name server, and one that starts."""
     here, there = os.pipe(), os.pipe()
     mother = os.fork()
     if mother == 0:
-        os.environ.update(environment)
         os.close(here[1])
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)
-        for line in os.fdopen(here[0]):
+        orders = os.fdopen(here[0])
+        os.environ["YARPY_SERVER"] = orders.readline().strip()
+        for line in orders:
             role, number = line.split()
             child = os.fork()
             if child == 0:
@@ -86,12 +100,15 @@ def nursery(environment: dict[str, str], carrier: str) -> Iterator[Callable[[str
     os.close(there[1])
     answers = os.fdopen(there[0])
 
+    def tell(server: str) -> None:
+        os.write(here[1], f"{server}\n".encode())
+
     def start(role: str, number: int) -> int:
         os.write(here[1], f"{role} {number}\n".encode())
         return int(answers.readline())
 
     try:
-        yield start
+        yield tell, start
     finally:
         os.close(here[1])
         answers.close()
@@ -110,17 +127,16 @@ def kill(count: int, carrier: str) -> tuple[int, int]:
         assert (message.value.array == 7).all(), "a picture is not whole"
         came += 1
 
-    # Before there is any thread here: a forked process has none.
-    environment = _server_environment()
     with (
-        nursery(environment, carrier) as start,
-        yarpy.NameServer(int(environment["YARPY_SERVER"].rpartition(":")[2])),
+        nursery(carrier) as (tell, start),  # before there is any thread here: a fork has none
+        yarpy.NameServer() as server,
         yarpy.Port("/kills/out") as out,
         yarpy.BufferedPort("/kills/sink", callback=take),
     ):
+        tell(server.address)
         for number in range(count // 2):
             victims = [start(role, number) for role in ("reads", "writes")]
-            deadline = time.monotonic() + 10
+            deadline = time.monotonic() + 30
             while time.monotonic() < deadline:
                 try:
                     out.connect(f"/kills/reader{number}", carrier)
@@ -139,15 +155,6 @@ def kill(count: int, carrier: str) -> tuple[int, int]:
     return connected, came
 
 
-def _server_environment() -> dict[str, str]:
-    """A number that a name server may have in a moment."""
-    import socket
-
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return {"YARPY_SERVER": f"127.0.0.1:{probe.getsockname()[1]}"}
-
-
 def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     for carrier in CARRIERS:
@@ -158,7 +165,7 @@ def main() -> None:
             f"{carrier}: {count} killed in {seconds:.0f} s; {connected} readers were connected, "
             f"{came} whole pictures came"
         )
-        after = left()
+        after = settled(before)
         for what, number in before.items():
             print(f"  {what:20} {number:5} before {after[what]:5} after")
 

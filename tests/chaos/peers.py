@@ -51,9 +51,9 @@ def write(out: str, target: str, carrier: str, hertz: str, *options: str) -> Non
         port.flush(timeout=5)
         stats = port.stats
         port.disconnect(target)
-        past = port.stats["past"]["outputs"]
-    told = {"written": number, "drops": past["drops"] + stats["unconnected"]}
-    say(json.dumps({**told, "unconfirmed": past["unconfirmed"]}))
+        past = port.stats.past.outputs
+    told = {"written": number, "drops": past.drops + stats.unconnected}
+    say(json.dumps({**told, "unconfirmed": past.unconfirmed}))
 
 
 def read(name: str, pause: str = "0") -> None:

@@ -11,15 +11,21 @@ import pytest
 from chaos.experiments import Row, all_of
 from chaos.network import Missing
 from chaos.soak import soak
-from support.patience import patience
 from support.process import Process
+from support.wait import HANG
 
 pytestmark = pytest.mark.timeout(180)
 
 KILLS = Path(__file__).with_name("kills.py")
 
 
-@pytest.mark.parametrize("experiment", all_of(0.03))
+@pytest.mark.parametrize(
+    "experiment",
+    [
+        pytest.param(one, marks=pytest.mark.peer(*one.peers) if hasattr(one, "peers") else ())
+        for one in all_of(0.03)
+    ],
+)
 def test_experiment(experiment: Callable[[], Row]) -> None:
     try:
         row = experiment()
@@ -33,7 +39,7 @@ def test_experiment(experiment: Callable[[], Row]) -> None:
 def test_kills() -> None:
     """In a program of its own, since it forks."""
     with Process([sys.executable, KILLS, "10"]) as process:
-        assert process.wait(patience(60)) == 0, process.stderr
+        assert process.wait(2 * HANG) == 0, process.stderr
         told = re.findall(
             r"(memory of ours|descriptors) +(\d+) before +(\d+) after", process.stdout
         )

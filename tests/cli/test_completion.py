@@ -69,7 +69,7 @@ def test_names_of_ports(server, names, here, monkeypatch):
 
 
 def test_server_that_does_not_answer_offers_nothing(monkeypatch):
-    monkeypatch.setattr(completion, "PATIENCE", 0.05)
+    monkeypatch.setattr(completion, "TIMEOUT", 0.05)
     import socket
 
     with socket.create_server(("127.0.0.1", 0)) as silent:

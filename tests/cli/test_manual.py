@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
+from support.peer import program
 
 from yarpy.cli.main import root
 from yarpy.cli.manual import _text, manual
@@ -31,10 +31,10 @@ def test_defaults_are_shown_and_true() -> None:
     assert 'default: ""' not in page and "default: ...]" not in page
 
 
-@pytest.mark.skipif(not shutil.which("man"), reason="man is not installed (man-db)")
+@pytest.mark.peer("man")
 def test_man_shows_it_without_a_warning() -> None:
     done = subprocess.run(
-        ["man", "--warnings", "--encoding=UTF-8", "-l", PAGE],
+        [program("man"), "--warnings", "--encoding=UTF-8", "-l", PAGE],
         capture_output=True, text=True, timeout=60, env={"MANWIDTH": "80", "PATH": "/usr/bin:/bin"},
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")

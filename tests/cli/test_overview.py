@@ -18,7 +18,7 @@ from yarpy.network.traffic import End, Flow, PortState, Snapshot
 from yarpy.qos import Qos
 
 LONG = ("/robot/left_arm/very/long/name/state:o", "/logger/of/everything/left_arm/state:i", "tcp",
-        "1234567", "1000.0", "81.25", "12", "3", "0", "0", "0.10", "0.52", "FIFO 30", "AF42",
+        "1234567", "1000.0", "81.25", "7", "12", "3", "0", "0", "0.10", "0.52", "FIFO 30", "AF42",
         "")  # fmt: skip
 
 
@@ -37,12 +37,12 @@ def test_wide_shows_everything():
 
 
 def test_a_connection_in_all_columns():
-    sender = End("tcp", 10, 1000, 1, 0, latency=0.002, qos=Qos(packets="HIGH"), monitors=["m"],
-                 parameters={"level": 3})  # fmt: skip
-    receiver = End("tcp", 10, 1000, 2, timing={"missed": 7}, qos=Qos("FIFO", 30, "NORM"))
+    sender = End("tcp", 10, 1000, drops=1, unconfirmed=0, latency=0.002)
+    sender.qos, sender.monitors, sender.parameters = Qos(packets="HIGH"), ["m"], {"level": 3}
+    receiver = End("tcp", 10, 1000, drops=2, timing={"missed": 7}, qos=Qos("FIFO", 30, "NORM"))
     found = row(Flow("/a", "/b", sender, receiver, 5.0, 2e6))
     assert found == (
-        "/a", "/b", "tcp", "10", "5.0", "2.00", "3", "7", "0", "", "", "2.00", "- / FIFO 30",
+        "/a", "/b", "tcp", "10", "5.0", "2.00", "", "3", "7", "0", "", "", "2.00", "- / FIFO 30",
         "AF42 / CS0", "m (level=3)",
     )  # fmt: skip
 

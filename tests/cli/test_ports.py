@@ -9,7 +9,7 @@ import pytest
 
 import yarpy
 from yarpy.cli import signals
-from yarpy.cli.ports import hear_from, open_port, send_to
+from yarpy.cli.ports import hear_from, open_another, open_port, send_to
 
 
 @pytest.fixture(autouse=True)
@@ -47,6 +47,20 @@ def test_a_living_name_is_not_taken():
         pytest.raises(yarpy.AddressError, match="in use"),
     ):
         open_port(yarpy.Port, "/opening/f")
+
+
+def test_programs_of_one_kind_run_side_by_side():
+    with (
+        open_another(yarpy.Port, "/opening/page") as first,
+        open_another(yarpy.Port, "/opening/page") as second,
+    ):
+        assert (first.name, second.name) == ("/opening/page", "/opening/page/2")
+
+
+def test_a_page_needs_no_name(monkeypatch):
+    monkeypatch.delenv("YARPY_SERVER")
+    with open_another(yarpy.Port, "/opening/page") as port:
+        assert port.name == "/" + port.address.replace(":", "_")
 
 
 def test_without_a_name_server(monkeypatch, capsys):
@@ -92,3 +106,20 @@ def test_a_signal_while_a_port_opens(names, monkeypatch):
         for number, handler in zip(("TERM", "INT", "HUP"), (*before, hangup), strict=True):
             signal.signal(getattr(signal, f"SIG{number}"), handler)
     assert names.query("/opening/i") is None
+
+
+def test_a_name_that_is_empty(names):
+    """As of a variable that is not set: such a port would wait for ever, found by nobody."""
+    with (
+        click.Context(click.Command("x")),
+        pytest.raises(yarpy.AddressError, match=r"is empty .* `\.\.\.` stands for any free one"),
+    ):
+        open_port(yarpy.Port, "")
+
+
+def test_a_type_that_nobody_has_is_said(names, capsys):
+    with click.Context(click.Command("x")):
+        open_port(yarpy.Port, "/typed", port_type="std_srvs/SetBol")
+        open_port(yarpy.Port, "/other", port_type="yarp::os::Bottle")
+    said = capsys.readouterr().err
+    assert said.count("warning:") == 1 and "SetBol" in said

@@ -47,7 +47,7 @@ def test_a_shell_that_ignores_sigint_for_background_jobs(cli):
                 assert process.poll() is None  # nohup
                 process.kill()
             else:
-                assert process.wait(10) == code
+                assert process.wait() == code
 
 
 STUCK = """
@@ -73,7 +73,7 @@ def test_a_second_signal_ends_what_is_stuck_in_closing(cli):
         assert process.poll() is None
         time.sleep(2.0)
         process.send_signal(signal.SIGINT)
-        assert process.wait(10) == 130
+        assert process.wait() == 130
 
 
 def yarpy_process(code):

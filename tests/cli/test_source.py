@@ -7,14 +7,11 @@ import time
 
 import click
 import pytest
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.cli import source
 from yarpy.cli.source import Source
-
-PATIENCE = patience(20.0)
 
 
 @pytest.fixture
@@ -51,17 +48,19 @@ def test_carrier(listener):
 
 
 def test_it_is_waited_for_and_comes_back_however_late(listener, monkeypatch):
-    monkeypatch.setattr("yarpy.port.reconnect.INPUT_PATIENCE", 0.0)  # the port itself gives up
+    monkeypatch.setattr(
+        "yarpy.port.connect.reconnect.INPUT_PATIENCE", 0.0
+    )  # the port itself gives up
     found, lines = follow(listener, "/source/late")
     assert not found.connected
     assert lines[0].startswith('Waiting for /source/late: no port "/source/late"')
     for number in range(2):
         with yarpy.Port("/source/late") as out:
-            wait_until(lambda: found.connected, PATIENCE)
-            wait_until(lambda: lines[-1] == "" and out.outputs, PATIENCE)
+            wait_until(lambda: found.connected)
+            wait_until(lambda: lines[-1] == "" and out.outputs)
             out.write([number])
-            assert listener.read(timeout=PATIENCE).value == [number]
-        wait_until(lambda: not found.connected, PATIENCE)
+            assert listener.read(timeout=HANG).value == [number]
+        wait_until(lambda: not found.connected)
         time.sleep(2 * source.PAUSE)  # it has been seen to be gone
 
 
@@ -70,7 +69,7 @@ def test_who_disconnects_them_means_it(listener):
         found, _ = follow(listener, "/source/out")
         time.sleep(2 * source.PAUSE)
         assert yarpy.disconnect("/source/out", "/source/in")
-        wait_until(lambda: not found.connected, PATIENCE)
+        wait_until(lambda: not found.connected)
         time.sleep(4 * source.PAUSE)
         assert not found.connected
 
@@ -92,7 +91,7 @@ def test_it_ends_with_the_port(default):
     with yarpy.BufferedPort("/source/short") as port, click.Context(click.Command("x")):
         Source(port, "/source/nobody")
         assert "yarpy source /source/nobody" in names_of_threads()
-    wait_until(lambda: "yarpy source /source/nobody" not in names_of_threads(), PATIENCE)
+    wait_until(lambda: "yarpy source /source/nobody" not in names_of_threads())
 
 
 def names_of_threads():

@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.patience import patience
 from support.port import free_block
 from support.process import Process
+from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.sim.robot import Robot, icub_head
+from yarpy.kits.sim.robot import Robot, icub_head
 
 TRANSLATED = [
     ("yarp", "connect /a /b fast_tcp", "connect /a /b fast_tcp"),
@@ -33,11 +33,16 @@ TRANSLATED = [
     ("scope", "--remote /p", "scope /p --name /yarpscope"),
     ("scope", "--remote /p --index (0 2) --min -1 --max 1 --size 201", None),
     ("hear", "--remote /mic --nodevice", "hear /mic --name /yarphear"),
+    ("logger", "--start --unlimited_size --no_stop", "log"),
+    ("logger", "--name /l --level ERROR", "log --name /l --level ERROR"),
+    ("run", "--server /n --log", "run --server /n --log --end-programs"),
+    ("run", "--on /n --kill t 9 --geometry 80x24+0+0", "run --on /n --kill t 9"),
     ("hear", "--name /ears", "hear --name /ears"),
     ("thrift", "--gen yarp:no_doc -o out cam.thrift", "idl thrift --out out cam.thrift"),
     ("thrift", "--check --folder lib cam.thrift", "idl thrift --check --folder lib cam.thrift"),
     ("thrift", "--help", "idl thrift --help"),
     ("thrift", "-gen py -I include -v a.thrift b.thrift", None),
+    ("thrift", "--I include a.thrift", "idl thrift --folder include a.thrift"),
     ("rosmsg", "--name /typ@/yarpros", "idl rosmsg --name /typ@/yarpros"),
     ("rosmsg", "--help", "idl rosmsg --help"),
     ("rosmsg", "--no-ros true --out . std_msgs/String", "idl rosmsg --python std_msgs/String"),
@@ -67,9 +72,32 @@ def test_translation(name: str, given: str, wanted: str | None) -> None:
     assert translate(words) == wanted.split()
 
 
+def test_the_words_of_a_command_may_stand_alone() -> None:
+    from yarp import _commands
+
+    for words in (["--cmd", "sleep", "9", "--hold"], ["--cmd", "sleep 9"]):
+        assert _commands.translate_run(words) == ["run", "--cmd", "sleep 9"]
+
+
+def test_robots(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from yarp import _commands
+
+    monkeypatch.chdir(tmp_path)
+    words = ["--config", "r.xml", "--portprefix", "/z", "--enable_tags", "(a b)", "--verbose"]
+    words += ["--allow-deprecated-dtd", "--dryrun", "--speed", "5", "-1"]
+    expected = ["robot", "r.xml", "--portprefix", "/z", "--enable_tags", "a b", "--check"]
+    assert _commands.translate_robot(words) == [*expected, "--speed", "5", "-1"]
+    with pytest.raises(_commands.Wrong, match="give the file of a robot"):
+        _commands.translate_robot([])
+    (tmp_path / "yarprobotinterface.ini").write_text("config r.xml\n")
+    (tmp_path / "r.xml").write_text("<robot/>")
+    assert _commands.translate_robot([]) == ["robot", "r.xml"]
+
+
 def test_what_the_help_shows_is_taken() -> None:
     from yarp import _commands
-    from yarpy.cli.verbs.idl import rosmsg, thrift
+    from yarpy.kits.thrift.verbs.thrift import command as thrift
+    from yarpy.peers.ros.verbs.rosmsg import command as rosmsg
 
     for command, translate in (
         (rosmsg, _commands.translate_rosmsg),
@@ -131,13 +159,13 @@ def test_yarpserver_and_yarp(environment: Mapping[str, str]) -> None:
         there = {**environment, "YARPY_SERVER": f"127.0.0.1:{number}"}
         for _ in range(100):
             with start("yarp", "name", "list", environment=there) as client:
-                if client.wait(patience(20.0)) == 0:
+                if client.wait(HANG) == 0:
                     break
         assert "/root" in client.stdout
         with start("yarp", "exists", "/none", environment=there) as client:
-            assert client.wait(patience(20.0)) == 1
+            assert client.wait(HANG) == 1
         server.signal(signal.SIGTERM)
-        server.wait(patience(10.0))
+        server.wait(HANG)
 
 
 def test_yarpidl_thrift(environment: Mapping[str, str], tmp_path: Path) -> None:
@@ -146,16 +174,16 @@ def test_yarpidl_thrift(environment: Mapping[str, str], tmp_path: Path) -> None:
     source.write_text("service Camera {\n  bool set_speed(1: double speed);\n}\n")
     arguments = ("--gen", "py", "-o", str(tmp_path), str(source))
     with start("yarpidl_thrift", *arguments, environment=environment) as process:
-        assert process.wait(patience(30.0)) == 0, process.stderr
+        assert process.wait(HANG) == 0, process.stderr
     assert "set_speed" in (tmp_path / "camera.py").read_text()
 
 
 def test_wrong_arguments_are_told(environment: Mapping[str, str]) -> None:
     with start("yarpview", "--nonsense", "1", environment=environment) as process:
-        assert process.wait(patience(20.0)) == 1
+        assert process.wait(HANG) == 1
     assert process.stderr.strip() == 'error: yarpview: no option "--nonsense"'
     with start("yarp_config", environment=environment) as process:
-        assert process.wait(patience(20.0)) == 1
+        assert process.wait(HANG) == 1
     assert process.stderr.startswith("usage: yarp-config")
 
 
@@ -170,12 +198,12 @@ def test_yarpdev_serves_a_device_until_it_is_asked_to_end(environment: Mapping[s
         )
         variables = {**environment, **server.environment}
         with start("main", *arguments, environment=variables) as process:
-            process.wait_line("device active in background", timeout=patience(20.0))
-            with yarpy.devices.ControlBoard("/again", timeout=patience(5.0)) as board:
+            process.wait_line("device active in background", timeout=HANG)
+            with yarpy.devices.ControlBoard("/again", timeout=HANG) as board:
                 assert board.axes > 3
             with yarpy.RpcClient("/again/quit") as client:
                 assert client.call("quit") == ["ok"]
-            assert process.wait(patience(20.0)) == 0, process.stderr
+            assert process.wait(HANG) == 0, process.stderr
             assert "yarpdev is finished." in process.stdout
 
 
@@ -184,24 +212,24 @@ def test_yarpdev_serves_a_camera_without_hardware(environment: Mapping[str, str]
         variables = {**environment, **server.environment}
         arguments = ("--device", "fakeFrameGrabber", "--name", "/eye", "--width", "64")
         with start("main", *arguments, environment=variables) as process:
-            process.wait_line("device active in background", timeout=patience(20.0))
+            process.wait_line("device active in background", timeout=HANG)
             with yarpy.devices.FrameGrabber("/eye") as camera:
-                assert camera.image(patience(10.0)).array.shape == (240, 64, 3)
+                assert camera.image(HANG).array.shape == (240, 64, 3)
             with yarpy.RpcClient("/eye/quit") as client:
                 assert client.call("sing") == ["huh?"]
                 assert client.call("quit") == ["ok"]
-            assert process.wait(patience(20.0)) == 0, process.stderr
+            assert process.wait(HANG) == 0, process.stderr
 
 
 def test_yarpdev_without_a_device(environment: Mapping[str, str]) -> None:
     with start("main", environment=environment) as process:
-        assert process.wait(patience(20.0)) == 0
+        assert process.wait(HANG) == 0
     assert "--device option not specified" in process.stderr
     with start("main", "--list", environment=environment) as process:
-        assert process.wait(patience(20.0)) == 0
+        assert process.wait(HANG) == 0
     assert "remote_controlboard" in process.stdout.splitlines()
     with start("main", "--device", "nonsense", environment=environment) as process:
-        assert process.wait(patience(20.0)) == 1
+        assert process.wait(HANG) == 1
     assert "device not available; there are" in process.stderr
 
 
@@ -220,7 +248,7 @@ def test_who_reads_only_the_beginning_may_go(
             stdout=writing,
             stderr=subprocess.PIPE,
             env=environment,
-            timeout=patience(20.0),
+            timeout=HANG,
         )
     finally:
         os.close(writing)
@@ -238,17 +266,18 @@ def test_programs_with_a_page_and_ears_run(environment: Mapping[str, str], tmp_p
             yarpy.Port("/source") as port,
         ):
             for program, script in ((view, "/view.js"), (scope, "/scope.js")):
-                found = program.wait_line(r"is shown at (http\S+)", timeout=patience(20.0))
-                with urllib.request.urlopen(found[1], timeout=patience(10.0)) as page:
+                found = program.wait_line(r"is shown at (http\S+)", timeout=HANG)
+                with urllib.request.urlopen(found[1], timeout=HANG) as page:
                     assert script in page.read().decode()
-            ear.wait_line("Port /ear active", timeout=patience(20.0))
+            ear.wait_line("Port /ear active", timeout=HANG)
             port.connect("/see")
             port.write(yarpy.Image(np.zeros((4, 6, 3), "u1")))
             port.disconnect("/see")
             port.connect("/ear")
-            port.write(yarpy.Sound(np.zeros((1, 800), "i2"), 8000), wait=True)
+            port.write(yarpy.Sound(np.zeros((1, 800), "i2"), 8000))
+            wait_until(lambda: Path(wav).stat().st_size == 44 + 1600, what="it is recorded")
             for program in (view, scope, ear):
                 program.signal(signal.SIGINT)
-                assert program.wait(patience(20.0)) in (0, 130), program.stderr
+                assert program.wait(HANG) in (0, 130), program.stderr
     assert "--x means nothing in a browser" in view.stderr
     assert Path(wav).stat().st_size == 44 + 1600

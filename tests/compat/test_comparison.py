@@ -12,10 +12,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from support.cpp import CppYarp, MissingPeer
-from support.patience import patience
+from support.cpp import CppYarp
+from support.peer import brings
 from support.port import free_block
 from support.process import Process
+from support.wait import HANG
 
 HERE = Path(__file__).parent
 SCRIPTS = sorted((HERE / "scripts").glob("*.py"))
@@ -30,17 +31,15 @@ def expected(script: Path) -> list[str]:
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_compat_prints_what_cpp_prints(script: Path, environment: Mapping[str, str]) -> None:
     with Process([sys.executable, RUNNER, script], env=environment) as process:
-        code = process.wait(patience(20.0))
+        code = process.wait(HANG)
     assert process.stdout.splitlines() == expected(script), process.stderr
     assert code == 0, process.stderr
 
 
 @pytest.fixture(scope="module")
+@brings("cpp")
 def cpp(tmp_path_factory: pytest.TempPathFactory) -> CppYarp:
-    try:
-        return CppYarp.prepare(tmp_path_factory.mktemp("cpp"))
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    return CppYarp.prepare(tmp_path_factory.mktemp("cpp"))
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
@@ -48,7 +47,7 @@ def test_cpp_prints_it(script: Path, cpp: CppYarp) -> None:
     # Without a name server C++ numbers its ports from here on.
     environment = {**cpp.environment, "YARP_PORT_RANGE": str(free_block(200))}
     with Process([cpp.interpreter, RUNNER, script], env=environment) as process:
-        process.wait(patience(20.0))
+        process.wait(HANG)
     assert process.stdout.splitlines() == expected(script), process.stderr
 
 

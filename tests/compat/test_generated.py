@@ -10,7 +10,8 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from support.patience import patience
+from support.type_check import type_check
+from support.wait import HANG
 
 COMPAT = Path(__file__).parents[2] / "compat"
 
@@ -46,12 +47,13 @@ def test_readme_runs(environment: Mapping[str, str]) -> None:
         [sys.executable, "-c", code],
         capture_output=True,
         text=True,
-        timeout=patience(20.0),
+        timeout=HANG,
         env=environment,
     )
     assert done.stdout.strip() == "hello 42", done.stderr
 
 
+@pytest.mark.timeout(300)  # mypy may begin without its cache
 def test_types_are_seen(tmp_path: Path, environment: Mapping[str, str]) -> None:
     """A type checker knows the names, and what they take."""
     (tmp_path / "good.py").write_text(
@@ -63,14 +65,7 @@ def test_types_are_seen(tmp_path: Path, environment: Mapping[str, str]) -> None:
     (tmp_path / "bad.py").write_text("import yarp\nyarp.Bottle().addInt32('x')\nyarp.nonsense\n")
     codes = []
     for name in ("good.py", "bad.py"):
-        done = subprocess.run(
-            [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path / "cache"), name],
-            capture_output=True,
-            text=True,
-            timeout=patience(55.0),
-            cwd=tmp_path,
-            env={**environment, "MYPYPATH": str(COMPAT / "src")},
-        )
+        done = type_check(tmp_path, name, env={**environment, "MYPYPATH": str(COMPAT / "src")})
         codes.append(done.stdout)
     assert "Success" in codes[0], codes[0]
     assert "incompatible type" in codes[1] and "nonsense" in codes[1]

@@ -10,15 +10,14 @@ from pathlib import Path
 import pytest
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device, device_host
-from support.cpp_venv import MissingPeer
 from support.environment import configured_for
-from support.patience import patience
 from support.port import free_block
 from support.process import Process
+from support.wait import HANG
 
 import yarpy
-from yarpy.devices import Gains
-from yarpy.sim.robot import Robot, icub_head
+from yarpy.kits.devices import Gains
+from yarpy.kits.sim.robot import Robot, icub_head
 
 SCRIPT = Path(__file__).parent / "programs" / "icub_head.py"
 
@@ -32,7 +31,7 @@ def server() -> Iterator[yarpy.NameServer]:
 def run(remote: str, environment: Mapping[str, str], server: yarpy.NameServer) -> None:
     variables = {**environment, **server.environment}
     with Process([sys.executable, SCRIPT, remote], env=variables) as process:
-        code = process.wait(patience(40.0))
+        code = process.wait(2 * HANG)
     assert code == 0, process.stdout + process.stderr
     lines = process.stdout.splitlines()
     assert lines[1:] == [
@@ -60,15 +59,13 @@ def test_script_moves_the_simulated_head(
         run("/icubSim/head", environment, server)
 
 
+@pytest.mark.peer("cpp", "g++")
 def test_script_moves_the_head_through_cpp(
     environment: Mapping[str, str], tmp_path: Path, server: yarpy.NameServer
 ) -> None:
     """Through controlBoard_nws_yarp of C++ YARP."""
-    try:
-        cpp = CppYarp.prepare(tmp_path)
-        device_host(cpp)
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    cpp = CppYarp.prepare(tmp_path)
+    device_host(cpp)
     with (
         cpp.at("127.0.0.1", server.port) as programs,
         configured_for(programs, by_file=False),
@@ -127,6 +124,9 @@ class Arm:
     def torques(self) -> list[float]:
         return [0.1, 0.2]
 
+    def faults(self) -> list[tuple[int, str]]:
+        return [(0, ""), (7, "too hot")]
+
     def motion_done(self) -> list[bool]:
         return [True, False]
 
@@ -181,6 +181,10 @@ def test_views_of_a_python_device() -> None:
     assert driver.viewITorqueControl().getTorque(1, lowest) and lowest[0] == 0.2
     assert driver.viewIAxisInfo().getAxisName(1) == "elbow"
     assert driver.viewIAxisInfo().getAxisName(9) == ""
+    code, words = yarp.IVector(1), yarp.SVector(1)
+    faults = driver.viewIJointFault()
+    assert faults.getLastJointFault(1, code, words) and (code[0], words[0]) == (7, "too hot")
+    assert not faults.getLastJointFault(2, code, words)
     assert driver.viewIPositionDirect() is None
     assert driver.viewIFrameGrabberImage() is None
     words = yarp.Bottle()
@@ -263,7 +267,7 @@ def test_what_cannot_be_opened(capfd: pytest.CaptureFixture[str]) -> None:
     yarp.Network.setLocalMode(True)
     try:
         assert not yarp.PolyDriver("(device nonsense)").isValid()
-        assert "yarpy-compat has RemoteFrameGrabber" in capfd.readouterr().err
+        assert "yarpy-compat has LLM_nwc_yarp" in capfd.readouterr().err
         assert not yarp.PolyDriver("(device remote_controlboard) (remote /none)").isValid()
         assert '"/none' in capfd.readouterr().err
         assert not yarp.PolyDriver("(device remote_controlboard) (local /me)").isValid()

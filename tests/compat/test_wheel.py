@@ -8,12 +8,13 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from support.patience import patience
+from support.wait import HANG
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = {
     *("yarp", "yarpserver", "yarpview", "yarpscope", "yarphear", "yarpdev", "yarpidl_thrift"),
-    *("yarpidl_rosmsg", "yarp-config"),
+    *("yarplogger", "yarprun", "yarpidl_rosmsg", "yarp-config", "yarprobotinterface"),
+    *("yarpdatadumper", "yarpdataplayer", "yarpdataplayer-console"),
 }
 
 
@@ -22,7 +23,7 @@ def wheel(project: Path, target: Path) -> zipfile.ZipFile:
     pytest.importorskip("hatchling", reason="the build backend comes with yarpy[test]")
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet"]
     options = ["--no-deps", "--no-build-isolation", "--wheel-dir", str(target), str(project)]
-    subprocess.run([*pip, *options], check=True, timeout=patience(55.0))
+    subprocess.run([*pip, *options], check=True, timeout=2 * HANG)
     return zipfile.ZipFile(next(target.glob("*.whl")))
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
-from support.cpp_venv import MissingPeer
 from support.environment import configured_for
+from support.peer import brings
 from support.port import free_block
 from support.wait import wait_until
 
@@ -18,14 +18,12 @@ import yarpy
 
 
 @pytest.fixture(scope="module", params=["yarpy_server", "cpp_server"])
+@brings("cpp")
 def peer(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[CppProgram]:
     """A program with the C++ binding, and this process with compat, at one name server."""
-    try:
-        cpp = CppYarp.prepare(tmp_path_factory.mktemp("cpp"))
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    cpp = CppYarp.prepare(tmp_path_factory.mktemp("cpp"))
     with contextlib.ExitStack() as stack:
         if request.param == "yarpy_server":
             server = stack.enter_context(yarpy.NameServer(free_block(200)))

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from support.cpp_venv import MissingPeer
-from support.patience import patience
+from support.peer import brings
 from support.port import free_block
+from support.process import Process
+from support.wait import HANG
 from support.wrapyfi_venv import prepare
 
 import yarpy
@@ -80,11 +80,9 @@ os._exit(0)
 
 
 @pytest.fixture(scope="module")
+@brings("wrapyfi")
 def wrapyfi() -> Path:
-    try:
-        return prepare()
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    return prepare()
 
 
 @pytest.fixture
@@ -93,11 +91,9 @@ def server() -> Iterator[yarpy.NameServer]:
         yield found
 
 
-def run(
-    wrapyfi: Path, server: yarpy.NameServer, directory: Path, *arguments: str
-) -> subprocess.CompletedProcess[str]:
+def run(wrapyfi: Path, server: yarpy.NameServer, directory: Path, *arguments: str) -> Process:
     clean = {k: v for k, v in os.environ.items() if not k.startswith(("YARP", "WRAPYFI", "XDG_"))}
-    done = subprocess.run(
+    process = Process(
         [wrapyfi / "bin/python", *arguments],
         env={
             **clean,
@@ -106,14 +102,12 @@ def run(
             "WRAPYFI_DEFAULT_COMMUNICATOR": "yarp",
         },
         cwd=directory,
-        capture_output=True,
-        text=True,
-        timeout=patience(50.0),
     )
-    said = done.stdout + done.stderr
+    with process:
+        process.wait(2 * HANG)
     # It goes on without a middleware that it cannot import, and tests nothing then.
-    assert "fallback" not in said.lower(), said
-    return done
+    assert "fallback" not in (process.stdout + process.stderr).lower(), str(process.lines)
+    return process
 
 
 @pytest.mark.parametrize("name", TESTS)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from yarpy.config.access import REMEMBERED, Access, Door, Rule
-from yarpy.link.admission import ASK, RIGHTS, Peer
+from yarpy.link.begin.admission import ASK, RIGHTS, Peer
 
 FAR = Peer("192.168.1.9")
 HERE = Peer("127.0.0.1", here=True)

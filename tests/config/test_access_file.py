@@ -11,7 +11,7 @@ import yarpy
 from yarpy.config import access_file
 from yarpy.config.access_file import current, parse, path
 from yarpy.errors import AddressError
-from yarpy.link.admission import RIGHTS, Gate, Peer
+from yarpy.link.begin.admission import RIGHTS, Gate, Peer
 
 SAMPLE = """\
 # our laboratory
@@ -67,7 +67,7 @@ RULE = '[[allow]]\nwho = "anyone"\nmay = "read"\n'
         (
             f'{RULE}[[allow]]\nwho = "key"\nmay = ["read", "wirte"]\n',
             'line 6: may: there is no right "wirte" .did you mean "write".*; the rights are read, '
-            "write, administer, attach, register, all",
+            "write, administer, attach, register, script, run, all",
         ),
         ('[[allow]]\nwho = "anyone"\nmay = []\n', "line 3: may: write texts in brackets"),
         ('[[allow]]\nwho = 5\nmay = "read"\n', "line 2: who: write texts in brackets"),

@@ -10,7 +10,7 @@ from yarpy.config.access import Access
 from yarpy.config.access_file import parse
 from yarpy.config.access_report import WIDTH, defaults, explained, listing, notes, peer_from
 from yarpy.errors import AddressError
-from yarpy.link.admission import Peer
+from yarpy.link.begin.admission import Peer
 
 TEXT = """\
 [[allow]]

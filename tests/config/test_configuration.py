@@ -1,5 +1,6 @@
 """Finding the servers: directories, files in both forms, environment, writing."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -34,7 +35,6 @@ from yarpy.errors import AddressError
         ({"HOME": "/h"}, "linux", "/h/.config/yarp"),
         ({"HOME": "/h"}, "darwin", "/h/Library/Preferences/yarp"),
         ({"APPDATA": "/app", "USERPROFILE": "/u"}, "win32", "/app/yarp/config"),
-        ({}, "linux", ".config/yarp"),
     ],
 )
 def test_directory(environment: dict[str, str], platform: str, expected: str) -> None:
@@ -193,3 +193,9 @@ def test_any_file(text: str) -> None:
     except AddressError:
         return
     assert server is None or (server.host and 0 <= server.port <= 65535)
+
+
+def test_without_a_home_the_system_knows_it() -> None:
+    """As of services and cron: not the current folder, where others would not look."""
+    assert conf_directory({}, "linux") == Path(os.path.expanduser("~"), ".config", "yarp")
+    assert conf_directory({}, "linux").is_absolute()

@@ -98,6 +98,16 @@ EVERY_KIND = [
     (yarpy.Stamp(1, 2.5), "[1, 2.5]"),
     (numpy.arange(3), "[0, 1, 2]"),
     ([numpy.float32(1.5), numpy.int16(3)], "[1.5, 3]"),
+    (
+        numpy.ones((1, 2), bool),
+        '{"type": "array", "dtype": "|b1", "shape": [1, 2], "base64": "AQE="}',
+    ),
+    (
+        {"a": {"b": (1, None)}, "c": numpy.ones(2), "d": numpy.ones(2, "u1"), "e": 1 + 2j},
+        '{"a": {"b": [1, null]}, "c": [1.0, 1.0], '
+        '"d": {"type": "array", "dtype": "|u1", "shape": [2], "base64": "AQE="}, "e": [1.0, 2.0]}',
+    ),
+    (1 + 2j, "[1.0, 2.0]"),
     ("\udcff", '"\ufffd"'),
     (["\ud800"], '["\ufffd\ufffd\ufffd"]'),
     ("<script>", '"<script>"'),

@@ -9,12 +9,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from yarpy.data.image import FlexImage, Image
-from yarpy.data.matrix import Matrix
 from yarpy.data.pickling import Wired
-from yarpy.data.pointcloud import PointCloud
-from yarpy.data.sound import Sound
-from yarpy.data.vector import Vector
+from yarpy.data.sig.image import FlexImage, Image
+from yarpy.data.sig.matrix import Matrix
+from yarpy.data.sig.pointcloud import PointCloud
+from yarpy.data.sig.sound import Sound
+from yarpy.data.sig.vector import Vector
 
 WAYS: list[Callable[[Wired], Wired]] = [
     copy.copy,

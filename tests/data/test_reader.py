@@ -8,7 +8,8 @@ from support.message import bottles, kinds, walk
 from support.vectors import binaries, rows
 
 from yarpy.data import reader
-from yarpy.data.bottle import Bottle, Property, read_bottle, read_leading_bottle
+from yarpy.data.bottle import Bottle, Property, read_bottle
+from yarpy.data.reader import read_small
 from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
 from yarpy.data.walker import Walker
 from yarpy.data.writer import list_blocks
@@ -231,7 +232,10 @@ NUMBERS = st.lists(
 def test_messages_of_the_same_size_need_not_be_of_the_same_kind(messages):
     for numbers, rest in messages:
         message = Bottle(numbers).to_bytes()
-        for found in (read_bottle(message + rest), read_leading_bottle(message + rest)):
+        for found in (
+            read_bottle(message + rest),
+            read_small(Bottle, Property.from_bottle, message + rest),
+        ):
             bottle, end = found if isinstance(found, tuple) else (found, len(message))
             assert (bottle, kinds(bottle), end) == (numbers, kinds(numbers), len(message))
 
@@ -239,5 +243,8 @@ def test_messages_of_the_same_size_need_not_be_of_the_same_kind(messages):
 def test_plans_do_not_pile_up():
     message = Bottle([1, 2.5]).to_bytes()
     for size in range(2 * reader._PLANS):
-        assert read_leading_bottle(message + bytes(size)) == ([1, 2.5], len(message))
+        assert read_small(Bottle, Property.from_bottle, message + bytes(size)) == (
+            [1, 2.5],
+            len(message),
+        )
     assert 0 < len(reader._plans) <= reader._PLANS

@@ -229,13 +229,13 @@ def test_deep_nesting_is_an_error_of_ours():
 
 
 def test_deep_and_long_text_takes_no_minutes():
-    words = "a b " * 20_000
+    words = "a b " * 5_000
     for depth in (5, 40):
         assert len(parse_text("(" * depth + words + ")" * depth)) == 1
-    begin = time.perf_counter()
+    begin = time.process_time()
     with pytest.raises(DecodeError, match="length"):
-        parse_text("(" * 100 + words * 20 + ")" * 100)
-    assert time.perf_counter() - begin < 20
+        parse_text("(" * 100 + words * 80 + ")" * 100)
+    assert time.process_time() - begin < 20
 
 
 def test_unknown_objects_cannot_be_printed():
@@ -291,10 +291,10 @@ def test_balance_of_pieces(pieces):
 
 def test_balance_is_not_quadratic():
     balance = Balance()
-    begin = time.perf_counter()
+    begin = time.process_time()
     for _ in range(200_000):
         assert not balance.feed(b"\n(")
-    assert time.perf_counter() - begin < 5
+    assert time.process_time() - begin < 5
 
 
 def slow_tokens(line):

@@ -93,10 +93,10 @@ def test_is_not_quadratic():
     message = packed(260, 50_000) + (packed(3) + b"abc") * 50_000
     view = memoryview(message)
     walker = Walker()
-    begin = time.perf_counter()
+    begin = time.process_time()
     for size in range(0, len(message), 7):
         walker.advance(view[:size])
-    assert time.perf_counter() - begin < 2
+    assert time.process_time() - begin < 2
     assert walker.advance(view) == len(message)
 
 

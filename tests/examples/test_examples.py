@@ -3,7 +3,6 @@
 import ast
 import os
 import re
-import shutil
 import signal
 import sys
 from collections.abc import Iterator, Mapping
@@ -11,8 +10,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from support.patience import patience
 from support.process import Process
+from support.wait import HANG
 
 import yarpy
 
@@ -49,7 +48,7 @@ ALONE = {
         r"^local +\['hello', .* over local$",
         r'no carrier "tpc": did you mean "tcp"\?',
     ],
-    "stamps_and_drops.py": [r"were skipped", r"^written +1000$", r"dropped by the reader \d+"],
+    "stamps_and_drops.py": [r"were skipped", r"^written +1000$", r"replaced at the reader \d+"],
 }
 TOGETHER = {
     "channelling.py",
@@ -67,8 +66,6 @@ TOGETHER = {
 }
 FILES = sorted(path for path in EXAMPLES.iterdir() if path.suffix in (".py", ".sh"))
 
-needs_netcat = pytest.mark.skipif(not shutil.which("nc"), reason="netcat (nc) is not installed")
-
 
 def start(name: str, *arguments: str, **variables: str) -> Process:
     """Start an example in an environment that knows no name server but what is given."""
@@ -85,7 +82,7 @@ def environment(variables: Mapping[str, str]) -> dict[str, str]:
 def interrupt(process: Process) -> None:
     """Ctrl-C: the program ends in good order, and says nothing about it."""
     process.signal(signal.SIGINT)
-    assert process.wait(5) == 0, process.stderr
+    assert process.wait() == 0, process.stderr
     assert "Traceback" not in process.stderr, process.stderr
 
 
@@ -111,7 +108,7 @@ def test_it_is_short_and_says_how_to_run_it(path: Path):
 @pytest.mark.parametrize("name", ALONE)
 def test_alone(name: str):
     with start(name) as process:
-        assert process.wait(30) == 0, process.stderr
+        assert process.wait() == 0, process.stderr
         rest = process.stdout.splitlines()
         for pattern in ALONE[name]:
             places = [number for number, line in enumerate(rest) if re.search(pattern, line)]
@@ -140,15 +137,15 @@ def test_talker_and_listener_end_by_themselves(server: yarpy.NameServer):
         start("talker.py", "10", **server.environment) as talker,
         start("listener.py", "2", **server.environment) as listener,
     ):
-        assert listener.wait(10) == 0, listener.stderr
-        assert talker.wait(10) == 0, talker.stderr
+        assert listener.wait() == 0, listener.stderr
+        assert talker.wait() == 0, talker.stderr
         assert len(listener.stdout.splitlines()) == 2
 
 
 def test_rpc(server: yarpy.NameServer):
     with start("rpc_server.py", **server.environment) as calculator:
         with start("rpc_client.py", **server.environment) as client:
-            assert client.wait(15) == 0, client.stderr
+            assert client.wait() == 0, client.stderr
             assert client.stdout.splitlines() == [
                 "add 1 2 3   -> 6",
                 "set speed 4 -> ok",
@@ -201,12 +198,12 @@ def test_decorators(
         for arguments in background:
             stack.enter_context(start(name, *arguments, **server.environment))
         with start(name, *last, **server.environment) as process:
-            assert process.wait(patience(25)) == 0, process.stderr
+            assert process.wait(HANG) == 0, process.stderr
             assert re.search(pattern, process.stdout, re.M), process.stdout
             assert process.stderr == ""
 
 
-@needs_netcat
+@pytest.mark.peer("nc")
 def test_netcat(server: yarpy.NameServer):
     with (
         start("talker.py", **server.environment) as talker,
@@ -214,7 +211,7 @@ def test_netcat(server: yarpy.NameServer):
     ):
         addresses = [process.wait_line(r"listens at (\S+)")[1] for process in (talker, calculator)]
         with Process(["sh", EXAMPLES / "netcat.sh", *addresses]) as script:
-            assert script.wait(15) == 0, script.stderr
+            assert script.wait() == 0, script.stderr
             said = script.stdout.replace("\r", "").splitlines()
         assert said[0].startswith("---")
         assert said[1] == "* Error. Protocol not found."
@@ -238,7 +235,7 @@ def test_thrift(server: yarpy.NameServer):
     with start("thrift_server.py", **server.environment) as serving:
         serving.wait_line(r"^/arm/rpc listens at http://")
         with start("thrift_client.py", **server.environment) as client:
-            assert client.wait(30) == 0, client.stderr
+            assert client.wait() == 0, client.stderr
             lines = client.stdout.splitlines()
         assert lines[0] == "True False 5"
         assert lines[1].startswith("Status(mode=<Mode.TORQUE: 5>, pose=Pose(x=0.0, y=0.0, frame=")

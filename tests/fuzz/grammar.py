@@ -12,10 +12,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
-from yarpy.carriers.http.login import MAX_CHALLENGES, parse_challenges
-from yarpy.carriers.http.port_page import page
-from yarpy.carriers.http.request import Request, page_asked, read_fields, read_intent
-from yarpy.carriers.http.token import taken
+from yarpy.carriers.web.http.login import parse_challenges
+from yarpy.carriers.web.http.port_page import page
+from yarpy.carriers.web.http.request import Request, page_asked, read_fields, read_intent
+from yarpy.carriers.web.http.token import taken
 from yarpy.config.configuration import parse_server
 from yarpy.config.ini import parse_ini
 from yarpy.contact import parse_contact
@@ -31,19 +31,20 @@ from yarpy.errors import (
     RemoteProtocolError,
     UnknownType,
 )
-from yarpy.idl.ros2msg import parse as ros2_parse
-from yarpy.idl.rosmsg.catalogue import Catalogue
-from yarpy.idl.rosmsg.source import Standard
-from yarpy.idl.thrift.interface import text_interface
-from yarpy.idl.thrift.module import python
+from yarpy.kits.thrift.interface import text_interface
+from yarpy.kits.thrift.module import python
+from yarpy.limit import HTTP_CHALLENGES
 from yarpy.monitors.constraint import Constraint
 from yarpy.names.discovery import respond
 from yarpy.names.registration_line import parse_registration, plain
-from yarpy.names.ros_master import parse_uri
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.topology import Topology
-from yarpy.ros2.token import parse_token
+from yarpy.peers.ros.master import parse_uri
+from yarpy.peers.ros.message.catalogue import Catalogue
+from yarpy.peers.ros.message.source import Standard
+from yarpy.peers.ros2.message import parse as ros2_parse
+from yarpy.peers.ros2.token import parse_token
 from yarpy.route import Route, masked, parse_carrier
 from yarpy.wire.framing import parse_command
 
@@ -109,7 +110,7 @@ def _page(data: bytes) -> object:
 
 def _challenges(data: bytes) -> object:
     text = data.decode("latin-1")
-    return [parse_challenges(text[at : at + MAX_CHALLENGES]) for at in range(0, len(text), 8192)]
+    return [parse_challenges(text[at : at + HTTP_CHALLENGES]) for at in range(0, len(text), 8192)]
 
 
 def _call(data: bytes) -> object:
@@ -199,6 +200,11 @@ GRAMMARS = {
             (b"/**", b" * a\n", b"*/ struct A {}"),
             (b"", b"/** a */ const i32 A = 1\n", b""),
             (b"typedef B A ", b"typedef A B ", b""),
+            (b"/** x */" + b" " * 9000 + b"struct S {", b"i32 a\n", b"}"),
+            (b"/** x */" + b"#\n" * 4500 + b"struct S {", b"i32 a\n", b"}"),
+            (b'include "', b'\\"', b""),
+            (b"", b"/* ", b""),
+            (b"enum A { B } const list<A> C = [", b"A.B,", b"]"),
         ),
         (
             *(b"struct A { ", b"} ", b"1: i32 a = 3, ", b"list<", b"A> ", b"b, ", b"service S { "),

@@ -7,74 +7,87 @@ from what C++ YARP was recorded to say (tests/golden). Whoever adds a decoder ad
 
 from __future__ import annotations
 
+import io
 import itertools
 import random
 import struct
 import tempfile
+import zipfile
 import zlib
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import redirect_stdout, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from fuzz import recording
 from fuzz.grammar import GRAMMARS, REFUSALS
-from idl.ros2msg.test_description import description_of
 from monitors.test_shipped import CASES
+from peers.ros2.message.test_description import description_of
 from support.capture import CAPTURES, load_capture
 from support.ros_link import AddTwoInts, String
 from support.ros_value import filled
 from support.thrift import CALLS, GOLDEN
 from support.thrift import rows as thrift_rows
+from support.thrift_module import ROWS, SPELLINGS, apache, data, service
 from support.vectors import binaries, rows
 
 import yarpy
 from yarpy import registry
-from yarpy.carriers import zmtp
 from yarpy.carriers.base import Carrier
-from yarpy.carriers.memory import Memory
-from yarpy.carriers.mqtt import Mqtt, Reader
+from yarpy.carriers.own.memory import Memory
 from yarpy.carriers.payload import message_of, payload_of
-from yarpy.carriers.ros_header import LENGTH, encode_header
-from yarpy.carriers.zmq import ROLES, Pub
-from yarpy.data import codec, jpeg, yarp4
-from yarpy.data.image import Image
-from yarpy.devices.control_board.state import State
-from yarpy.devices.multi_sensor.client import read_names
-from yarpy.devices.multi_sensor.interface import KINDS
+from yarpy.data import codec, yarp4
+from yarpy.data.sig import jpeg
+from yarpy.data.sig.image import Image
 from yarpy.errors import DecodeError, YarpError
-from yarpy.idl.ros2msg.description import type_of
-from yarpy.idl.ros2msg.library import Library as Library2
-from yarpy.idl.ros2msg.library import hash_of
-from yarpy.idl.ros2msg.source import Standard as Standard2
-from yarpy.idl.rosmsg.library import Library
-from yarpy.idl.rosmsg.native import to_value
-from yarpy.idl.rosmsg.sniff import sniff
-from yarpy.idl.rosmsg.source import Standard
-from yarpy.idl.thrift.client import is_failure, version
-from yarpy.idl.thrift.library import load as load_thrift
-from yarpy.link.handshake import find_carrier, recognise
+from yarpy.kits.devices.control_board.state import State
+from yarpy.kits.devices.multi_sensor.client import read_names
+from yarpy.kits.devices.multi_sensor.interface import KINDS
+from yarpy.kits.thrift.apache import protocol
+from yarpy.kits.thrift.apache.client import result as apache_result
+from yarpy.kits.thrift.apache.decode import READERS
+from yarpy.kits.thrift.apache.message import Asked, Returned
+from yarpy.kits.thrift.apache.message import Call as ApacheCall
+from yarpy.kits.thrift.apache.scan import Scan
+from yarpy.kits.thrift.client import is_failure, version
+from yarpy.kits.thrift.library import load as load_thrift
+from yarpy.kits.wrap.frame import Frame, from_bytes, to_bytes
+from yarpy.kits.wrap.hint import shape_of
+from yarpy.kits.wrap.middleware import question_of
+from yarpy.kits.wrap.npy import from_npy, to_npy
+from yarpy.kits.wrap.payload import asked, unpack
+from yarpy.kits.wrap.tensor import as_floats
+from yarpy.kits.wrap.tensor import read as read_tensor
+from yarpy.kits.wrap.tree import to_text
+from yarpy.link.begin.handshake import find_carrier, recognise
 from yarpy.monitors.base import Place
 from yarpy.monitors.chain import Chain
 from yarpy.monitors.stock import png
 from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.names.discovery import respond
-from yarpy.ros.bag_reader import BagReader
-from yarpy.ros.bag_writer import BagWriter
+from yarpy.peers.mqtt.carrier import Mqtt, Reader
+from yarpy.peers.ros.bag_reader import BagReader
+from yarpy.peers.ros.bag_writer import BagWriter
+from yarpy.peers.ros.header import LENGTH, encode_header
+from yarpy.peers.ros.message.library import Library
+from yarpy.peers.ros.message.native import to_value
+from yarpy.peers.ros.message.sniff import sniff
+from yarpy.peers.ros.message.source import Standard
+from yarpy.peers.ros2.message.description import type_of
+from yarpy.peers.ros2.message.library import Library as Library2
+from yarpy.peers.ros2.message.library import hash_of
+from yarpy.peers.ros2.message.source import Standard as Standard2
+from yarpy.peers.zmq import zmtp
+from yarpy.peers.zmq.carrier import ROLES, Pub
 from yarpy.route import UNDECLARED, Declared, Route, parse_carrier
 from yarpy.testing import End
 from yarpy.testing.drive import Shelf, Stalled
 from yarpy.wire.datagram import Assembler
-from yarpy.wire.message import DATA, Answer, Message, Packet
+from yarpy.wire.message import CALL, DATA, Answer, Message, Packet
 from yarpy.wire.shared_stream import SharedStream
 from yarpy.wire.stream import DatagramStream
-from yarpy.wrap.frame import Frame, from_bytes, to_bytes
-from yarpy.wrap.hint import shape_of
-from yarpy.wrap.middleware import question_of
-from yarpy.wrap.npy import from_npy, to_npy
-from yarpy.wrap.payload import asked, unpack
-from yarpy.wrap.tree import to_text
 
 try:
     import cv2
@@ -109,6 +122,35 @@ def _decode_all(data: bytes) -> None:
             continue  # not every array that can be read can be sent without saying what it is
         b"".join(codec.encode(value))
         codec.encode_text(value)
+
+
+@dataclass
+class _Observation:
+    rgb: np.ndarray
+    q: list[float]
+    pose: tuple[float, dict[str, Any]] | None = None
+
+
+_DESCRIBED = (
+    {"rgb": np.zeros((2, 3, 3), "u1"), "q": np.ones(3), "pose": (1.5, {"a": None})},
+    [None, (1, 1j), {"k": np.ones((2, 2), "f2"), 2: yarpy.Stamp(1, 2.0)}],
+    (
+        np.zeros((1, 2)),
+        np.zeros((2, 2), "f4"),
+        np.zeros(3, "?"),
+        yarpy.Image(np.ones((1, 2), "u1")),
+    ),
+    np.ones((2, 1, 3), "c8"),
+)
+
+
+def _described(data: bytes) -> None:
+    kinds = (dict, list, np.ndarray, _Observation, list[_Observation], yarpy.Matrix, complex)
+    with suppress(YarpError):
+        codec.decode(data)
+    with suppress(YarpError):
+        codec.decode_text(data)
+    codec.decode_as(data, kinds[data[0] % len(kinds)] if data else dict)
 
 
 def _yarp4(data: bytes) -> None:
@@ -174,7 +216,7 @@ _MPI = tuple(
     magic + b"/out\r\nvm____pid____4711\r\ntag#0$description#5\r\n"
     for magic in (b"MPI_____", b"MPIBCAST")
 )
-_MEETING = b"YARPYMEM\x03\0\0\0/w\0" + bytes(8)
+_MEETING = b"YARPYME1\x03\0\0\0/w\0" + bytes(8)
 _REFERENCE = struct.pack("<4sc3x3I2Q", b"\0MEM", b"D", 0, 1, 5, 0, 20000) + b"1 0.5"
 
 
@@ -239,6 +281,28 @@ def _dial(name: str) -> Callable[[bytes], None]:
                         _ = reply.value
                 if carrier.acks:
                     yield from carrier.expect_ack(end.stream)
+
+        end.begin(steps())
+        end.feed(data)
+
+    return read
+
+
+def _dial_apache(name: str) -> Callable[[bytes], None]:
+    """A server of Apache Thrift that is dialled, and asked again and again."""
+    spec = parse_carrier(name)
+    kind = find_carrier(spec)
+    asked = Asked("compact" if "compact" in spec.tokens else "binary", protocol.CALL, "add", b"\0")
+
+    def read(data: bytes) -> None:
+        carrier = kind(Route("/w", "/r", name, 10002, "127.0.0.1"))
+        end = End(piece=1 + len(data) % 97, limit=LIMIT)
+
+        def steps() -> Any:
+            yield from carrier.greet(end.stream)
+            while True:
+                carrier.encode(end.stream, Packet(asked, key=CALL))
+                yield from carrier.expect_reply(end.stream)
 
         end.begin(steps())
         end.feed(data)
@@ -409,6 +473,46 @@ def _answered(data: bytes) -> None:
             repr(made), made.to_dict(), made.to_bottle()
 
 
+def _apache(data: bytes) -> None:
+    """A message of Apache Thrift: its end, what a service answers, what a client reads."""
+    for spelling in SPELLINGS:
+        scan = Scan(spelling)
+        with suppress(YarpError):
+            scan.advance(data)
+        reader = READERS[spelling](data)
+        try:
+            head = reader.head()
+            at = reader.at
+            reader.skip(protocol.STRUCT)
+        except YarpError:
+            pass
+        else:
+            assert scan.done and scan.advance(data) == reader.at, "two ends of a message"
+        with suppress(YarpError):
+            reader = READERS[spelling](data)
+            head = reader.head()
+            at = reader.at
+            b"".join(codec.encode(_APACHE(ApacheCall(spelling, head, data, at))))
+            for method in apache().Test._methods.values():
+                named = replace(head, name=method.name)
+                with suppress(YarpError, *_THROWN):
+                    apache_result(method, Returned(spelling, named, data, at))
+
+
+class _ApacheServer(type(service())):  # type: ignore[misc]
+    def _reason(self, error: Exception, message: Any) -> tuple[str, str]:
+        return "", ""
+
+    def numbers(self, count: int) -> list[float]:
+        return []
+
+
+_APACHE: Any = _ApacheServer()
+_THROWN = (apache().Bad, apache().Worse)
+_APACHE_SAID = tuple(data(name, spelling) for name in ROWS for spelling in SPELLINGS)
+_APACHE_FRAMED = tuple(len(each).to_bytes(4, "big") + each for each in _APACHE_SAID)
+_APACHE_CALLS = (*_APACHE_SAID, *_APACHE_FRAMED)
+
 _THRIFT = load_thrift(GOLDEN / "capt.thrift")
 
 
@@ -494,6 +598,148 @@ _PAYLOADS = (
 )
 _PASSIVE = ("simulated_network_delay", "throttleDown", "stats_monitor")  # read nothing of it
 
+_TENSOR = (
+    b"\x80\x02ctorch._utils\n_rebuild_tensor_v2\nq\0((X\7\0\0\0storageq\1ctorch\nFloatStorage\nq\2"
+    b"X\1\0\0\x000q\3X\3\0\0\0cpuq\4K\6tq\5QK\0K\2K\3\x86q\6K\3K\1\x86q\7\x89ccollections\nOrderedDict\n"
+    b"q\x08)Rq\x09tq\nRq\x0b."
+)
+_GRAPH = _TENSOR.replace(b"K\2K\3\x86q\6", b"K\7q\6" + b"h\6h\6\x86q\6" * 24)
+
+
+def _tensor(data: bytes) -> object:
+    """A file of torch around this pickle."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as file:
+        file.writestr("archive/data.pkl", data)
+        file.writestr("archive/data/0", bytes(24))
+    return as_floats(read_tensor(out.getvalue())).tolist()
+
+
+_LUA_BODIES = (
+    b"local b = t:asBottle() b:addString('x') b:get(0):asList():addInt32(3) t:setPortReader(b)",
+    b"local v = yarp.Vector(3) v[1] = 2.5 t:setPortWriter(v) return t",
+    b"local i = t:asImage('rgb') i:setPixel(1, 1, 2, 3, 4) local m = yarp.Matrix(2, 3) m:zero()",
+    b"for w in ('a b'):gmatch('(%a+)') do t:asBottle():find(w):asFloat64() end",
+    b"local ok, why = pcall(error, {}) return coroutine.wrap(function() coroutine.yield(1) end)()",
+    b"table.sort({3, 1, 2}, function(a, b) return b < a end) return ('%5d'):format(#'x' << 3)",
+    b"local p = yarp.Property('(a 1) (b (1 2))') p:put('c', p:find('b')) yarp.Time.now()",
+    b"return setmetatable({}, {__index = string, __len = function() return 1 << 60 end})",
+    b"local s = string.rep('a', 99) return load('return ' .. #s)() + math.tointeger('7')",
+    b"PortMonitor.setEvent('e', 1) PortMonitor.setConstraint('e and not f') return true",
+    b"local s <const> = string.pack('<i4z', 1, 'x') return utf8.char(0x20ac), s:unpack('<i4z')",
+)
+# Each is whole, so that most rows of them can be run.
+_LUA_STATEMENTS = tuple(
+    line.encode() + b"\n"
+    for line in """\
+s = 'a,b c'
+b = t:asBottle()
+n = 1 << 40
+n = -1
+n = 2.5
+s = ('x'):rep(1000)
+s = s .. s
+n = n * 3 // 7 - #s
+for i = 1, 10 do s = s .. i end
+for i = 1, 1e15 do n = i end
+while n ~= 0 do n = n // 2 end
+repeat n = n + 1 until n > 100
+if s == 'x' then b = nil elseif n then s = 'y' else n = 0 end
+pcall(function() error(t) end)
+xpcall(function() f(f) end, function(e) return e .. s end)
+f = coroutine.wrap(function(...) coroutine.yield(...) f(...) end)
+f = function(...) return f(...) end
+f = coroutine.create(f)
+f(n, s)
+coroutine.resume(f, s) coroutine.close(f)
+s = s:gsub('(%w+)(.-)', '%2%1')
+s = s:gsub('.', function(c) return c:byte() end)
+s = s:find(s) and s:match('(a*)-b') or tostring(b)
+for w in s:gmatch('a*') do n = #w end
+s = string.format('%s %q %d %g', s, s, 3, 2.5)
+s = string.pack('s4>i8z', s, n, 'x')
+n = string.unpack('<i4', s, n)
+t = {1, 2, n = s, b}
+table.sort(t)
+table.sort(t, function(a, b) return true end)
+table.insert(t, 1, s)
+table.move(t, 1, n, 2)
+s = table.concat(t, s)
+setmetatable(t, {__index = t, __newindex = rawset, __call = print, __eq = rawequal})
+setmetatable(t, {__close = f, __mode = 'kv', __len = function() return n end})
+do local c <close> = setmetatable({}, {__close = function() f(n) end}) end
+getmetatable('').__index = function(s, k) return k end
+string.rep = nil
+_G.pcall = error
+print(s, n, b)
+s = load(s)()
+load(function() return s end)
+collectgarbage('step', n)
+s = require(s)
+b:addString(s) b:addFloat64(n)
+b:addList():addInt32(n)
+b:append(b)
+b:fromString(s)
+b:clear()
+n = b:get(0):asList():get(n)
+s = b:find(s):asString()
+s = b:toString() .. b:tail():toString()
+b:addVocab32(s) n = b:pop():asVocab32()
+p = yarp.Property() p:put(s, n)
+p:fromString(s) b = p:findGroup(s)
+i = t:asImage('rgb')
+i:resize(3, 2)
+i:resize(n, n)
+i:setPixel(n, 1, 255, 0, 0)
+n = i:pixel(1, 1)
+v = yarp.Vector(n)
+v = t:asVector()
+v:resize(4) v:set(0, n)
+v:push_back(n)
+m = yarp.Matrix(3, n)
+m:eye() m:set(n, 1, 2.5)
+t:setPortWriter(b)
+t:setPortWriter(v)
+PortMonitor.setEvent(s, n)
+PortMonitor.setConstraint(s)
+PortMonitor.update = f
+do return b end
+do return t end
+do return n end
+""".splitlines()
+)
+
+
+def _script(data: bytes) -> None:
+    """A Lua script and all of its callbacks, with little time and memory."""
+    from yarpy.monitors.event import Events
+    from yarpy.monitors.script.control import Control
+    from yarpy.monitors.script.lua import LuaScript
+
+    control = Control(events=Events())
+    path = Path("/nowhere/fuzz.lua")
+    if b"PortMonitor." not in data[:60]:
+        begin = (
+            b"local s, n, f, b, v = 'x', 3, print, yarp.Bottle('1 (2 x)'), yarp.Vector(3) "
+            b"local m, p, _, i = yarp.Matrix(2, 2), yarp.Property(), pcall(t.asImage, t, 'rgb')"
+        )
+        data = b'require("yarp") PortMonitor.accept = function(t)\n%s\n%s\nend' % (begin, data)
+    with redirect_stdout(io.StringIO()):
+        try:
+            script = LuaScript(path, data, control, limit=1_000_000, memory=8 << 20)
+            script.create(yarpy.Property())
+            for value in (yarpy.Bottle([1, "two", [3.5]]), Image(_PIXELS), yarpy.Vector([1.0])):
+                message = Message(DATA, b"".join(codec.encode(value)), "3 0.5")
+                for callback in (script.accept, script.update, script.update_reply):
+                    with suppress(YarpError):
+                        callback(message)
+            for act in (script.trigger, script.parameters, script.close):
+                with suppress(YarpError):
+                    act()
+        finally:
+            control.close()
+
+
 TARGETS = {
     **{
         f"grammar {name}": Target(
@@ -505,6 +751,9 @@ TARGETS = {
         for name, grammar in GRAMMARS.items()
     },
     "messages": Target(_decode_all, _MESSAGES),
+    "described messages": Target(
+        _described, tuple(b"".join(codec.encode(value)) for value in _DESCRIBED)
+    ),
     **{
         f"ros {name}": _ros(f"sensor_msgs/{name}")
         for name in ("JointState", "PointCloud2", "Image")
@@ -518,9 +767,11 @@ TARGETS = {
     ),
     "sniff": Target(_sniffed, _MESSAGES),
     "thrift requests": Target(_served, (*_THRIFT_SAID, b"help add", b"r_nest 1 2 () () () ()")),
+    "thrift of Apache": Target(_apache, _APACHE_SAID),
     "thrift answers": Target(_answered, (*_THRIFT_SAID, *_THRIFT_STRUCTS)),
     "frames": Target(lambda data: from_bytes(data), tuple(b"".join(to_bytes(f)) for f in _FRAMES)),
     "payloads": Target(_unpacked, _PAYLOADS),
+    "torch": Target(_tensor, (_TENSOR, _GRAPH)),
     "npy": Target(from_npy, tuple(map(to_npy, (np.eye(2), np.arange(3, dtype="u1"))))),
     "walker": Target(_walk, _MESSAGES),
     "yarp 4": Target(_yarp4, tuple(bytes(yarp4.to_yarp4(each)) for each in binaries())),
@@ -537,7 +788,7 @@ TARGETS = {
     "references": Target(_references, (_REFERENCE, *_said("a")[:40])),
     "accepting": Target(
         _accept(),
-        (*_said("a"), _SUBSCRIBER, *_SOCKETS, *_CLIENTS, _MEETING, *_MPI),
+        (*_said("a"), _SUBSCRIBER, *_SOCKETS, *_CLIENTS, _MEETING, *_MPI, *_APACHE_CALLS),
         refusals=(YarpError, Stalled),
     ),
     "accepting tcpros": Target(
@@ -575,6 +826,10 @@ TARGETS = {
         for name in ("mqtt", "mqtt+qos.1", "mqtt+rpc", "mqtt+sub", "mqtt+sub+raw")
     },
     **{
+        f"dialling {name}": Target(_dial_apache(name), _APACHE_CALLS, refusals=(YarpError, Stalled))
+        for name in ("thrift", "thrift+framed", "thrift+compact", "thrift+compact+framed")
+    },
+    **{
         f"dialling {name}": Target(
             _dial(name), (*_said("b")[:60], *_ANSWERS), refusals=(YarpError, Stalled)
         )
@@ -585,6 +840,21 @@ TARGETS = {
         )
     },
 }
+try:
+    import lupa.lua54  # noqa: F401
+except ImportError:
+    pass
+else:
+    _CALLBACKS = (b"accept", b"update", b"update_reply", b"trig", b"setparam", b"create")
+    TARGETS["lua"] = Target(
+        _script,
+        tuple(
+            b'require("yarp")\nPortMonitor.%s = function(t)\n%s\nend\n' % (name, body)
+            for name, body in zip(itertools.cycle(_CALLBACKS[:2]), _LUA_BODIES, strict=False)
+        )
+        + tuple(b"PortMonitor.%s = function(t) return t end " % name for name in _CALLBACKS),
+        _LUA_STATEMENTS,
+    )
 if cv2 is not None:
     TARGETS["png"] = Target(_png, (png.encode(cv2, Image(_PIXELS)),))
 try:
@@ -593,3 +863,11 @@ except ImportError:
     pass
 else:
     TARGETS["bag"] = Target(_bag, _bags())
+try:
+    import mcap  # noqa: F401
+except ImportError:
+    pass
+else:
+    TARGETS["recording"] = Target(recording.read_mcap, recording.mcap_files())
+TARGETS["dumper"] = Target(recording.read_folder, recording.folders())
+TARGETS["page"] = Target(recording.read_page, recording.pages())

@@ -8,7 +8,7 @@ import time
 import pytest
 from fuzz.grammar import GRAMMARS, Grammar, Shape, spelled
 
-SHORT, LONG = 100_000, 1_000_000
+SHORT, LONG = 40_000, 400_000
 SLOWER = 30  # times, for ten times the length: a quadratic parser takes a hundred
 AT_ONCE = 0.15  # seconds that say nothing: a quadratic parser takes longer
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from yarpy import registry
-from yarpy.link.handshake import recognise
+from yarpy.link.begin.handshake import recognise
 from yarpy.route import parse_carrier
 
 FOUND = sorted(path for path in CORPUS.glob("*/*") if path.is_file())

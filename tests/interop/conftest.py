@@ -11,21 +11,20 @@ import contextlib
 from collections.abc import Iterator
 
 import pytest
-from support.cpp import CppYarp, MissingPeer
+from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.environment import configured_for
+from support.peer import brings
 from support.port import free_block
 
 import yarpy
 
 
 @pytest.fixture(scope="session")
+@brings("cpp")
 def cpp(tmp_path_factory: pytest.TempPathFactory) -> CppYarp:
     """C++ YARP 3.5: `cpp.server()`, `cpp.at(host, port)`, then run, popen, python on the result."""
-    try:
-        return CppYarp.prepare(tmp_path_factory.mktemp("cpp"))
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    return CppYarp.prepare(tmp_path_factory.mktemp("cpp"))
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
+from support.peer import program
 from support.wait import wait_until
 
 import yarpy
@@ -61,6 +61,7 @@ def passes(peer: CppProgram, heard: list[str], *names: str) -> list[str]:
     return heard[before:]
 
 
+@pytest.mark.peer("nc")
 def test_priority(our_names: CppYarp, peer: CppProgram, eye: yarpy.Port, heard: list[str]) -> None:
     assert peer.do("connect('/ball', 'tcp+recv.priority+tc.60+bs.5')")
     assert peer.do("connect('/line', 'tcp+recv.priority+tc.60+bs.10')")
@@ -73,14 +74,13 @@ def test_priority(our_names: CppYarp, peer: CppProgram, eye: yarpy.Port, heard: 
     assert passes(peer, heard, *names, *names) == ["/ball", "/ball"]
     expected = '((bs 2.0) (ex "") (st 1.0) (tc 60.0) (tr 0.0) (virtual 0))'
     assert peer.do("admin('get in /ball')") == expected
-    if shutil.which("nc"):
-        typed = "CONNECT person\na\nset in /line (bs 3.5)\n"
-        where = [eye.contact.host, str(eye.contact.port)]
-        answer = subprocess.run(
-            ["nc", "-w", "2", *where], input=typed, capture_output=True, text=True, timeout=20
-        )
-        assert "Configured connection from /line" in answer.stdout
-        assert passes(peer, heard, *names, *names) == ["/line", "/line"]
+    typed = "CONNECT person\na\nset in /line (bs 3.5)\n"
+    where = [eye.contact.host, str(eye.contact.port)]
+    answer = subprocess.run(
+        [program("nc"), "-w", "2", *where], input=typed, capture_output=True, text=True, timeout=20
+    )
+    assert "Configured connection from /line" in answer.stdout
+    assert passes(peer, heard, *names, *names) == ["/line", "/line"]
     found = our_names.run("connect", "/ball", "/eye", "tcp+recv.priority+ex.(/line,-100)")
     assert "Added connection" in found.stdout
     wait_until(lambda: any("ex." in link.carrier for link in eye.inputs))

@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-import shutil
 import socket
 import subprocess
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.capture import load_capture
-from support.patience import patience
+from support.listener import listening
+from support.peer import program
 from support.port import free_port
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 from support.web_camera import CARRIER, PICTURE, WebCamera, is_the_picture
 
 import yarpy
 from yarpy import network
-from yarpy.data import jpeg
+from yarpy.data.sig import jpeg
 from yarpy.names.default import secret
-from yarpy.port.reconnect import pending
-
-PATIENCE = patience(10.0)
+from yarpy.port.connect.reconnect import pending
 
 
 @contextmanager
@@ -42,17 +40,17 @@ def test_camera_is_seen_comes_back_and_is_let_go() -> None:
         name, port = camera.name, camera.server_port
         line = network.connect(name, "/view", CARRIER, names=names).reply
         assert line == f"Added connection from /view to {CARRIER}:/{name}"
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
         (link,) = view.inputs
         assert (link.source, link.carrier) == (f"{name}/", CARRIER)
         assert network.is_connected(name, "/view", names=names)
         camera.leave()
-        wait_until(lambda: not view.inputs, PATIENCE)
+        wait_until(lambda: not view.inputs)
         camera = WebCamera(port)
-        wait_until(lambda: view.inputs, PATIENCE)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        wait_until(lambda: view.inputs)
+        assert is_the_picture(view.read(timeout=HANG).value)
         assert network.disconnect(name, "/view", names=names)
-        wait_until(lambda: not view.inputs, PATIENCE)
+        wait_until(lambda: not view.inputs)
         assert not network.is_connected(name, "/view", names=names)
         count = len(camera.asked)
         time.sleep(1.0)
@@ -65,22 +63,18 @@ def raw_camera(*answers: bytes) -> Iterator[tuple[str, list[bytes]]]:
     """What sends these bytes, whatever it is asked, to one watcher after the other; its name, and
     what it was asked."""
     asked: list[bytes] = []
-    listener = socket.create_server(("127.0.0.1", 0))
+    left = list(answers)
 
-    def serve() -> None:
-        with suppress(OSError):
-            for answer in answers:
-                sock, _ = listener.accept()
-                with sock:
-                    asked.append(sock.recv(1000))
-                    sock.sendall(answer)
-                    sock.settimeout(PATIENCE)
-                    sock.recv(1)  # until the watcher goes
+    def serve(sock: socket.socket) -> None:
+        if left:
+            with sock:
+                asked.append(sock.recv(1000))
+                sock.sendall(left.pop(0))
+                sock.settimeout(HANG)
+                sock.recv(1)  # until the watcher goes
 
-    thread = threading.Thread(target=serve, daemon=True)
-    thread.start()
-    yield f"/127.0.0.1:{listener.getsockname()[1]}", asked
-    listener.close()
+    with listening(serve) as (port, _):
+        yield f"/127.0.0.1:{port}", asked
 
 
 MULTIPART = b"HTTP/1.1 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=b\r\n\r\n"
@@ -109,9 +103,9 @@ def test_damaged_pictures_are_dropped_and_counted() -> None:
     with raw_camera(answer) as (name, asked), viewer(strict=True) as (names, view):
         network.connect(name, "/view", "mjpeg+path.x", names=names)
         for _ in range(4):
-            assert is_the_picture(view.read(timeout=PATIENCE).value)
-        wait_until(lambda: view.inputs[0].stats["drops"] == 4)
-        assert view.inputs[0].stats["messages"] == 4
+            assert is_the_picture(view.read(timeout=HANG).value)
+        wait_until(lambda: view.inputs[0].stats.drops == 4)
+        assert view.inputs[0].stats.messages == 4
         assert asked[0].startswith(b"GET /x HTTP/1.0\r\n")
         network.disconnect(name, "/view", names=names)
 
@@ -145,9 +139,9 @@ def test_watching_goes_on_after_a_broken_stream(rest: bytes) -> None:
     good = MULTIPART + frame(jpeg.encode(PICTURE))
     with raw_camera(good + rest, good) as (name, asked), viewer(strict=True) as (names, view):
         network.connect(name, "/view", "mjpeg", names=names)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
-        wait_until(lambda: len(asked) >= 2, PATIENCE)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
+        wait_until(lambda: len(asked) >= 2)
+        assert is_the_picture(view.read(timeout=HANG).value)
         network.disconnect(name, "/view", names=names)
 
 
@@ -155,9 +149,9 @@ def test_camera_that_went_away_can_be_let_go() -> None:
     with viewer() as (names, view):
         camera = WebCamera()
         network.connect(camera.name, "/view", CARRIER, names=names)
-        view.read(timeout=PATIENCE)
+        view.read(timeout=HANG)
         camera.leave()
-        wait_until(lambda: not view.inputs, PATIENCE)
+        wait_until(lambda: not view.inputs)
         network.admin("/view", "del", f"{camera.name}/", names=names)
         camera = WebCamera(camera.server_port)
         time.sleep(1.0)
@@ -170,11 +164,11 @@ def test_camera_with_a_name() -> None:
     with viewer() as (names, view):
         names.register("/cam", CARRIER, "127.0.0.1", camera.server_port)
         network.connect("/cam", "/view", names=names)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
         assert view.inputs[0].source == "/cam"
         assert network.is_connected("/cam", "/view", names=names)
         assert network.disconnect("/cam", "/view", names=names)
-        wait_until(lambda: not view.inputs, PATIENCE)
+        wait_until(lambda: not view.inputs)
     camera.leave()
 
 
@@ -197,7 +191,7 @@ def test_cpp_asks_a_port_to_watch() -> None:
             if name == "mjpeg_receiver_default_admin_2":
                 network.connect("/cam", "/cap/img", names=names)
             where = view.contact.host, view.contact.port
-            with socket.create_connection(where, PATIENCE) as sock:
+            with socket.create_connection(where, HANG) as sock:
                 for step in load_capture(name).steps:
                     if step.sender == "a":
                         sock.sendall(step.data)
@@ -205,9 +199,9 @@ def test_cpp_asks_a_port_to_watch() -> None:
                         assert sock.recv(len(step.data), socket.MSG_WAITALL) == step.data
             wait_until(lambda name=name: bool(view.inputs) == name.endswith("1"))
             if view.inputs:
-                assert camera.wait_for_outputs(timeout=PATIENCE)
+                assert camera.wait_for_outputs(timeout=HANG)
                 assert camera.write(PICTURE) == 1
-                assert is_the_picture(view.read(timeout=PATIENCE).value)
+                assert is_the_picture(view.read(timeout=HANG).value)
 
 
 def test_wrong_path_is_told() -> None:
@@ -229,9 +223,10 @@ class Browser:
     def __init__(self, port: yarpy.Port | yarpy.BufferedPort, options: str = "") -> None:
         self.sock = socket.socket()
         self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 14)
-        self.sock.settimeout(PATIENCE)
+        self.sock.settimeout(HANG)
         self.sock.connect((port.contact.host, port.contact.port))
-        self.sock.sendall(f"GET /?action=stream{options} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
+        head = f"GET /?action=stream{options} HTTP/1.1\r\nHost: {port.contact.address}\r\n\r\n"
+        self.sock.sendall(head.encode())
         self.file = self.sock.makefile("rb")
         assert self.file.readline() == b"HTTP/1.0 200 OK\r\n"
         while self.file.readline().strip():
@@ -267,10 +262,10 @@ def test_slow_browser_costs_its_port_nothing(make: Callable[..., yarpy.Port]) ->
             longest = max(longest, time.perf_counter() - started)
             assert jpeg.comment(quick.frame()) == f"{number} 0.5"
         assert longest < 5
-        stalled, free = sorted(port.outputs, key=lambda link: -int(link.stats["drops"]))
-        assert free.stats["drops"] == 0
-        assert stalled.stats["drops"] > 50
-        assert stalled.stats["drops"] + stalled.stats["messages"] >= 148
+        stalled, free = sorted(port.outputs, key=lambda link: -int(link.stats.replaced))
+        assert free.stats.replaced == free.stats.drops == 0
+        assert stalled.stats.replaced > 50
+        assert stalled.stats.replaced + stalled.stats.messages >= 148
         # What it did not see was not kept for it: a few old pictures, then the newest.
         found: list[str] = []
         while "900 0.5" not in found:
@@ -302,9 +297,9 @@ def test_rate_and_quality() -> None:
         while time.monotonic() - started < 1.5:
             port.write(NOISE)
             time.sleep(0.02)
-        rates = [int(link.stats["messages"]) / 1.5 for link in port.outputs]
+        rates = [int(link.stats.messages) / 1.5 for link in port.outputs]
     for thread in threads:
-        thread.join(PATIENCE)
+        thread.join(HANG)
     for browser in browsers:
         browser.close()
     assert sizes[1][0] < sizes[0][0] / 2
@@ -320,7 +315,7 @@ def test_port_that_shows_something_else_counts_it() -> None:
         assert port.write([1, "no picture"]) == 0
         assert port.write(PICTURE) == 1
         assert browser.frame()
-        assert port.outputs[0].stats["drops"] == 1
+        assert port.outputs[0].stats.drops == 1
         browser.close()
 
 
@@ -328,10 +323,10 @@ def test_pictures_between_two_ports_with_their_stamps() -> None:
     names = yarpy.LocalNames()
     with yarpy.Port("/cam", names=names) as cam, yarpy.Port("/view", names=names) as view:
         network.connect("/cam", "/view", "mjpeg+quality.95", names=names)
-        assert cam.wait_for_outputs(timeout=PATIENCE)
+        assert cam.wait_for_outputs(timeout=HANG)
         assert cam.outputs[0].carrier == "mjpeg+quality.95"
         cam.write(PICTURE, yarpy.Stamp(7, 1.5))
-        message = view.read(timeout=PATIENCE)
+        message = view.read(timeout=HANG)
         assert is_the_picture(message.value)
         assert message.stamp == yarpy.Stamp(7, 1.5)
 
@@ -347,24 +342,24 @@ def test_camera_knows_nothing_of_our_key(tmp_path: Path, monkeypatch: pytest.Mon
     with viewer() as (names, view), yarpy.Port("/cam", names=names) as cam:
         camera = WebCamera()
         network.connect(camera.name, "/view", CARRIER, names=names)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
         assert network.disconnect(camera.name, "/view", names=names)
         camera.leave()
         network.connect("/cam", "/view", "mjpeg", names=names)  # which has the key
-        assert cam.wait_for_outputs(timeout=PATIENCE)
+        assert cam.wait_for_outputs(timeout=HANG)
         cam.write(PICTURE)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
 
 
+@pytest.mark.peer("curl")
 def test_curl_watches() -> None:
-    curl = shutil.which("curl")
-    if curl is None:
-        pytest.skip("no curl: install it (apt-get install curl)")
     with yarpy.Port("/cam", names=yarpy.LocalNames()) as port:
         url = f"http://127.0.0.1:{port.contact.port}/?action=stream"
-        with subprocess.Popen([curl, "-sN", "-m", "20", url], stdout=subprocess.PIPE) as process:
+        with subprocess.Popen(
+            [program("curl"), "-sN", "-m", "20", url], stdout=subprocess.PIPE
+        ) as process:
             assert process.stdout is not None
-            assert port.wait_for_outputs(timeout=PATIENCE)
+            assert port.wait_for_outputs(timeout=HANG)
             for _ in range(3):
                 port.write(PICTURE)
                 time.sleep(0.05)
@@ -377,33 +372,28 @@ def test_curl_watches() -> None:
         assert not pending(port._hub)
 
 
-def ffmpeg() -> str:
-    found = shutil.which("ffmpeg")
-    if found is None:
-        pytest.skip("no ffmpeg: install it (apt-get install ffmpeg)")
-    return found
-
-
+@pytest.mark.peer("ffmpeg")
 def test_ffmpeg_is_a_camera() -> None:
     number = free_port()
     source = ["-f", "lavfi", "-re", "-i", "testsrc=size=64x48:rate=20", "-f", "mpjpeg"]
     where = f"http://127.0.0.1:{number}/video"
-    args = [ffmpeg(), "-loglevel", "error", *source, "-listen", "1", where]
+    args = [program("ffmpeg"), "-loglevel", "error", *source, "-listen", "1", where]
     with viewer() as (names, view), Process(args):
         address = f"/127.0.0.1:{number}"
-        network.connect(address, "/view", "mjpeg+path.video", names=names, timeout=PATIENCE)
-        image = view.read(timeout=PATIENCE).value
+        network.connect(address, "/view", "mjpeg+path.video", names=names, timeout=HANG)
+        image = view.read(timeout=HANG).value
         assert (image.width, image.height, image.code) == (64, 48, "rgb")
 
 
+@pytest.mark.peer("ffmpeg")
 def test_ffmpeg_watches() -> None:
     with yarpy.Port("/cam", names=yarpy.LocalNames()) as port:
         url = f"http://127.0.0.1:{port.contact.port}/?action=stream"
         to = ["-frames:v", "3", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
-        args = [ffmpeg(), "-loglevel", "error", "-f", "mpjpeg", "-i", url, *to]
+        args = [program("ffmpeg"), "-loglevel", "error", "-f", "mpjpeg", "-i", url, *to]
         with subprocess.Popen(args, stdout=subprocess.PIPE) as process:
             assert process.stdout is not None
-            deadline = time.monotonic() + PATIENCE
+            deadline = time.monotonic() + HANG
             while process.poll() is None and time.monotonic() < deadline:
                 port.write(PICTURE)
                 time.sleep(0.02)

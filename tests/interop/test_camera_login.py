@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import socket
 import subprocess
 from collections.abc import Iterator
@@ -11,15 +10,14 @@ from pathlib import Path
 
 import pytest
 from support.command_line import CommandLine
-from support.patience import patience
-from support.wait import wait_until
+from support.peer import program
+from support.wait import HANG, wait_until
 from support.web_camera import CARRIER, PATH, WebCamera, is_the_picture
 
 import yarpy
 from yarpy import network
-from yarpy.port import reconnect
+from yarpy.port.connect import reconnect
 
-PATIENCE = patience(20.0)
 LOGIN = 'me "x":se+cret%'  # what has to be quoted in the carrier string, and for the camera
 WORDS = "+user.me%20%22x%22+password.se%2Bcret%25"
 DIGESTS = ["MD5", "MD5-sess", "SHA-256", "SHA-256-sess"]
@@ -47,13 +45,11 @@ def view(names: yarpy.LocalNames) -> Iterator[yarpy.BufferedPort]:
         yield port
 
 
+@pytest.mark.peer("curl")
 @pytest.mark.parametrize("algorithm", DIGESTS)
 def test_curl_logs_in(algorithm: str) -> None:
     """So the camera of these tests speaks what others speak."""
-    curl = shutil.which("curl")
-    if curl is None:
-        pytest.skip("no curl: install it (apt-get install curl)")
-
+    curl = program("curl")
     with camera(algorithm) as server:
         with subprocess.Popen(
             [curl, "-sN", "-m", "20", "--digest", "-u", LOGIN, f"http:/{server.name}/{PATH}"],
@@ -77,7 +73,7 @@ def test_digest(
 ) -> None:
     with camera(algorithm, qop=qop) as server:
         line = network.connect(server.name, "/view", CARRIER + WORDS, names=names).reply
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
         assert server.logins[0] == ""
         assert server.logins[1].startswith("Digest ")
         assert len(server.logins) == 2
@@ -108,7 +104,7 @@ def test_the_best_of_several_is_chosen(
     with camera(*offers) as server:
         server.one_line = one_line
         network.connect(server.name, "/view", CARRIER + WORDS, names=names)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
         first, second = server.logins
         assert first == ""
         assert second.startswith("Basic ") if chosen == "Basic" else f"={chosen}," in second
@@ -120,7 +116,7 @@ def test_camera_that_is_open_is_told_nothing(
 ) -> None:
     with camera(login="") as server:
         network.connect(server.name, "/view", CARRIER + WORDS, names=names)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
         assert server.logins == [""]
         network.disconnect(server.name, "/view", names=names)
 
@@ -135,14 +131,14 @@ def test_camera_that_comes_back_is_logged_in_at_again(
     caplog.set_level("DEBUG")
     with camera(offer) as server:
         network.connect(server.name, "/view", CARRIER + WORDS, names=names)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
         for question in (["list", "in", f"{server.name}/"], ["list", "in"]):
             assert "se%2B" not in str(network.admin("/view", *question, names=names))
         number = server.server_port
-    wait_until(lambda: not view.inputs, PATIENCE)
+    wait_until(lambda: not view.inputs)
     with camera(offer, port=number) as server:
-        wait_until(lambda: view.inputs, PATIENCE)
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        wait_until(lambda: view.inputs)
+        assert is_the_picture(view.read(timeout=HANG).value)
         assert server.logins[-1].startswith(offer if offer == "Basic" else "Digest")
         network.disconnect(server.name, "/view", names=names)
     assert "se%2Bcret" not in caplog.text
@@ -159,11 +155,11 @@ def test_password_that_was_changed_is_not_tried_again_and_again(
     monkeypatch.setattr(reconnect, "LOCKED", 3600.0)
     with camera("MD5") as server:
         network.connect(server.name, "/view", CARRIER + WORDS, names=names)
-        view.read(timeout=PATIENCE)
+        view.read(timeout=HANG)
         server.login = "me:another"
         for sock in server.shown:
             sock.shutdown(socket.SHUT_RDWR)
-        wait_until(lambda: "it is asked again every 3600 s" in caplog.text, PATIENCE)
+        wait_until(lambda: "it is asked again every 3600 s" in caplog.text)
         assert "does not accept this name and password" in caplog.text
         count = len(server.logins)
         with pytest.raises(AssertionError):
@@ -171,7 +167,7 @@ def test_password_that_was_changed_is_not_tried_again_and_again(
         # Who connects it anew need not wait.
         words = f"{CARRIER}+user.me+password.another"
         network.connect(server.name, "/view", words, names=names)
-        wait_until(lambda: view.inputs, PATIENCE)
+        wait_until(lambda: view.inputs)
         network.disconnect(server.name, "/view", names=names)
 
 
@@ -185,13 +181,13 @@ def test_wrong_password_is_told_at_once(
     words = f"{CARRIER}+user.me+password.wr0ng"
     with camera(offer) as server:
         with pytest.raises(yarpy.LoginRefused, match="does not accept this name") as caught:
-            network.connect(server.name, "/view", words, names=names, timeout=PATIENCE)
+            network.connect(server.name, "/view", words, names=names, timeout=HANG)
         assert len(server.logins) == 2
         with pytest.raises(yarpy.LoginRefused, match='"/view" is not admitted to') as direct:
             view.listen_to(server.name, words)
         assert len(server.logins) == 4
         with pytest.raises(yarpy.LoginRefused):
-            view.connect(server.name, words, timeout=PATIENCE)
+            view.connect(server.name, words, timeout=HANG)
         assert len(server.logins) == 6
         assert not view.inputs
     for text in (str(caught.value), str(direct.value), caplog.text):
@@ -226,7 +222,7 @@ def test_command_line_says_what_to_do(tmp_path: Path) -> None:
         said = cli.run("connect", web.name, "/view", CARRIER + WORDS)
         assert (said.returncode, said.stderr) == (0, "")
         assert "password.***" in said.stdout
-        assert is_the_picture(view.read(timeout=PATIENCE).value)
+        assert is_the_picture(view.read(timeout=HANG).value)
         file = tmp_path / "wires.ini"
         file.write_text(f'[cam]\nfrom "{web.name}"\nto /view\ncarrier "{CARRIER}{WORDS}"\n')
         said = cli.run("connect", "--file", str(file))
@@ -239,7 +235,7 @@ def test_viewer_with_a_wrong_password_ends(tmp_path: Path) -> None:
     with yarpy.NameServer() as server, camera("MD5") as web:
         cli = CommandLine(tmp_path, server.environment)
         source = f"{CARRIER}+user.me+password.wr0ng:/{web.name}/"
-        said = cli.run("view", "--no-browser", "--connect", source, timeout=PATIENCE)
+        said = cli.run("view", "--no-browser", "--connect", source, timeout=HANG)
         assert said.returncode == 1
         assert "does not accept this name and password" in said.stderr
         assert "wr0ng" not in said.stdout + said.stderr

@@ -10,41 +10,36 @@ import pytest
 from support.board import FakeBoard
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device
-from support.cpp_venv import MissingPeer
-from support.patience import patience
-from support.wait import wait_until
+from support.peer import brings
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import Bottle, Vocab
-from yarpy.devices import ControlBoard, ControlBoardServer
-from yarpy.devices.control_board.interface import Gains
 from yarpy.errors import LocalProtocolError
-
-PATIENCE = patience(20.0)
+from yarpy.kits.devices import ControlBoard, ControlBoardServer
+from yarpy.kits.devices.control_board.interface import Gains
 
 
 @pytest.fixture(scope="module")
+@brings("cpp", "g++")
 def chain(network: CppYarp):
     """The device at the far end, and our client at the near end."""
     device = FakeBoard(3)
     with ControlBoardServer("/ours", device, 0.01) as server:
-        try:
-            host = cpp_device(
-                network,
-                "controlBoard_nws_yarp",
-                subdevice="remote_controlboard",
-                remote="/ours",
-                local="/between",
-                name="/cpp",
-                period=0.01,
-            )
-            process = host.__enter__()
-        except MissingPeer as missing:
-            pytest.skip(str(missing))
+        host = cpp_device(
+            network,
+            "controlBoard_nws_yarp",
+            subdevice="remote_controlboard",
+            remote="/ours",
+            local="/between",
+            name="/cpp",
+            period=0.01,
+        )
+        process = host.__enter__()
         try:
             assert {link.carrier for link in server._state_ext.outputs} == {"udp"}
             assert {link.carrier for link in server._command.inputs} == {"udp"}
-            with ControlBoard("/cpp", carrier="udp", timeout=PATIENCE) as board:
+            with ControlBoard("/cpp", carrier="udp", timeout=HANG) as board:
                 yield device, board
         except AssertionError:
             print(process.stdout, process.stderr)
@@ -66,7 +61,7 @@ def board(chain, device):
 
 def test_measurements(device, board):
     device.where[:] = [1.0, 2.0, 3.0]
-    wait_until(lambda: board.encoders() == [1.0, 2.0, 3.0], PATIENCE)
+    wait_until(lambda: board.encoders() == [1.0, 2.0, 3.0])
     assert board.axes == 3
     assert board.axis_names == ["joint0", "joint1", "joint2"]
     assert board.axis_types == ["revolute", "revolute", "prismatic"]
@@ -81,8 +76,8 @@ def test_measurements(device, board):
 def test_modes(device, board):
     board.switch_control_modes([0, 2], ["vel", "torq"])
     board.switch_interaction_modes(1, "comp")
-    wait_until(lambda: board.control_modes() == ["vel", "pos", "torq"], PATIENCE)
-    wait_until(lambda: board.interaction_modes() == ["stif", "comp", "stif"], PATIENCE)
+    wait_until(lambda: board.control_modes() == ["vel", "pos", "torq"])
+    wait_until(lambda: board.interaction_modes() == ["stif", "comp", "stif"])
     assert device.modes == ["vel", "pos", "torq"]
 
 
@@ -141,7 +136,7 @@ def test_commands(device, board, call, heard):
             return False
         return True
 
-    wait_until(arrived, PATIENCE, f"{call} arrived")
+    wait_until(arrived, HANG, f"{call} arrived")
     assert device.done[0] == heard
 
 
@@ -240,14 +235,14 @@ def test_the_same_questions_get_the_same_replies(device, board):
         "set icur ref 0 1.0", "set torq refs (1)", "cal", "cald 1", "help pid",
         "set pid pids pos ((1))", "set bogus 1",
     ]  # fmt: skip
-    wait_until(lambda: board.encoders() == [0.0] * 3, PATIENCE)
-    wait_until(lambda: board.control_modes() == ["pos"] * 3, PATIENCE)
-    wait_until(lambda: board.interaction_modes() == ["stif"] * 3, PATIENCE)
+    wait_until(lambda: board.encoders() == [0.0] * 3)
+    wait_until(lambda: board.control_modes() == ["pos"] * 3)
+    wait_until(lambda: board.interaction_modes() == ["stif"] * 3)
     with yarpy.RpcClient("/ours/rpc:i") as ours, yarpy.RpcClient("/cpp/rpc:i") as theirs:
         for text in questions:
             for question in (Bottle.from_text(text), vocabs(Bottle.from_text(text))):
-                mine = timeless(ours.ask(question, PATIENCE).as_(Bottle))
-                assert (text, mine) == (text, timeless(theirs.ask(question, PATIENCE).as_(Bottle)))
+                mine = timeless(ours.ask(question, HANG).as_(Bottle))
+                assert (text, mine) == (text, timeless(theirs.ask(question, HANG).as_(Bottle)))
 
 
 def vocabs(question):

@@ -10,8 +10,7 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.environment import configured_for
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import Contact
@@ -151,7 +150,7 @@ def test_what_answers_in_text_is_told_from_a_port(cpp_names: CppYarp) -> None:
         input="list\n",
         capture_output=True,
         text=True,
-        timeout=patience(20),
+        timeout=HANG,
         env={**os.environ, "YARPY_SERVER": f"{host}:{port}"},
     )
     assert said.returncode == 1

@@ -42,4 +42,4 @@ def test_large_pictures_come_from_cpp(peer: CppProgram, carrier: str) -> None:
         assert peer.do(f"yarp.Network.connect('/cpp', '/ours', '{carrier}')")
         assert port.wait_for_inputs(timeout=5)
         peer.do(f"for _ in range({PICTURES}): port.write(picture); time.sleep(0.01)")
-        wait_until(lambda: port.inputs[0].stats["messages"] >= ENOUGH, what="pictures have come")
+        wait_until(lambda: port.inputs[0].stats.messages >= ENOUGH, what="pictures have come")

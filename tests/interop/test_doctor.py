@@ -10,7 +10,7 @@ from support.cpp_program import CppProgram
 from support.wait import wait_until
 
 import yarpy
-from yarpy.network.doctor import Case, examine
+from yarpy.kits.doctor import Case, examine
 
 
 def probes(*wanted: str) -> set[str]:

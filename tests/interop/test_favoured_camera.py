@@ -10,14 +10,12 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 from support.command_line import CommandLine
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.network import sampling
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
-PATIENCE = patience(30.0)
 
 
 @pytest.fixture
@@ -66,7 +64,7 @@ class Watcher:
             time.sleep(0.5)
             return len(self.seen) >= 3 and set(self.seen) == {colour}
 
-        wait_until(only, PATIENCE, f"{colour} alone is shown")
+        wait_until(only, HANG, f"{colour} alone is shown")
 
 
 def test_rules_favour_one_and_a_message_flips_them(cli) -> None:
@@ -75,7 +73,7 @@ def test_rules_favour_one_and_a_message_flips_them(cli) -> None:
         filming("/red", RED) as red,
         filming("/blue", BLUE),
     ):
-        view.wait_line("is shown at", stream="out", timeout=PATIENCE)
+        view.wait_line("is shown at", stream="out", timeout=HANG)
         yarpy.connect("/red", "/view", "tcp+recv.priority+st.10+tc.1+bs.10")
         yarpy.connect("/blue", "/view", "tcp+recv.priority+st.10+tc.1+bs.5")
         watcher = Watcher()

@@ -7,22 +7,17 @@ import pytest
 from support.camera import FakeCamera
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device, device_host
-from support.cpp_venv import MissingPeer
-from support.patience import patience
-from support.wait import wait_until
+from support.peer import brings
+from support.wait import HANG, wait_until
 
-from yarpy.devices import FrameGrabber, FrameGrabberServer
 from yarpy.errors import LocalProtocolError
-
-PATIENCE = patience(20.0)
+from yarpy.kits.devices import FrameGrabber, FrameGrabberServer
 
 
 @pytest.fixture(autouse=True)
+@brings("g++")
 def devices(network: CppYarp) -> None:
-    try:
-        device_host(network)
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    device_host(network)
 
 
 def test_chain(network: CppYarp) -> None:
@@ -40,11 +35,11 @@ def test_chain(network: CppYarp) -> None:
         ),
         FrameGrabber("/cpp") as eye,
     ):
-        wait_until(lambda: eye.image(PATIENCE).width == 64, PATIENCE)
-        image = eye.image(PATIENCE)
+        wait_until(lambda: eye.image(HANG).width == 64)
+        image = eye.image(HANG)
         assert image.code == "rgb" and image.array.shape == (48, 64, 3)
         assert image.array[:, -1].min() == 255
-        wait_until(lambda: eye.image(PATIENCE).array[0, 0, 0] != image.array[0, 0, 0], PATIENCE)
+        wait_until(lambda: eye.image(HANG).array[0, 0, 0] != image.array[0, 0, 0])
         part = eye.crop(60, 0, 63, 9)
         assert part.array.shape == (10, 4, 3) and part.array[:, -1].min() == 255
         assert eye.resolution == (64, 48)
@@ -80,7 +75,7 @@ def test_camera_of_cpp(network: CppYarp) -> None:
         ),
         FrameGrabber("/cpp", carrier="fast_tcp") as eye,
     ):
-        image = eye.image(PATIENCE)
+        image = eye.image(HANG)
         assert (image.width, image.height, image.code) == (32, 16, "rgb")
         assert eye.stamp.valid and eye.timestamp() > 1e9
         assert eye.resolution == (32, 16)

@@ -15,10 +15,11 @@ import pytest
 from support import browser as chromium
 from support.access import write
 from support.browser import Browser
-from support.patience import patience
+from support.peer import brings
+from support.peer import chromium as program
 from support.process import Process
 from support.tls import prepare
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.nameserver.local import LocalNames
@@ -26,7 +27,6 @@ from yarpy.nameserver.local import LocalNames
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-PATIENCE = patience(20.0)
 
 # Everything that a page can do without being allowed to: each returns what came of it. A browser
 # does not let such a page read most answers, but the requests arrive.
@@ -85,7 +85,9 @@ READS = """async address => {
   const found = {};
   found.page = (await (await fetch(`http://${address}/`)).text()).includes("This is /arm");
   found.event = await new Promise(done => {
-    new EventSource(`http://${address}/r?sse`).onmessage = event => done(JSON.parse(event.data));
+    const events = new EventSource(`http://${address}/r?sse`);
+    events.onmessage = event => done(JSON.parse(event.data));
+    events.onerror = () => done("refused");
   });
   return found;
 }"""
@@ -114,7 +116,7 @@ def site() -> Iterator[int]:
         thread.start()
         yield server.server_port
         server.shutdown()
-        thread.join(PATIENCE)
+        thread.join(HANG)
 
 
 @pytest.fixture
@@ -137,7 +139,7 @@ def writing(port: yarpy.Port) -> Iterator[None]:
         yield
     finally:
         done.set()
-        thread.join(PATIENCE)
+        thread.join(HANG)
 
 
 def test_a_hostile_page_reads_and_does_nothing(
@@ -159,8 +161,12 @@ def test_a_hostile_page_reads_and_does_nothing(
         assert all(what in ("opaque", "refused") or what >= 400 for what in tried.values()), tried
         assert tried["get"] == 403
         assert tried["socket"] == "refused"
-        # What is public stays so.
+        assert page.evaluate(READS, port.address) == {"page": False, "event": "refused"}
+        # A page of another port of this computer reads, and does nothing either.
+        page = browser.open(f"http://127.0.0.1:{site}/")
         assert page.evaluate(READS, port.address) == {"page": True, "event": [1.5, "x"]}
+        assert page.evaluate(TRIES, port.address)["get"] == 403
+        assert heard == []
 
 
 def test_a_site_that_borrows_our_address(browser: Browser, names: LocalNames) -> None:
@@ -238,6 +244,7 @@ def reached(page: Page, address: str, options: dict[str, str]) -> int | str:
 
 
 @pytest.fixture
+@brings("chromium")
 def trusting(
     tmp_path_factory: pytest.TempPathFactory, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Browser]:
@@ -247,7 +254,7 @@ def trusting(
     folder = prepare(tmp_path, monkeypatch)
     profile = tmp_path_factory.mktemp("chromium")
     known = f"--ignore-certificate-errors-spki-list={fingerprint(folder / 'cert.pem')}"
-    line = [chromium.program(), *chromium.FLAGS, known, f"--user-data-dir={profile}", "about:blank"]
+    line = [program(), *chromium.FLAGS, known, f"--user-data-dir={profile}", "about:blank"]
     with Process(line, env=chromium._environment(profile)) as process:
         found = process.wait_line(r"DevTools listening on (ws://\S+)", timeout=60.0)
         with sync_playwright() as playwright:

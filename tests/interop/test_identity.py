@@ -7,11 +7,10 @@ import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
 from support.environment import configured_for
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
-PATIENCE = 20.0
 SETTLED = 3.0  # seconds in which a connection that is dialled again would be there long since
 
 
@@ -34,7 +33,7 @@ def test_a_camera_does_not_pour_into_a_motor(cpp: CppYarp, server: CppYarp) -> N
             server.server_process.kill()
             viewer.process.kill()
         with cpp.server(port=server.port) as again:
-            wait_until(lambda: yarpy.query("/camera"), PATIENCE)
+            wait_until(lambda: yarpy.query("/camera"))
             with CppProgram(again) as viewer:
                 _use_numbers_before(again, number)
                 assert not viewer.do("port = yarp.BufferedPortBottle(); port.open('/viewer')")
@@ -51,8 +50,8 @@ def test_a_camera_does_not_pour_into_a_motor(cpp: CppYarp, server: CppYarp) -> N
                 with pytest.raises(yarpy.WrongPort, match='"/motor" listens'):
                     yarpy.connect("/camera", "/viewer")
             with yarpy.BufferedPort("/viewer") as viewer:
-                assert camera.wait_for_outputs(timeout=PATIENCE)
-                assert viewer.wait_for_inputs(timeout=PATIENCE)
+                assert camera.wait_for_outputs(timeout=HANG)
+                assert viewer.wait_for_inputs(timeout=HANG)
 
 
 def _use_numbers_before(programs: CppYarp, number: int) -> None:
@@ -120,9 +119,7 @@ def test_a_living_cpp_port_keeps_its_name(network: CppYarp) -> None:
         first.process.kill()
         assert second.do("port = yarp.BufferedPortBottle(); port.open('/twin/in')")
         second.do("port.setStrict()")
-        wait_until(
-            lambda: out.write(["here again"]) and second.do("port.getPendingReads()"), PATIENCE
-        )
+        wait_until(lambda: out.write(["here again"]) and second.do("port.getPendingReads()"))
         assert second.do("port.read().toString()") == '"here again"'
 
 
@@ -135,13 +132,13 @@ def test_a_cpp_port_is_dialled_again(network: CppYarp) -> None:
                                    "port.where().getPort()")  # fmt: skip
                 name = target or f"/127.0.0.1:{number}"
                 out.connect(name)
-                wait_until(lambda: out._hub.outputs[0].route.peer == "/identity/in", PATIENCE)
+                wait_until(lambda: out._hub.outputs.links[0].route.peer == "/identity/in")
                 reader.process.kill()
-            wait_until(lambda: not (out.write(["anybody?"]) and out.outputs), PATIENCE)
+            wait_until(lambda: not (out.write(["anybody?"]) and out.outputs))
             with CppProgram(network) as reader:
                 reader.do("port = yarp.BufferedPortBottle(); port.open('/identity/in')")
                 if target is None and reader.do("port.where().getPort()") != number:
                     pytest.skip("the server hands out another number")
-                assert out.wait_for_outputs(timeout=PATIENCE)
-                wait_until(lambda: reader.do("port.getInputCount()") == 1, PATIENCE)
+                assert out.wait_for_outputs(timeout=HANG)
+                wait_until(lambda: reader.do("port.getInputCount()") == 1)
                 out.disconnect(name)

@@ -13,7 +13,7 @@ from support.cpp_program import CppProgram
 
 import yarpy
 from yarpy import Image
-from yarpy.data.pixel import pixel_of
+from yarpy.data.sig.pixel import pixel_of
 
 CLASSES = {
     "ImageRgb": "rgb",

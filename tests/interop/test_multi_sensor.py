@@ -6,13 +6,9 @@ MultiSensor (yarpy) -> multipleanalogsensorsserver -> ...client -> MultiSensorSe
 import pytest
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device, device_host
-from support.cpp_venv import MissingPeer
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
-from yarpy.devices import MultiSensor, MultiSensorServer
-
-PATIENCE = patience(20.0)
+from yarpy.kits.devices import MultiSensor, MultiSensorServer
 
 
 class Sensors:
@@ -51,11 +47,9 @@ class Sensors:
         return {"palm": (1.0, 2.0, 3.0, 4.0)}
 
 
+@pytest.mark.peer("g++")
 def test_chain(network: CppYarp) -> None:
-    try:
-        device_host(network)
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    device_host(network)
     sensors = Sensors()
     with (
         MultiSensorServer("/ours", sensors, 0.005),
@@ -67,12 +61,12 @@ def test_chain(network: CppYarp) -> None:
             local="/between",
             name="/cpp",
             period=10,
-            timeout=PATIENCE,
+            timeout=HANG,
         ) as process,
     ):
         assert "not available" not in process.stdout
-        with MultiSensor("/cpp", timeout=PATIENCE) as client:
-            wait_until(lambda: client.gyroscopes()["left"] == (1.0, 2.0, 3.0), PATIENCE)
+        with MultiSensor("/cpp", timeout=HANG) as client:
+            wait_until(lambda: client.gyroscopes()["left"] == (1.0, 2.0, 3.0))
             assert client.gyroscopes()["right"] == (4.0, 5.0, 6.0)
             assert client.accelerometers() == {"left": (0.0, 0.0, 9.8)}
             assert client.magnetometers() == {"left": (1.0, 2.0, 3.0)}
@@ -84,4 +78,4 @@ def test_chain(network: CppYarp) -> None:
             assert client.timestamps()["left"] == 5.0
             assert client.frames["left"] == "l_imu"
             sensors.gyro = (7.0, 8.0, 9.0)
-            wait_until(lambda: client.gyroscopes()["left"] == (7.0, 8.0, 9.0), PATIENCE)
+            wait_until(lambda: client.gyroscopes()["left"] == (7.0, 8.0, 9.0))

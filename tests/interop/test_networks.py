@@ -9,7 +9,8 @@ import sys
 from collections.abc import Iterator
 
 import pytest
-from support.namespace import ip, why_not
+from support.namespace import ip
+from support.peer import brings
 from support.process import Process
 
 PREFIX = f"y{os.getpid() % 10000}"
@@ -18,11 +19,9 @@ PORT = 10000
 
 
 @pytest.fixture(scope="module")
+@brings("namespaces")
 def hosts() -> Iterator[dict[str, str]]:
     """Names of the namespaces by role."""
-    reason = why_not()
-    if reason:
-        pytest.skip(reason)
     names = {role: f"{PREFIX}{role}" for role in ("server", "left", "right")}
     try:
         for name in names.values():

@@ -8,23 +8,21 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from support.patience import patience
+from support.peer import program
 from support.port import free_port
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.data import jpeg
+from yarpy.data.sig import jpeg
 
 HEAD = "/icubSim/head/rpc:i"
-PATIENCE = patience(30.0)
 
 
 @pytest.fixture(scope="module")
@@ -51,13 +49,13 @@ def head(server: yarpy.NameServer) -> Iterator[yarpy.RpcServer]:
         yield port
 
 
-def run(program: str, *args: str, said: str = "") -> str:
-    found = shutil.which(program)
-    if found is None:
-        package = {"nc": "netcat-openbsd"}.get(program, program)
-        pytest.skip(f"no {program}: install it (apt-get install {package})")
+def run(name: str, *args: str, said: str = "") -> str:
     done = subprocess.run(
-        [found, *args], input=said.encode(), capture_output=True, timeout=PATIENCE, check=False
+        [program(name), *args],
+        input=said.encode(),
+        capture_output=True,
+        timeout=HANG,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.decode()
@@ -70,14 +68,12 @@ def curl(*args: str) -> str:
 # ------------------------------------------------------------------------------------ 5: a camera
 
 
+@pytest.mark.peer("ffmpeg")
 def test_camera_of_the_network_goes_straight_into_a_port(server: yarpy.NameServer) -> None:
     """`yarp connect /67.52.88.202:5159 /view mjpeg+path.mjpg/video.mjpg?camera=1`"""
-    ffmpeg = shutil.which("ffmpeg")
-    if ffmpeg is None:
-        pytest.skip("no ffmpeg: install it (apt-get install ffmpeg)")
     number, path = free_port(), "mjpg/video.mjpg?camera=1"
     source = ["-f", "lavfi", "-re", "-i", "testsrc=size=64x48:rate=20", "-f", "mpjpeg"]
-    camera = [ffmpeg, "-loglevel", "error", *source, "-listen", "1"]
+    camera = [program("ffmpeg"), "-loglevel", "error", *source, "-listen", "1"]
     connect = [sys.executable, "-m", "yarpy", "connect", f"/127.0.0.1:{number}", "/view"]
     with (
         yarpy.BufferedPort("/view") as view,
@@ -87,16 +83,17 @@ def test_camera_of_the_network_goes_straight_into_a_port(server: yarpy.NameServe
 
         def connected() -> bool:  # once ffmpeg listens
             with Process([*connect, f"mjpeg+path.{path}"], env=environment) as process:
-                return process.wait(PATIENCE) == 0
+                return process.wait(HANG) == 0
 
-        wait_until(connected, PATIENCE)
-        image = view.read(timeout=PATIENCE).value
+        wait_until(connected)
+        image = view.read(timeout=HANG).value
         assert (image.width, image.height, image.code) == (64, 48, "rgb")
 
 
 # ------------------------------------------------------------------------------ 7: web applications
 
 
+@pytest.mark.peer("curl")
 def test_web_page_looks_a_port_up_moves_it_and_asks_it(
     server: yarpy.NameServer, head: yarpy.RpcServer
 ) -> None:
@@ -114,14 +111,15 @@ def test_web_page_looks_a_port_up_moves_it_and_asks_it(
     assert said == ["is", "encs", [-0.000031, 45.0, 0.0, 0.0, 0.0, 0.0], "ok"]
 
 
+@pytest.mark.peer("curl")
 def test_browser_sees_what_a_camera_sees(server: yarpy.NameServer) -> None:
     picture = yarpy.Image(np.full((48, 64, 3), (200, 100, 50), "u1"))
     with yarpy.Port("/icubSim/cam") as port:
         found = json.loads(curl(f"http://{server.address}/?req=query+/icubSim/cam"))
         url = f"http://{found['ip']}:{found['port_number']}/?action=stream"
-        args = [shutil.which("curl") or "curl", "-sN", "-m", "20", url]
+        args = [program("curl"), "-sN", "-m", "20", url]
         with subprocess.Popen(args, stdout=subprocess.PIPE) as process:
-            assert port.wait_for_outputs(timeout=PATIENCE)
+            assert port.wait_for_outputs(timeout=HANG)
             port.write(picture)
             assert process.stdout is not None
             data = jpeg.encode(picture)
@@ -132,6 +130,7 @@ def test_browser_sees_what_a_camera_sees(server: yarpy.NameServer) -> None:
 # ---------------------------------------------------------------------------------------- 8: people
 
 
+@pytest.mark.peer("nc")
 def test_garbage_gets_a_friendly_explanation(head: yarpy.RpcServer) -> None:
     said = run("nc", "127.0.0.1", str(head.contact.port), said="wepfokwoefp\n")
     lines = said.splitlines()
@@ -149,6 +148,7 @@ def test_garbage_gets_a_friendly_explanation(head: yarpy.RpcServer) -> None:
         assert words in text
 
 
+@pytest.mark.peer("nc")
 def test_help_says_what_one_may_type(head: yarpy.RpcServer) -> None:
     for word in ("help", "?", "h"):
         said = run("nc", "127.0.0.1", str(head.contact.port), said=f"CONNECT foo\n{word}\nq\n")
@@ -159,10 +159,8 @@ def test_help_says_what_one_may_type(head: yarpy.RpcServer) -> None:
     assert "Type ? for help." in said
 
 
+@pytest.mark.peer("nc")
 def test_head_is_moved_and_asked_with_netcat(head: yarpy.RpcServer) -> None:
-    netcat = shutil.which("nc")
-    if netcat is None:
-        pytest.skip("no nc: install it (apt-get install netcat-openbsd)")
     script = f"""{{
       # ask for a text-mode connection
       echo CONNECT test
@@ -176,8 +174,8 @@ def test_head_is_moved_and_asked_with_netcat(head: yarpy.RpcServer) -> None:
       echo get encs
       # pause to see results
       sleep 0.5
-    }} | {netcat} -q 0 127.0.0.1 {head.contact.port}"""
-    done = subprocess.run(["sh", "-c", script], capture_output=True, timeout=PATIENCE, check=True)
+    }} | {program("nc")} -q 0 127.0.0.1 {head.contact.port}"""
+    done = subprocess.run(["sh", "-c", script], capture_output=True, timeout=HANG, check=True)
     assert done.stdout.decode().splitlines() == [
         "Welcome test",
         "[ok]",
@@ -185,17 +183,14 @@ def test_head_is_moved_and_asked_with_netcat(head: yarpy.RpcServer) -> None:
     ]
 
 
+@pytest.mark.peer("nc")
 def test_direction_of_data_is_not_that_of_the_call(server: yarpy.NameServer) -> None:
     """Who opened the socket may read: no server is needed on its side, and no name."""
-    netcat = shutil.which("nc")
-    if netcat is None:
-        pytest.skip("no nc: install it (apt-get install netcat-openbsd)")
     with yarpy.Port("/out") as port:
-        script = (
-            f"{{ echo CONNECT me; echo r; sleep 10; }} | {netcat} 127.0.0.1 {port.contact.port}"
-        )
+        netcat = f"{program('nc')} 127.0.0.1 {port.contact.port}"
+        script = f"{{ echo CONNECT me; echo r; sleep 10; }} | {netcat}"
         with Process(["sh", "-c", script]) as process:
-            assert port.wait_for_outputs(timeout=PATIENCE)
+            assert port.wait_for_outputs(timeout=HANG)
             port.write(["hi", 3])
-            process.wait_line("^hi 3$", timeout=PATIENCE)
+            process.wait_line("^hi 3$", timeout=HANG)
             assert process.stdout.splitlines() == ["Welcome me", "D", "hi 3"]

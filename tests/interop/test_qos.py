@@ -1,7 +1,6 @@
 """What is asked for reaches the kernel: seen by other programs, typed as a person types it."""
 
 import os
-import shutil
 import socket
 import subprocess
 import sys
@@ -46,7 +45,7 @@ def ports(cli) -> Iterator[tuple[yarpy.Port, yarpy.Port]]:
 
 
 @pytest.mark.skipif(not may_schedule(), reason="real-time scheduling needs root or CAP_SYS_NICE")
-@pytest.mark.skipif(shutil.which("chrt") is None, reason="chrt is missing: install util-linux")
+@pytest.mark.peer("chrt")
 def test_chrt_sees_the_policy_that_was_typed(cli, ports):
     line = "prop set /subscriber1 (sched ((policy SCHED_FIFO) (priority 30)))\n"
     done = subprocess.run(

@@ -84,7 +84,7 @@ def test_answers_that_are_no_lists(peer: CppProgram) -> None:
         assert seen == [
             '"hello there"', "5", "2.5", "", "(a (1 x)) (b 2)", "1.5 2.5", "[many] one two", "true"
         ]  # fmt: skip
-        assert peer.do("ask('unknown')") == "[fail] \"KeyError: 'unknown'\""
+        assert peer.do("ask('unknown')") == ("[fail] \"KeyError: 'unknown'\" (raised KeyError)")
         assert peer.do("ask('text')") == '"hello there"', "the connection lives on"
 
 

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from support.namespace import ip, why_not
+from support.namespace import ip
+from support.peer import brings
 from support.process import Process
 
 PREFIX = f"z{os.getpid() % 10000}"
@@ -18,11 +19,9 @@ PORT = 10000
 
 
 @pytest.fixture(scope="module")
+@brings("namespaces")
 def hosts() -> Iterator[tuple[str, str]]:
     """The namespaces of the robot and of the stranger."""
-    reason = why_not()
-    if reason:
-        pytest.skip(reason)
     robot, stranger = f"{PREFIX}robot", f"{PREFIX}far"
     try:
         for name in (robot, stranger):
@@ -55,7 +54,7 @@ TRIES = """
 import http.client, socket, sys, urllib.error, urllib.request
 import yarpy
 from yarpy.contact import Contact
-from yarpy.port.probe import Caller
+from yarpy.port.connect.probe import Caller
 
 host = sys.argv[1]
 

@@ -3,7 +3,7 @@
 from support.browser import Browser
 
 import yarpy
-from yarpy.idl.thrift.library import loads
+from yarpy.kits.thrift.library import loads
 from yarpy.nameserver.local import LocalNames
 
 INTERFACE = """\

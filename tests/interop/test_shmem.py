@@ -6,12 +6,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from support.cpp import CppYarp, MissingPeer
-from support.cpp_shmem import shmem_program
+from support.cpp import CppYarp
+from support.cpp_carrier import carrier_program
+from support.peer import brings
 from support.wait import wait_until
 
 import yarpy
-from yarpy.transports.sysv import available
+from yarpy.transports.shared.sysv import available
 
 pytestmark = pytest.mark.skipif(not available(), reason="no memory of System V here")
 
@@ -19,11 +20,9 @@ SIZES = (3, 6000, 10, 200_000, 5)
 
 
 @pytest.fixture(scope="module")
+@brings("g++")
 def program(cpp: CppYarp) -> str:
-    try:
-        return shmem_program(cpp)
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    return carrier_program(cpp, "shmem")
 
 
 @pytest.fixture(autouse=True)

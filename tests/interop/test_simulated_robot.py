@@ -11,28 +11,25 @@ from typing import TYPE_CHECKING
 import pytest
 from support.cpp import CppYarp
 from support.cpp_device import cpp_device, device_host
-from support.cpp_venv import MissingPeer
-from support.patience import patience
-from support.wait import wait_until
+from support.peer import brings
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.cli.service import server
-from yarpy.devices import ControlBoard, FrameGrabber, MultiSensor
-from yarpy.sim.robot import Robot, icub_head
-from yarpy.views.panel import Panel
+from yarpy.kits.devices import ControlBoard, FrameGrabber, MultiSensor
+from yarpy.kits.sim.robot import Robot, icub_head
+from yarpy.kits.views.panel import Panel
 
 if TYPE_CHECKING:
     from support.browser import Browser
 
-PATIENCE = patience(40.0)
+SLOW = 2 * HANG  # seconds
 
 
 @pytest.fixture(autouse=True)
+@brings("g++")
 def devices(our_names: CppYarp) -> None:
-    try:
-        device_host(our_names)
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    device_host(our_names)
 
 
 @pytest.fixture
@@ -56,22 +53,22 @@ def chain(programs: CppYarp):
 
 
 def test_client_of_cpp_drives_the_head(our_names: CppYarp, head) -> None:
-    with chain(our_names), ControlBoard("/cpp/head", "/mine", timeout=PATIENCE) as board:
+    with chain(our_names), ControlBoard("/cpp/head", "/mine", timeout=SLOW) as board:
         assert list(board.axis_names) == head.axis_names
         assert board.position_limits[1] == (-70.0, 60.0)
         board.position_move([1, 2], [45.0, -20.0])
-        wait_until(lambda: abs(head.encoders()[1] - 45) < 0.01, PATIENCE)
-        wait_until(lambda: abs(board.encoders()[2] + 20) < 0.01, PATIENCE)
-        wait_until(lambda: all(board.motion_done()), PATIENCE)
+        wait_until(lambda: abs(head.encoders()[1] - 45) < 0.01, SLOW)
+        wait_until(lambda: abs(board.encoders()[2] + 20) < 0.01, SLOW)
+        wait_until(lambda: all(board.motion_done()), SLOW)
         board.switch_control_modes([2], ["vel"])
-        wait_until(lambda: board.control_modes()[2] == "vel", PATIENCE)
+        wait_until(lambda: board.control_modes()[2] == "vel", SLOW)
         board.velocity_move([2], [10.0])
-        wait_until(lambda: head.encoder_speeds()[2] > 5, PATIENCE)
+        wait_until(lambda: head.encoder_speeds()[2] > 5, SLOW)
         board.stop([2])
         board.switch_control_modes(range(6), ["posd"] * 6)
-        wait_until(lambda: set(head.control_modes()) == {"posd"}, PATIENCE)
+        wait_until(lambda: set(head.control_modes()) == {"posd"}, SLOW)
         board.position_direct(range(6), [0.0] * 5 + [5.0])
-        wait_until(lambda: abs(head.encoders()[5] - 5) < 0.01, PATIENCE)
+        wait_until(lambda: abs(head.encoders()[5] - 5) < 0.01, SLOW)
 
 
 def test_clients_of_cpp_see_and_feel(our_names: CppYarp, head) -> None:
@@ -97,9 +94,9 @@ def test_clients_of_cpp_see_and_feel(our_names: CppYarp, head) -> None:
         FrameGrabber("/cpp/eye") as eye,
         MultiSensor("/cpp/imu") as imu,
     ):
-        wait_until(lambda: eye.image(PATIENCE).array.std() > 20, PATIENCE)
+        wait_until(lambda: eye.image(SLOW).array.std() > 20, SLOW)
         assert eye.resolution == (160, 120)
-        wait_until(lambda: imu.accelerometers()["head_imu"][2] > 9, PATIENCE)
+        wait_until(lambda: imu.accelerometers()["head_imu"][2] > 9, SLOW)
 
 
 def test_page_drives_a_robot_of_cpp(our_names: CppYarp, head, browser: Browser) -> None:
@@ -111,7 +108,7 @@ def test_page_drives_a_robot_of_cpp(our_names: CppYarp, head, browser: Browser) 
         page = browser.open()
         page.goto(f"http://{port.address}/", wait_until="commit")
         page.get_by_label("neck_roll").fill("30")
-        wait_until(lambda: abs(head.encoders()[1] - 30) < 0.01, PATIENCE)
+        wait_until(lambda: abs(head.encoders()[1] - 30) < 0.01, SLOW)
         page.locator(".joint .value", has_text="30.0°").wait_for()
         head.position_move([2], [-15.0])
         page.locator(".joint .value", has_text="-15.0°").wait_for()

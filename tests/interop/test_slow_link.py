@@ -10,7 +10,8 @@ import sys
 from collections.abc import Iterator
 
 import pytest
-from support.namespace import ip, why_not
+from support.namespace import ip
+from support.peer import brings
 from support.process import Process
 from support.wait import wait_until
 
@@ -31,24 +32,22 @@ with yarpy.Port("/out", names=names) as out, yarpy.BufferedPort(
     print("ready", flush=True)
     for line in sys.stdin:
         found.clear()
-        before = out.outputs[0].stats["bytes"]
+        before = out.outputs[0].stats.bytes
         due = time.monotonic()
         for _ in range(int(float(line) * 20)):
             due += 0.05
             time.sleep(max(0.0, due - time.monotonic()))
             out.write(image, yarpy.Stamp(1, time.time()))
-        size = out.outputs[0].stats["bytes"] - before
+        size = out.outputs[0].stats.bytes - before
         state = yarpy.admin("/out", "prop", "get", "/in", names=names).to_text()
         print(json.dumps({"ages": found, "bytes": size, "state": state}), flush=True)
 """
 
 
 @pytest.fixture
+@brings("namespaces")
 def slow() -> Iterator[str]:
     """A namespace with a loopback of 4 Mbit/s."""
-    reason = why_not()
-    if reason:
-        pytest.skip(reason)
     try:
         ip("netns", "add", NAME)
         ip("-n", NAME, "link", "set", "lo", "mtu", "1500", "up")

@@ -38,7 +38,7 @@ def test_cpp_sends(peer: CppProgram, carrier: str) -> None:
             assert message.stamp == Stamp(count, 5.25)
             assert message.source == "/cpp"
             assert peer.end() is True
-        assert port.inputs[0].stats["messages"] == 3
+        assert port.inputs[0].stats.messages == 3
         assert peer.do("yarp.Network.disconnect('/cpp', '/ours')")
         wait_until(lambda: not port.inputs, what="the port sees that its sender left")
         assert peer.do("port.getOutputCount()") == 0

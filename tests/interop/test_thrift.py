@@ -8,20 +8,18 @@ from typing import Any
 import pytest
 from support.cpp import CppYarp
 from support.cpp_thrift import INTERFACE, thrift_peer
-from support.cpp_venv import MissingPeer
-from support.patience import patience
+from support.peer import brings
 from support.process import Process
+from support.wait import HANG
 
 import yarpy
-from yarpy.idl.thrift.library import loads
+from yarpy.kits.thrift.library import loads
 
 
 @pytest.fixture(scope="module")
+@brings("g++")
 def program(cpp: CppYarp) -> Path:
-    try:
-        return thrift_peer(cpp)
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    return thrift_peer(cpp)
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +33,7 @@ def cpp_client(program: Path, our_names: CppYarp, capt: ModuleType) -> Iterator[
     arguments = [program, "server", "/cpp/thrift"]
     with Process(arguments, env=our_names.environment, cwd=our_names.home) as server:
         server.wait_line("^ready")
-        with capt.connect("/cpp/thrift", timeout=patience(10)) as client:
+        with capt.connect("/cpp/thrift", timeout=HANG) as client:
             yield client
 
 
@@ -127,7 +125,7 @@ def test_cpp_calls(program: Path, our_names: CppYarp, capt: ModuleType) -> None:
     with yarpy.RpcServer("/our/thrift", Server()):
         arguments = [program, "client", "/our/thrift"]
         with Process(arguments, env=our_names.environment, cwd=our_names.home) as client:
-            client.wait_line("^done", timeout=patience(20))
+            client.wait_line("^done", timeout=HANG)
             said = [line for line in client.stdout.splitlines() if not line.startswith("[")]
     assert said == [
         "add 42",

@@ -5,17 +5,14 @@ from collections.abc import Callable
 
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
-
-PATIENCE = patience(10.0)  # seconds for a server to make the connections that follow from names
 
 
 def flows(send: Callable[[int], object], port: yarpy.BufferedPort) -> None:
     """Send until something arrives that was sent just now."""
-    for count in range(int(PATIENCE / 0.1)):
+    for count in range(int(HANG / 0.1)):
         send(count)
         try:
             while port.read(timeout=0.1).value != [count]:
@@ -41,8 +38,8 @@ def test_topics(network: CppYarp, peer: CppProgram) -> None:
             flows(lambda n: writer.write([n]), reader)
             peer.do("got = yarp.BufferedPortBottle(); assert got.open('/cpp/in'); got.setStrict()")
             yarpy.connect("topic://news", "/cpp/in")
-            wait_until(lambda: yarpy.is_connected("/out", "/cpp/in"), PATIENCE, "it hears /out")
-            wait_until(lambda: yarpy.is_connected("/cpp/out", "/cpp/in"), PATIENCE, "and /cpp/out")
+            wait_until(lambda: yarpy.is_connected("/out", "/cpp/in"), HANG, "it hears /out")
+            wait_until(lambda: yarpy.is_connected("/cpp/out", "/cpp/in"), HANG, "and /cpp/out")
             writer.write(["to all"])
             assert peer.do("got.read().toString()") == '"to all"'
         yarpy.disconnect("topic://news", "/in")
@@ -60,7 +57,7 @@ def test_persistent_connections(network: CppYarp, peer: CppProgram) -> None:
                 flows(lambda n: writer.write([n]), reader)
         # The next one of that name is a C++ program.
         peer.do("port = yarp.BufferedPortBottle(); assert port.open('/pr')")
-        wait_until(lambda: writer.outputs, PATIENCE, "the connection to the C++ port is made")
+        wait_until(lambda: writer.outputs, HANG, "the connection to the C++ port is made")
         writer.write([1, 2])
         assert peer.do("port.read().toString()") == "1 2"
         peer.do("port.close()")

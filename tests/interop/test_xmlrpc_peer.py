@@ -6,25 +6,23 @@ import os
 import socket
 import subprocess
 import threading
+import time
 import xmlrpc.client
 from collections.abc import Iterator
 from contextlib import contextmanager
-from shutil import which
 from typing import Any
 from unittest.mock import ANY
 from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 import pytest
-from support.patience import patience
-from support.wait import wait_until
+from support.peer import program
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.carriers.base import Limits
-from yarpy.carriers.xmlrpc import XmlRpc
+from yarpy.carriers.web.xmlrpc import XmlRpc
 from yarpy.data.value import Vocab
 from yarpy.wire.message import Packet
-
-PATIENCE = patience(10.0)
 
 
 def proxy(port: yarpy.Port | yarpy.RpcServer, path: str = "/RPC2") -> xmlrpc.client.ServerProxy:
@@ -63,7 +61,7 @@ def test_python_writes_to_a_port_that_says_nothing() -> None:
     ):
         assert remote.hello(1) == ""
         assert remote.hello(2) == ""
-        assert [port.read(timeout=PATIENCE).value for _ in range(2)] == [["hello", 1], ["hello", 2]]
+        assert [port.read(timeout=HANG).value for _ in range(2)] == [["hello", 1], ["hello", 2]]
 
 
 def test_questions_of_ros_nodes() -> None:
@@ -80,17 +78,25 @@ def test_questions_of_ros_nodes() -> None:
                 assert remote.publisherUpdate("/master", "/topic", ["http://x:1/"]) == [1, "ok"]
 
 
+@pytest.mark.peer("curl")
 def test_entity_bomb_is_refused_and_the_port_lives() -> None:
     bomb = (
         b'<!DOCTYPE b [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
         b"<methodCall><methodName>&b;</methodName></methodCall>"
     )
-    curl = which("curl")
-    if curl is None:
-        pytest.skip("no curl: install it (apt-get install curl)")
     with yarpy.RpcServer("/srv", lambda m: ["fine"], names=yarpy.LocalNames()) as server:
         url = f"http://127.0.0.1:{server.contact.port}/RPC2"
-        args = [curl, "-s", "-m", "10", "-H", "Content-Type: text/xml", "--data-binary", "@-", url]
+        args = [
+            program("curl"),
+            "-s",
+            "-m",
+            "10",
+            "-H",
+            "Content-Type: text/xml",
+            "--data-binary",
+            "@-",
+            url,
+        ]
         said = subprocess.run(args, input=bomb, capture_output=True, timeout=20).stdout
         with pytest.raises(xmlrpc.client.Fault, match="not XML-RPC"):
             xmlrpc.client.loads(said)
@@ -98,14 +104,12 @@ def test_entity_bomb_is_refused_and_the_port_lives() -> None:
             assert remote.still() == "fine"
 
 
+@pytest.mark.peer("curl")
 def test_other_posts_still_reach_http() -> None:
-    curl = which("curl")
-    if curl is None:
-        pytest.skip("no curl: install it (apt-get install curl)")
     with yarpy.RpcServer("/srv", lambda m: ["fine", m.value], names=yarpy.LocalNames()) as server:
         url = f"http://127.0.0.1:{server.contact.port}/"
         kind = "Content-Type: application/json"
-        args = [curl, "-s", "-m", "10", "-H", kind, "-d", '["go", 1]', url]
+        args = [program("curl"), "-s", "-m", "10", "-H", kind, "-d", '["go", 1]', url]
         said = subprocess.run(args, capture_output=True, timeout=20).stdout
         assert b"fine" in said
         assert b"xml" not in said
@@ -134,7 +138,7 @@ def python_server() -> Iterator[tuple[SimpleXMLRPCServer, list[Any]]]:
     finally:
         server.shutdown()
         server.server_close()
-        thread.join(PATIENCE)
+        thread.join(HANG)
 
 
 def test_port_calls_python() -> None:
@@ -143,12 +147,12 @@ def test_port_calls_python() -> None:
         names.register("/sum", "xmlrpc", "127.0.0.1", server.server_address[1])
         with yarpy.RpcClient(name="/client", names=names) as client:
             client.connect("/sum", "xmlrpc")
-            assert client.ask(["add", 1, 2.5], timeout=PATIENCE).value == [3.5]
-            assert client.ask(["echo", 1, "two words", [1, "x", 2]], timeout=PATIENCE).value == [
+            assert client.ask(["add", 1, 2.5], timeout=HANG).value == [3.5]
+            assert client.ask(["echo", 1, "two words", [1, "x", 2]], timeout=HANG).value == [
                 *(1, "two words", [1, "x", 2])
             ]
-            assert client.ask(["describe"], timeout=PATIENCE).value == ["dict", ["a", 1]]
-            fault = client.ask(["nothing"], timeout=PATIENCE).value
+            assert client.ask(["describe"], timeout=HANG).value == ["dict", ["a", 1]]
+            fault = client.ask(["nothing"], timeout=HANG).value
             assert fault[0] == "dict"
             assert "not supported" in str(fault)
         with yarpy.Port("/out", names=names) as out:
@@ -170,7 +174,14 @@ class Silent:
         self.lock = threading.Lock()
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.line: socket.socket | None = None
-        threading.Thread(target=self._run, daemon=True).start()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Wake the thread, which waits for the next one, and let it end."""
+        self.listener.shutdown(socket.SHUT_RDWR)
+        self._thread.join(HANG)
+        self.listener.close()
 
     def _run(self) -> None:
         while True:
@@ -206,12 +217,12 @@ def test_reader_that_does_not_respond(
         wait_until(lambda: server.heard == 10)
         assert caplog.text.count('"/mute" does not respond') == 1
         with pytest.raises(yarpy.Timeout):
-            out._hub.outputs[0].call(Packet(["add", 1], key="d"), timeout=0.05)
-        wait_until(lambda: out.stats["past"]["outputs"]["unconfirmed"])
-        assert out.stats["past"]["outputs"] == {
-            "messages": 0, "bytes": ANY, "drops": 0, "unconfirmed": 10,
+            out._hub.outputs.links[0].call(Packet(["add", 1], key="d"), time.monotonic() + 0.05)
+        wait_until(lambda: out.stats.past.outputs.unconfirmed)
+        assert out.stats.past.outputs.as_dict() == {
+            "messages": 0, "bytes": ANY, "drops": 0, "replaced": 0, "unconfirmed": 10,
         }  # fmt: skip
-    server.listener.close()
+    server.close()
 
 
 def test_reader_that_responds_again_is_waited_for_again(
@@ -226,11 +237,11 @@ def test_reader_that_responds_again_is_waited_for_again(
             out.write(["add", number])
         wait_until(lambda: server.heard == 3)
         server.respond()
-        wait_until(lambda: not out.outputs[0].stats["unacknowledged"])
+        wait_until(lambda: not out.outputs[0].stats.unacknowledged)
         for number in range(2):
             out.write(["add", number])
         assert caplog.text.count('"/slow" does not respond') == 2
-    server.listener.close()
+    server.close()
 
 
 def test_buffered_writer_goes_on_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -245,4 +256,4 @@ def test_buffered_writer_goes_on_as_well(monkeypatch: pytest.MonkeyPatch) -> Non
             return server.heard >= 5
 
         wait_until(arrived)
-    server.listener.close()
+    server.close()

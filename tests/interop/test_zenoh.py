@@ -12,18 +12,17 @@ from pathlib import Path
 import pytest
 from support import tls
 from support.cpp import CppYarp
-from support.patience import patience
 from support.port import free_block, free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.config.authority import make
 from yarpy.errors import AccessRefused, LocalProtocolError, YarpError
-from yarpy.names import direct
-from yarpy.names.zenoh import ZenohNames
-from yarpy.transports import zenoh_exchange
-from yarpy.transports.zenoh import close
-from yarpy.transports.zenoh_router import open_router
+from yarpy.peers.zenoh import exchange as zenoh_exchange
+from yarpy.peers.zenoh import ways as direct
+from yarpy.peers.zenoh.names import ZenohNames
+from yarpy.peers.zenoh.router import open_router
+from yarpy.peers.zenoh.transport import close
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 
@@ -163,9 +162,9 @@ def test_what_needs_a_direct_way_says_so(lab: Lab, monkeypatch: pytest.MonkeyPat
 
 CARELESS = """
 import sys, yarpy
-from yarpy.names import direct
-direct.Ways.to = lambda self, entry: entry.through
-near, far = (yarpy.ZenohNames(f"{host}:{sys.argv[1]}") for host in ("127.0.0.1", "localhost"))
+from yarpy.peers.zenoh import ways
+ways.Ways.to = lambda self, entry: entry.through
+near, far = (yarpy.zenoh.ZenohNames(f"{host}:{sys.argv[1]}") for host in ("127.0.0.1", "localhost"))
 out, in_ = yarpy.Port("...", names=near), yarpy.BufferedPort("...", names=far)
 out.connect(in_.name, timeout=10)
 for number in range(20):
@@ -181,7 +180,7 @@ def test_a_program_that_closes_nothing_ends_by_itself() -> None:
     command = [sys.executable, "-W", "ignore", "-c", CARELESS, str(number)]
     programs = [subprocess.Popen(command, stderr=subprocess.PIPE, text=True) for _ in range(3)]
     for program in programs:
-        _, said = program.communicate(timeout=patience(30))
+        _, said = program.communicate(timeout=HANG)
         assert program.returncode == 0, said
     close(router)
 
@@ -233,7 +232,7 @@ def test_cpp_programs_take_part(
     router = open_router([where])
     names = ZenohNames(where.replace("127.0.0.1", "localhost"))
     with (
-        yarpy.NameServer(free_block(200), zenoh=where) as server,
+        yarpy.NameServer(free_block(200), beside={"zenoh": where}) as server,
         cpp.at("127.0.0.1", server.port) as programs,
         yarpy.BufferedPort("/ours/in", names=names, strict=True) as in_,
         yarpy.RpcServer("/ours/rpc", lambda message: ["echo", *message.value], names=names),

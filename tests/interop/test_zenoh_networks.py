@@ -8,7 +8,6 @@ Needs root and iproute2.
 
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -16,10 +15,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from support.namespace import ip, why_not
-from support.patience import patience
+from support.namespace import ip
+from support.peer import brings, program
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 
@@ -37,22 +36,20 @@ table ip nat {{
 
 
 def translate(host: str) -> bool:
-    """Let the robot out by a translation of addresses; whether that can be had."""
-    if shutil.which("nft") is None:
-        return False
+    """Let the robot out by a translation of addresses; return False if the system has none."""
     inside = ["ip", "netns", "exec", host]
-    done = subprocess.run([*inside, "nft", "-f", "-"], input=NAT, text=True, capture_output=True)
+    done = subprocess.run(
+        [*inside, program("nft"), "-f", "-"], input=NAT, text=True, capture_output=True
+    )
     if done.returncode == 0:
         subprocess.run([*inside, "sysctl", "-qw", "net.ipv4.ip_forward=1"], check=True)
     return done.returncode == 0
 
 
 @pytest.fixture(scope="module")
+@brings("namespaces", "nft")
 def hosts() -> Iterator[dict[str, str]]:
     """Names of the namespaces by role."""
-    reason = why_not()
-    if reason:
-        pytest.skip(reason)
     names = {role: f"{PREFIX}{role}" for role in ("middle", "lab", "robot")}
     try:
         for name in names.values():
@@ -95,7 +92,7 @@ class Programs:
         """What `yarpy WORDS` prints there."""
         done = subprocess.run(
             self._inside(host, "-m", "yarpy", *words), env=self._environment, text=True,
-            input=input, capture_output=True, timeout=patience(30),
+            input=input, capture_output=True, timeout=HANG,
         )  # fmt: skip
         return done.stdout
 
@@ -103,13 +100,13 @@ class Programs:
         """What a browser gets there."""
         code = f"import urllib.request as u; print(u.urlopen({url!r}, timeout=10).read().decode())"
         return subprocess.run(
-            self._inside(host, "-c", code), text=True, capture_output=True, timeout=patience(30)
+            self._inside(host, "-c", code), text=True, capture_output=True, timeout=HANG
         ).stdout
 
     def python(self, host: str, code: str) -> Process:
         """A program there that says `ready`."""
         process = Process(self._inside(host, "-u", "-c", code), env=self._environment)
-        process.wait_line("ready", timeout=patience(20))
+        process.wait_line("ready", timeout=HANG)
         return process
 
 
@@ -167,31 +164,31 @@ with yarpy.Port("/lab/out") as out:
             time.sleep(0.01)
     except KeyboardInterrupt:
         out.flush(10)
-        past = out.stats["past"]["outputs"]
-        dropped = past["drops"] + sum(one["drops"] for one in out.stats["outputs"])
-        print("counted", number, taken, out.stats["unconnected"], dropped, past["unconfirmed"])
+        past = out.stats.past.outputs
+        dropped = past.drops + sum(one.drops for one in out.stats.outputs)
+        print("counted", number, taken, out.stats.unconnected, dropped, past.unconfirmed)
 """
 
 
 @pytest.mark.usefixtures("routers")
 def test_a_robot_that_nobody_can_dial_is_reached_and_comes_back(programs: Programs) -> None:
     with middle(programs) as hub, programs.python("robot", ROBOT_PROGRAM) as robot:
-        wait_until(lambda: "/robot/rpc" in programs.run("lab", "name", "list"), patience(20))
+        wait_until(lambda: "/robot/rpc" in programs.run("lab", "name", "list"))
         assert ".zenoh" in programs.run("lab", "name", "query", "/robot/rpc")
         assert "Response: at home now" in programs.run("lab", "rpc", "/robot/rpc", input="now\n")
         with programs.start("lab", "read", "/lab/in", "/robot/cam") as reader:
-            reader.wait_line(r"\[mat\]|rgb|{", timeout=patience(20))
+            reader.wait_line(r"\[mat\]|rgb|{", timeout=HANG)
         with programs.start("lab", "view", "--no-browser", "--connect", "/robot/cam") as view:
-            url = view.wait_line(r"http://\S+/", timeout=patience(20))[0]
-            wait_until(lambda: SHOWN.search(programs.fetch("lab", f"{url}status")), patience(20))
+            url = view.wait_line(r"http://\S+/", timeout=HANG)[0]
+            wait_until(lambda: SHOWN.search(programs.fetch("lab", f"{url}status")))
         with programs.python("lab", LAB_PROGRAM) as lab:
-            robot.wait_line("got 20$", timeout=patience(20))
+            robot.wait_line("got 20$", timeout=HANG)
             hub.signal(signal.SIGKILL)
             hub.wait()
             before = len(robot.stdout.splitlines())
             wait_until(lambda: "/robot/in" not in programs.run("lab", "name", "list"))
             with middle(programs):
-                wait_until(lambda: len(robot.stdout.splitlines()) > before + 50, patience(30))
+                wait_until(lambda: len(robot.stdout.splitlines()) > before + 50)
                 assert ".zenoh" in programs.run("lab", "name", "query", "/robot/rpc")
                 lab.signal(signal.SIGINT)
                 lab.wait()

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from yarpy.link import cores as module
+from yarpy.link.begin.greeting import driver_of
 from yarpy.link.cores import cores, share
-from yarpy.link.driver import Driver
 from yarpy.transports.tcp import TcpListener, TcpTransport, dial
 
 
@@ -63,9 +63,9 @@ def test_who_is_bound_to_a_processor_polls(monkeypatch: pytest.MonkeyPatch) -> N
     try:
         os.sched_setaffinity(0, {min(before)})
         transport: TcpTransport = dial("127.0.0.1", listener.port)
-        assert Driver(transport).eager
+        assert driver_of(transport).eager
         monkeypatch.setattr(module, "share", lambda root, own: 0.5)
-        assert not Driver(transport).eager
+        assert not driver_of(transport).eager
         transport.close()
     finally:
         os.sched_setaffinity(0, before)

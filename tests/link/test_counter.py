@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 
 import pytest
+from support.build import COMPILED
+from support.moments import moments
 
 from yarpy.link.counter import KEEP, Counter, Past
 
@@ -61,6 +63,7 @@ def test_numbers_by_name() -> None:
         *(
             "messages",
             "bytes",
+            "replaced",
             "drops",
             "unconfirmed",
             "period",
@@ -74,12 +77,32 @@ def test_numbers_by_name() -> None:
 
 def test_sums_over_links_that_are_over() -> None:
     past = Past()
-    assert past.as_dict() == {"messages": 0, "bytes": 0, "drops": 0, "unconfirmed": 0}
-    counters = [Counter(messages=1, bytes=10, drops=2, unconfirmed=4) for _ in range(3 * KEEP)]
+    assert past.as_dict() == {
+        "messages": 0,
+        "bytes": 0,
+        "replaced": 0,
+        "drops": 0,
+        "unconfirmed": 0,
+    }
+    counters = [Counter(1, 10, 5, drops=2, unconfirmed=4) for _ in range(3 * KEEP)]
     for counter in counters:
         past.add(counter, 1)
     expected = {"messages": 3 * KEEP, "bytes": 30 * KEEP, "drops": 9 * KEEP}
-    expected["unconfirmed"] = 12 * KEEP
+    expected["unconfirmed"], expected["replaced"] = 12 * KEEP, 15 * KEEP
     assert past.as_dict() == expected
     counters[-1].drops += 5  # what waited is dropped later
     assert past.as_dict()["drops"] == 9 * KEEP + 5
+
+
+@pytest.mark.skipif(COMPILED, reason="handlers do not run in the middle of compiled code")
+def test_a_signal_handler_above_adds_another_one() -> None:
+    """At every moment of an addition: both are counted, once."""
+    for moment in moments():
+        past, one, other = Past(), Counter(1), Counter(2)
+        for _ in range(KEEP):
+            past.add(Counter(4))
+        with moment.interrupts(lambda past=past, other=other: past.add(other)):
+            past.add(one)
+        past.add(one)
+        if moment.came:
+            assert past.as_dict()["messages"] == 4 * KEEP + 3

@@ -9,16 +9,15 @@ import threading
 import time
 
 import pytest
-from support.port import free_port
 from support.transport import ScriptTransport, scripted
 
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout
-from yarpy.link.driver import Driver, link_error
+from yarpy.link.begin.greeting import driver_of
+from yarpy.link.driver import link_error
 from yarpy.transports.base import SocketTransport
-from yarpy.transports.datagram import DatagramTransport
-from yarpy.wire.effects import Group, Open, Switch
+from yarpy.wire.effects import Switch
 from yarpy.wire.steps import Steps
-from yarpy.wire.stream import ByteStream, DatagramStream
+from yarpy.wire.stream import ByteStream
 
 
 def test_steps_run_to_their_end() -> None:
@@ -68,7 +67,7 @@ def test_last_words_to_a_peer_that_is_too_slow(listens: bool) -> None:
 
         transport.send = deaf  # type: ignore[method-assign]
     with pytest.raises(Timeout):
-        driver.run(steps(), time.monotonic() + 1)
+        driver.run(steps(), time.monotonic() + 0.2)
     assert transport.said == (b"too late" if listens else b"")
 
 
@@ -89,7 +88,7 @@ def test_reset_is_an_end(error: OSError) -> None:
 
 def test_silence_is_a_timeout_and_what_came_is_kept() -> None:
     left, right = socket.socketpair()
-    driver = Driver(SocketTransport(left))
+    driver = driver_of(SocketTransport(left))
     right.sendall(b"12")
     steps = driver.stream.read_exact(4)
     started = time.monotonic()
@@ -145,111 +144,20 @@ def test_trying_takes_what_is_there() -> None:
         next(ended.stream.read_exact(1))
 
 
-# ---------------------------------------------------------------------------------- effects
-
-
-def test_moving_to_another_place() -> None:
-    """What was written goes out by the old way first; the old transport is closed."""
-    driver, old = scripted(b"", open_ended=True)
-    new = ScriptTransport([b"there"])
-    fresh = ByteStream()
-
-    def steps() -> Steps[bytes]:
-        driver.stream.write(b"I move")
-        yield Switch(new, fresh)
-        return bytes((yield from fresh.read_exact(5)))
-
-    assert driver.run(steps()) == b"there"
-    assert old.said == b"I move"
-    assert old.closed
-    assert driver.transport is new
-    assert driver.stream is fresh
-
-
-def test_udp_is_opened_on_request() -> None:
-    driver, _ = scripted(open_ended=True)
-
-    def steps() -> Steps[int]:
-        handle = yield Open("udp", listen=True)
-        yield Switch(handle, DatagramStream())
-        return int(handle.port)
-
-    number = driver.run(steps())
-    assert isinstance(driver.transport, DatagramTransport)
-    assert 0 < number < 65536
-    driver.transport.close()
-
-
-def test_peer_is_dialled_once_more() -> None:
-    """By somebody who wants to ask again, with what is left of the time."""
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        driver, old = scripted(open_ended=True)
-        old.remote = listener.getsockname()
-
-        def steps() -> Steps[bytes]:
-            again = yield Open("tcp", listen=False)
-            fresh = ByteStream()
-            yield Switch(again, fresh)
-            fresh.write(b"me again")
-            return bytes((yield from fresh.read_exact(2)))
-
-        def serve() -> None:
-            sock, _ = listener.accept()
-            assert sock.recv(8, socket.MSG_WAITALL) == b"me again"
-            sock.sendall(b"ok")
-            sock.close()
-
-        thread = threading.Thread(target=serve, daemon=True)
-        thread.start()
-        assert driver.run(steps(), time.monotonic() + 10) == b"ok"
-        assert old.closed
-        thread.join(5)
-        driver.transport.close()
-
-
-def test_peer_that_cannot_be_dialled_once_more() -> None:
-    driver, transport = scripted(open_ended=True)
-    transport.remote = ("127.0.0.1", free_port())
-
-    def steps() -> Steps[None]:
-        yield Open("tcp", listen=False)
-
-    with pytest.raises(ConnectionRefusedError):
-        driver.run(steps(), time.monotonic() + 10)
-    assert driver.transport is transport  # for whoever opened it to close
-
-
-def test_group_is_asked_for() -> None:
-    transport = ScriptTransport()
-    asked: list[str] = []
-
-    def group(host: str) -> tuple[str, int]:
-        asked.append(host)
-        return "224.1.1.3", 21604
-
-    def steps() -> Steps[tuple[str, int]]:
-        found: tuple[str, int] = yield Group()
-        return found
-
-    assert Driver(transport, group=group).run(steps()) == ("224.1.1.3", 21604)
-    assert asked == ["127.0.0.1"]
-    with pytest.raises(LocalProtocolError, match="multicast"):
-        Driver(transport).run(steps())
-
-
-def test_what_cannot_be_done() -> None:
+def test_what_belongs_to_a_greeting_is_not_done() -> None:
+    """Nothing moves a connection on which messages go already."""
     driver, _ = scripted()
 
     def steps() -> Steps[None]:
-        yield Open("carrier pigeon", listen=False)
+        yield Switch(ScriptTransport(), ByteStream())
 
-    with pytest.raises(LocalProtocolError, match="pigeon"):
+    with pytest.raises(LocalProtocolError, match="Switch"):
         driver.run(steps())
 
 
 def test_limit_reaches_the_stream() -> None:
     transport = ScriptTransport([b"x" * 100])
-    driver = Driver(transport, limit=1000)
+    driver = driver_of(transport, limit=1000)
     with pytest.raises(RemoteProtocolError):
         driver.run(driver.stream.read_exact(20_000))
 
@@ -262,27 +170,3 @@ def test_dead_host_is_the_end_of_a_connection(number: int) -> None:
     with pytest.raises(LinkClosed, match="host does not answer"):
         driver.fill()
     assert isinstance(link_error(error), LinkClosed)
-
-
-def test_flush_by_a_deadline_leaves_the_rest_for_the_next() -> None:
-    near, far = socket.socketpair()
-    driver = Driver(SocketTransport(near))
-    data = bytes(range(256)) * 20_000
-    driver.stream.write(data)
-    for deadline in (0.0, time.monotonic() + 0.05):
-        with pytest.raises(Timeout):
-            driver.flush(deadline)
-    assert 0 < driver.bytes_out < len(data)
-    assert driver.stream.pending
-    driver.stream.write(b"the end")
-    thread = threading.Thread(target=driver.flush, args=(time.monotonic() + 30,))
-    thread.start()
-    found = bytearray()
-    while len(found) < len(data) + 7:
-        found += far.recv(1 << 20)
-    thread.join(5)
-    assert bytes(found) == data + b"the end"
-    assert driver.bytes_out == len(found)
-    assert not driver.stream.pending
-    near.close()
-    far.close()

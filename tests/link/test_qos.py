@@ -63,7 +63,7 @@ def test_packets_of_either_side(ports, packets) -> None:
 def test_output_that_is_scheduled_gets_its_thread(ports, asked) -> None:
     out, in_ = ports
     out.outputs[0].qos = Qos("SCHED_FIFO", 30)
-    link = out._hub.outputs[0]
+    link = out._hub.outputs.links[0]
     assert link.thread is not None
     assert asked == [(link.thread.native_id, os.SCHED_FIFO, 30)]
     for number in range(10):
@@ -81,7 +81,7 @@ def test_input_that_is_scheduled_is_read_by_its_thread(ports, asked) -> None:
         out.write([number])
         in_.read(timeout=5)
     in_.inputs[0].qos = Qos("SCHED_RR", 7)
-    link = in_._hub.inputs[0]
+    link = in_.inputs[0]._link
     assert asked == [(link.thread.native_id, os.SCHED_RR, 7)]
     for number in range(20):
         out.write([number])
@@ -100,7 +100,7 @@ def test_refusal_says_what_to_do_and_changes_nothing(ports, refusing) -> None:
 
 
 def test_wrong_values_are_refused_before_anything_is_changed(ports) -> None:
-    link = ports[0]._hub.outputs[0]
+    link = ports[0]._hub.outputs.links[0]
     for sched in (Sched(1, 100), Sched(1, 0), Sched(0, 5), Sched(9, 5)):
         with pytest.raises(ValueError, match=r"priority|policy"):
             qos.grant_sched(link, sched)

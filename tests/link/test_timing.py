@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from yarpy.link.timing import Timing, age_of, expected, time_left
+from yarpy.link.timing import Timing, age_of, expected
 from yarpy.qos import Qos
-from yarpy.wire.message import DATA, Message, Packet
+from yarpy.wire.message import DATA, Message
 
 NOW = 1.7e9
 
@@ -102,11 +102,6 @@ def test_what_is_no_time_of_day_is_no_age(envelope: str) -> None:
 def test_what_is_played_back_is_not_late() -> None:
     assert age_of(f"1 {NOW - 7200}", lambda: NOW) is None
     assert age_of(f"1 {NOW - 7}", lambda: NOW) == pytest.approx(7)
-
-
-def test_time_left() -> None:
-    assert time_left(Packet([1]), 0.5) == 0.5
-    assert time_left(Packet([1], b"1 5.5"), 0.5) == 0.5
 
 
 def test_what_is_not_said_stays_and_zero_ends_it() -> None:

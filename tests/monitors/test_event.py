@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yarpy.errors import LocalProtocolError
-from yarpy.monitors.event import EVENTS, MOST, Events
+from yarpy.limit import SCRIPT_EVENTS
+from yarpy.monitors.event import EVENTS, Events
 
 
 class Clock:
@@ -81,7 +82,7 @@ def test_names_that_no_constraint_could_ask_for(events: Events, name: str) -> No
 
 
 def test_owner_has_only_so_many(events: Events, clock: Clock) -> None:
-    for number in range(MOST):
+    for number in range(SCRIPT_EVENTS):
         events.set("a", f"e{number}", 1.0)
     with pytest.raises(LocalProtocolError, match="cannot set more than"):
         events.set("a", "another")

@@ -8,8 +8,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from support.package import EXAMPLES, install
 
-PACKAGE = Path(__file__).parents[2] / "examples" / "monitor_package"
+PACKAGE = EXAMPLES / "monitor_package"
 SOURCE = PACKAGE / "yarpy_limit.py"
 
 
@@ -21,19 +22,7 @@ def test_example_is_one_short_file() -> None:
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The package, installed by pip into a folder of its own; nothing is fetched."""
-    pytest.importorskip("hatchling", reason="the build backend comes with yarpy[test]")
-    target = tmp_path_factory.mktemp("site")
-    options = ["--quiet", "--no-deps", "--no-build-isolation", "--no-index", "--no-cache-dir"]
-    command = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", *options]
-    done = subprocess.run(
-        [*command, "--target", str(target), str(PACKAGE)],
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert done.returncode == 0, done.stderr
-    return target
+    return install("monitor_package", tmp_path_factory)
 
 
 USE = """
@@ -50,7 +39,7 @@ with yarpy.Port("/motor", names=names) as motor, yarpy.Port("/stick", names=name
     print(yarpy.admin("/motor", "get", "in", "/stick", names=names).to_text())
     print(yarpy.admin("/motor", "prop", "get", "/stick", names=names).group("state").to_text())
     print(yarpy.admin("/motor", "set", "in", "/stick", ["most", -1], names=names).to_text())
-    print(motor.inputs[0].stats["drops"])
+    print(motor.inputs[0].stats.drops)
     try:
         stick.connect("/motor", "tcp+send.limit+most.-1")
     except yarpy.YarpError as error:

@@ -11,7 +11,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy import registry
-from yarpy.registry import SHIPPED
+from yarpy.shipped import SHIPPED
 
 DEPTH = yarpy.Image(np.linspace(0.5, 5, 48, dtype="f4").reshape(6, 8))
 RGB = yarpy.Image(np.full((8, 16, 3), (10, 200, 90), "u1"))
@@ -116,7 +116,7 @@ def test_what_does_not_fit_is_dropped_counted_and_told_once(
             assert in_.read(timeout=5)
             return
         link = out.outputs[0] if side == "send" else in_.inputs[0]
-        wait_until(lambda: link.stats["drops"] == 3)
+        wait_until(lambda: link.stats.drops == 3)
     told = [record for record in caplog.records if "a monitor dropped a message" in record.message]
     assert len(told) == 1
 
@@ -130,7 +130,7 @@ def test_throttled_stream() -> None:
         out.connect("/in", "tcp+send.throttleDown+period_ms.100000")
         assert [out.write(number) for number in range(5)] == [1, 0, 0, 0, 0]
         assert in_.read(timeout=5).value == 0
-        assert out.outputs[0].stats["drops"] == 4
+        assert out.outputs[0].stats.drops == 4
 
 
 def test_calls_travel_compressed_and_replies_as_they_are() -> None:
@@ -142,4 +142,4 @@ def test_calls_travel_compressed_and_replies_as_they_are() -> None:
         monitor = "bottle_compression_zlib"
         client.connect("/server", f"tcp+send.{monitor}+recv.{monitor}")
         assert client.call(["x" * 1000]) == ["x" * 1000]
-        assert client.outputs[0].stats["bytes"] < 500
+        assert client.outputs[0].stats.bytes < 500

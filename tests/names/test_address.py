@@ -6,7 +6,6 @@ import pytest
 
 from yarpy.names import address
 from yarpy.names.address import (
-    address_towards,
     is_local,
     is_loopback,
     local_addresses,
@@ -29,9 +28,13 @@ def test_local_addresses_are_ours() -> None:
                 probe.bind((host, 0))
 
 
-def test_a_system_without_interfaces_to_read(monkeypatch: pytest.MonkeyPatch) -> None:
+# TypeError: the C library of Windows has no name, and None is none there.
+@pytest.mark.parametrize("error", [OSError, AttributeError, TypeError])
+def test_a_system_without_interfaces_to_read(
+    error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
     def broken() -> object:
-        raise OSError("no getifaddrs")
+        raise error("no getifaddrs")
 
     monkeypatch.setattr(address, "_interface_addresses", broken)
     assert local_addresses()[0] == "127.0.0.1"
@@ -72,40 +75,8 @@ def test_is_local() -> None:
     assert not is_local("x" * 300)
 
 
-def test_the_local_end_of_the_connection_is_what_the_other_side_reaches() -> None:
-    with (
-        socket.create_server(("127.0.0.1", 0)) as listener,
-        socket.create_connection(listener.getsockname()) as connection,
-    ):
-        assert address_towards(connection, {}) == "127.0.0.1"
-        assert address_towards(connection, {"YARP_IP": "10."}, SOME) == "10.0.0.12"
-        assert address_towards(connection, {"YARP_IP": "172."}, SOME) == "127.0.0.1"
-
-
-def test_an_ipv4_peer_of_an_ipv6_socket() -> None:
-    try:
-        listener = socket.create_server(
-            ("", 0), family=socket.AF_INET6, dualstack_ipv6=socket.has_dualstack_ipv6()
-        )
-    except OSError:
-        pytest.skip("no IPv6 here")
-    with (
-        listener,
-        socket.create_connection(("127.0.0.1", listener.getsockname()[1])) as connection,
-        listener.accept()[0] as accepted,
-    ):
-        assert address_towards(accepted, {}) == "127.0.0.1"
-        assert address_towards(connection, {}) == "127.0.0.1"
-
-
-def test_without_a_connection_the_best_guess() -> None:
-    assert address_towards(None, {}, SOME) == "10.0.0.12"
+def test_the_best_guess() -> None:
     assert outward_address(SOME) == "10.0.0.12", "not loopback, and the shorter text"
     assert outward_address(["::1", "127.0.0.1"]) == "127.0.0.1"
     assert outward_address(["::1", "fe80::1"]) == "127.0.0.1"
     assert outward_address() in local_addresses()
-    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as unbound:
-        assert address_towards(unbound, {}, SOME) == "10.0.0.12"
-    one, other = socket.socketpair()
-    with one, other:
-        assert address_towards(one, {}, SOME) == "10.0.0.12"

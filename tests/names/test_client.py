@@ -200,8 +200,6 @@ def test_nobody_there() -> None:
         names.query("/x")
     assert not names.alive()
     with pytest.raises(NoNameServer):
-        _ = names.local_address
-    with pytest.raises(NoNameServer):
         YarpNameClient("no.such.host.invalid", 10000, 1.0).query("/x")
 
 
@@ -274,7 +272,7 @@ def test_restarted_between_two_commands() -> None:
 
 
 def test_endless_lines_and_replies_are_cut(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(client_module, "LARGEST", 100_000)
+    monkeypatch.setattr(client_module, "NAME_REPLY", 100_000)
     for answer in (b"x" * 400_000, b"registration\r\n" * 40_000):
         with (
             Scripted(answer) as server,
@@ -332,10 +330,9 @@ def test_a_fork_does_not_share_a_dialogue(monkeypatch: pytest.MonkeyPatch) -> No
         assert server.connections == 2
 
 
-def test_alive_and_local_address() -> None:
+def test_alive() -> None:
     with serve_names() as server, YarpNameClient("127.0.0.1", server.port) as names:
         assert names.alive()
-        assert names.local_address == "127.0.0.1"
 
 
 def test_text_over_several_lines_is_one_bottle() -> None:
@@ -366,3 +363,8 @@ def test_a_failed_preparation_is_told() -> None:
 
     with Scripted(END) as server, pytest.raises(NoNameServer, match=r"compare auth\.conf"):
         YarpNameClient("127.0.0.1", server.port, prepare=refuse).query("/x")
+
+
+def test_which_name_server_has_to_be_said() -> None:
+    with pytest.raises(TypeError, match=r"YarpNameClient\(host, port\)"):
+        YarpNameClient()

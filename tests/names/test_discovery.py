@@ -8,20 +8,16 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support import held
 from support.capture import load_capture
+from support.multicast import needs_multicast
 from support.name_line import new_service
 from support.port import free_port
 
 from yarpy.contact import Contact
 from yarpy.errors import DecodeError
-from yarpy.names.discovery import (
-    LARGEST,
-    Responder,
-    decode_datagram,
-    encode_datagram,
-    respond,
-    search,
-)
+from yarpy.limit import DISCOVERY_DATAGRAM
+from yarpy.names.discovery import Responder, decode_datagram, encode_datagram, respond, search
 
 CAPTURE = load_capture("detect_multicast")
 GROUP = "239.255.77.77"  # not the group of real name servers, so that none of them mixes in
@@ -87,13 +83,8 @@ def test_codec_there_and_back(line: str) -> None:
 @pytest.fixture
 def port() -> Iterator[int]:
     """A port on which this computer can talk to the group."""
-    number = free_port()
-    try:
-        with Responder(lambda line: "x", number, group=GROUP):
-            pass
-    except OSError as error:
-        pytest.skip(f"no multicast here: {error}")
-    yield number
+    needs_multicast()
+    yield free_port()
 
 
 def registered(line: str) -> str:
@@ -154,15 +145,15 @@ def test_two_servers_share_a_computer(port: int) -> None:
 
 
 def test_close_ends_the_thread(port: int) -> None:
-    before = threading.active_count()
+    before = held.threads()
     responder = Responder(registered, port, group=GROUP)
     responder.close()
     responder.start()
-    assert threading.active_count() == before + 1
+    assert len(held.threads() - before) == 1
     start = time.monotonic()
     responder.close()
     responder.close()
-    assert threading.active_count() == before
+    assert held.threads() <= before
     assert time.monotonic() - start < 5
     responder.start()
     assert search("/again", port, group=GROUP) is not None
@@ -172,6 +163,6 @@ def test_close_ends_the_thread(port: int) -> None:
 def test_a_question_as_large_as_can_be_does_no_harm(port: int) -> None:
     with Responder(registered, port, group=GROUP):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-            text = "NAME_SERVER query " + "x" * (LARGEST - 100)
+            text = "NAME_SERVER query " + "x" * (DISCOVERY_DATAGRAM - 100)
             sender.sendto(encode_datagram(text), (GROUP, port))
         assert search("/root", port, group=GROUP) is not None

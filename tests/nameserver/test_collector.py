@@ -6,10 +6,11 @@ import socket
 import subprocess
 import sys
 import time
+from math import inf
 
 import pytest
-from support.patience import patience
 from support.port import free_port
+from support.wait import wait_until
 
 import yarpy
 from yarpy.nameserver import collector
@@ -23,19 +24,33 @@ os.kill(os.getpid(), 9)
 
 
 @pytest.fixture
+def rounds(monkeypatch):
+    """Wait until the collector has looked often enough to remove what it would remove."""
+    found = []
+    look = collector.Collector.look
+
+    def counted(self):
+        look(self)
+        found.append(self)
+
+    def wait():
+        before = len(found) + 1  # one may be under way
+        wait_until(lambda: len(found) > before + collector.STRIKES)
+        return found[-1]
+
+    monkeypatch.setattr(collector.Collector, "look", counted)
+    return wait
+
+
+@pytest.fixture
 def server(monkeypatch):
-    monkeypatch.setattr(collector.Collector.__init__, "__defaults__", (0.1, 0.5))
+    monkeypatch.setattr(collector.Collector.__init__, "__defaults__", (0.02, 0.5))
     with yarpy.NameServer() as server:
         yield server
 
 
-def gone(name, seconds=5.0):
-    deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline:
-        if yarpy.query(name) is None:
-            return True
-        time.sleep(0.05)
-    return False
+def wait_gone(name):
+    wait_until(lambda: yarpy.query(name) is None, what=f"{name} is gone")
 
 
 def test_a_killed_port_loses_its_name(server):
@@ -44,44 +59,70 @@ def test_a_killed_port_loses_its_name(server):
         [sys.executable, "-c", CRASHER], env=environment, timeout=30, capture_output=True
     )
     assert process.returncode == -signal.SIGKILL
-    assert gone("/dead/port")
+    wait_gone("/dead/port")
 
 
-def test_living_ports_keep_their_names(server):
+def test_living_ports_keep_their_names(server, rounds):
     with yarpy.Port("/living"):
-        time.sleep(1)
+        rounds()
         assert yarpy.query("/living") is not None
 
 
-def test_a_foreign_endpoint_keeps_its_name_though_nothing_listens(server):
+def test_a_foreign_endpoint_keeps_its_name_though_nothing_listens(server, rounds):
     server.client.register("/camera", "mjpeg", "127.0.0.1", free_port())
     server.client.register("/other", "tcp", "127.0.0.1", free_port())
-    time.sleep(1)
+    rounds()
     assert yarpy.query("/camera") is not None
     assert yarpy.query("/other") is not None
 
 
-def test_a_port_that_listens_keeps_its_name_though_its_process_is_not_seen(server):
+def test_a_port_that_listens_keeps_its_name_though_its_process_is_not_seen(server, rounds):
     """As in a container: the process number means nothing here, the address does."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
         client = server.client
         client.register("/boxed", "tcp", "127.0.0.1", listener.getsockname()[1])
         client.set("/boxed", "process", 2**22 + 1)
-        time.sleep(1)
+        rounds()
         assert yarpy.query("/boxed") is not None
-    assert gone("/boxed")
+    wait_gone("/boxed")
 
 
-def test_number_that_nobody_listens_on_comes_back(server):
+@pytest.mark.parametrize("text", ["\u00b2", "\u0664", "9" * 30, "9" * 5000, "-1", "x"])
+def test_what_a_stranger_calls_a_process_does_not_end_the_watch(server, text):
+    """Anybody may register a name and give it properties."""
+    server.client.register("/odd", "tcp", "127.0.0.1", free_port())
+    server.client.set("/odd", "process", text)
+    environment = {**os.environ, **server.environment}
+    subprocess.run([sys.executable, "-c", CRASHER], env=environment, timeout=60)
+    wait_gone("/dead/port")
+    assert server._serving._collector._thread.is_alive()
+
+
+def test_a_round_that_fails_is_not_the_last(server, caplog, monkeypatch):
+    look, tried = collector.Collector.look, []
+
+    def once(self):
+        tried.append(1)
+        if len(tried) == 1:
+            raise RuntimeError("oh")
+        look(self)
+
+    monkeypatch.setattr(collector.Collector, "look", once)
+    wait_until(lambda: len(tried) > 2)
+    assert "oh" in caplog.text
+
+
+def test_number_that_nobody_listens_on_comes_back(server, rounds):
     """Handed out to somebody who never came: ten thousand such would be all there are."""
     client = server.client
     client.register("/never/opened")
-    assert gone("/never/opened")
+    wait_gone("/never/opened")
     used = client.register("/foreign/but/there")
     with socket.create_server(("127.0.0.1", used.port)):
-        time.sleep(1.5)
+        watching = rounds()
+        wait_until(lambda: inf in watching._lent.values(), what="seen to be taken up")
         assert yarpy.query("/foreign/but/there") is not None
-    time.sleep(1)
+    rounds()
     assert yarpy.query("/foreign/but/there") is not None, "it was there once"
 
 
@@ -104,18 +145,18 @@ def test_numbers_of_silent_hosts_come_back(server, monkeypatch):
     assert len([address for address in tried if address[0] == "192.0.2.1"]) < 5
 
 
-def test_a_complaint_has_the_name_looked_at(server, monkeypatch):
+def test_a_complaint_has_the_name_looked_at(server, rounds):
     """A process that lives may have lost its port; who cannot reach it says so."""
     client = server.client
     client.register("/lost", "tcp", "127.0.0.1", free_port())
     client.set("/lost", "process", os.getpid())
-    time.sleep(0.6)
+    rounds()
     assert yarpy.query("/lost") is not None
     with yarpy.Port("/asker") as asker:
         for _ in range(2):
             with pytest.raises(yarpy.LinkClosed):
                 asker.connect("/lost")
-        assert gone("/lost")
+        wait_gone("/lost")
 
 
 def test_silent_ports_of_a_host_delay_no_other(server, monkeypatch):
@@ -141,8 +182,8 @@ def test_silent_ports_of_a_host_delay_no_other(server, monkeypatch):
     client.set("/z/dead", "process", 1)
     client.register("/z/elsewhere", "tcp", "192.0.2.8", 1002)
     client.set("/z/elsewhere", "process", 1)
-    assert gone("/z/elsewhere", patience(10.0))
-    assert gone("/z/dead", patience(30.0))  # of the same host: those that were silent come later
+    wait_gone("/z/elsewhere")
+    wait_gone("/z/dead")  # of the same host: those that were silent come later
     assert len(set(tried)) > 10
     assert len(client.list("/a")) == 30
 

@@ -1,5 +1,7 @@
 """Registrations and rules that outlive a name server: what comes back, and when it is written."""
 
+import contextlib
+import socket
 import sqlite3
 import threading
 import time
@@ -12,10 +14,13 @@ from support.name_database import EVERYTHING, Files, say
 from support.name_line import new_service
 
 from yarpy.contact import Contact
+from yarpy.data.bottle import Bottle
 from yarpy.errors import AddressError
 from yarpy.nameserver import database as database_module
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.database import Database
+from yarpy.nameserver.server import NameServer
+from yarpy.nameserver.sqlite_tables import PortChanges
 
 
 @pytest.fixture
@@ -204,3 +209,85 @@ def test_two_servers_on_one_file(tmp_path: Path) -> None:
     Database(tmp_path / "other.db").close()
     first.close()
     Database(ports, rules).close()
+
+
+def test_a_cautious_database_settles_what_changed(files: Files) -> None:
+    """Who has an answer finds the change in the file, whatever happens to the server then."""
+    ports, rules = files.ports, files.rules
+    database = Database(ports, rules, cautious=True)
+    service = new_service()
+    database.load(service)
+    service.answer(Bottle(["register", "/a", "tcp", "127.0.0.1", 10]))
+    database.settle()
+    copied = ports.with_name("copy")
+    copied.write_bytes(ports.read_bytes())
+    again = new_service()
+    other = Database(copied, "")
+    other.load(again)
+    assert "/a" in again.store
+    other.close()
+    database.close()
+
+
+def test_those_who_wait_share_a_transaction(files: Files, monkeypatch: pytest.MonkeyPatch) -> None:
+    database = Database(files.ports, files.rules, cautious=True)
+    service = new_service()
+    database.load(service)
+    assert database._ports is not None
+    writes: list[int] = []
+    begun, go_on = threading.Event(), threading.Event()
+    save = database._ports.save
+
+    def slow(changes: PortChanges) -> None:
+        writes.append(len(changes.ports))
+        begun.set()
+        assert go_on.wait(10)
+        save(changes)
+
+    monkeypatch.setattr(database._ports, "save", slow)
+
+    def register(name: str) -> None:
+        service.answer(Bottle(["register", name, "tcp", "127.0.0.1", 10]))
+        noted.release()
+        database.settle()
+
+    noted = threading.Semaphore(0)
+    threads = [threading.Thread(target=register, args=(f"/p{n}",)) for n in range(20)]
+    threads[0].start()
+    assert begun.wait(10)
+    for thread in threads[1:]:
+        thread.start()
+    for _ in threads:
+        assert noted.acquire(timeout=10)
+    assert all(thread.is_alive() for thread in threads)  # nobody is told before the disk has it
+    go_on.set()
+    for thread in threads:
+        thread.join(10)
+    assert writes == [1, 19]
+    service.answer(Bottle(["query", "/p1"]))
+    database.settle()  # a question waits for nobody
+    assert writes == [1, 19]
+    database.close()
+
+
+@pytest.mark.parametrize("damage", ["blob", "page"])
+def test_damaged_files_are_noticed_before_anybody_can_call(files: Files, damage: str) -> None:
+    ports = files.ports
+    with NameServer(portdb=ports) as server:
+        for n in range(300):
+            server.service.answer(Bottle(["register", f"/p{n}", "tcp", "127.0.0.1", 10 + n]))
+    if damage == "blob":
+        with contextlib.closing(sqlite3.connect(ports)) as connection:
+            connection.execute("UPDATE tags SET value = x'ff00fe'")
+            connection.commit()
+    else:
+        data = bytearray(ports.read_bytes())
+        data[4096:] = b"\x55" * (len(data) - 4096)
+        ports.write_bytes(data)
+    with pytest.raises(AddressError, match=r"failed to open .*: move the file out of the way"):
+        Database(ports)
+    with socket.socket() as listening:  # and the port is not even asked for
+        listening.bind(("127.0.0.1", 0))
+        listening.listen()
+        with pytest.raises(AddressError, match="move the file out of the way"):
+            NameServer(listening.getsockname()[1], portdb=ports)

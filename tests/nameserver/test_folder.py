@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import yarpy
-from yarpy.carriers.http.page import Pieces
+from yarpy.carriers.web.http.page import Pieces
 from yarpy.nameserver import folder
 from yarpy.nameserver.folder import PIECE, Folder
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from yarpy.carriers.http.asset import KINDS
+from yarpy.carriers.web.http.asset import KINDS
 from yarpy.contact import Contact
 from yarpy.nameserver.folder import Folder
 from yarpy.nameserver.page import MOST, NamePage

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import socket
 import threading
-from contextlib import suppress
 
-from support.wait import patience, wait_until
+from support.listener import listening
+from support.wait import wait_until
 
 import yarpy
 from yarpy.contact import Contact
@@ -30,7 +30,7 @@ def test_what_is_told() -> None:
         survey = Survey(lambda: list(contacts.values()))
         assert survey.told(contacts["/out"]) == {"alive": None}
         survey.want()
-        wait_until(lambda: survey.told(contacts["/out"])["alive"], patience(10))
+        wait_until(lambda: survey.told(contacts["/out"])["alive"])
         told = survey.told(contacts["/out"])
         assert told["process"] == os.getpid()
         assert told["program"]
@@ -50,24 +50,16 @@ def test_what_is_told() -> None:
         wait_until(lambda: not any(t.name == "yarpy survey" for t in threading.enumerate()))
 
 
-def hang_up(there: socket.socket) -> None:
-    """Close whatever is accepted, until the listener is closed."""
-    with suppress(OSError):
-        while True:
-            there.accept()[0].close()
-
-
 def test_only_a_refusal_proves_that_nobody_is_there() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as there:
+    with listening(socket.socket.close) as (port, _):
         contacts = [
             Contact("tcp", "/unreachable", "255.255.255.255", 9),
             Contact("tcp", "/misspelled", "x" * 70, 9),  # no name of a computer is that long
-            Contact("tcp", "/hangs/up", "127.0.0.1", there.getsockname()[1]),
+            Contact("tcp", "/hangs/up", "127.0.0.1", port),
         ]
-        threading.Thread(target=hang_up, args=[there], daemon=True).start()
         survey = Survey(lambda: contacts)
         survey.want()
-        wait_until(lambda: all("silent" in survey.told(one) for one in contacts), patience(10))
+        wait_until(lambda: all("silent" in survey.told(one) for one in contacts))
         found = [survey.told(one) for one in contacts]
         survey.close()
     assert [one["alive"] for one in found] == [None] * 3

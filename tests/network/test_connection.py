@@ -8,6 +8,7 @@ import threading
 import time
 
 import pytest
+from support.guest import guest
 from support.port import free_port
 from support.wait import wait_until
 
@@ -303,7 +304,7 @@ def test_questions_leave_no_trace(names: LocalNames, caplog: pytest.LogCaptureFi
         network.exists("/in", names=names)
         network.ping("/in", names=names)
         network.admin("/in", "ver", names=names)
-        wait_until(lambda: not port._hub.inputs)
+        wait_until(lambda: not port._hub.inputs.links)
         assert caplog.records == []
 
 
@@ -331,11 +332,12 @@ def test_connection_to_an_address_is_known_by_the_name_that_is_there(names: Loca
 
 
 def test_who_has_no_server_is_told_of_one() -> None:
-    from yarpy.names.ros import RosNames
+    guest("ros", "zenoh")
+    from yarpy.peers.ros.names import RosNames
 
     for names, told in (
         (yarpy.LocalNames(), "`yarpy server` starts one"),
-        (yarpy.ZenohNames("tcp/127.0.0.1:1"), "`yarpy server --zenoh`"),
+        (yarpy.zenoh.ZenohNames("tcp/127.0.0.1:1"), "`yarpy server --zenoh`"),
         (RosNames(None), "/TOPIC@/NODE"),  # type: ignore[arg-type]
     ):
         with pytest.raises(LocalProtocolError, match=told):

@@ -36,7 +36,7 @@ def test_the_newest_message_is_kept(names: yarpy.LocalNames, out: yarpy.Port) ->
             assert peek.newest.value == yarpy.Bottle([999])
             assert [inlet.read(timeout=5).value[0] for _ in range(1000)] == list(range(1000))
         wait_until(lambda: len(out.outputs) == 1)
-        assert out.outputs[0].stats["drops"] == 0
+        assert out.outputs[0].stats.drops == 0
 
 
 def test_pictures_come_whole(out: yarpy.Port) -> None:

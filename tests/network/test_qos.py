@@ -75,7 +75,7 @@ def test_when_messages_should_come(names: yarpy.LocalNames) -> None:
 def test_ports_that_know_no_deadlines_are_not_believed(
     names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("yarpy.link.inbound.Inbound.expect", lambda self, wanted: None)
+    monkeypatch.setattr("yarpy.link.receive.inbound.Inbound.expect", lambda self, wanted: None)
     with pytest.raises(yarpy.LocalProtocolError, match=r'"/in" is no port of yarpy'):
         qos.grant("/out", "/in", receiver=Qos(deadline=1), names=names)
 
@@ -91,3 +91,21 @@ def test_a_connection_that_was_dialled_by_address(names: yarpy.LocalNames) -> No
         wait_until(lambda: b.inputs)
         qos.grant("/a", "/b", sender=Qos(packets="HIGH"), receiver=Qos(packets=3), names=names)
         assert [one.packets for one in qos.granted("/a", "/b", names)] == ["AF42", 3]
+
+
+def test_the_sender_stands_first(names: yarpy.LocalNames) -> None:
+    """Both ends know the connection by the other's name: turned round, another one was changed."""
+    for change in (
+        lambda: qos.granted("/in", "/out", names),
+        lambda: qos.grant("/in", "/out", sender=Qos(packets="HIGH"), names=names),
+        lambda: qos.grant("/in", "/out", receiver=Qos("SCHED_OTHER", 0), names=names),
+    ):
+        with pytest.raises(yarpy.UnknownName, match="the sender stands first, /out /in"):
+            change()
+    assert qos.granted("/out", "/in", names)[0] == Qos(packets="CS0")
+
+
+def test_of_two_connections_each_is_meant_as_it_is_written(names: yarpy.LocalNames) -> None:
+    yarpy.connect("/in", "/out", names=names)
+    qos.grant("/in", "/out", sender=Qos(packets="HIGH"), names=names)
+    assert qos.granted("/in", "/out", names)[0] == Qos(packets="AF42")

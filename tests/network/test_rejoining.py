@@ -49,8 +49,12 @@ def test_each_end_keeps_what_it_had(ports: Ports) -> None:
 
 def test_what_was_never_set_is_not_set(ports: Ports, monkeypatch: pytest.MonkeyPatch) -> None:
     names, out, _ = ports
-    monkeypatch.setattr("yarpy.port.prop.grant_sched", lambda *_: pytest.fail("a thread is set"))
-    monkeypatch.setattr("yarpy.port.prop.grant_tos", lambda *_: pytest.fail("packets are set"))
+    monkeypatch.setattr(
+        "yarpy.port.answer.prop.grant_sched", lambda *_: pytest.fail("a thread is set")
+    )
+    monkeypatch.setattr(
+        "yarpy.port.answer.prop.grant_tos", lambda *_: pytest.fail("packets are set")
+    )
     rejoin("/out", "/in", "fast_tcp", "tcp", names=names)
     assert carriers(out) == ["fast_tcp"]
 

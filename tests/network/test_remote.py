@@ -29,9 +29,9 @@ def test_both_ways_to_connect_give_a_connection() -> None:
         out.flush(5)
         wait_until(lambda: in_.waiting == 3)
         stats = other.stats
-        assert stats["messages"] == out.outputs[0].stats["messages"] == 3
-        assert stats["bytes"] > 0
-        assert stats["drops"] == 0
+        assert stats.messages == out.outputs[0].stats.messages == 3
+        assert stats.bytes > 0
+        assert stats.drops == 0
         other.close()
         wait_until(lambda: not in_.inputs)
         assert out.outputs == []
@@ -60,7 +60,7 @@ def test_decorated_ends_are_called_by_their_names() -> None:
     with Port("/out", names=names), BufferedPort("/in", names=names):
         made = network.connect("/out", "fast_tcp://in", names=names)
         assert (made.source, made.target, made.carrier) == ("/out", "/in", "fast_tcp")
-        assert made.stats["messages"] == 0
+        assert made.stats.messages == 0
 
 
 def test_a_topic_is_left_and_has_no_numbers() -> None:
@@ -90,4 +90,4 @@ def test_connection_of_a_port_is_the_one_that_was_just_made() -> None:
         again.close()
         assert [each.target for each in both.outputs] == ["/b", "/both"]
         by_address = both.connect(f"/{network.query('/a', names).address}")
-        assert by_address.stats["messages"] == 0
+        assert by_address.stats.messages == 0

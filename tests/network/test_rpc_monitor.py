@@ -17,8 +17,9 @@ from support.wait import wait_until
 import yarpy
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.idl.thrift.library import load
 from yarpy.network.rpc_monitor import RpcMonitor
+
+load = pytest.importorskip("yarpy.kits.thrift.library").load
 
 
 @pytest.fixture
@@ -137,7 +138,7 @@ def test_who_looks_on_without_reading_holds_nobody_up(
 ) -> None:
     with yarpy.Port("/monitor", names=names), yarpy.RpcClient(names=names) as client:
         client.connect("/srv", "tcp+send.rpc_monitor")
-        [monitor] = client._hub.outputs[0].chain.monitors  # type: ignore[union-attr]
+        [monitor] = client._hub.outputs.links[0].chain.monitors  # type: ignore[union-attr]
         asked = 0
         while not monitor.parameters()["drops"]:
             assert client.call("hi", timeout=10)

@@ -7,8 +7,8 @@ from support.port import free_port
 
 from yarpy.errors import AddressError
 from yarpy.nameserver.local import LocalNames
-from yarpy.port import probe
 from yarpy.port.assembly import open_hub
+from yarpy.port.connect import probe
 from yarpy.port.mailbox import Latest
 
 

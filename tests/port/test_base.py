@@ -6,6 +6,7 @@ import gc
 import threading
 import time
 import warnings
+import weakref
 
 import pytest
 from support.wait import wait_until
@@ -206,3 +207,62 @@ def test_closed_port_may_be_dropped(names: LocalNames) -> None:
             pass
         del port
         gc.collect()
+
+
+class Program:
+    """Has a port whose callback is a method of its own, as programs do."""
+
+    def __init__(self, kind: str, names: LocalNames) -> None:
+        if kind == "callback":
+            self.port: BasePort = Port("/dropped", names=names, callback=self.take)
+        elif kind == "buffered callback":
+            self.port = BufferedPort("/dropped", names=names, callback=self.take)
+        elif kind == "server":
+            self.port = RpcServer("/dropped", self.take, names=names)
+        elif kind == "on_connection":
+            self.port = Port("/dropped", names=names, on_connection=self.take)
+        else:
+            self.port = BufferedPort("/dropped", names=names)
+            for call in (self.port.on_page, self.port.on_admin, self.port.on_deadline):
+                call(self.take)  # type: ignore[operator]
+
+    def take(self, *what: object) -> None:
+        pass
+
+
+@pytest.mark.parametrize(
+    "kind", ["callback", "buffered callback", "server", "on_connection", "on all others"]
+)
+def test_a_port_whose_callbacks_know_it_is_dropped_too(kind: str, names: LocalNames) -> None:
+    program = Program(kind, names)
+    with Port("/writer", names=names) as writer:
+        writer.connect("/dropped")
+        alive = weakref.ref(program)
+        with pytest.warns(ResourceWarning, match='port "/dropped" was dropped without being'):
+            del program
+            gc.collect()
+        assert alive() is None
+        wait_until(lambda: names.query("/dropped") is None)
+
+
+def test_a_callback_that_nobody_else_knows_is_kept(names: LocalNames) -> None:
+    class Hearer:
+        __slots__ = ("came",)  # takes no weak references
+
+        def __init__(self, came: list[object]) -> None:
+            self.came = came
+
+        def __call__(self, message: object) -> None:
+            self.came.append(message)
+
+    came: list[object] = []
+    with (
+        Port("/in", names=names, callback=Hearer(came)),
+        Port("/also", names=names, callback=lambda message: came.append(message)),
+        Port("/out", names=names) as out,
+    ):
+        gc.collect()
+        for target in ("/in", "/also"):
+            out.connect(target)
+        out.write([1], wait=True)
+        wait_until(lambda: len(came) == 2)

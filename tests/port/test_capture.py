@@ -12,8 +12,8 @@ import re
 import pytest
 from support.capture import Capture, groups, load_capture
 from support.difference import NOT_REPLAYED
-from support.live import PATIENCE, World, hear, nothing_more, replay, say
-from support.wait import wait_until
+from support.live import World, hear, nothing_more, replay, say
+from support.wait import HANG, wait_until
 
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
@@ -44,7 +44,7 @@ SPECIAL = {
     "telnet_rooted_sender_dup",
     "telnet_env_reader",
     "telnet_drop_self_after",
-    "telnet_ns",  # tests/nameserver/test_server.py
+    "telnet_ns",  # tests/nameserver/test_serving.py
 }
 REPLAYED = sorted(
     {
@@ -158,7 +158,7 @@ def test_person_becomes_a_reader(piece: int) -> None:
             say(sock, capture.steps[0].data, piece)
             assert hear(sock, len(capture.steps[1].data)) == capture.steps[1].data
             say(sock, capture.steps[2].data, piece)
-            assert port.wait_for_outputs(timeout=PATIENCE)
+            assert port.wait_for_outputs(timeout=HANG)
             assert port.outputs[0].target == "telnet"
             assert port.write([1, "ping", 3.14]) == 1
             port.write([b"\1\2\3", "two words", Vocab("set"), ["x"]], Stamp(5, 2.5))
@@ -191,7 +191,7 @@ def test_reader_that_dials(name: str, piece: int) -> None:
             got = hear(sock, len(greeting.data))
             assert capture.masked(greeting, got) == capture.masked(greeting, greeting.data)
             say(sock, capture.steps[2].data, piece)
-            assert port.wait_for_outputs(timeout=PATIENCE)
+            assert port.wait_for_outputs(timeout=HANG)
             wanted = b"".join(s.data for s in capture.steps[3:] if s.sender == "b")
             got = b""
             for number, value in enumerate(values):

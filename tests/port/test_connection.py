@@ -27,10 +27,10 @@ def test_who_over_what_and_how_it_is_doing(names: LocalNames) -> None:
             assert connection.carrier == "tcp+note.x"
             assert repr(connection) == "<Connection /out -> /in (tcp+note.x)>"
             stats = connection.stats
-            assert stats["messages"] == 1
-            assert stats["drops"] == 0
-            assert stats["bytes"] > 0
-            assert stats["rate"] == 0.0  # after one message there is none
+            assert stats.messages == 1
+            assert stats.drops == 0
+            assert stats.bytes > 0
+            assert stats.rate == 0.0  # after one message there is none
         assert output.name == "/in"
         assert input_.name == "/out"
 
@@ -43,9 +43,9 @@ def test_rate_and_jitter_are_measured(names: LocalNames) -> None:
             in_.read(timeout=5)
         for connection in (*out.outputs, *in_.inputs):
             stats = connection.stats
-            assert stats["rate"] > 100
-            assert 0 < stats["period"] < 0.1
-            assert stats["jitter"] >= 0
+            assert stats.rate > 100
+            assert 0 < stats.period < 0.1
+            assert stats.jitter >= 0
 
 
 def test_either_side_may_end_it(names: LocalNames) -> None:

@@ -6,12 +6,11 @@ from __future__ import annotations
 from contextlib import ExitStack
 
 import pytest
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
-from yarpy.link import budget
+from yarpy.link.begin.handshake import greet
 from yarpy.link.driver import Driver
-from yarpy.link.handshake import greet
+from yarpy.link.receive import budget
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 from yarpy.route import Route
@@ -44,13 +43,13 @@ def test_unfinished_messages_share_a_limit(
             driver, _ = greet(port.contact, Route(f"/slow/{number}", "/port", carrier))
             stack.callback(driver.transport.close)
             driver.transport.send(PARTS[carrier])
-        wait_until(lambda: caplog.text.count(budget.SETTING) >= 4, patience(10))
+        wait_until(lambda: caplog.text.count(budget.SETTING) >= 4)
         wait_until(lambda: len(port.inputs) <= 2)
         picture = bytes(range(256)) * (LIMIT // 256)
         out.connect("/port", "tcp")
         out.write(picture)
-        assert port.read(timeout=patience(10)).as_(bytes) == picture
-        assert port.stats["past"]["inputs"]["drops"] >= 4
+        assert port.read(timeout=HANG).as_(bytes) == picture
+        assert port.stats.past.inputs.drops >= 4
 
 
 def test_large_message_gets_through_alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -60,7 +59,7 @@ def test_large_message_gets_through_alone(monkeypatch: pytest.MonkeyPatch) -> No
         out.connect("/port", "tcp")
         for _ in range(3):
             out.write(bytes(8 * LIMIT))
-            assert len(port.read(timeout=patience(10)).as_(bytes)) == 8 * LIMIT
+            assert len(port.read(timeout=HANG).as_(bytes)) == 8 * LIMIT
 
 
 def test_nothing_is_held_once_they_have_gone(monkeypatch: pytest.MonkeyPatch) -> None:

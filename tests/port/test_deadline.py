@@ -52,11 +52,11 @@ def test_late_messages_are_counted_and_told(ends: Ends, names: yarpy.LocalNames)
     assert (heard[1].source, heard[1].target, heard[1].missed) == ("/out", "/in", 2)
     assert 140 <= heard[1].lateness < 200
     assert "ms after the deadline (missed: 2)" in str(heard[1])
-    assert in_.inputs[0].stats["missed"] == 2
+    assert in_.inputs[0].stats.missed == 2
     assert flow("/out", "/in", names).missed == 2
     in_.inputs[0].qos = Qos(deadline=0)
-    assert in_._hub.inputs[0].chain is None
-    assert "missed" not in in_.inputs[0].stats
+    assert in_.inputs[0]._link.chain is None
+    assert in_.inputs[0].stats.missed is None
 
 
 def test_late_messages_are_dropped_at_the_receiver(ends: Ends) -> None:
@@ -66,7 +66,7 @@ def test_late_messages_are_dropped_at_the_receiver(ends: Ends) -> None:
         out.write([age], late(age))
     assert [in_.read(timeout=5).value for _ in range(2)] == [[0], [0]]
     stats = in_.inputs[0].stats
-    assert (stats["missed"], stats["drops"]) == (1, 1)
+    assert (stats.missed, stats.drops) == (1, 1)
 
 
 def test_what_is_late_already_is_not_sent(ends: Ends, names: yarpy.LocalNames) -> None:
@@ -74,10 +74,10 @@ def test_what_is_late_already_is_not_sent(ends: Ends, names: yarpy.LocalNames) -
     out.outputs[0].qos = Qos(deadline=60, late="drop")
     assert out.outputs[0].qos == Qos(packets="CS0", deadline=60, late="drop")
     assert [out.write([age], late(age)) for age in (0, 100)] == [1, 0]
-    out._hub.outputs[0].start_background()
+    out._hub.outputs.links[0].start_background()
     assert [out.write([age], late(age)) for age in (0, 100)] == [1, 0]
     assert [in_.read(timeout=5).value for _ in range(2)] == [[0], [0]]
-    assert out.outputs[0].stats["drops"] == 2
+    assert out.outputs[0].stats.drops == 2
     found = flow("/out", "/in", names)
     assert found.sender is not None
     assert found.sender.timing["dropped"] == 2
@@ -106,7 +106,7 @@ def test_a_queue_does_not_send_what_has_become_late_in_it(
         try:
             out.write([0])
             wait_until(lambda: came)
-            link = out._hub.outputs[0]
+            link = out._hub.outputs.links[0]
             link.start_background()
             link.expect(Qos(deadline=0.2, late="drop"))
             started = time.monotonic()
@@ -120,7 +120,7 @@ def test_a_queue_does_not_send_what_has_become_late_in_it(
             go.set()
         thread.join(30)
         assert out.flush(20)
-        wait_until(lambda: in_.inputs[0].stats["messages"] == link.counter.messages)
+        wait_until(lambda: in_.inputs[0].stats.messages == link.counter.messages)
         assert link.counter.messages + link.counter.drops == 40
         assert link.counter.drops == link.late
         assert time.monotonic() - started < 60
@@ -135,10 +135,10 @@ def test_a_silence_is_told_once(ends: Ends) -> None:
     wait_until(lambda: heard)
     assert heard[0].silent
     assert "nothing came from /out" in str(heard[0])
-    assert in_.inputs[0].stats["missed"] == 1
+    assert in_.inputs[0].stats.missed == 1
     watch = in_._hub.callbacks.watch
     in_.close()
-    assert watch is not None and watch._stopped.is_set()
+    assert watch is not None and watch._stopped.is_set
 
 
 def test_a_callback_that_fails_costs_nothing(ends: Ends, caplog: pytest.LogCaptureFixture) -> None:
@@ -164,7 +164,7 @@ def test_what_is_no_deadline_is_refused(ends: Ends, names: yarpy.LocalNames, tex
     asked = yarpy.Bottle.from_text(f"(timing ({text}))")
     reply = network.admin("/in", "prop", "set", "/out", *asked, names=names)
     assert str(reply[0]) == "fail"
-    assert ends[1]._hub.inputs[0].timing is None
+    assert ends[1].inputs[0]._link.timing is None
 
 
 def test_monitors_still_see_what_comes(names: yarpy.LocalNames) -> None:
@@ -179,7 +179,7 @@ def test_monitors_still_see_what_comes(names: yarpy.LocalNames) -> None:
         for age in (100, 0, 0):
             out.write([age], late(age))
         assert in_.read(timeout=5).value == [0]
-        [link] = [one for one in in_._hub.inputs if one.route.source == "/out"]
+        [link] = [one for one in in_._hub.inputs.links if one.route.source == "/out"]
         assert link.own_chain is not None
         wait_until(lambda: link.own_chain.dropped == [1])
         assert link.timing is not None and link.timing.missed == 1

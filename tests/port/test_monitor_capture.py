@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 from support.capture import Capture, groups, load_capture
-from support.live import PATIENCE, World, hear, nothing_more, replay, say
-from support.wait import wait_until
+from support.live import World, hear, nothing_more, replay, say
+from support.wait import HANG, wait_until
 
 from yarpy import registry
 from yarpy.data.bottle import Property
@@ -138,7 +138,7 @@ def test_messages_that_go() -> None:
     """What our sender says to the recorded receiver, byte for byte."""
     capture = load_capture("portmonitor_send")
     with socket.create_server(("127.0.0.1", 0)) as server, World() as world:
-        server.settimeout(PATIENCE)
+        server.settimeout(HANG)
         source = world.port("/cap/out")
         assert isinstance(source, Port)
         world.names.register("/cap/in", "tcp", "127.0.0.1", server.getsockname()[1])
@@ -148,7 +148,7 @@ def test_messages_that_go() -> None:
             server.accept()[0].close()  # who is there, it is asked first: it cannot say
             sock, _ = server.accept()
             with sock:
-                sock.settimeout(PATIENCE)
+                sock.settimeout(HANG)
                 for step in capture.steps:
                     if step.sender == "a":
                         said.append(hear(sock, len(step.data)))
@@ -161,5 +161,5 @@ def test_messages_that_go() -> None:
         for value in MESSAGES:
             assert source.write(value) == (value[0] != "drop")
         source.disconnect("/cap/in")
-        thread.join(PATIENCE)
+        thread.join(HANG)
         assert said == [step.data for step in capture.steps if step.sender == "a"]

@@ -16,8 +16,8 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.port import preparing
-from yarpy.transports.arena import arena_of, available
-from yarpy.transports.lease import HEADROOM, lease_type
+from yarpy.transports.shared.arena import arena_of, available
+from yarpy.transports.shared.lease import HEADROOM, lease_type
 
 ECHO = """
 import yarpy
@@ -111,7 +111,7 @@ def test_an_array_to_fill(here: bool, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @shares
 def test_without_room_it_is_memory_of_our_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    from yarpy.transports import arena
+    from yarpy.transports.shared import arena
 
     monkeypatch.setattr(arena.Arena.__init__, "__defaults__", (1 << 20,))
     with yarpy.Port("/out", names=yarpy.LocalNames()) as out:
@@ -136,7 +136,7 @@ def test_there_and_back_without_a_copy(
     server: yarpy.NameServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A program fills memory, another passes it on, and nobody copies it."""
-    from yarpy.transports import arena
+    from yarpy.transports.shared import arena
 
     copied: list[int] = []
     monkeypatch.setattr(arena, "_copy", lambda room, block: copied.append(len(block)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import socket
 import subprocess
 import threading
@@ -12,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.peer import program
 from support.tls import prepare
 from support.wait import wait_until
 
@@ -167,7 +167,7 @@ def test_name_server_too(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_with_a_shared_key_as_well(names: yarpy.LocalNames, tmp_path: Path,
                                    monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
-    monkeypatch.setattr("yarpy.port.registration.secret", lambda: b"the key")
+    monkeypatch.setattr("yarpy.port.keep.registration.secret", lambda: b"the key")
     with yarpy.Port("/in", names=names) as in_, yarpy.Port("/out", names=names) as out:
         for carrier in ("tls", "tcp"):
             out.connect("/in", carrier)
@@ -190,13 +190,21 @@ def test_certificate_of_somebody_else(names: yarpy.LocalNames, folder: Path) -> 
 # -- tools ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.skipif(not shutil.which("curl"), reason="curl is not installed")
+@pytest.mark.peer("curl")
 def test_curl(names: yarpy.LocalNames, folder: Path) -> None:
     with yarpy.RpcServer("/server", lambda m: [*m.value, "heard"], names=names) as server:
         url = f"https://{server.address}"
 
         def curl(*words: str) -> str:
-            line = ["curl", "-sS", "--noproxy", "*", "--cacert", str(folder / "ca.pem"), *words]
+            line = [
+                program("curl"),
+                "-sS",
+                "--noproxy",
+                "*",
+                "--cacert",
+                str(folder / "ca.pem"),
+                *words,
+            ]
             done = subprocess.run(line, capture_output=True, text=True, timeout=20, check=False)
             return done.stdout + done.stderr
 
@@ -209,10 +217,11 @@ def test_curl(names: yarpy.LocalNames, folder: Path) -> None:
         assert "certificate" in curl("--cacert", "/etc/ssl/certs/none.pem", f"{url}/").lower()
 
 
-@pytest.mark.skipif(not shutil.which("openssl"), reason="openssl is not installed")
+@pytest.mark.peer("openssl")
 def test_openssl(names: yarpy.LocalNames, folder: Path) -> None:
     with yarpy.Port("/in", names=names) as in_:
-        line = ["openssl", "s_client", "-quiet", "-verify_return_error", "-verify_ip", "127.0.0.1",
+        line = [program("openssl"), "s_client", "-quiet",
+                "-verify_return_error", "-verify_ip", "127.0.0.1",
                 "-CAfile", str(folder / "ca.pem"), "-connect", in_.address]  # fmt: skip
         with subprocess.Popen(
             line, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
@@ -226,13 +235,13 @@ def test_openssl(names: yarpy.LocalNames, folder: Path) -> None:
             process.kill()
 
 
-@pytest.mark.skipif(not shutil.which("curl"), reason="curl is not installed")
+@pytest.mark.peer("curl")
 def test_protocols_that_turn_into_another_stay_in_tls(
     names: yarpy.LocalNames, folder: Path
 ) -> None:
     with yarpy.RpcServer("/server", lambda m: m.value, names=names) as server:
         url = f"https://{server.address}/"
-        line = ["curl", "-sS", "--noproxy", "*", "--cacert", str(folder / "ca.pem"),
+        line = [program("curl"), "-sS", "--noproxy", "*", "--cacert", str(folder / "ca.pem"),
                 "-H", f"Origin: {url[:-1]}", "-d", "data=hello", url]  # fmt: skip
         done = subprocess.run(line, capture_output=True, text=True, timeout=20, check=False)
         assert "hello" in done.stdout, done.stdout + done.stderr

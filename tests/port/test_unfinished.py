@@ -13,15 +13,15 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from support.patience import patience
 from support.tls import prepare
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
-from yarpy.carriers import xmlrpc
-from yarpy.carriers.http import carrier as http
-from yarpy.link import handshake
+from yarpy.carriers.web import xmlrpc
+from yarpy.carriers.web.http import carrier as http
+from yarpy.link.begin import handshake
+from yarpy.link.begin.greeting import driver_of
+from yarpy.link.begin.handshake import greet
 from yarpy.link.driver import Driver
-from yarpy.link.handshake import greet
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.port import Port
 from yarpy.registry import carriers
@@ -80,7 +80,7 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
             monkeypatch.setattr(kind, "limits", limits)
     monkeypatch.setattr(http, "TIME", SHORT)
     monkeypatch.setattr(xmlrpc, "TIME", SHORT)
-    monkeypatch.setattr(handshake, "PATIENCE", SHORT)
+    monkeypatch.setattr(handshake, "TIMEOUT", SHORT)
 
 
 def dialled(port: Port, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Driver:
@@ -88,13 +88,13 @@ def dialled(port: Port, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     if what in RAW:
         if "tls" in what:
             prepare(tmp_path, monkeypatch)
-        sock = socket.create_connection(("127.0.0.1", port.contact.port), patience(5))
-        driver, said = Driver(SocketTransport(sock)), RAW[what]
+        sock = socket.create_connection(("127.0.0.1", port.contact.port), HANG)
+        driver, said = driver_of(SocketTransport(sock)), RAW[what]
     else:
         name, said = what.split()[0], GREETED[what]
         if name == "tls":
             prepare(tmp_path, monkeypatch)
-        driver, _ = greet(port.contact, Route("/slow", "/port", name), timeout=patience(5))
+        driver, _ = greet(port.contact, Route("/slow", "/port", name), timeout=HANG)
     driver.transport.send([said])
     return driver
 
@@ -132,7 +132,7 @@ def test_message_that_does_not_come_along_ends_its_connection(
                     time.sleep(PAUSE)
                 return is_ended(driver)
 
-            wait_until(look, patience(10))
+            wait_until(look)
         finally:
             driver.transport.close()
         wait_until(lambda: not port.inputs)
@@ -153,17 +153,17 @@ def test_established_connection_may_be_silent(
         writer.connect("/in", carrier)
         for size in (10, 300_000, 10):
             writer.write("x" * size)
-            assert len(str(reader.read(timeout=patience(10)).value)) >= size
+            assert len(str(reader.read(timeout=HANG).value)) >= size
             time.sleep(3 * SHORT)
         assert len(reader.inputs) == 1
-        assert reader.stats["past"]["inputs"]["messages"] == 0
+        assert reader.stats.past.inputs.messages == 0
 
 
 def test_lost_message_is_counted() -> None:
     with Port("/port", names=LocalNames()) as port:
         driver, _ = greet(port.contact, Route("/slow", "/port", "fast_tcp"))
         driver.transport.send([HEADER])
-        wait_until(lambda: port.stats["past"]["inputs"]["drops"] == 1)
+        wait_until(lambda: port.stats.past.inputs.drops == 1)
         driver.transport.close()
 
 
@@ -175,7 +175,7 @@ def test_readers_have_a_limit(
     asking = b"GET /r HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
     with Port("/port", names=LocalNames()) as port, ExitStack() as stack:
         for count in range(1, 8):
-            sock = socket.create_connection(("127.0.0.1", port.contact.port), patience(5))
+            sock = socket.create_connection(("127.0.0.1", port.contact.port), HANG)
             stack.enter_context(sock)
             sock.sendall(asking)
             if count <= 4:

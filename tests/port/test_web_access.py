@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from support.access import write
-from support.patience import patience
+from support.wait import HANG
 from wsproto.utilities import generate_nonce
 
 import yarpy
@@ -56,7 +56,7 @@ def asked(
 ) -> tuple[HTTPResponse, str]:
     """The answer to a browser of another computer."""
     where = port.contact.host, port.contact.port
-    connection = HTTPConnection(*where, timeout=patience(10.0), source_address=(far, 0))
+    connection = HTTPConnection(*where, timeout=HANG, source_address=(far, 0))
     connection.request(method, target, body, headers or {})
     answer = connection.getresponse()
     text = answer.read().decode()
@@ -130,7 +130,7 @@ def test_nobody_is_sent_elsewhere(arm: yarpy.RpcServer, target: str) -> None:
 def test_each_request_of_a_connection_shows_its_own_token(arm: yarpy.RpcServer) -> None:
     """A proxy may have requests of several people on one connection."""
     connection = HTTPConnection(
-        arm.contact.host, arm.contact.port, timeout=patience(10.0), source_address=(FAR, 0)
+        arm.contact.host, arm.contact.port, timeout=HANG, source_address=(FAR, 0)
     )
     for headers, status in ((bearer(SECRET), 200), ({}, 403), (bearer(LOOKER), 403), ({}, 403)):
         connection.request("GET", "/?req=up", headers=headers)
@@ -211,7 +211,7 @@ def test_websockets(
     }
     with yarpy.BufferedPort("/arm", names=yarpy.LocalNames()) as arm:
         where = arm.contact.host, arm.contact.port
-        connection = HTTPConnection(*where, timeout=patience(10.0), source_address=(FAR, 0))
+        connection = HTTPConnection(*where, timeout=HANG, source_address=(FAR, 0))
         connection.request("GET", f"/?ws{wishes}{shown}", headers=headers)
         assert connection.getresponse().status == status
         connection.close()

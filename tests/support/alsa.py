@@ -10,14 +10,13 @@ played is in the file at once.
 
 from __future__ import annotations
 
-import importlib
 import os
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import pytest
 from support.command_line import CommandLine
+from support.peer import demand
 
 SYSTEM = Path("/usr/share/alsa/alsa.conf")
 
@@ -25,14 +24,9 @@ SYSTEM = Path("/usr/share/alsa/alsa.conf")
 def sound_card(directory: Path, heard: np.ndarray | None = None) -> Mapping[str, str]:
     """The environment in which the default sound card plays into a file, and hears `heard`.
 
-    Skips the test where PortAudio is missing.
+    The test declares the peer `portaudio`.
     """
-    try:
-        importlib.import_module("sounddevice")
-    except (ImportError, OSError):
-        pytest.skip("no PortAudio: pip install sounddevice; apt-get install libportaudio2")
-    if not SYSTEM.exists():
-        pytest.skip(f"no {SYSTEM}: apt-get install libasound2-data")
+    demand("portaudio")
     (np.zeros(0) if heard is None else heard).astype("<i2").tofile(directory / "heard.raw")
     path = directory / "asound.conf"
     path.write_text(

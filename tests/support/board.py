@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from yarpy.devices.control_board.interface import Gains
+from yarpy.kits.devices.control_board.interface import Gains
 
 
 class Controllers:

@@ -1,27 +1,19 @@
 """A broker of mosquitto on the loopback, for tests of MQTT.
 
-Rules: a free port number, no stored messages; it ends with `stop`. Where mosquitto is missing the
-tests skip.
+Rules: a free port number, no stored messages; it ends with `stop`. A test that has one
+declares the peer `mosquitto`.
 """
 
 from __future__ import annotations
 
-import shutil
 import socket
 from pathlib import Path
 from typing import Any
 
-import pytest
+from support.peer import program
 from support.port import free_port
 from support.process import Process
 from support.wait import wait_until
-
-
-def needs_mosquitto() -> None:
-    """Skip where a program of it is missing."""
-    for program in ("mosquitto", "mosquitto_sub"):
-        if not (shutil.which(program) or Path(f"/usr/sbin/{program}").exists()):
-            pytest.skip("needs mosquitto and mosquitto-clients", allow_module_level=True)
 
 
 class Broker:
@@ -36,8 +28,7 @@ class Broker:
         self.start()
 
     def start(self) -> None:
-        program = shutil.which("mosquitto") or "/usr/sbin/mosquitto"
-        self.process = Process([program, "-c", str(self._config)])
+        self.process = Process([program("mosquitto"), "-c", str(self._config)])
         self.process.__enter__()
         wait_until(self.answers)
 

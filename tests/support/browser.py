@@ -9,7 +9,7 @@
 Rules: one Chromium for the session, a fresh context for each page, nothing of the network but this
 computer; names that end in `.test` are this computer too, for tests of other origins. What a page
 complains about on its console fails its test, unless `browser.excuse` said that it may. No browser
-is ever downloaded; where chromium or playwright is missing the test skips and says what to install.
+is ever downloaded; a test with this fixture needs the peer `chromium`.
 
 Playwright is started anew for each test: it keeps an event loop in its thread, and one that stayed
 would be in the way of the tests of asyncio.
@@ -19,22 +19,21 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
+import socket
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from support.patience import patience
+from support.peer import brings, chromium
 from support.process import Process
+from support.wait import HANG
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser as Chromium
     from playwright.sync_api import BrowserContext, ConsoleMessage, Page
 
 OUTPUT = Path(__file__).parents[1] / "output"  # not in git
-PATIENCE = patience(20.0)  # seconds for a page to do something; a loaded machine is slow
-PROGRAMS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -69,7 +68,7 @@ class Browser:
             device_scale_factor=2 if phone else 1,
         )
         self._contexts.append(context)
-        context.set_default_timeout(PATIENCE * 1000)
+        context.set_default_timeout(HANG * 1000)
         page = context.new_page()
         page.on("console", self._listen)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
@@ -94,9 +93,14 @@ class Browser:
             context.close()
 
     def unexcused(self) -> list[str]:
-        """The complaints that nobody expected."""
+        """The complaints that nobody expected.
+
+        A page asks on and on, also while a test closes the port before the page.
+        """
         return [
-            text for text in self.complaints if not any(re.search(e, text) for e in self._excused)
+            text
+            for text in self.complaints
+            if not any(re.search(e, text) for e in self._excused) and not _of_one_that_left(text)
         ]
 
     def _listen(self, message: ConsoleMessage) -> None:
@@ -105,22 +109,12 @@ class Browser:
             self.complaints.append(f"{message.text} ({where})")
 
 
-def program() -> str:
-    """The path of the installed Chromium; skips the test if there is none."""
-    for name in PROGRAMS:
-        found = shutil.which(name)
-        if found:
-            return found
-    pytest.skip("no Chromium: install it (apt-get install chromium)")
-
-
 @pytest.fixture(scope="session")
+@brings("chromium")
 def chromium_url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Where the session's Chromium is told what to do."""
-    chromium = program()
-    pytest.importorskip("playwright", reason="no playwright: pip install -e '.[test]'")
     profile = tmp_path_factory.mktemp("chromium")
-    args = [chromium, *FLAGS, f"--user-data-dir={profile}", "about:blank"]
+    args = [chromium(), *FLAGS, f"--user-data-dir={profile}", "about:blank"]
     with Process(args, env=_environment(profile)) as process:
         found = process.wait_line(r"DevTools listening on (ws://\S+)", timeout=60.0)
         yield found[1]
@@ -138,6 +132,15 @@ def browser(chromium_url: str) -> Iterator[Browser]:
         found.close()
         chromium.close()
     assert not found.unexcused(), "the pages complained on their consoles"
+
+
+def _of_one_that_left(complaint: str) -> bool:
+    """Return whether a connection failed to a server that is gone by now."""
+    found = re.search(r"net::ERR_.* \(\w+://([\d.]+):(\d+)", complaint)
+    if found is None:
+        return False
+    with socket.socket() as probe:
+        return probe.connect_ex((found[1], int(found[2]))) != 0
 
 
 def _environment(home: Path) -> dict[str, str]:

@@ -11,8 +11,8 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from support.patience import patience
 from support.process import Process
+from support.wait import HANG
 
 YARPY = [sys.executable, "-m", "yarpy"]
 
@@ -36,7 +36,7 @@ class CommandLine:
         return Process([*YARPY, *words], env=self.environment, cwd=self.home)
 
     def run(
-        self, *words: str, input: str = "", timeout: float = patience(20.0)
+        self, *words: str, input: str = "", timeout: float = HANG
     ) -> "subprocess.CompletedProcess[str]":
         """Run `yarpy WORDS` to its end: output and exit code. AssertionError if it takes longer."""
         with self.start(*words) as process:

@@ -24,10 +24,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from support.cpp_venv import MissingPeer, prepare
-from support.patience import patience
+from support.cpp_venv import prepare
+from support.peer_venv import MissingPeer
 from support.port import free_block
 from support.process import Process
+from support.wait import HANG
 
 __all__ = ["CppYarp", "MissingPeer"]
 
@@ -88,7 +89,7 @@ class CppYarp:
         *args: str,
         program: str = "yarp",
         input: str = "",
-        timeout: float = patience(20.0),
+        timeout: float = HANG,
     ) -> "subprocess.CompletedProcess[str]":
         """Run `yarp ARGS` (or another program) to its end; its output and exit code.
 
@@ -102,7 +103,7 @@ class CppYarp:
         return self._start([self.program(program), *args])
 
     def python(
-        self, code: str, *args: str, input: str = "", timeout: float = patience(20.0)
+        self, code: str, *args: str, input: str = "", timeout: float = HANG
     ) -> "subprocess.CompletedProcess[str]":
         """Run a script under CPython 3.10 with the C++ binding to its end; its output and code."""
         with self.python_popen(code, *args) as process:
@@ -157,10 +158,10 @@ def _finish(process: Process, input: str, timeout: float) -> "subprocess.Complet
     return subprocess.CompletedProcess(process.args, code, process.stdout, process.stderr)
 
 
-def _wait_until_it_answers(process: Process, port: int, patience: float = patience(10.0)) -> None:
+def _wait_until_it_answers(process: Process, port: int) -> None:
     """Ask for the last name the server registers itself, as telnet would: its output is no sign,
     it is block buffered when it does not go to a terminal."""
-    deadline = time.monotonic() + patience
+    deadline = time.monotonic() + HANG
     while time.monotonic() < deadline:
         if process.returncode is not None:
             break

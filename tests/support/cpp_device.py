@@ -24,8 +24,21 @@ DEVICES = (
     "fakeFrameGrabber",
     "multipleanalogsensorsserver",
     "multipleanalogsensorsclient",
+    "mobileBaseVelocityControl_nws_yarp",
+    "mobileBaseVelocityControl_nwc_yarp",
+    "localization2D_nws_yarp",
+    "localization2D_nwc_yarp",
+    "navigation2D_nws_yarp",
+    "navigation2D_nwc_yarp",
+    "map2D_nws_yarp",
+    "map2D_nwc_yarp",
+    "map2DStorage",
+    "controlboardremapper",
+    "remotecontrolboardremapper",
 )
-_LIBRARIES = [f"yarp_{name}" for name in DEVICES] + [
+#: in the library of another
+_WITHIN = {"remotecontrolboardremapper": "controlboardremapper"}
+_LIBRARIES = [f"yarp_{name}" for name in DEVICES if name not in _WITHIN] + [
     f"YARP_{name}"
     for name in ("dev", "sig", "math", "os", "init", "gsl", "priv_hmac", "wire_rep_utils")
 ]

@@ -5,7 +5,6 @@
 They are linked once, and kept beside the virtual environment.
 """
 
-import fcntl
 import hashlib
 import os
 import shutil
@@ -14,7 +13,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from support.cpp import CppYarp
-from support.cpp_venv import MissingPeer
+from support.file_lock import hold
+from support.peer_venv import MissingPeer
 
 
 def linked(cpp: CppYarp, name: str, source: str, libraries: Sequence[str]) -> Path:
@@ -26,7 +26,7 @@ def linked(cpp: CppYarp, name: str, source: str, libraries: Sequence[str]) -> Pa
     mark = hashlib.sha256(source.encode()).hexdigest()[:12]
     target = cpp.root.parent / f"{cpp.root.name}-{name}-{mark}"
     with (cpp.root.parent / f"{target.name}.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        hold(lock)
         if not target.exists():
             _link(compiler, packages, target, source, libraries)
     return target

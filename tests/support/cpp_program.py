@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from support.cpp import CppYarp
-from support.patience import patience
+from support.wait import HANG
 
 # Answers have standard output for themselves: what C++ prints there, whenever, goes to the other.
 _LOOP = """
@@ -49,7 +49,7 @@ class CppProgram:
         self.process = cpp.python_popen(_LOOP)
         self._steps = 0
 
-    def do(self, code: str, timeout: float = patience(10.0)) -> Any:
+    def do(self, code: str, timeout: float = HANG) -> Any:
         """Carry out the lines of `code`; the value of the last one."""
         self.begin(code)
         return self.end(timeout)
@@ -59,7 +59,7 @@ class CppProgram:
         self._steps += 1
         self.process.write_line(json.dumps(code))
 
-    def end(self, timeout: float = patience(10.0)) -> Any:
+    def end(self, timeout: float = HANG) -> Any:
         """The value of the step that was begun."""
         answer = self.process.wait_line("", timeout=timeout, count=self._steps, stream="out")
         state, value = json.loads(answer.string)
@@ -76,4 +76,4 @@ class CppProgram:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self.process.stop(patience=0)
+        self.process.stop(grace=0)

@@ -8,7 +8,6 @@ Rules: compiled once, and kept beside the virtual environment. The C++ of versio
 bool cannot be compiled, so they are left out.
 """
 
-import fcntl
 import hashlib
 import os
 import shutil
@@ -16,7 +15,8 @@ import subprocess
 from pathlib import Path
 
 from support.cpp import CppYarp
-from support.cpp_venv import MissingPeer
+from support.file_lock import hold
+from support.peer_venv import MissingPeer
 from support.thrift import GOLDEN
 
 SOURCE = Path(__file__).with_name("thrift_peer.cpp")
@@ -37,7 +37,7 @@ def thrift_peer(cpp: CppYarp) -> Path:
     mark = hashlib.sha256((SOURCE.read_text() + INTERFACE).encode()).hexdigest()[:12]
     target = cpp.root.parent / f"{cpp.root.name}-thrift-{mark}"
     with (cpp.root.parent / f"{target.name}.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        hold(lock)
         if not target.exists():
             _compile(cpp, compiler, target)
     return target

@@ -3,6 +3,17 @@
 python dds_peer.py hear TOPIC          prints what is published, as JSON
 python dds_peer.py say TOPIC           publishes the lines of its input
 python dds_peer.py sensor TOPIC        ... as sensors do, by best effort
+python dds_peer.py obey                does what the lines of its input say, each a list in JSON:
+
+    ["writer", ID, TOPIC, RELIABILITY, DURABILITY, DEPTH]    RELIABILITY: reliable, best_effort
+    ["reader", ID, TOPIC, RELIABILITY, DURABILITY, DEPTH]    DURABILITY: volatile, transient_local
+                                  and perhaps {"deadline", "lifespan", "lease": milliseconds}
+    ["events", ID]                 what the library counts of its events, by name
+    ["write", ID, TEXT ...]        and waits until reliable readers have confirmed it
+    ["close", ID]
+    ["readers", TOPIC]             the reliability and durability of those of all programs
+
+Each is answered by ["done", ...]; what is read is ["heard", ID, TEXT]. A depth of 0 keeps all.
 """
 
 import json
@@ -11,7 +22,8 @@ import threading
 from dataclasses import dataclass
 from typing import Any
 
-from cyclonedds.core import Policy, Qos
+from cyclonedds import builtin
+from cyclonedds.core import DDSException, InstanceState, Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
 from cyclonedds.pub import DataWriter
@@ -19,32 +31,141 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
+RELIABLE = Policy.Reliability.Reliable(duration(milliseconds=100))
+
 
 @dataclass
 class String_(IdlStruct, typename="std_msgs.msg.dds_.String_"):  # noqa: N801
     data: str
 
 
+def say(*words: object) -> None:
+    print(json.dumps(words if len(words) > 1 else words[0]), flush=True)
+
+
+def qos_of(
+    reliability: str, durability: str, depth: int, more: dict[str, int] | None = None
+) -> Qos:
+    kept: Any = Policy.History.KeepLast(depth) if depth else Policy.History.KeepAll
+    latched = durability == "transient_local"
+    policies: list[Any] = [
+        RELIABLE if reliability == "reliable" else Policy.Reliability.BestEffort,
+        Policy.Durability.TransientLocal if latched else Policy.Durability.Volatile,
+        kept,
+    ]
+    if latched:
+        policies.append(Policy.DurabilityService(0, kept, -1, -1, -1))
+    for key, value in (more or {}).items():
+        time = duration(milliseconds=value)
+        policies.append(
+            {
+                "deadline": Policy.Deadline,
+                "lifespan": Policy.Lifespan,
+                "lease": Policy.Liveliness.ManualByTopic,
+            }[key](time)
+        )
+    return Qos(*policies)
+
+
+def events_of(item: Any) -> dict[str, int]:
+    """What happened to a reader or writer."""
+    if isinstance(item, DataReader):
+        return {
+            "incompatible_qos": item.get_requested_incompatible_qos_status().total_count,
+            "deadline_missed": item.get_requested_deadline_missed_status().total_count,
+            "alive": item.get_liveliness_changed_status().alive_count,
+            "not_alive": item.get_liveliness_changed_status().not_alive_count,
+        }
+    return {
+        "incompatible_qos": item.get_offered_incompatible_qos_status().total_count,
+        "deadline_missed": item.get_offered_deadline_missed_status().total_count,
+        "liveliness_lost": item.get_liveliness_lost_status().total_count,
+    }
+
+
+def obey() -> None:
+    part = DomainParticipant(0)
+    seen = builtin.BuiltinDataReader(part, builtin.BuiltinTopicDcpsSubscription)
+    held: dict[str, Any] = {}
+    topics: dict[str, Any] = {}
+    lock = threading.Lock()
+
+    def hear() -> None:
+        while not ended.wait(0.005):
+            with lock:
+                readers = {k: item for k, item in held.items() if isinstance(item, DataReader)}
+                for name, reader in readers.items():
+                    for sample in reader.take(N=100):
+                        if isinstance(sample, String_):
+                            say("heard", name, sample.data)
+
+    ended = threading.Event()
+    listens = threading.Thread(target=hear)
+    listens.start()
+    say("ready")
+    for line in sys.stdin:
+        verb, name, *rest = json.loads(line)
+        answer: list[object] = []
+        with lock:
+            if verb in ("writer", "reader"):
+                topic, *policies = rest
+                if topic not in topics:
+                    topics[topic] = Topic(part, f"rt{topic}", String_)
+                qos = qos_of(*policies)
+                made = DataWriter if verb == "writer" else DataReader
+                held[name] = made(part, topics[topic], qos=qos)
+            elif verb == "write":
+                for text in rest:
+                    held[name].write(String_(text))
+            elif verb == "close":
+                held.pop(name).__del__()
+            elif verb == "events":
+                answer.append(events_of(held[name]))
+            elif verb == "readers":
+                for sample in seen.read(N=1000):
+                    alive = sample.sample_info.instance_state == InstanceState.Alive
+                    if alive and getattr(sample, "topic_name", "") == f"rt{name}":
+                        text = " ".join(map(str, sample.qos))
+                        reliable = "Reliability.BestEffort" not in text
+                        latched = "Durability.TransientLocal" in text
+                        answer.append(
+                            [
+                                "reliable" if reliable else "best_effort",
+                                "transient_local" if latched else "volatile",
+                            ]
+                        )
+        if verb == "write":
+            try:
+                held[name].wait_for_acks(duration(seconds=5))
+            except DDSException as error:
+                answer.append(str(error))
+        say("done", verb, answer)
+    ended.set()
+    listens.join()
+
+
 def main(verb: str, name: str) -> None:
     part = DomainParticipant(0)
     topic: Any = Topic(part, f"rt{name}", String_)
-    reliable = Policy.Reliability.Reliable(duration(milliseconds=100))
-    how = Policy.Reliability.BestEffort if verb == "sensor" else reliable
+    how = Policy.Reliability.BestEffort if verb == "sensor" else RELIABLE
     qos = Qos(how, Policy.History.KeepLast(10))
     if verb == "hear":
         reader = DataReader(part, topic, qos=qos)
         ended = threading.Event()
         threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
-        print(json.dumps("ready"), flush=True)
+        say("ready")
         while not ended.wait(0.02):
             for sample in reader.take(N=10):
-                print(json.dumps(sample.data), flush=True)
+                say(sample.data)
         return
     writer = DataWriter(part, topic, qos=qos)
-    print(json.dumps("ready"), flush=True)
+    say("ready")
     for line in sys.stdin:
         writer.write(String_(line.rstrip("\n")))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2])
+    if sys.argv[1] == "obey":
+        obey()
+    else:
+        main(sys.argv[1], sys.argv[2])

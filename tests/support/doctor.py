@@ -12,8 +12,8 @@ from pathlib import Path
 
 from yarpy.config.configuration import Configuration, Server
 from yarpy.contact import Contact
-from yarpy.network.doctor.case import Case
-from yarpy.network.doctor.peek import Peek
+from yarpy.kits.doctor.case import Case
+from yarpy.kits.doctor.peek import Peek
 from yarpy.network.traffic import Flow, PortState, Snapshot
 
 

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from support.cpp_venv import MissingPeer
+from support.peer_venv import MissingPeer
 
 SOURCE = Path(__file__).with_name("fast_dds.cpp")
 INCLUDES = ("/usr/include", "/usr/local/include")

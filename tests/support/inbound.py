@@ -10,11 +10,11 @@ from contextlib import contextmanager
 from support.transport import ScriptTransport, scripted
 
 from yarpy.carriers.base import Carrier
-from yarpy.carriers.tcp import Tcp
+from yarpy.carriers.own.tcp import Tcp
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.link.driver import Driver
-from yarpy.link.inbound import Inbound
+from yarpy.link.begin.greeting import driver_of
+from yarpy.link.receive.inbound import Inbound
 from yarpy.route import Route
 from yarpy.transports.base import SocketTransport
 from yarpy.wire import framing
@@ -74,7 +74,7 @@ def linked(kind: type[Carrier] = Tcp) -> Iterator[tuple[socket.socket, Inbound, 
     near, far = socket.socketpair()
     near.settimeout(5)
     owner = Owner()
-    link = Inbound(owner, Driver(SocketTransport(far)), kind(Route("/peer", "/here", kind.name)))
+    link = Inbound(owner, driver_of(SocketTransport(far)), kind(Route("/peer", "/here", kind.name)))
     link.thread = threading.Thread(target=link.serve, daemon=True)
     link.thread.start()
     try:

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 
 from support.capture import Capture, Step
 from support.difference import LIVE_DIFFERENT
-from support.patience import patience
+from support.wait import HANG
 
 from yarpy import network
 from yarpy.data.bottle import Bottle
@@ -24,8 +24,6 @@ from yarpy.port.base import BasePort
 from yarpy.port.port import Port
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.wire.message import Message
-
-PATIENCE = patience(5.0)
 
 
 def echo(message: Message) -> object:
@@ -63,7 +61,7 @@ class World:
     def connect(self, source: str, target: str) -> None:
         before = len(self.port(target).inputs)
         self.port(source).connect(target)
-        assert self.port(target).wait_for_inputs(before + 1, timeout=PATIENCE)
+        assert self.port(target).wait_for_inputs(before + 1, timeout=HANG)
 
     def admin(self, name: str, text: str) -> None:
         network.admin(name, *Bottle.from_text(text), names=self.names)
@@ -72,8 +70,8 @@ class World:
     def dial(self, name: str) -> Iterator[socket.socket]:
         """A bare socket to a port."""
         contact = self.port(name).contact
-        with socket.create_connection((contact.host, contact.port), PATIENCE) as sock:
-            sock.settimeout(PATIENCE)
+        with socket.create_connection((contact.host, contact.port), HANG) as sock:
+            sock.settimeout(HANG)
             sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             yield sock
 
@@ -106,7 +104,7 @@ def until_right(sock: socket.socket, check: object) -> None:
     """Read until an answer of unknown length satisfies its check."""
     assert callable(check)
     data = b""
-    deadline = time.monotonic() + PATIENCE
+    deadline = time.monotonic() + HANG
     while True:
         try:
             check(data)

@@ -1,24 +1,21 @@
 """The MPI libraries of this computer, and how a program is started with each.
 
-for name in LIBRARIES:
-    with mpi_library(name) as start:         # pytest skips with the reason where it is missing
-        Process([*start.command, sys.executable, ...], env=start.environment)
+with mpi_library("mpich") as start:      # or "openmpi", which is a peer
+    Process([*start.command, sys.executable, ...], env=start.environment)
 """
 
 import contextlib
 import importlib.metadata
 import os
-import shutil
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from support.peer import program
 from support.process import Process
 from support.wait import wait_until
-
-LIBRARIES = ("mpich", "openmpi")
 
 
 @dataclass(frozen=True)
@@ -31,22 +28,21 @@ class Start:
 
 @contextlib.contextmanager
 def mpi_library(name: str) -> Iterator[Start]:
-    """One of LIBRARIES, ready for programs that do not know of each other."""
+    """MPICH or Open MPI, ready for programs that do not know of each other."""
     pytest.importorskip("mpi4py", reason="mpi4py is not installed")
     clean = {
         key: value
         for key, value in os.environ.items()
         if not key.startswith(("OMPI_", "PMIX_", "PMI_", "MPI4PY_"))
-    }
+    } | {"YARPY_MPI": "yes"}
     if name == "mpich":
         yield Start([str(_of_mpich("mpiexec")), "-n", "1"], clean | _mpich_variables(clean))
         return
-    server = shutil.which("ompi-server")
-    if server is None:
-        pytest.skip("Open MPI is not installed: apt-get install openmpi-bin")
     with tempfile.TemporaryDirectory(prefix="yarpy-mpi-") as folder:
         where = Path(folder) / "where"
-        with Process([server, "--no-daemonize", "-r", str(where)], env=clean):
+        with Process(
+            [program("ompi-server", of="openmpi"), "--no-daemonize", "-r", str(where)], env=clean
+        ):
             wait_until(lambda: where.exists() and where.read_text(), what="ompi-server is there")
             yield Start(
                 [],

@@ -11,9 +11,7 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from support.patience import patience
-
-LONG = patience(20.0)
+from support.wait import HANG
 
 
 class Failed(Exception):
@@ -61,7 +59,7 @@ class FakeComm:
                 if other is not self:
                     other.inbox.put(bytes(held))
         else:
-            came = self.inbox.get(timeout=LONG)
+            came = self.inbox.get(timeout=HANG)
             if isinstance(came, Exception):
                 raise came
             assert len(came) == len(held)
@@ -69,19 +67,19 @@ class FakeComm:
 
     def Accept(self, place: str, info: object = None, root: int = 0) -> Any:  # noqa: N802
         if self.Get_rank() == root:
-            new = self.hall.door(place).get(timeout=LONG)
+            new = self.hall.door(place).get(timeout=HANG)
             for other in self.group[1:]:
                 other.inbox.put("accepted")
             new.group = self.group
             self.group.append(new)
             new.inbox.put("accepted")
         else:
-            assert self.inbox.get(timeout=LONG) == "accepted"
+            assert self.inbox.get(timeout=HANG) == "accepted"
         return self._between(high=False)
 
     def Connect(self, place: str) -> Any:  # noqa: N802
         self.hall.door(place).put(self)
-        assert self.inbox.get(timeout=LONG) == "accepted"
+        assert self.inbox.get(timeout=HANG) == "accepted"
         return self._between(high=True)
 
     def _between(self, high: bool) -> SimpleNamespace:

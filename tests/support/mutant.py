@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from yarpy.carriers.base import Carrier
-from yarpy.carriers.tcp import FastTcp
+from yarpy.carriers.own.tcp import FastTcp
 from yarpy.wire.message import Packet
 from yarpy.wire.stream import ByteStream
 

@@ -21,18 +21,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from support.patience import patience
 from support.port import free_block
 from support.process import Process
+from support.wait import HANG
 
 FIRST = 10000  # the port number of the name server in the text
 # Pages that other name servers of this computer, such as those of other tests, would be seen on.
 ALONE = ("doctor.md",)
 SIZE = 100
-PATIENCE = patience(15.0)  # seconds for a command of a session
 
 _FENCE = re.compile(r"( *)```(\S*) ?(\S*)\s*$")
-_NUMBER = re.compile(r"(?:\b\d+ )?(?:\d+\.\d{4,}|\d{6,}(?:\.\d+)?)")
+_NUMBER = re.compile(r"(?:\b\d+ )?(?:\d+\.\d{4,}|\d{6,}(?:\.\d+)?)|(?<=\bfor )\d+\.\d(?= s\b)")
 _PRINTED = re.compile(r"\bprint\(.*\)  # (.*)$")
 
 
@@ -98,7 +97,7 @@ def run(page: Path, directory: Path, port: int, cpp: Mapping[str, str] | None = 
         [sys.executable, script],
         capture_output=True,
         text=True,
-        timeout=50,
+        timeout=3 * HANG,
         cwd=directory,
         env={
             **_clean(),
@@ -150,11 +149,11 @@ def _replay(command: str, expected: Sequence[str], note: str) -> None:
             del expected[-1]
             last = expected[-1]
             pattern = ".*".join(map(re.escape, _NUMBER.split(last)))
-            process.wait_line(pattern, count=expected.count(last), timeout=PATIENCE)
+            process.wait_line(pattern, count=expected.count(last), timeout=HANG)
             os.killpg(process.pid, signal.SIGINT)
         else:
             process.end_input()
-            process.wait(PATIENCE)
+            process.wait(HANG)
         said = process.stdout.rstrip("\n")  # C++ likes an empty line at the end
     if not _agree(expected, said.splitlines(), interrupted):
         port = int(os.environ["PAGE_PORT"])

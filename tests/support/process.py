@@ -1,8 +1,9 @@
 """Start a program, read what it says while it runs, and leave nothing of it behind.
 
 Rules: output is read by threads of ours, so that a chatty program never blocks on a full pipe;
-waiting always has an end, and its error shows what the program had said; `stop` ends the program
-and everything it started, by process id, also when the test failed or the interpreter exits.
+waiting always has an end, and its error shows what the program had said, and where its threads
+were if it hangs; `stop` ends the program and everything it started, by process id, also when the
+test failed or the interpreter exits.
 """
 
 import atexit
@@ -18,7 +19,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal, Self
 
-from support.patience import patience
+from support.wait import HANG
 
 _running: weakref.WeakSet["Process"] = weakref.WeakSet()
 
@@ -39,7 +40,7 @@ class Process:
         self._open_streams = 2
         self._popen = subprocess.Popen(
             self.args,
-            env=None if env is None else dict(env),
+            env={**(os.environ if env is None else env), "PYTHONFAULTHANDLER": "1"},
             cwd=cwd,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -91,7 +92,7 @@ class Process:
         self,
         pattern: str,
         *,
-        timeout: float = patience(10.0),
+        timeout: float = HANG,
         count: int = 1,
         stream: Literal["out", "err", "any"] = "any",
     ) -> re.Match[str]:
@@ -113,16 +114,19 @@ class Process:
                 if self._open_streams == 0:
                     raise AssertionError(f"{self} ended without saying {pattern!r}{self._said()}")
                 if left <= 0:
-                    raise AssertionError(f"{self} did not say {pattern!r} in time{self._said()}")
+                    break
                 self._changed.wait(left)
+        said = self._last_words(timeout)
+        raise AssertionError(f"{self} did not say {pattern!r} in time{said}")
 
-    def wait(self, timeout: float = patience(10.0)) -> int:
+    def wait(self, timeout: float = HANG) -> int:
         """Wait for the end, and for the last words; the exit code."""
         deadline = time.monotonic() + timeout
         try:
             code = self._popen.wait(timeout)
         except subprocess.TimeoutExpired:
-            raise AssertionError(f"{self} still runs after {timeout} s{self._said()}") from None
+            said = self._last_words(timeout)
+            raise AssertionError(f"{self} still runs after {timeout} s{said}") from None
         with self._changed:
             # A grandchild may hold the pipes open: what it says later is not waited for.
             while self._open_streams and (left := min(deadline - time.monotonic(), 1.0)) > 0:
@@ -141,14 +145,14 @@ class Process:
         self._popen.wait(10)
         self.end_input()
 
-    def stop(self, patience: float = 2.0) -> None:
-        """End the program and all it started: ask, wait `patience` seconds, then kill."""
+    def stop(self, grace: float = 2.0) -> None:
+        """End the program and all it started: ask, wait `grace` seconds, then kill."""
         # The children are listed first: when their parent is gone nobody knows whose they were.
         family = [*descendants(self.pid), self.pid]
         if self._popen.poll() is None:
             self._popen.terminate()
             with contextlib.suppress(subprocess.TimeoutExpired):
-                self._popen.wait(patience)
+                self._popen.wait(grace)
         for pid in family:
             if pid != self.pid or self._popen.poll() is None:
                 _send(pid, signal.SIGKILL)
@@ -181,6 +185,19 @@ class Process:
     def _text(self, wanted: str) -> str:
         with self._changed:
             return "".join(line + "\n" for kind, line in self.lines if kind == wanted)
+
+    def _last_words(self, waited: float) -> str:
+        """What it said; and if it hangs, which ends it, where the threads of its Pythons were."""
+        if waited >= HANG:
+            for pid in (*descendants(self.pid), self.pid):
+                with contextlib.suppress(OSError):
+                    if "python" in Path(f"/proc/{pid}/cmdline").read_text().split("\0")[0]:
+                        _send(pid, signal.SIGABRT)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._popen.wait(5)
+            with self._changed:
+                self._changed.wait_for(lambda: self._open_streams == 0, 1)
+        return self._said()
 
     def _said(self) -> str:
         return "; it said:" + "".join(f"\n  {kind}| {line}" for kind, line in self.lines)
@@ -222,4 +239,4 @@ def _send(pid: int, number: int) -> None:
 @atexit.register
 def _stop_all() -> None:
     for process in list(_running):
-        process.stop(patience=0.5)
+        process.stop(grace=0.5)

@@ -16,7 +16,7 @@ from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
-from yarpy.link.handshake import UNKNOWN_PROTOCOL, find_carrier, recognise
+from yarpy.link.begin.handshake import UNKNOWN_PROTOCOL, find_carrier, recognise
 from yarpy.route import Route
 from yarpy.testing import End
 from yarpy.wire.message import Lines, Message, Packet

@@ -2,18 +2,17 @@
 are installed.
 
 Rules: a question is a small program that prints JSON; it runs in a process of its own, without our
-environment. Where ROS is not installed the tests skip and say so.
+environment. A test that asks declares the peer `ros`.
 """
 
 import json
 import subprocess
 from functools import cache
-from pathlib import Path
 from typing import Any
 
-import pytest
+from support.peer import DEBIAN_PYTHON, demand
 
-PYTHON = Path("/usr/bin/python3")
+PYTHON = DEBIAN_PYTHON
 
 _INSTALLED = """
 import glob, os
@@ -32,23 +31,9 @@ answer = found
 """
 
 
-@cache
-def is_installed() -> bool:
-    try:
-        return subprocess.run([PYTHON, "-c", "import rospy, std_msgs.msg"], env={}).returncode == 0
-    except OSError:
-        return False
-
-
-def needs_ros() -> None:
-    """Skip the test where there is no ROS."""
-    if not is_installed():
-        pytest.skip("ROS 1 is not installed: apt-get install python3-rosmsg python3-rospy")
-
-
 def ask(program: str, given: Any = None) -> Any:
     """What a program of ROS's Python leaves in `answer`; it finds `given` in a variable."""
-    needs_ros()
+    demand("ros")
     code = f"import json, sys\nimport roslib.message\ngiven = json.load(sys.stdin)\n{program}\n"
     done = subprocess.run(
         [PYTHON, "-c", code + "json.dump(answer, sys.stdout)"],

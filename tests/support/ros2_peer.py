@@ -5,9 +5,13 @@
     python ros2_peer.py PORT serve NAME            adds two numbers for whoever asks
     python ros2_peer.py PORT call NAME             asks for the sums of the lines of its input
     python ros2_peer.py PORT list                  prints topics with their types, and nodes
+    python ros2_peer.py PORT ask NAME              asks with the fields that lines of its input are
+    python ros2_peer.py PORT act NAME              an action server, of Fibonacci
 
 Rules: it is zenoh-ros2-sdk, with the definitions given as text, since it would download them. An
-option `hash=...` gives the type another hash, `latched=1` keeps the last message.
+option `hash=...` gives the type another hash, `latched=1` keeps the last message, `qos=...` is the
+text of a QoS. `ask` wants type=, hash=, request=, response=, with `;` between declarations: what is
+nested is written as its fields, which have the same bytes.
 """
 
 from __future__ import annotations
@@ -31,8 +35,8 @@ LATCHED = ":1:,1:,:,:,,"
 @contextlib.contextmanager
 def ros2_router() -> Iterator[int]:
     """A router of Zenoh on the loopback; its number."""
-    from yarpy.transports.zenoh import close
-    from yarpy.transports.zenoh_router import open_router
+    from yarpy.peers.zenoh.router import open_router
+    from yarpy.peers.zenoh.transport import close
 
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -54,6 +58,59 @@ def peer_environment(home: Path) -> dict[str, str]:
     return {**os.environ, "HOME": str(home), "ZENOH_CONFIG_OVERRIDE": 'mode="client"'}
 
 
+#: the services of Fibonacci: type, hash, request, response
+ACTION = {
+    "send_goal": (
+        "example_interfaces/action/Fibonacci_SendGoal",
+        "RIHS01_d1a57fb2a4afe8c21e34fb10db206f16ce6729b28531141472df92277c55b557",
+        "uint8[16] goal_id;int32 order",
+        "bool accepted;int32 sec;uint32 nanosec",
+    ),
+    "get_result": (
+        "example_interfaces/action/Fibonacci_GetResult",
+        "RIHS01_1b0de0d5d29dc955d92f546706568428632771db13ec84c15ec1c1a59f424a57",
+        "uint8[16] goal_id",
+        "int8 status;int32[] sequence",
+    ),
+}
+
+
+def _array(value: Any) -> Any:
+    import numpy as np
+
+    numbers = isinstance(value, list) and value and not isinstance(value[0], str)
+    return np.array(value, "u1") if numbers else value
+
+
+def _plain(value: Any) -> Any:
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _action_service(sdk: Any, name: str, what: str, where: dict[str, Any]) -> Any:
+    """Half of an action server: what it is told is printed; the result is 0, 1, 1 of any goal."""
+    import numpy as np
+
+    kind, hash_, request, response = ACTION[what]
+    made: Any = None
+
+    def answer(asked: Any) -> Any:
+        _say([what, _plain(asked.goal_id), getattr(asked, "order", None)])
+        if what == "send_goal":
+            return made.response_msg_class(accepted=asked.order > 0, sec=1, nanosec=2)
+        return made.response_msg_class(status=4, sequence=np.array([0, 1, 1], "i4"))
+
+    made = sdk.ROS2ServiceServer(
+        f"{name}/_action/{what}",
+        kind,
+        answer,
+        type_hash=hash_,
+        request_definition=request.replace(";", "\n"),
+        response_definition=response.replace(";", "\n"),
+        **{**where, "node_name": f"sdk_{what}"},
+    )
+    return made
+
+
 def _say(item: Any) -> None:
     print(json.dumps(item), flush=True)
 
@@ -67,6 +124,8 @@ def main(port: int, verb: str, name: str, options: dict[str, str]) -> None:
         topic["type_hash"] = options["hash"]
     if "latched" in options:
         topic["qos"] = LATCHED
+    elif "qos" in options:
+        topic["qos"] = options["qos"]
     kind = options.get("type", "std_msgs/msg/String")
     if verb == "hear":
         node = sdk.ROS2Subscriber(name, kind, lambda message: _say(message.data), **topic)
@@ -97,6 +156,27 @@ def main(port: int, verb: str, name: str, options: dict[str, str]) -> None:
             answer = client.call(a=a, b=b)
             _say(None if answer is None else int(answer.sum))
         client.close()
+    elif verb == "ask":
+        client = sdk.ROS2ServiceClient(
+            name,
+            kind,
+            type_hash=options["hash"],
+            request_definition=options["request"].replace(";", "\n"),
+            response_definition=options["response"].replace(";", "\n"),
+            **where,
+        )
+        _say("ready")
+        for line in sys.stdin:
+            answer = client.call(**{k: _array(v) for k, v in json.loads(line).items()})
+            fields = {} if answer is None else vars(answer)
+            _say({k: _plain(v) for k, v in fields.items() if k[0] != "_"})
+        client.close()
+    elif verb == "act":
+        held = [_action_service(sdk, name, what, where) for what in ACTION]
+        _say("ready")
+        sys.stdin.read()
+        for item in held:
+            item.close()
     elif verb == "list":
         from zenoh_ros2_sdk.discovery import get_topic_names_and_types
 

@@ -1,7 +1,7 @@
 """A ROS 1 of our own: a master on a free port, rospy programs, the command line tools.
 
-Rules: everything on the loopback, with a home of its own. Where the packages are missing the tests
-skip and say so. What is started here ends with `close`.
+Rules: everything on the loopback, with a home of its own; a test that uses it declares the peers
+`ros` and `rosmaster`. What is started here ends with `close`.
 """
 
 import os
@@ -12,25 +12,20 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from support.patience import patience
+from support.peer import demand
 from support.port import free_port
 from support.process import Process
-from support.ros import PYTHON, needs_ros
-from support.wait import wait_until
+from support.ros import PYTHON
+from support.wait import HANG, wait_until
 
-from yarpy.names.ros_master import RosMaster
-
-TOOLS = ("rosmaster", "rostopic", "rosnode", "rosservice", "rosparam")
+from yarpy.peers.ros.master import RosMaster
 
 
 class RosGraph:
     """A master and what runs around it."""
 
     def __init__(self, home: Path) -> None:
-        needs_ros()
-        missing = [tool for tool in TOOLS if not Path("/usr/bin", tool).exists()]
-        if missing:
-            pytest.skip(f"missing of ROS 1: apt-get install python3-{' python3-'.join(missing)}")
+        demand("ros", "rosmaster")
         self.home = home
         self.port = free_port()
         self.uri = f"http://127.0.0.1:{self.port}/"
@@ -51,7 +46,7 @@ class RosGraph:
     def start(self) -> None:
         """Start the master, again on the same port."""
         self.core = self.run("rosmaster", "--core", "-p", str(self.port))
-        wait_until(self.master.answers, patience(20.0), "the ROS master answers")
+        wait_until(self.master.answers, HANG, "the ROS master answers")
 
     def run(self, *words: str) -> Process:
         """Start a tool of ROS."""
@@ -66,7 +61,7 @@ class RosGraph:
             env=dict(self.environment),
             capture_output=True,
             text=True,
-            timeout=patience(timeout),
+            timeout=HANG,
         )
         return done.stdout + done.stderr
 

@@ -3,10 +3,10 @@
 from typing import Any
 
 from yarpy.carriers.base import Carrier
-from yarpy.carriers.ros_header import LENGTH, encode_header, parse_header
-from yarpy.idl.rosmsg.library import Library
-from yarpy.idl.rosmsg.source import Texts
-from yarpy.link.handshake import recognise
+from yarpy.link.begin.handshake import recognise
+from yarpy.peers.ros.header import LENGTH, encode_header, parse_header
+from yarpy.peers.ros.message.library import Library
+from yarpy.peers.ros.message.source import Texts
 from yarpy.route import Declared, Route
 from yarpy.testing import End
 from yarpy.wire.steps import Steps

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from yarpy.idl.rosmsg.message import Duration, Message, Time
-from yarpy.idl.rosmsg.model import ListOf, Primitive, Struct, Type
+from yarpy.peers.ros.message.message import Duration, Message, Time
+from yarpy.peers.ros.message.model import ListOf, Primitive, Struct, Type
 
 PLAIN = ("", "base", "grüße", "two words", "x" * 300, '"quoted" (1 2)', "3")
 #: and bytes that are no text, which rospy replaces

@@ -8,6 +8,10 @@ from typing import Any
 from wsgiref.simple_server import WSGIRequestHandler, WSGIServer, make_server
 
 import socketio
+from engineio.payload import Payload
+
+# Of one request: a client that sends more at once, as on a busy machine, would be cut off.
+Payload.max_decode_packets = 10_000
 
 
 class _Server(ThreadingMixIn, WSGIServer):
@@ -25,12 +29,15 @@ class SocketIoServer:
     def __init__(self, port: int) -> None:
         self.server = socketio.Server(async_mode="threading", allow_upgrades=False)
         self.server.on("*", self._hand_on)
+        # A packet and its bytes are several messages, which those of another thread may part.
+        self._emits = threading.Lock()
         app = socketio.WSGIApp(self.server)
         self._http = make_server("127.0.0.1", port, app, _Server, _Quiet)
         self._thread = threading.Thread(target=self._http.serve_forever, args=(0.05,), daemon=True)
 
     def _hand_on(self, event: str, sid: str, *data: Any) -> None:
-        self.server.emit(event, data if len(data) > 1 else data[0])
+        with self._emits:
+            self.server.emit(event, data if len(data) > 1 else data[0])
 
     def __enter__(self) -> SocketIoServer:
         self._thread.start()

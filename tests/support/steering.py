@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from yarpy.contact import parse_contact
-from yarpy.network.steering.change import Change
-from yarpy.network.steering.governor import Governor
-from yarpy.network.steering.rules import parse
+from yarpy.kits.autoqos.change import Change
+from yarpy.kits.autoqos.governor import Governor
+from yarpy.kits.autoqos.rules import parse
 from yarpy.network.traffic import End, Flow, PortState, Snapshot
 from yarpy.qos import Qos
 

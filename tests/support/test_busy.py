@@ -7,7 +7,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-from support.patience import patience
 from support.process import descendants
 from support.wait import wait_until
 
@@ -23,11 +22,11 @@ def test_loops_do_not_outlive_a_killed_run() -> None:
     command = [sys.executable, BUSY, sys.executable, "-c", "import time; time.sleep(600)"]
     run = subprocess.Popen(command)
     expected = 1 + len(os.sched_getaffinity(0))
-    wait_until(lambda: len(descendants(run.pid)) == expected, patience(30.0))
+    wait_until(lambda: len(descendants(run.pid)) == expected)
     family = descendants(run.pid)
     run.kill()
     run.wait()
-    wait_until(lambda: sum(map(lives, family)) == 1, patience(30.0))
+    wait_until(lambda: sum(map(lives, family)) == 1)
     for pid in filter(lives, family):
         os.kill(pid, 9)  # the command, which nobody ends in such a case
 

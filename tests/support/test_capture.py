@@ -17,19 +17,19 @@ REPLAYS = [
     TESTS / "names" / "test_capture.py",
     TESTS / "names" / "test_discovery.py",
     TESTS / "nameserver" / "test_server.py",
-    TESTS / "carriers" / "test_local.py",
-    TESTS / "carriers" / "test_mjpeg.py",
-    TESTS / "carriers" / "test_websocket.py",
-    TESTS / "carriers" / "test_xmlrpc.py",
+    TESTS / "carriers" / "own" / "test_local.py",
+    TESTS / "carriers" / "web" / "test_mjpeg.py",
+    TESTS / "carriers" / "web" / "test_websocket.py",
+    TESTS / "carriers" / "web" / "test_xmlrpc.py",
     TESTS / "interop" / "test_camera.py",
-    TESTS / "carriers" / "test_tcpros.py",
-    TESTS / "carriers" / "test_rossrv.py",
+    TESTS / "peers" / "ros" / "test_carrier.py",
+    TESTS / "peers" / "ros" / "test_service_carrier.py",
 ]
 # Groups and prefixes from which a replay takes every capture there is.
 WHOLE_GROUPS = {"administration", "telnet", "malformed"}
 WHOLE_PREFIXES = ("conn_tcp", "conn_fast_tcp", "conn_text", "conn_name_ser", "conn_udp",
                   "conn_mcast", "reverse_", "http_")  # fmt: skip
-# What tests/ros/test_capture.py takes.
+# What tests/peers/ros/test_capture.py takes.
 CALLS = "_xmlrpc_"
 # What was asked about a connection that is replayed.
 QUESTIONS = "_admin_"
@@ -44,7 +44,7 @@ def words(path: Path) -> set[str]:
     }
 
 
-SPELLED = set().union(*(words(path) for path in REPLAYS if path.exists()))
+SPELLED = set().union(*(words(path) for path in REPLAYS))
 
 
 @pytest.mark.parametrize(
@@ -102,5 +102,5 @@ def test_replays_take_whole_groups() -> None:
     assert carriers >= WHOLE_GROUPS
     assert port >= WHOLE_GROUPS
     assert {"conn_", "reverse_"} <= carriers
-    assert "http_*.json" in words(TESTS / "carriers" / "http" / "test_carrier.py")
-    assert CALLS in words(TESTS / "ros" / "test_capture.py")
+    assert "http_*.json" in words(TESTS / "carriers" / "web" / "http" / "test_carrier.py")
+    assert CALLS in words(TESTS / "peers" / "ros" / "test_capture.py")

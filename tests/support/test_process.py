@@ -5,6 +5,7 @@ import sys
 import time
 
 import pytest
+from support import process as module
 from support.process import Process, descendants
 
 
@@ -54,6 +55,14 @@ def test_waiting_ends() -> None:
     assert process.returncode is not None
 
 
+def test_who_hangs_says_where(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "HANG", 0.2)
+    with python("def stuck():\n    print('here')\n    while True: pass\nstuck()") as process:
+        process.wait_line("here")
+        with pytest.raises(AssertionError, match="line 3 in stuck"):
+            process.wait(0.2)
+
+
 FAMILY = """
 import os, signal, subprocess, sys, time
 signal.signal(signal.SIGTERM, signal.SIG_IGN)
@@ -71,7 +80,7 @@ def test_whole_family_ends_even_if_it_does_not_want_to(method: str) -> None:
     assert descendants(process.pid) == [child]
     assert is_running(child)
     if method == "stop":
-        process.stop(patience=0.1)
+        process.stop(grace=0.1)
     else:
         process.kill()
     deadline = time.monotonic() + 5

@@ -1,6 +1,9 @@
-"""ROS 1 as a peer: its Python answers, or the test is skipped."""
+"""ROS 1 as a peer: its Python answers, and tells what is installed."""
 
+import pytest
 from support import ros
+
+pytestmark = pytest.mark.peer("ros")
 
 
 def test_it_answers() -> None:
@@ -8,5 +11,4 @@ def test_it_answers() -> None:
 
 
 def test_installed_types_are_listed() -> None:
-    ros.needs_ros()
     assert ros.installed()["msg std_msgs/String"][0] == "992ce8a1687cec8c8bd883ec73ca41d1"

@@ -13,6 +13,6 @@ def test_an_end_is_welcomed() -> None:
     end, carrier = accept(header(callerid="/a", md5sum="*", topic="/t"), UNDECLARED, piece=1)
     assert carrier.name == "tcpros"
     assert taken_header(end) == (
-        {"callerid": "/port", "md5sum": "*", "topic": "/t", "type": "*"},
+        {"callerid": "/port", "md5sum": "*", "topic": "/t"},
         b"",
     )

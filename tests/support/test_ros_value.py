@@ -4,8 +4,8 @@ from random import Random
 
 from support.ros_value import filled
 
-from yarpy.idl.rosmsg.library import Library
-from yarpy.idl.rosmsg.source import Standard
+from yarpy.peers.ros.message.library import Library
+from yarpy.peers.ros.message.source import Standard
 
 
 def test_every_field_gets_a_value() -> None:

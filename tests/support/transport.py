@@ -6,16 +6,22 @@ has hung up, or (`open_ended`) is silent.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
+from yarpy.link.begin.greeting import driver_of
 from yarpy.link.driver import Driver
+from yarpy.transports.base import Address, Answerable
 from yarpy.wire.stream import Buffer
 
 Item = bytes | OSError
 
 
-class ScriptTransport:
+class ScriptTransport(Answerable):
     """One side of a byte pipe whose other side is a list."""
+
+    scheme = "tcp"
+    local: Address = ("127.0.0.1", 21602)
+    remote: Address = ("127.0.0.1", 50000)
 
     def __init__(self, incoming: Iterable[Item] = (), open_ended: bool = False) -> None:
         self.incoming = list(incoming)
@@ -26,13 +32,6 @@ class ScriptTransport:
         self.interrupted = False
         self.waits: list[float | None] = []
         self.fails_after: int | None = None
-        self.local = ("127.0.0.1", 21602)
-        self.remote = ("127.0.0.1", 50000)
-        self.port = 0
-        self.tos = 0
-
-    def ready(self, look: Callable[[], object] | None = None) -> None:
-        """Nothing to wait for."""
 
     def recv_into(self, view: memoryview) -> int:
         if not self.incoming or self.interrupted:
@@ -47,6 +46,10 @@ class ScriptTransport:
         if rest:
             self.incoming.insert(0, rest)
         return len(part)
+
+    def peek(self) -> int:
+        first = self.incoming[0] if self.incoming else b""
+        return first[0] if isinstance(first, bytes) and first else -1
 
     def try_recv_into(self, view: memoryview) -> int:
         if not self.incoming and self.open_ended and not self.interrupted:
@@ -65,20 +68,11 @@ class ScriptTransport:
         self.send(buffers)
         return []
 
-    def wait_writable(self, seconds: float) -> bool:
-        return True
-
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         self.waits.append(seconds)
 
-    def set_dscp(self, tos: int) -> None:
-        self.tos = tos
-
     def ended(self) -> bool:
         return not self.incoming and not self.open_ended
-
-    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        return None
 
     def interrupt(self) -> None:
         self.interrupted = True
@@ -95,4 +89,4 @@ class ScriptTransport:
 def scripted(*incoming: Item, open_ended: bool = False) -> tuple[Driver, ScriptTransport]:
     """A driver on such a transport."""
     transport = ScriptTransport(incoming, open_ended)
-    return Driver(transport), transport
+    return driver_of(transport), transport

@@ -21,7 +21,7 @@ from urllib.request import parse_http_list, parse_keqv_list
 import numpy as np
 
 import yarpy
-from yarpy.data import jpeg
+from yarpy.data.sig import jpeg
 
 Y, X = np.mgrid[:48, :64]
 PICTURE = yarpy.Image(np.stack([X * 3, Y * 5, X + Y], -1).astype("u1"))

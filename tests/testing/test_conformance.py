@@ -21,7 +21,7 @@ def test_suite_works_without_pytest(tmp_path: Path) -> None:
 import sys
 sys.modules["pytest"] = None
 from unittest import SkipTest
-from yarpy.carriers.tcp import Tcp
+from yarpy.carriers.own.tcp import Tcp
 from yarpy.testing import CarrierConformance
 class Suite(CarrierConformance):
     carrier = Tcp

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from support.mutant import Plain
 
-from yarpy.carriers.local import Local
-from yarpy.carriers.text import Text
+from yarpy.carriers.own.local import Local
+from yarpy.carriers.own.text import Text
 from yarpy.data import codec
 from yarpy.data.value import Vocab
 from yarpy.testing.conformance_case import SIZES, ConformanceCase

@@ -5,9 +5,13 @@ from __future__ import annotations
 import pytest
 from support.mutant import NoEnvelope, OddReply, Plain
 
+from yarpy import registry
 from yarpy.carriers.base import Carrier
-from yarpy.carriers.tcp import Tcp
-from yarpy.errors import YarpError
+from yarpy.carriers.own.tcp import Tcp
+from yarpy.errors import UnknownPlugin, YarpError
+from yarpy.facts import CarrierRow
+from yarpy.registry import CarrierRegistry
+from yarpy.shipped import CARRIERS, SHIPPED
 from yarpy.testing.conformance_dialogue import DialogueConformance
 from yarpy.wire import framing
 from yarpy.wire.message import Message
@@ -137,6 +141,17 @@ def suite(kind: type[Carrier]) -> DialogueConformance:
 def test_mutant_is_found(mutant: type[Carrier], test: str) -> None:
     with pytest.raises((AssertionError, YarpError)):
         getattr(suite(mutant), test)()
+
+
+def test_carriers_whose_library_is_missing_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = {**CARRIERS, "gone": CarrierRow("gone", "yarpy.gone.carrier:Gone")}
+    monkeypatch.setattr(registry, "carriers", CarrierRegistry(rows))
+    monkeypatch.setitem(SHIPPED, "carriers", rows)
+    with pytest.raises(UnknownPlugin):
+        registry.carriers.load("gone")
+    suite(Plain).test_others_are_left_alone()
+    with pytest.raises(AssertionError, match="mistaken"):
+        suite(Greedy).test_others_are_left_alone()
 
 
 class TestPlain(DialogueConformance):

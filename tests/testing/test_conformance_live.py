@@ -38,7 +38,7 @@ MUTANTS: list[tuple[type[Carrier], str]] = [
 
 
 def suite(kind: type[Carrier]) -> LiveConformance:
-    facts = {"carrier": kind, "patience": 1.0}
+    facts = {"carrier": kind, "timeout": 1.0}
     made: type[LiveConformance] = type("Suite", (LiveConformance,), facts)
     return made()
 

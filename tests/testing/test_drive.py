@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from yarpy.carriers.mcast import Mcast
-from yarpy.carriers.tcp import FastTcp, Tcp
-from yarpy.carriers.text import TextAck
-from yarpy.carriers.udp import Udp
-from yarpy.carriers.unix_stream import UnixStream
+from yarpy.carriers.own.mcast import Mcast
+from yarpy.carriers.own.tcp import FastTcp, Tcp
+from yarpy.carriers.own.text import TextAck
+from yarpy.carriers.own.udp import Udp
+from yarpy.carriers.own.unix_stream import UnixStream
 from yarpy.errors import LinkClosed
 from yarpy.testing import Dialogue, End, Stalled, drive, said
 from yarpy.testing.drive import GROUP, TCP_PORT, UDP_PORT

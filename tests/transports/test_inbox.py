@@ -4,11 +4,14 @@ import threading
 from typing import Any
 
 import pytest
+from support.guest import guest
 
-from yarpy.carriers.ros2 import Incoming, Outgoing
 from yarpy.errors import LocalProtocolError
 from yarpy.transports import inbox
 from yarpy.transports.inbox import Inbox
+
+guest("ros2")
+from yarpy.peers.ros2.carrier import Incoming, Outgoing  # noqa: E402
 
 
 class Bare(Inbox):

@@ -40,7 +40,7 @@ def test_stranger_finds_nobody() -> None:
 
 
 def test_peer_that_never_comes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(inproc, "PATIENCE", 0.05)
+    monkeypatch.setattr(inproc, "TIMEOUT", 0.05)
     end = open_inproc(False, NEAR, FAR)
     with pytest.raises(TimeoutError):
         end.ready()
@@ -114,3 +114,43 @@ def test_an_end_that_hears_that_nobody_comes_leaves_the_meeting_place() -> None:
     with pytest.raises(RemoteProtocolError, match="not here"):
         end.ready(look)
     assert MEETING.find((NEAR[1], FAR[1])) is None
+
+
+def test_each_object_is_read_or_refused_when_the_reader_ends_in_the_middle() -> None:
+    """Whatever moment it chooses: who sends knows what was taken."""
+    for _ in range(300):
+        near, far = meet()
+        sent: list[int] = []
+
+        def send(near: InprocTransport = near, sent: list[int] = sent) -> None:
+            try:
+                for number in range(1 << 30):
+                    near.send([number])
+                    sent.append(number)
+            except BrokenPipeError:
+                pass
+
+        thread = threading.Thread(target=send)
+        thread.start()
+        read = [far.receive() for _ in range(3)]
+        far.interrupt()
+        while (item := far.receive()) is not None:
+            read.append(item)
+        far.close()
+        thread.join(5)
+        assert read == [(number,) for number in sent]
+        near.close()
+
+
+def test_an_end_that_closes_knows_what_it_has_not_read() -> None:
+    near, far = meet()
+    near.send([1, 2, 3])
+    assert far.receive() == (1,)
+    far.interrupt()
+    far.close()
+    assert far.unread() == [2, 3]
+    assert far.unread() == []
+    assert far.receive() is None
+    with pytest.raises(BrokenPipeError):
+        near.send([4])
+    near.close()

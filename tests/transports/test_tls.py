@@ -14,7 +14,6 @@ import pytest
 from support.tls import prepare
 
 from yarpy.config.authority import make
-from yarpy.transports.tcp import TcpTransport
 from yarpy.transports.tls import NoCertificate, TlsTransport, explained, secured
 
 SOON = 20.0
@@ -34,14 +33,14 @@ def pair(host: str = "127.0.0.1", asks_names: bool = False) -> tuple[TlsTranspor
 
     def answer() -> None:
         try:
-            found.append(secured(TcpTransport(other), "", time.monotonic() + SOON, asks_names))
+            found.append(secured(other, "", time.monotonic() + SOON, asks_names))
         except OSError:
             pass
 
     thread = threading.Thread(target=answer)
     thread.start()
     try:
-        near = secured(TcpTransport(one), host, time.monotonic() + SOON)
+        near = secured(one, host, time.monotonic() + SOON)
     finally:
         thread.join(SOON)
     if not found:  # who dialled hears of it with the first bytes that do not come
@@ -145,6 +144,17 @@ def test_without_a_certificate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         TlsTransport(sock)
 
 
+def test_a_peer_without_a_certificate_hangs_up() -> None:
+    """It has read nothing by then, so that the connection is reset."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        one = socket.create_connection(server.getsockname())
+        other, _ = server.accept()
+    other.close()
+    with pytest.raises(OSError, match=r".") as caught:
+        secured(one, "127.0.0.1", time.monotonic() + SOON)
+    assert "`yarpy cert` makes there" in explained(caught.value)
+
+
 @pytest.mark.parametrize("said", [b"GET / HTTP/1.1\r\n\r\n", b"\x16\x03\x01\xff\xff", b""])
 def test_who_speaks_no_tls(said: bytes) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -154,7 +164,7 @@ def test_who_speaks_no_tls(said: bytes) -> None:
         one.sendall(said)
         one.shutdown(socket.SHUT_WR)
         with pytest.raises(OSError, match=r"."):
-            secured(TcpTransport(other), "", time.monotonic() + SOON)
+            secured(other, "", time.monotonic() + SOON)
 
 
 def test_silent_one_is_not_waited_for() -> None:
@@ -162,7 +172,7 @@ def test_silent_one_is_not_waited_for() -> None:
         one = socket.create_connection(server.getsockname())
         other, _ = server.accept()
     with one, pytest.raises(BlockingIOError):
-        secured(TcpTransport(other), "", time.monotonic() + 0.1)
+        secured(other, "", time.monotonic() + 0.1)
 
 
 def test_both_show_certificates(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:

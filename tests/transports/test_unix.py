@@ -53,6 +53,15 @@ def test_two_sides_meet_and_the_path_is_gone(directory: Path) -> None:
     listening.close()
 
 
+def test_what_was_taken_is_not_known_once_another_thread_has_closed_it() -> None:
+    listening, dialling = meet()
+    dialling.send([b"there"])
+    assert dialling.taken(5, 0) is not None
+    dialling.close()
+    assert dialling.taken(5, 0) is None
+    listening.close()
+
+
 def test_dialling_side_may_come_first() -> None:
     dialling = open_unix(False, INITIATOR, ACCEPTOR)
     thread = threading.Thread(target=dialling.ready)
@@ -67,7 +76,7 @@ def test_dialling_side_may_come_first() -> None:
 
 
 def test_peer_that_never_comes(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unix, "PATIENCE", 0.1)
+    monkeypatch.setattr(unix, "TIMEOUT", 0.1)
     listening = open_unix(True, ACCEPTOR, INITIATOR)
     with pytest.raises(TimeoutError):
         listening.ready()

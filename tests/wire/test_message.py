@@ -9,11 +9,12 @@ from collections.abc import Callable
 import numpy
 import pytest
 
+from yarpy import registry
 from yarpy.data.bottle import Bottle, Property
+from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
-from yarpy.data.vector import Vector
-from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError
+from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, UnknownPlugin
 from yarpy.wire.message import (
     CALL,
     DATA,
@@ -228,3 +229,21 @@ def test_reply_that_cannot_be_sent_leaves_the_question_open(value: object) -> No
         message.reply(value)
     message.reply([1])
     assert len(sent) == 1
+
+
+def test_a_type_may_be_named() -> None:
+    message = Message("d", Bottle([1, "two"]).to_bytes())
+    assert type(message.as_("bottle")) is Bottle
+
+    class Pair:
+        @classmethod
+        def from_wire(cls, view: object) -> tuple[str, int]:
+            return "pair", len(bytes(view))  # type: ignore[call-overload]
+
+    registry.types.add("pair", Pair)
+    try:
+        assert message.as_("pair") == ("pair", len(message.payload))
+    finally:
+        registry.types.remove("pair")
+    with pytest.raises(UnknownPlugin, match='no type "pair"'):
+        message.as_("pair")

@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -26,13 +25,12 @@ from wrapyfi.connect.wrapper import MiddlewareCommunicator
 from wrapyfi.utils.core_utils import SingletonOptimized
 
 register = MiddlewareCommunicator.register
-PATIENCE = patience(15.0)
 pytestmark = pytest.mark.usefixtures("names")
 
 
 @pytest.fixture(autouse=True)
 def clean(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("WRAPYFI_TIMEOUT", str(PATIENCE))
+    monkeypatch.setenv("WRAPYFI_TIMEOUT", str(HANG))
     yield
     MiddlewareCommunicator.close_all_instances()
     SingletonOptimized._instances.pop(ConfigManager, None)
@@ -64,7 +62,7 @@ def heard(act: Callable[[], list[Any]]) -> list[Any]:
         found[:] = act()
         return bool(found) and all(one is not None for one in found)
 
-    wait_until(there, PATIENCE)
+    wait_until(there)
     return found
 
 
@@ -398,7 +396,7 @@ class VideoCaptureReceiver(VideoCapture):
 def test_drop_in_for_a_camera() -> None:
     camera, receiver = VideoCapture(0), VideoCaptureReceiver()
     with again(camera.read):
-        wait_until(lambda: receiver.read()[0], PATIENCE)
+        wait_until(lambda: receiver.read()[0])
     registry = MiddlewareCommunicator._MiddlewareCommunicator__registry  # type: ignore[attr-defined]
     assert "VideoCapture.acquire_image.2" in registry
     assert not any("VideoCaptureReceiver" in key for key in registry)

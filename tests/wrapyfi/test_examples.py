@@ -12,12 +12,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from support.cpp_venv import MissingPeer
-from support.patience import patience
+from support.peer import brings
 from support.port import free_block
 from support.process import Process
 from support.ros import PYTHON
 from support.ros_graph import ros_graph
+from support.wait import HANG
 from support.wrapyfi_venv import prepare
 
 pytest.importorskip("zmq")
@@ -46,12 +46,10 @@ ROS_PRINTED = {
 
 
 @pytest.fixture(scope="module")
+@brings("wrapyfi")
 def site() -> Path:
     """Where pip has put the examples."""
-    try:
-        return next(prepare().glob("lib/python*/site-packages"))
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    return next(prepare().glob("lib/python*/site-packages"))
 
 
 @pytest.fixture(scope="module")
@@ -73,10 +71,11 @@ def examples(site: Path) -> Iterator[Process]:
 @pytest.mark.parametrize("role", PRINTED)
 def test_example(role: str, examples: Process) -> None:
     line = f"^{role}: {PRINTED[role]}"
-    assert examples.wait_line(line, timeout=patience(30.0), stream="out")
+    assert examples.wait_line(line, timeout=HANG, stream="out")
 
 
 @pytest.fixture(scope="module")
+@brings("ros", "rosmaster")
 def ros_examples(site: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
     """With the messages of rospy, in its Python."""
     with ros_graph(tmp_path_factory.mktemp("ros")) as graph:
@@ -90,4 +89,4 @@ def ros_examples(site: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
 @pytest.mark.parametrize("role", ROS_PRINTED)
 def test_example_of_ros(role: str, ros_examples: Process) -> None:
     line = f"^{role}: {ROS_PRINTED[role]}"
-    assert ros_examples.wait_line(line, timeout=patience(30.0), stream="out")
+    assert ros_examples.wait_line(line, timeout=HANG, stream="out")

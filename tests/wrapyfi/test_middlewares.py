@@ -18,10 +18,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.broker import Broker, needs_mosquitto
-from support.patience import patience
+from support.broker import Broker
 from support.port import free_block, free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -31,11 +30,10 @@ from wrapyfi.connect.wrapper import MiddlewareCommunicator
 from wrapyfi.middlewares._side import Arrivals
 
 register = MiddlewareCommunicator.register
-PATIENCE = patience(15.0)
 IMAGE = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
 SAMPLES = np.array([0.5, -0.5, 1.0, 0.0], np.float32)
 MODES = ("publish", "listen", "request", "reply")
-NAMES = ("zenoh", "mqtt", "websocket")
+NAMES = ("zenoh", pytest.param("mqtt", marks=pytest.mark.peer("mosquitto")), "websocket")
 
 
 class Pair(MiddlewareCommunicator):
@@ -73,7 +71,7 @@ def mware(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture
 def peer(mware: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Peer]:
-    monkeypatch.setenv("WRAPYFI_TIMEOUT", str(PATIENCE))
+    monkeypatch.setenv("WRAPYFI_TIMEOUT", str(HANG))
     found = Peer()
     with ExitStack() as stack:
         _STARTS[mware](found, stack, monkeypatch, tmp_path)
@@ -83,8 +81,8 @@ def peer(mware: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterato
 
 def _start_zenoh(peer: Peer, stack: ExitStack, monkeypatch: Any, folder: Path) -> None:
     zenoh = pytest.importorskip("zenoh")
-    from yarpy.transports.zenoh import close
-    from yarpy.transports.zenoh_router import open_router
+    from yarpy.peers.zenoh.router import open_router
+    from yarpy.peers.zenoh.transport import close
 
     port = free_port()
     stack.callback(close, open_router([f"tcp/127.0.0.1:{port}"]))
@@ -101,7 +99,6 @@ def _start_zenoh(peer: Peer, stack: ExitStack, monkeypatch: Any, folder: Path) -
 
 
 def _start_mqtt(peer: Peer, stack: ExitStack, monkeypatch: Any, folder: Path) -> None:
-    needs_mosquitto()
     paho = pytest.importorskip("paho.mqtt.client")
     broker = Broker(folder)
     stack.callback(broker.stop)
@@ -116,18 +113,20 @@ def _start_mqtt(peer: Peer, stack: ExitStack, monkeypatch: Any, folder: Path) ->
     client.loop_start()
     stack.callback(client.loop_stop)
     stack.callback(client.disconnect)
-    wait_until(lambda: bool(ready), PATIENCE)
+    wait_until(lambda: bool(ready))
     peer.send = client.publish
 
 
 def _start_websocket(peer: Peer, stack: ExitStack, monkeypatch: Any, folder: Path) -> None:
-    socketio = pytest.importorskip("socketio")
+    pytest.importorskip("socketio")
     from support.socketio_server import SocketIoServer
+
+    from wrapyfi.middlewares._socketio import Client
 
     port = free_port()
     stack.enter_context(SocketIoServer(port))
     monkeypatch.setenv("WRAPYFI_WEBSOCKET_SOCKET_PORT", str(port))
-    client = socketio.Client()
+    client = Client()
     client.on("*", lambda event, data: peer.seen.update({event: data}))
     client.connect(f"http://127.0.0.1:{port}")
     stack.callback(client.disconnect)
@@ -175,7 +174,7 @@ def sent(peer: Peer, topic: str, act: Callable[[], object]) -> Any:
         time.sleep(0.02)
         return topic in peer.seen
 
-    wait_until(there, PATIENCE)
+    wait_until(there)
     return peer.seen[topic]
 
 
@@ -209,8 +208,20 @@ def heard(peer: Peer, topic: str, data: Any, act: Callable[[], Any]) -> Any:
         value = found[0]
         return value is not None and (not isinstance(value, tuple) or value[0] is not None)
 
-    wait_until(there, PATIENCE)
+    wait_until(there)
     return found[0]
+
+
+def test_messages_are_handled_one_after_the_other() -> None:
+    """The library's own client handles each in a thread of its own, where bytes may come first."""
+    pytest.importorskip("socketio")
+    from wrapyfi.middlewares._socketio import Client
+
+    client, seen = Client(), list[int]()
+    client.eio.on("message", lambda data: seen.append(threading.get_ident()))
+    for _ in range(3):
+        client.eio._trigger_event("message", "x", run_async=True)
+    assert seen == [threading.get_ident()] * 3
 
 
 def test_what_wrapyfi_sends_is_taken(mware: str, peer: Peer) -> None:
@@ -285,9 +296,9 @@ def test_both_sides_and_two_listeners(mware: str, peer: Peer) -> None:
         time.sleep(0.02)
         return all(one.native(mware=mware, wait=False) == [1] for one in listeners)
 
-    wait_until(lambda: both(there, third), PATIENCE)
+    wait_until(lambda: both(there, third))
     there.close()
-    wait_until(lambda: both(third), PATIENCE)
+    wait_until(lambda: both(third))
 
 
 @pytest.mark.parametrize("mware", ["mqtt", "zenoh", "websocket"])
@@ -352,7 +363,7 @@ def test_closing_ends_waiting(mware: str, mode: str, monkeypatch: pytest.MonkeyP
     thread.start()
     time.sleep(0.1)
     one.close()
-    thread.join(PATIENCE)
+    thread.join(HANG)
     assert not thread.is_alive() and ended
 
 

@@ -16,14 +16,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.patience import patience
+from support.peer import brings
 from support.process import Process
 from support.ros2_peer import peer_command, peer_environment, ros2_router
 from support.ros_graph import RosGraph, ros_graph
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.idl.rosmsg.library import default_library
+from yarpy.peers.ros.message.library import default_library
 
 pytest.importorskip("zmq")
 
@@ -31,7 +31,6 @@ from wrapyfi.connect.wrapper import MiddlewareCommunicator
 from wrapyfi.middlewares._ros import PictureForm, SoundForm, ours
 
 register = MiddlewareCommunicator.register
-PATIENCE = patience(15.0)
 pytestmark = pytest.mark.usefixtures("names")
 
 
@@ -75,12 +74,13 @@ class Robot(MiddlewareCommunicator):
 
 @pytest.fixture(autouse=True)
 def clean(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("WRAPYFI_TIMEOUT", str(PATIENCE))
+    monkeypatch.setenv("WRAPYFI_TIMEOUT", str(HANG))
     yield
     MiddlewareCommunicator.close_all_instances()
 
 
 @pytest.fixture(scope="module")
+@brings("ros", "rosmaster")
 def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RosGraph]:
     with ros_graph(tmp_path_factory.mktemp("ros")) as found:
         yield found
@@ -123,7 +123,7 @@ def serving(act: Any) -> Iterator[None]:
     yield
     done.set()
     MiddlewareCommunicator.close_all_instances()
-    thread.join(PATIENCE)
+    thread.join(HANG)
     assert not thread.is_alive()
 
 
@@ -151,7 +151,7 @@ def both_ways(mware: str) -> list[Robot]:
                 getattr(here, name)(sent, mware=mware)
             return got[0] is not None
 
-        wait_until(heard, PATIENCE)
+        wait_until(heard)
         assert np.array_equal(got[0], value) if name != "native" else got == [value]
     return [here, there]
 
@@ -211,14 +211,14 @@ def test_ros2_beside_another_implementation(router: int, tmp_path: Path) -> None
     here.activate_communication("native", "publish")
     command = peer_command(router, "hear", "/robot/native")
     with Process(command, env=peer_environment(tmp_path)) as peer:
-        peer.wait_line("ready", timeout=PATIENCE, stream="out")
+        peer.wait_line("ready", timeout=HANG, stream="out")
         here.native({"twice": (1, 2)}, mware="ros2")
-        line = peer.wait_line(r"^.*twice.*$", timeout=PATIENCE, stream="out")[0]
+        line = peer.wait_line(r"^.*twice.*$", timeout=HANG, stream="out")[0]
         assert json.loads(json.loads(line)) == {"twice": {"__wrapyfi__": ["tuple", [1, 2]]}}
 
 
 def test_messages_of_ros2(router: int) -> None:
-    from yarpy.idl.ros2msg.library import default_library as library
+    from yarpy.peers.ros2.message.library import default_library as library
 
     pose = library().message("geometry_msgs/msg/Pose")()
     pose.position.x = 0.5

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.cpp_venv import MissingPeer
-from support.patience import patience
+from support.peer import brings
 from support.process import Process
 from support.ros import PYTHON
+from support.wait import HANG
 from support.wrapyfi_venv import prepare
 
 pytest.importorskip("zmq")
@@ -27,21 +27,12 @@ from wrapyfi.utils.serialization_encoders import JsonDecodeHook, JsonEncoder
 
 ROOT = Path(__file__).parents[2]
 PROGRAMS = Path(__file__).parent / "programs"
-TORCH = Path("/usr/lib/python3/dist-packages/torch")
 
 
 @pytest.fixture(scope="module")
+@brings("wrapyfi", "torch")
 def site() -> Path:
-    if not (PYTHON.exists() and TORCH.exists()):
-        pytest.skip("torch is not installed: apt-get install python3-torch")
-    try:
-        found = next(prepare().glob("lib/python*/site-packages"))
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
-    version = found.parent.name
-    if not PYTHON.with_name(version).exists():
-        pytest.skip(f"torch is for another Python than {version}, which runs the tests")
-    return found
+    return next(prepare().glob("lib/python*/site-packages"))
 
 
 def ours(site: Path, program: str, *words: str) -> Process:
@@ -55,8 +46,8 @@ def test_networks(site: Path) -> None:
     sums = [6.0 * number for number in range(1, 10)]
     with ours(site, "network.py", "ensemble") as first, ours(site, "network.py", "chain") as second:
         line = rf"^ensemble {re.escape(str(sums))}$"
-        first.wait_line(line, timeout=patience(40.0), stream="out")
-        second.wait_line(r"^chain \[3.0, 3.0, 3.0\]$", timeout=patience(40.0), stream="out")
+        first.wait_line(line, timeout=2 * HANG, stream="out")
+        second.wait_line(r"^chain \[3.0, 3.0, 3.0\]$", timeout=2 * HANG, stream="out")
 
 
 def test_torch_crosses(site: Path) -> None:
@@ -65,12 +56,11 @@ def test_torch_crosses(site: Path) -> None:
     environment = {"PATH": os.environ["PATH"], **plugins}
     with Process(command, env=environment) as real, ours(site, "tensors.py") as here:
         texts = [
-            one.wait_line(r"^(\{.*\})$", timeout=patience(40.0), stream="out")[0]
-            for one in (real, here)
+            one.wait_line(r"^(\{.*\})$", timeout=2 * HANG, stream="out")[0] for one in (real, here)
         ]
         for one, text in zip((here, real), texts, strict=True):
             one.write(f"{text}\n")
-            line = one.wait_line(r"^\{'a': .*$", timeout=patience(20.0), stream="out")[0]
+            line = one.wait_line(r"^\{'a': .*$", timeout=HANG, stream="out")[0]
             words = "".join(line.split())
             assert "'a':tensor([[0.,1.,2.],[3.,4.,5.]])" in words
             assert "(tensor([1.,1.],dtype=torch.bfloat16),tensor([[1.,1.],[1.,1.]]),tens" in words

@@ -7,19 +7,19 @@ import os
 import shutil
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
-from support.broker import Broker, needs_mosquitto
-from support.cpp_venv import MissingPeer
-from support.patience import patience
+from support.broker import Broker
+from support.peer import brings
 from support.port import free_block, free_port
 from support.process import Process
-from support.ros import PYTHON, is_installed
+from support.ros import PYTHON
 from support.ros2_peer import ros2_router
 from support.ros_graph import ros_graph
+from support.wait import HANG
 from support.wrapyfi_venv import prepare
 
 import yarpy
@@ -59,11 +59,9 @@ SENT = {
 
 
 @pytest.fixture(scope="module")
+@brings("wrapyfi")
 def wrapyfi() -> Path:
-    try:
-        return prepare()
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    return prepare()
 
 
 @pytest.fixture(scope="module")
@@ -86,22 +84,18 @@ def environment(server: yarpy.NameServer, path: str, **more: str) -> Mapping[str
     }
 
 
-@pytest.fixture(scope="module")
+@contextmanager
 def own_tests(
-    wrapyfi: Path, server: yarpy.NameServer, tmp_path_factory: pytest.TempPathFactory
+    wrapyfi: Path, server: yarpy.NameServer, folder: Path, ros: bool
 ) -> Iterator[dict[str, Process]]:
     """All of them at the same time: they sleep most of it. Their topics have the same names."""
-    folder = tmp_path_factory.mktemp("exchanged")
     shutil.copytree(OURS / "wrapyfi", folder / "wrapyfi")
     theirs = next(wrapyfi.glob("lib/python*/site-packages/wrapyfi/tests"))
     shutil.copytree(theirs, folder / "wrapyfi" / "tests")
     with ExitStack() as stack:
         known = {"YARPY_ZENOH": f"127.0.0.1:{stack.enter_context(ros2_router())}"}
-        names = [*TESTS]
-        if is_installed():
+        if ros:
             known |= stack.enter_context(ros_graph(folder)).environment
-        else:
-            names = [name for name in names if "ROSTest" not in name]
         yield {
             name: stack.enter_context(
                 Process(
@@ -114,24 +108,49 @@ def own_tests(
                     cwd=folder,
                 )
             )
-            for name in names
+            for name in TESTS
+            if ("ROSTest" in name) == ros
         }
 
 
-@pytest.mark.parametrize("name", TESTS)
+@pytest.fixture(scope="module")
+def without_ros(
+    wrapyfi: Path, server: yarpy.NameServer, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[dict[str, Process]]:
+    with own_tests(wrapyfi, server, tmp_path_factory.mktemp("exchanged"), ros=False) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+@brings("ros", "rosmaster")
+def with_ros(
+    wrapyfi: Path, server: yarpy.NameServer, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[dict[str, Process]]:
+    with own_tests(wrapyfi, server, tmp_path_factory.mktemp("exchanged"), ros=True) as found:
+        yield found
+
+
+@pytest.mark.parametrize("name", [name for name in TESTS if "ROSTest" not in name])
 def test_its_own_tests_pass_with_the_package_exchanged(
-    name: str, own_tests: dict[str, Process]
+    name: str, without_ros: dict[str, Process]
 ) -> None:
-    if name not in own_tests:
-        pytest.skip("ROS 1 is not installed: apt-get install python3-rospy")
-    process = own_tests[name]
-    assert process.wait(patience(50.0)) == 0, process.stderr
-    assert f"Ran {TESTS[name]} test" in process.stderr
+    passes(without_ros[name], TESTS[name])
+
+
+@pytest.mark.parametrize("name", [name for name in TESTS if "ROSTest" in name])
+def test_its_own_tests_of_ros_pass(name: str, with_ros: dict[str, Process]) -> None:
+    passes(with_ros[name], TESTS[name])
+
+
+def passes(process: Process, count: int) -> None:
+    assert process.wait(2 * HANG) == 0, process.stderr
+    assert f"Ran {count} test" in process.stderr
     assert "skipped" not in process.stderr
     assert "nothing is sent" not in process.stderr
 
 
 @pytest.fixture(scope="module")
+@brings("mosquitto")
 def crossing(
     wrapyfi: Path, server: yarpy.NameServer, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[dict[tuple[str, str], Process]]:
@@ -165,13 +184,12 @@ def crossing(
 
 def _servers(stack: ExitStack, folder: Path) -> dict[str, str]:
     """A router of Zenoh, a broker of MQTT and a Socket.IO server, and how they are said."""
-    needs_mosquitto()
     pytest.importorskip("zenoh")
     pytest.importorskip("socketio")
     from support.socketio_server import SocketIoServer
 
-    from yarpy.transports.zenoh import close
-    from yarpy.transports.zenoh_router import open_router
+    from yarpy.peers.zenoh.router import open_router
+    from yarpy.peers.zenoh.transport import close
 
     broker = Broker(folder)
     stack.callback(broker.stop)
@@ -196,7 +214,7 @@ def test_each_type_crosses(mware: str, side: str, crossing: dict[tuple[str, str]
     sent = next(types for (known, who), types in SENT.items() if who == side and mware in known)
     for name in sent:
         pattern = rf'^\["{mware}", "{name}", .*\]$'
-        line = process.wait_line(pattern, timeout=patience(45.0), stream="out")
+        line = process.wait_line(pattern, timeout=2 * HANG, stream="out")
         found[name] = json.loads(line[0])[2]
     native = "{'t': (1, 2), 's': {1, None}, 'a': array([0., 1., 2., 3.]), 'n': [None, True, 2.5]}"
     assert found["native"] in (native, native.replace("{1, None}", "{None, 1}"))
@@ -205,7 +223,7 @@ def test_each_type_crosses(mware: str, side: str, crossing: dict[tuple[str, str]
             assert found[name] == {"shape": shape, "dtype": kind, "near": True}
     assert found["sound"] == {"rate": 16000, "near": True}
     if mware == "yarp":
-        line = process.wait_line(r'^\["yarp", "ask", .*\]$', timeout=patience(20.0), stream="out")
+        line = process.wait_line(r'^\["yarp", "ask", .*\]$', timeout=HANG, stream="out")
         first = "(1, 2)" if side == "real" else "[1, 2]"  # nested tuples are marked here
         expected = f"{{'args': [{first}, [3]], 'kwargs': {{'k': {{'z': (9,)}}}}}}"
         assert json.loads(line[0])[2] == expected
@@ -215,6 +233,7 @@ ROS_TYPES = (*TYPES, "jpg", "pose", "property", "ask", "ask_rgb", "ask_sound")
 
 
 @pytest.fixture(scope="module")
+@brings("ros", "rosmaster")
 def crossing_ros(
     wrapyfi: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[dict[str, Process]]:
@@ -242,7 +261,7 @@ def test_each_type_crosses_ros(side: str, crossing_ros: dict[str, Process]) -> N
     found: dict[str, Any] = {}
     for name in ROS_TYPES:
         pattern = rf'^\["ros", "{name}", .*\]$'
-        line = crossing_ros[side].wait_line(pattern, timeout=patience(45.0), stream="out")
+        line = crossing_ros[side].wait_line(pattern, timeout=2 * HANG, stream="out")
         found[name] = json.loads(line[0])[2]
     assert "'t': (1, 2)" in found["native"] and "'n': [None, True, 2.5]" in found["native"]
     for name, shape, kind in (*PICTURES, ("ask_rgb", [24, 32, 3], "uint8")):

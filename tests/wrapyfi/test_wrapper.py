@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -260,7 +259,7 @@ print(logging.getLogger().level)
         cwd=tmp_path,
         capture_output=True,
         text=True,
-        timeout=patience(20.0),
+        timeout=HANG,
     )
     assert (done.returncode, done.stdout.strip()) == (0, "30"), done.stderr
 
@@ -270,7 +269,7 @@ def test_wheel_is_complete(tmp_path: Path) -> None:
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet"]
     options = ["--no-deps", "--no-build-isolation", "--wheel-dir", str(tmp_path)]
     project = str(ROOT / "compat" / "wrapyfi")
-    subprocess.run([*pip, *options, project], check=True, timeout=patience(55.0))
+    subprocess.run([*pip, *options, project], check=True, timeout=2 * HANG)
     names = zipfile.ZipFile(next(tmp_path.glob("*.whl"))).namelist()
     assert {"wrapyfi/__init__.py", "wrapyfi/connect/wrapper.py"} <= set(names)
     assert not [one for one in names if not one.startswith(("wrapyfi/", "yarpy_wrapyfi-"))]

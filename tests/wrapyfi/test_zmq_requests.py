@@ -12,25 +12,22 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
-from support.cpp_venv import MissingPeer
-from support.patience import patience
+from support.peer import brings
 from support.port import free_block
 from support.process import Process
+from support.wait import HANG
 from support.wrapyfi_venv import prepare
 
 import yarpy
 
 PROGRAM = Path(__file__).parent / "programs" / "asked.py"
-WAIT = patience(20.0)
 ANSWER = {"sum": 7, "words": ["a", [1, 2.5]]}
 
 
 @pytest.fixture(scope="module")
+@brings("wrapyfi")
 def wrapyfi() -> Path:
-    try:
-        return prepare() / "bin" / "python"
-    except MissingPeer as missing:
-        pytest.skip(str(missing))
+    return prepare() / "bin" / "python"
 
 
 @pytest.fixture
@@ -51,10 +48,10 @@ def test_a_port_asks_a_server_of_wrapyfi(wrapyfi: Path, names: yarpy.LocalNames)
         Process([wrapyfi, PROGRAM, "reply"], env=env) as server,
         yarpy.RpcClient(names=names) as ask,
     ):
-        server.wait_line("ready", timeout=WAIT, stream="out")
-        ask.connect(f"zmq+req://127.0.0.1:{front}", timeout=WAIT)
+        server.wait_line("ready", timeout=HANG, stream="out")
+        ask.connect(f"zmq+req://127.0.0.1:{front}", timeout=HANG)
         for second in (4, 5):
-            answer = ask.ask([[3], {"second": second}], WAIT)
+            answer = ask.ask([[3], {"second": second}], HANG)
             assert json.loads(answer.as_(bytes)) == ANSWER | {"sum": 3 + second}
 
 
@@ -71,6 +68,6 @@ def test_a_client_of_wrapyfi_asks_a_port(wrapyfi: Path, names: yarpy.LocalNames)
         where = server.contact
         env = environment(SOCKET_IP=where.host, SOCKET_REP_PORT=str(where.port))
         with Process([wrapyfi, PROGRAM, "request"], env=env) as client:
-            assert client.wait(WAIT) == 0, client.stderr
+            assert client.wait(HANG) == 0, client.stderr
             assert json.loads(client.stdout.splitlines()[-1]) == ANSWER
     assert asked == [("tuple", [3], {"second": 4})]

@@ -77,9 +77,16 @@ from yarp._measuring_view import IAmplifierControl as IAmplifierControl
 from yarp._measuring_view import IAxisInfo as IAxisInfo
 from yarp._measuring_view import IEncoders as IEncoders
 from yarp._measuring_view import IEncodersTimed as IEncodersTimed
+from yarp._measuring_view import IJointFault as IJointFault
 from yarp._measuring_view import IMotor as IMotor
 from yarp._measuring_view import IMotorEncoders as IMotorEncoders
 from yarp._measuring_view import IRemoteVariables as IRemoteVariables
+from yarp._mirror import ILLM as ILLM
+from yarp._mirror import ILocalization2D as ILocalization2D
+from yarp._mirror import IMap2D as IMap2D
+from yarp._mirror import INavigation2D as INavigation2D
+from yarp._mirror import IOdometry2D as IOdometry2D
+from yarp._mirror import ISimulatedWorld as ISimulatedWorld
 from yarp._motion_view import ICurrentControl as ICurrentControl
 from yarp._motion_view import IImpedanceControl as IImpedanceControl
 from yarp._motion_view import IPWMControl as IPWMControl
@@ -97,6 +104,8 @@ from yarp._numbers import ShortVector as ShortVector
 from yarp._pixel import PixelRgb as PixelRgb
 from yarp._pixel import PixelRgbFloat as PixelRgbFloat
 from yarp._pixel import PixelRgba as PixelRgba
+from yarp._place_view import IBattery as IBattery
+from yarp._place_view import IFrameTransform as IFrameTransform
 from yarp._poly_driver import PolyDriver as PolyDriver
 from yarp._port import Port as Port
 from yarp._portable import PortReader as PortReader
@@ -122,10 +131,16 @@ from yarp._sensor_view import IThreeAxisLinearAccelerometers as IThreeAxisLinear
 from yarp._sensor_view import IThreeAxisMagnetometers as IThreeAxisMagnetometers
 from yarp._sound import Sound as Sound
 from yarp._stamp import Stamp as Stamp
+from yarp._struct import ColorRGB as ColorRGB
 from yarp._struct import LLMVector as LLMVector
 from yarp._struct import LLM_Message as LLM_Message
+from yarp._struct import Map2DArea as Map2DArea
 from yarp._struct import Map2DLocation as Map2DLocation
 from yarp._struct import Map2DLocationVector as Map2DLocationVector
+from yarp._struct import Map2DObject as Map2DObject
+from yarp._struct import Map2DPath as Map2DPath
+from yarp._struct import OdometryData as OdometryData
+from yarp._struct import Pose6D as Pose6D
 from yarp._thread import PeriodicThread as PeriodicThread
 from yarp._thread import RateThread as RateThread
 from yarp._thread import Semaphore as Semaphore
@@ -145,6 +160,8 @@ from yarp._time import isSystemClock as isSystemClock
 from yarp._time import isValid as isValid
 from yarp._time import now as now
 from yarp._time import turboBoost as turboBoost
+from yarp._time import useCustomClock as useCustomClock
+from yarp._time import useNetworkClock as useNetworkClock
 from yarp._time import useSystemClock as useSystemClock
 from yarp._time import yield_c as yield_c
 from yarp._value import Value as Value
@@ -401,6 +418,7 @@ navigation_status_waiting_obstacle: int
 Bottle_copyPortable = Bottle.copyPortable
 Bottle_describeBottleCode = Bottle.describeBottleCode
 Bottle_getNullBottle = Bottle.getNullBottle
+ColorRGB_copyPortable = ColorRGB.copyPortable
 Contact_convertHostToIp = Contact.convertHostToIp
 Contact_fromConfig = Contact.fromConfig
 Contact_fromString = Contact.fromString
@@ -421,7 +439,10 @@ Log_info = Log.info
 Log_nolog = Log.nolog
 Log_trace = Log.trace
 Log_warning = Log.warning
+Map2DArea_copyPortable = Map2DArea.copyPortable
 Map2DLocation_copyPortable = Map2DLocation.copyPortable
+Map2DObject_copyPortable = Map2DObject.copyPortable
+Map2DPath_copyPortable = Map2DPath.copyPortable
 Matrix_copyPortable = Matrix.copyPortable
 Network_assertion = Network.assertion
 Network_autoInitMinimum = Network.autoInitMinimum
@@ -509,11 +530,13 @@ NetworkBase_waitConnection = NetworkBase.waitConnection
 NetworkBase_waitPort = NetworkBase.waitPort
 NetworkBase_write = NetworkBase.write
 NetworkBase_yarpClockInit = NetworkBase.yarpClockInit
+OdometryData_copyPortable = OdometryData.copyPortable
 PeriodicThread_getCount = PeriodicThread.getCount
 PeriodicThread_getKeyOfCaller = PeriodicThread.getKeyOfCaller
 PeriodicThread_setDefaultStackSize = PeriodicThread.setDefaultStackSize
 PeriodicThread_yield_c = PeriodicThread.yield_c
 Portable_copyPortable = Portable.copyPortable
+Pose6D_copyPortable = Pose6D.copyPortable
 Property_copyPortable = Property.copyPortable
 Random_normal = Random.normal
 Random_seed = Random.seed
@@ -537,11 +560,16 @@ Thread_getKeyOfCaller = Thread.getKeyOfCaller
 Thread_setDefaultStackSize = Thread.setDefaultStackSize
 Thread_yield_c = Thread.yield_c
 Time_delay = Time.delay
+Time_getClockType = Time.getClockType
+Time_isClockInitialized = Time.isClockInitialized
+Time_isCustomClock = Time.isCustomClock
 Time_isNetworkClock = Time.isNetworkClock
 Time_isSystemClock = Time.isSystemClock
 Time_isValid = Time.isValid
 Time_now = Time.now
 Time_turboBoost = Time.turboBoost
+Time_useCustomClock = Time.useCustomClock
+Time_useNetworkClock = Time.useNetworkClock
 Time_useSystemClock = Time.useSystemClock
 Time_yield_c = Time.yield_c
 Value_copyPortable = Value.copyPortable

@@ -73,7 +73,7 @@ class BufferedPort(Contactable, Generic[T]):
             return found
 
     def lastRead(self) -> T | None:
-        """What `read` returned last."""
+        """Return what `read` returned last."""
         return self._read
 
     def getPendingReads(self) -> int:
@@ -81,7 +81,7 @@ class BufferedPort(Contactable, Generic[T]):
         return 0 if self._port is None else self._port.waiting
 
     def prepare(self) -> T:
-        """What the next `write` sends, to be filled."""
+        """Return what the next `write` sends, to be filled."""
         if self._prepared is None:
             made: T = self.datum()
             self._prepared = made
@@ -165,7 +165,7 @@ class BufferedPort(Contactable, Generic[T]):
             reader.onRead(found)
 
     def acquire(self) -> T | None:
-        """What was read last, to keep it."""
+        """Return what was read last, to keep it."""
         found, self._read = self._read, None
         return found
 
@@ -234,7 +234,7 @@ class BufferedPortImageRgbFloat(BufferedPort[ImageRgbFloat]):
 
 
 class Callback:
-    """What `useCallback` takes: subclasses define `onRead`."""
+    """The argument of `useCallback`: subclasses define `onRead`."""
 
     def onRead(self, datum: Any, reader: Any = None) -> None:
         """Called with each message."""

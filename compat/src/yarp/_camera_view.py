@@ -10,7 +10,7 @@ from typing import Any
 import yarpy
 from yarp._numbers import store
 from yarp._view import View
-from yarpy.devices import FEATURES
+from yarpy.kits.devices import FEATURES
 
 _MODES = {"manual": 1, "auto": 2}
 

@@ -4,7 +4,10 @@
     yarpview          yarpy view           yarpscope         yarpy scope
     yarphear          yarpy hear           yarpidl_thrift    yarpy idl thrift
     yarpidl_rosmsg    yarpy idl rosmsg     yarp-config       where things are kept
+    yarprun           yarpy run            yarplogger        yarpy log
     yarpdev           see `_yarpdev`
+    yarpdatadumper    see `_datadumper`       yarpdataplayer    see `_dataplayer`
+    yarprobotinterface                        yarpy robot
 
 Rules: arguments are translated word by word (`translate_...`, pure) and `yarpy` does the rest. What
 a page in a browser has no use for, such as the place of a window, is left out, and that is said.
@@ -103,7 +106,7 @@ def translate_thrift(arguments: Sequence[str]) -> list[str]:
             found += ["--out", next(words, ".")]
         elif word == "--check":
             found.append(word)
-        elif word in ("-I", "--folder"):
+        elif word in ("-I", "--I", "--folder"):
             found += ["--folder", next(words, ".")]
         elif word in ("-r", "-v", "--verbose", "-recurse", "--recurse", "-strict", "-debug"):
             continue
@@ -160,6 +163,59 @@ def translate_server(arguments: Sequence[str]) -> list[str]:
     return ["server", *(word for word in arguments if word not in ("verbose", "quiet"))]
 
 
+def translate_logger(arguments: Sequence[str]) -> list[str]:
+    """`yarplogger [--name /yarplogger] [--start] ...`, which takes all ports by itself."""
+    options, plain = _split(arguments)
+    found = ["log", *plain]
+    if "name" in options:
+        found += ["--name", _text(options, "name")]
+    windows = {"start", "unlimited_size", "no_stop", "no_gui"}
+    return found + _rest(options, {"name", *windows}, {"level", "program", "component", "grep"})
+
+
+def translate_run(arguments: Sequence[str]) -> list[str]:
+    """`yarprun --server /node [--log]`, whose programs end with it; `yarprun --on /node ...`."""
+    found, option = ["run"], ""
+    for word in arguments:
+        follows = not word.startswith("--")
+        option = option if follows else word
+        if option in ("--hold", "--geometry"):
+            continue  # of a window
+        if option == "--cmd" and follows and found[-1] != option:
+            found[-1] += f" {word}"  # its words, without quotes
+        else:
+            found.append(word)
+    if "--server" in found:
+        found.append("--end-programs")
+    return found
+
+
+def translate_robot(arguments: Sequence[str]) -> list[str]:
+    """`yarprobotinterface --config robot.xml [--portprefix P] [--enable_tags "(a b)"] [--dryrun]`.
+
+    The file may be named in `yarprobotinterface.ini`; other options replace parameters.
+    """
+    if _HELP.intersection(arguments):
+        return ["robot", "--help"]
+    finder = yarpy.ResourceFinder(arguments, file="yarprobotinterface.ini")
+    config = plain_text(finder.find("config", ""))
+    if not config:
+        raise Wrong("give the file of a robot: yarprobotinterface --config robot.xml")
+    found = ["robot", str(finder.file(config) or config)]
+    options, _ = _split(arguments)
+    for key in options:
+        words = [plain_text(word) for word in (options[key] or [key])[1:]]
+        if key in ("config", "from", "context", "verbose") or key.startswith("allow-deprecated"):
+            continue
+        if key == "dryrun":
+            found.append("--check")
+        elif key in ("portprefix", "enable_tags", "disable_tags"):
+            found += [f"--{key}", " ".join(_words(options, key))]
+        else:
+            found += [f"--{key}", *words]
+    return found
+
+
 # --- yarp-config
 
 _CONFIG: Final = (
@@ -169,7 +225,7 @@ _CONFIG: Final = (
 
 
 def config_lines(arguments: Sequence[str], environment: Mapping[str, str]) -> list[str]:
-    """What `yarp-config` prints. Raises Wrong."""
+    """Return what `yarp-config` prints. Raises Wrong."""
     match [*arguments]:
         case ["--version"]:
             return [yarpy.__version__]
@@ -278,6 +334,18 @@ def yarpscope() -> NoReturn:
 
 def yarphear() -> NoReturn:
     _forward("yarphear", translate_hear)
+
+
+def yarplogger() -> NoReturn:
+    _forward("yarplogger", translate_logger)
+
+
+def yarprun() -> NoReturn:
+    _forward("yarprun", translate_run)
+
+
+def yarprobotinterface() -> NoReturn:
+    _forward("yarprobotinterface", translate_robot)
 
 
 def yarpidl_thrift() -> NoReturn:

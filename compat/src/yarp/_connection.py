@@ -188,7 +188,7 @@ class ConnectionReader:
         return len(self._message.to_bytes()) - self._at
 
     def getRemoteContact(self) -> Any:
-        """Who sent it."""
+        """Return the address of the port that sent it."""
         from yarp._contact import Contact
 
         return Contact(self._message.source)

@@ -41,7 +41,7 @@ class Contact:
         return self._carrier
 
     def isValid(self) -> bool:
-        """Whether it says where to connect to."""
+        """Return whether it says where to connect to."""
         return self._port >= 0
 
     def setName(self, name: str) -> None:

@@ -156,7 +156,7 @@ class Contactable:
             self._reporter.report(PortInfo(event))
 
     def _leaving(self, writer: Any) -> Any:
-        """What is sent; a copy where the reader would get the object itself."""
+        """Return what is sent; a copy where the reader would get the object itself."""
         native = writer._outgoing()
         return Raw(encoded(native)) if self._locals else native
 
@@ -172,7 +172,7 @@ class Contactable:
         return True
 
     def getEnvelope(self, envelope: Any) -> bool:
-        """What came beside the last message; False if that is no such object."""
+        """Take what came beside the last message; False if that is no such object."""
         return self._last is not None and bool(envelope._take_text(self._last.envelope))
 
     # -- readers ------------------------------------------------------------------------------
@@ -291,7 +291,7 @@ class Contactable:
         """Names of nodes are part of names."""
 
     def setVerbosity(self, level: int) -> None:
-        """What is printed is that of the whole program: see `Network.setVerbosity`."""
+        """Do nothing: what is printed is that of the whole program, see `Network.setVerbosity`."""
 
     def getVerbosity(self) -> int:
         return 1
@@ -302,7 +302,7 @@ class Contactable:
 
 
 class PortInfo:
-    """What a PortReport is told: a connection came or went."""
+    """The argument of a PortReport: a connection came or went."""
 
     PORTINFO_NULL = 0
     PORTINFO_CONNECTION = 1

@@ -8,7 +8,7 @@ from typing import Any
 import yarpy
 from yarp._numbers import StdVector, store
 from yarp._view import View
-from yarpy.devices import Gains
+from yarpy.kits.devices import Gains
 
 
 def _word(code: Any) -> str:

@@ -14,7 +14,7 @@ from yarp._log import say
 from yarp._pixel import Pixel, PixelRgb, PixelRgba, PixelRgbFloat
 from yarp._portable import Portable
 from yarp._vector import VectorBase
-from yarpy.data.pixel import pixel as pixel_kind
+from yarpy.data.sig.pixel import pixel as pixel_kind
 
 OWN_QUANTUM = 8
 # What was warned about: numbers of a format in images of a kind.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import yarpy
+from yarp._numbers import store
 from yarp._view import View
 
 _JOINT_TYPES = {"revolute": "revo", "prismatic": "pris"}
@@ -183,7 +184,7 @@ class IAmplifierControl(View):
 
 
 class IAxisInfo(View):
-    """What joints are called, and how they move."""
+    """The names of joints, and how they move."""
 
     def getAxisName(self, axis: int) -> str:
         """The name of a joint, "" if there is none."""
@@ -196,6 +197,22 @@ class IAxisInfo(View):
         found: list[str] = [""]
         self._get("axis_types", (axis, found))
         return yarpy.Vocab(_JOINT_TYPES.get(str(found[0]), "unkn")).code
+
+
+class IJointFault(View):
+    """What went wrong in a joint."""
+
+    def getLastJointFault(self, j: int, fault: Any, message: Any) -> bool:
+        """Store the code and the text of the last fault of a joint."""
+
+        def read() -> None:
+            if not 0 <= j < self.getAxes():
+                raise IndexError(f"no joint {j} (there are 0 to {self.getAxes() - 1})")
+            code, text = self._board.faults()[j]
+            store(fault, [code])
+            store(message, [text])
+
+        return self._tell(read)
 
 
 class IRemoteVariables(View):

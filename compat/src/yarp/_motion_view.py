@@ -45,7 +45,7 @@ class IPositionControl(_Referenced):
         return self._do("relative_move", delta)
 
     def checkMotionDone(self, *arguments: Any) -> bool:
-        """Whether all have arrived; with a BVector as the last argument, that is filled."""
+        """Return whether all have arrived; a BVector as the last argument is filled."""
         if not arguments:
             return self.isMotionDone()
         if len(arguments) == 1 and isinstance(arguments[0], int):
@@ -53,7 +53,7 @@ class IPositionControl(_Referenced):
         return self._get("motion_done", arguments)
 
     def isMotionDone(self, i: int | None = None) -> bool:
-        """Whether one joint has arrived, or all."""
+        """Return whether one joint has arrived, or all."""
         done: list[bool] = []
         if not self._tell(lambda: done.extend(self._values("motion_done"))):
             return False

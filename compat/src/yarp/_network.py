@@ -18,7 +18,7 @@ from yarpy.data.text import plain_text
 
 
 class NetworkBase:
-    """What both `Network` and `NetworkBase` offer; all of it static."""
+    """The methods of `Network` and `NetworkBase`; all of them static."""
 
     @staticmethod
     def initMinimum(clockType: int = 0, custom: Any = None) -> None:
@@ -54,7 +54,7 @@ class NetworkBase:
         if style is not None and style.persistent:
             return _persist(["subscribe", src, _decorated(dest, name), *_kind(style)])
         try:
-            yarpy.connect(src, dest, name or None, names=_names.names())
+            yarpy.connect(src, dest, name or "", names=_names.names())
         except yarpy.YarpError as error:
             return _failed(error, style.quiet if style is not None else quiet)
         return True
@@ -81,18 +81,18 @@ class NetworkBase:
 
     @staticmethod
     def isConnected(src: str, dest: str, carrier: Any = "", quiet: bool = True) -> bool:
-        """Whether two ports are connected, over this carrier if one is named."""
+        """Return whether two ports are connected, over this carrier if one is named."""
         name = carrier.carrier if isinstance(carrier, ContactStyle) else carrier
         try:
             return yarpy.is_connected(
-                src, dest, name if isinstance(name, str) and name else None, names=_names.names()
+                src, dest, name if isinstance(name, str) else "", names=_names.names()
             )
         except yarpy.YarpError:
             return False
 
     @staticmethod
     def exists(port: str, quiet: Any = True, checkVer: bool = True) -> bool:
-        """Whether a port of that name is there and answers."""
+        """Return whether a port of that name is there and answers."""
         try:
             return yarpy.exists(port, names=_names.names())
         except yarpy.YarpError:
@@ -162,7 +162,7 @@ class NetworkBase:
 
     @staticmethod
     def checkNetwork(timeout: float = -1.0) -> bool:
-        """Whether there is a name server that answers."""
+        """Return whether there is a name server that answers."""
         try:
             yarpy.query("/root", names=_names.names())
         except yarpy.YarpError:
@@ -224,7 +224,7 @@ class NetworkBase:
 
     @staticmethod
     def getProperty(name: str, key: str) -> Value:
-        """What the name server has noted about a port."""
+        """Return what the name server has noted about a port."""
         try:
             found = _client().get(name, key)
         except yarpy.YarpError:

@@ -1,7 +1,7 @@
 """PolyDriver: opens a device by its name, and shows it through interfaces.
 
 Rules: the clients and servers are those of `yarpy.devices`; `DEVICES` lists their names. A Python
-object with the members that `yarpy.devices.control_board.interface` describes is a device as well:
+object with the members that `devices.control_board.interface` describes is a device as well:
 `attach` serves it.
 """
 
@@ -10,20 +10,21 @@ from __future__ import annotations
 from typing import Any, TypeVar
 
 import yarpy
-from yarp import _names
+from yarp import _names, _network_device
 from yarp._camera_view import IFrameGrabberControls, IFrameGrabberImage, IFrameGrabberRgb
 from yarp._control_view import IControlLimits, IControlMode, IInteractionMode, IPidControl
-from yarp._fake_device import FakeFrameGrabber, FakeMotionControl
 from yarp._log import say
 from yarp._measuring_view import (
     IAmplifierControl,
     IAxisInfo,
     IEncoders,
     IEncodersTimed,
+    IJointFault,
     IMotor,
     IMotorEncoders,
     IRemoteVariables,
 )
+from yarp._mirror import MirrorViews
 from yarp._motion_view import (
     ICurrentControl,
     IImpedanceControl,
@@ -50,12 +51,12 @@ from yarp._sensor_view import (
 from yarp._table import NOT_HERE
 from yarp._value import Value
 from yarp._view import FAILURES, View
-from yarpy import devices
+from yarpy.kits import devices
 
 V = TypeVar("V", bound=View)
 
 
-class PolyDriver:
+class PolyDriver(MirrorViews):
     """`PolyDriver(options)` or `open(options)`, `device` being one of them; then `viewI...`."""
 
     def __init__(self, config: Searchable | str | None = None) -> None:
@@ -97,7 +98,7 @@ class PolyDriver:
         return True
 
     def isValid(self) -> bool:
-        """Whether a device is open."""
+        """Return whether a device is open."""
         return self._device is not None or self._waiting is not None
 
     def attach(self, device: Any) -> bool:
@@ -107,8 +108,11 @@ class PolyDriver:
             return False
         inner = device._device if isinstance(device, PolyDriver) else device
         try:
-            server = getattr(devices, SERVERS[self._text("device")])
-            self._device = server(device=inner, **self._waiting)
+            name = self._text("device")
+            if name in _network_device.SERVED:
+                self._device = _network_device.serve(name, inner, **self._waiting)
+            else:
+                self._device = getattr(devices, SERVERS[name])(device=inner, **self._waiting)
         except (*FAILURES, ValueError) as error:
             say("ERROR", f"|yarp.dev.PolyDriver| {error}")
             return False
@@ -135,7 +139,7 @@ class PolyDriver:
         return self._device
 
     def getOptions(self) -> Any:
-        """What it was opened with."""
+        """Return what it was opened with."""
         from yarp._bottle import Bottle
 
         return Bottle(self._options.toString())
@@ -205,6 +209,9 @@ class PolyDriver:
 
     def viewIAxisInfo(self) -> IAxisInfo | None:
         return self._view(IAxisInfo, "axis_names")
+
+    def viewIJointFault(self) -> IJointFault | None:
+        return self._view(IJointFault, "faults")
 
     def viewIRemoteVariables(self) -> IRemoteVariables | None:
         return self._view(IRemoteVariables, "variables")
@@ -301,10 +308,10 @@ class PolyDriver:
 
     def _open_server(self) -> None:
         period = self._options.find("period").asFloat64()
-        camera = SERVERS[self._text("device")] == "FrameGrabberServer"
+        camera = SERVERS.get(self._text("device")) == "FrameGrabberServer"
         default = "/grabber" if camera else ""
         self._waiting = {
-            "name": self._text("name", default),
+            "name": self._text("name") or self._text("local", default),
             # In files of robots it is in milliseconds.
             "period": (period / 1000 if period >= 1 else period) or 0.03,
             "names": _names.names(),
@@ -312,13 +319,41 @@ class PolyDriver:
         if not self._waiting["name"]:
             raise yarpy.AddressError('the option "name" says what its ports are called')
 
+    def _open_client(self) -> None:
+        name = self._text("device")
+        self._device = _network_device.connect(name, self._text, _names.names())
+
+    def _open_frames(self) -> None:
+        self._device = devices.TransformServer(names=_names.names())
+
+    def _open_local(self) -> None:
+        self._device = _network_device.LOCAL[self._text("device")]()
+
     def _open_fake_camera(self) -> None:
         width, height = (self._options.find(key).asInt32() for key in ("width", "height"))
-        self._device = FakeFrameGrabber(width or 320, height or 240)
+        self._device = devices.SimulatedCamera(width or 320, height or 240)
 
     def _open_fake_motors(self) -> None:
         joints = self._options.findGroup("GENERAL").find("Joints").asInt32()
-        self._device = FakeMotionControl(joints or 4)
+        self._device = devices.SimulatedJoints([f"joint{joint}" for joint in range(joints or 4)])
+
+    def _open_remapper(self) -> None:
+        boards, axes = (
+            self._options.find(key).asList() for key in ("remoteControlBoards", "axesNames")
+        )
+        if boards is None or axes is None:
+            raise yarpy.AddressError(
+                "the lists remoteControlBoards and axesNames say whose joints it has: "
+                "(remoteControlBoards (/icub/torso /icub/head)) (axesNames (torso_yaw neck_pitch))"
+            )
+        options = self._options.findGroup("REMOTE_CONTROLBOARD_OPTIONS")
+        self._device = devices.remap_remote(
+            [boards.get(at).asString() for at in range(boards.size())],
+            [axes.get(at).asString() for at in range(axes.size())],
+            self._text("localPortPrefix"),
+            carrier=options.find("carrier").asString() or "tcp",
+            names=_names.names(),
+        )
 
 
 #: Which class of `yarpy.devices` serves what is attached.
@@ -327,6 +362,8 @@ SERVERS = {
     "controlboardwrapper2": "ControlBoardServer",
     "frameGrabber_nws_yarp": "FrameGrabberServer",
     "multipleanalogsensorsserver": "MultiSensorServer",
+    "battery_nws_yarp": "BatteryServer",
+    "rangefinder2D_nws_yarp": "LaserServer",
 }
 #: Devices that somebody has to serve, and who does unless the options say.
 WRAPPERS = {
@@ -338,17 +375,21 @@ DEVICES = {
     "fakeFrameGrabber": PolyDriver._open_fake_camera,
     "test_grabber": PolyDriver._open_fake_camera,
     "fakeMotionControl": PolyDriver._open_fake_motors,
-    "frameGrabber_nws_yarp": PolyDriver._open_server,
     "remote_controlboard": PolyDriver._open_board,
     "controlBoard_nwc_yarp": PolyDriver._open_board,
+    "remotecontrolboardremapper": PolyDriver._open_remapper,
     "clientcontrolboard": PolyDriver._open_board,
     "frameGrabber_nwc_yarp": PolyDriver._open_camera,
     "remote_grabber": PolyDriver._open_camera,
     "RemoteFrameGrabber": PolyDriver._open_camera,
-    "controlBoard_nws_yarp": PolyDriver._open_server,
-    "controlboardwrapper2": PolyDriver._open_server,
     "multipleanalogsensorsclient": PolyDriver._open_sensors,
-    "multipleanalogsensorsserver": PolyDriver._open_server,
+    **dict.fromkeys(SERVERS, PolyDriver._open_server),
+    **dict.fromkeys(_network_device.CLIENTS, PolyDriver._open_client),
+    **dict.fromkeys(_network_device.OWN, PolyDriver._open_client),
+    "frameTransformClient": PolyDriver._open_client,
+    "frameTransformServer": PolyDriver._open_frames,
+    **dict.fromkeys(_network_device.SERVED, PolyDriver._open_server),
+    **dict.fromkeys(_network_device.LOCAL, PolyDriver._open_local),
 }
 
 

@@ -78,7 +78,7 @@ class Port(Contactable):
                 self._drop_question()
 
     def _drop_question(self) -> None:
-        """Who asked and gets no answer is not left waiting."""
+        """Let a caller go on who gets no answer."""
         message = self._last
         if message is not None and message.wants_reply:
             try:

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 class PortWriter:
-    """What can be written."""
+    """An object that can be written."""
 
     def _outgoing(self) -> Any:
-        """What is sent. For subclasses written by users, what their `write` appends."""
+        """Return what is sent: for subclasses written by users, what their `write` appends."""
         from yarp._connection import ConnectionWriter
 
         writer = ConnectionWriter()
@@ -39,7 +39,7 @@ class PortWriter:
 
 
 class PortReader:
-    """What can be read. Subclasses define `read`."""
+    """An object that can be read. Subclasses define `read`."""
 
     def _take(self, message: yarpy.Message) -> None:
         from yarp._connection import ConnectionReader
@@ -69,7 +69,7 @@ class PortReader:
 
 
 class Portable(PortReader, PortWriter):
-    """What can be written and read."""
+    """An object that can be written and read."""
 
     @staticmethod
     def copyPortable(writer: PortWriter, reader: PortReader) -> bool:

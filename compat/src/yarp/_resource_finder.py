@@ -59,7 +59,7 @@ class ResourceFinder(Searchable):
         return True
 
     def setDefaultConfigFile(self, fname: str) -> bool:
-        """What to read unless `--from` says otherwise."""
+        """Set the file to read unless `--from` says otherwise."""
         self._file = fname
         return True
 

@@ -121,7 +121,7 @@ class RFModule:
                 return
 
     def safeRespond(self, command: Bottle, reply: Bottle) -> bool:
-        """What `respond` answers, or else the words that every module knows."""
+        """Answer as `respond` does, or else the words that every module knows."""
         return bool(self.respond(command, reply)) or self._respond_basically(command, reply)
 
     def _respond_basically(self, command: Bottle, reply: Bottle) -> bool:
@@ -180,7 +180,7 @@ class _Driver(yarpy.Module):
 
 
 class _Responder(PortReader):
-    """What `attach` sets as the reader of a port."""
+    """The reader that `attach` gives a port."""
 
     def __init__(self, module: RFModule) -> None:
         self._module = module

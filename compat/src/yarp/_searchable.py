@@ -1,4 +1,4 @@
-"""What can be searched by key: Bottle, Property, lists in a Value, ResourceFinder.
+"""Searchable: Bottle, Property, lists in a Value, ResourceFinder, all searched by key.
 
 Rules: a key that is not there gives a null Value or a null Bottle, as in C++; nothing is raised.
 """
@@ -34,14 +34,14 @@ class Searchable:
         return Bottle._of(yarpy.Bottle() if group is None else group, is_null=group is None)
 
     def check(self, key: str, fallback: Value | str = "", comment: str = "") -> Any:
-        """Whether there is such a key; with a Value as the second argument, its value or that."""
+        """Return whether there is such a key; with a Value as second, its value or that."""
         if isinstance(fallback, Value):
             found = self._find(key)
             return fallback if found is MISSING else Value._of(found)
         return self._find(key) is not MISSING or self._group(key) is not None
 
     def isNull(self) -> bool:
-        """Whether this stands for something that was not found."""
+        """Return whether this stands for something that was not found."""
         return False
 
     def toString(self) -> str:

@@ -15,7 +15,7 @@ MAS_OK, MAS_ERROR, MAS_TIMEOUT = 0, 1, 3
 
 
 class Sensors(View):
-    """What all of them can be asked. Subclasses give it the names of C++."""
+    """The questions to all of them. Subclasses give it the names of C++."""
 
     kind: ClassVar[str]
 

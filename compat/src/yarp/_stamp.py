@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time as clock
 from typing import Any
 
 import yarpy
@@ -29,7 +28,7 @@ class Stamp(Portable):
 
     def update(self, time: float | None = None) -> None:
         """The next number, at the time of now or the one given."""
-        self._stamp = self._stamp.next(clock.time() if time is None else float(time))
+        self._stamp = self._stamp.next(yarpy.clock.now() if time is None else float(time))
 
     def _outgoing(self) -> Any:
         return self._stamp

@@ -12,8 +12,9 @@ _MODULES = {
     "_contact": "Contact ContactStyle",
     "_contactable": "Contactable PortReport PortInfo",
     "_stamp": "Stamp",
-    "_time": "Time delay now yield_c turboBoost isValid useSystemClock isSystemClock "
-    "isNetworkClock isCustomClock isClockInitialized getClockType YARP_CLOCK_UNINITIALIZED "
+    "_time": "Time delay now yield_c turboBoost isValid useSystemClock useNetworkClock "
+    "useCustomClock isSystemClock isNetworkClock isCustomClock isClockInitialized getClockType "
+    "YARP_CLOCK_UNINITIALIZED "
     "YARP_CLOCK_DEFAULT YARP_CLOCK_SYSTEM YARP_CLOCK_NETWORK YARP_CLOCK_CUSTOM",
     "_log": "Log yTrace yDebug yInfo yWarning yError",
     "_network": "Network NetworkBase",
@@ -38,7 +39,10 @@ _MODULES = {
     "FlexImage",
     "_file": "read write",
     "_vocab": "encode decode createVocab createVocab32 VOCAB VOCAB1 VOCAB2 VOCAB3 VOCAB4 Vocab",
-    "_struct": "Map2DLocation Map2DLocationVector LLM_Message LLMVector",
+    "_struct": "Map2DLocation Map2DLocationVector Map2DPath Map2DArea Map2DObject OdometryData "
+    "Pose6D ColorRGB LLM_Message LLMVector",
+    "_place_view": "IBattery IFrameTransform",
+    "_mirror": "ILocalization2D IMap2D INavigation2D IOdometry2D ILLM ISimulatedWorld",
     "_resource_finder": "ResourceFinder",
     "_rf_module": "RFModule",
     "_thread": "Thread PeriodicThread RateThread Semaphore",
@@ -47,7 +51,7 @@ _MODULES = {
     "_motion_view": "IPositionControl IPositionDirect IVelocityControl ITorqueControl "
     "ICurrentControl IPWMControl IImpedanceControl",
     "_measuring_view": "IEncoders IEncodersTimed IMotorEncoders IMotor IAmplifierControl IAxisInfo "
-    "IRemoteVariables",
+    "IJointFault IRemoteVariables",
     "_control_view": "IControlMode IInteractionMode IControlLimits IPidControl Pid PidVector",
     "_sensor_view": "IThreeAxisGyroscopes IThreeAxisLinearAccelerometers IThreeAxisMagnetometers "
     "IOrientationSensors ITemperatureSensors ISixAxisForceTorqueSensors IPositionSensors "
@@ -61,8 +65,6 @@ CLASSES = frozenset(name for name in WHERE if name[0].isupper() and not name.isu
 
 #: What the bindings of C++ have and this does not, and why.
 NOT_HERE: dict[str, str] = {
-    "useNetworkClock": "time is that of the system here",
-    "useCustomClock": "time is that of the system here",
     "ICartesianControl": "it asks a solver of the iCub in C++, whose protocol yarpy does not "
     "speak: joints are moved by viewIPositionControl and viewIPositionDirect",
     "IGazeControl": "it asks iKinGazeCtrl of the iCub in C++, whose protocol yarpy does not speak: "

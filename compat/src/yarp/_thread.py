@@ -6,6 +6,8 @@ import threading
 import time
 from typing import Self
 
+import yarpy
+
 
 class Thread:
     """Subclasses define `run`, and perhaps `threadInit`, `threadRelease` and `onStop`."""
@@ -127,10 +129,11 @@ class PeriodicThread(Thread):
 
     def _work(self) -> None:
         while not self._ending.is_set():
-            begun = time.monotonic()
+            by = yarpy.clock.current()
+            begun = by.monotonic()
             if not self._suspended:
                 self.step()
-            self._ending.wait(max(0.0, begun + self._period - time.monotonic()))
+            by.wait(self._ending, begun + self._period - by.monotonic())
 
     def step(self) -> None:
         """Call `run` once."""

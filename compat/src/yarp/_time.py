@@ -1,11 +1,18 @@
 """Time: `delay` and `now`, as functions and under the older name `Time`.
 
-Rules: the clock is that of the system; `useSystemClock` says so, other clocks are not there.
+Rules: the clock is that of the program, `yarpy.clock`: the system's, or with YARP_CLOCK that of the
+network. An object with `now`, `delay` and `isValid` may be one, too.
 """
 
 from __future__ import annotations
 
+import threading
 import time
+from typing import Any
+
+from yarp import _names
+from yarp._log import say
+from yarpy import YarpError, clock
 
 YARP_CLOCK_UNINITIALIZED = -1
 YARP_CLOCK_DEFAULT = 0
@@ -13,16 +20,37 @@ YARP_CLOCK_SYSTEM = 1
 YARP_CLOCK_NETWORK = 2
 YARP_CLOCK_CUSTOM = 3
 
+_SLICE = 0.05  # seconds after which an event that ends a wait is seen
+
+
+class _Custom:
+    """An object of the user's as a clock of yarpy."""
+
+    def __init__(self, made: Any) -> None:
+        self.made = made
+
+    def now(self) -> float:
+        return float(self.made.now())
+
+    def monotonic(self) -> float:
+        return self.now()
+
+    def wait(self, event: threading.Event, seconds: float) -> bool:
+        over = self.now() + seconds
+        while not event.is_set() and (left := over - self.now()) > 0:
+            self.made.delay(min(left, _SLICE))
+        return event.is_set()
+
 
 def delay(seconds: float) -> None:
     """Wait."""
     if seconds > 0:
-        time.sleep(seconds)
+        clock.sleep(seconds)
 
 
 def now() -> float:
-    """Seconds since 1970."""
-    return time.time()
+    """Seconds since 1970, or what another clock says."""
+    return clock.now()
 
 
 def yield_c() -> None:
@@ -35,24 +63,55 @@ def turboBoost() -> None:
 
 
 def isValid() -> bool:
-    """Whether there is a time."""
-    return True
+    """Return whether there is a time."""
+    current = clock.current()
+    if isinstance(current, _Custom):
+        return bool(current.made.isValid())
+    return not isinstance(current, clock.NetworkClock) or current.valid
 
 
 def useSystemClock() -> None:
-    """The clock that is used anyway."""
+    """From now on the time is that of the system."""
+    _change(None)
 
 
-def isSystemClock() -> bool:
+def useNetworkClock(clockSourcePortName: str, localPortName: str = "") -> bool:
+    """From now on the time is what a port of the network sends."""
+    try:
+        made = clock.NetworkClock(clockSourcePortName, name=localPortName, names=_names.names())
+    except YarpError as error:
+        say("ERROR", str(error))
+        return False
+    _change(made)
     return True
 
 
+def useCustomClock(made: Any) -> bool:
+    """From now on the time is what `made.now()` says, and `made.delay(seconds)` waits."""
+    if not made.isValid():
+        say("ERROR", "a clock has to be valid before it is used")
+        return False
+    _change(_Custom(made))
+    return True
+
+
+def _change(made: Any) -> None:
+    before = clock.current()
+    clock.use(made)
+    if isinstance(before, clock.NetworkClock):
+        before.close()
+
+
+def isSystemClock() -> bool:
+    return getClockType() == YARP_CLOCK_SYSTEM
+
+
 def isNetworkClock() -> bool:
-    return False
+    return getClockType() == YARP_CLOCK_NETWORK
 
 
 def isCustomClock() -> bool:
-    return False
+    return getClockType() == YARP_CLOCK_CUSTOM
 
 
 def isClockInitialized() -> bool:
@@ -60,6 +119,11 @@ def isClockInitialized() -> bool:
 
 
 def getClockType() -> int:
+    current = clock.current()
+    if isinstance(current, _Custom):
+        return YARP_CLOCK_CUSTOM
+    if isinstance(current, clock.NetworkClock):
+        return YARP_CLOCK_NETWORK
     return YARP_CLOCK_SYSTEM
 
 
@@ -72,5 +136,10 @@ class Time:
     turboBoost = staticmethod(turboBoost)
     isValid = staticmethod(isValid)
     useSystemClock = staticmethod(useSystemClock)
+    useNetworkClock = staticmethod(useNetworkClock)
+    useCustomClock = staticmethod(useCustomClock)
     isSystemClock = staticmethod(isSystemClock)
     isNetworkClock = staticmethod(isNetworkClock)
+    isCustomClock = staticmethod(isCustomClock)
+    isClockInitialized = staticmethod(isClockInitialized)
+    getClockType = staticmethod(getClockType)

@@ -18,7 +18,7 @@ TAG_DICT: Final = 512
 
 
 class _Missing:
-    """What was not found."""
+    """The value of what was not found."""
 
 
 MISSING: Final = _Missing()
@@ -68,7 +68,7 @@ def native_int(value: int) -> int:
 
 
 def parsed(words: str) -> yarpy.Bottle:
-    """What a text says in YARP's notation; nothing, if its lists are too deep for anybody."""
+    """Return the values of a text in YARP's notation; none, if its lists are too deep."""
     try:
         return yarpy.Bottle.from_text(text(words))
     except yarpy.DecodeError:
@@ -101,7 +101,7 @@ class Value(Portable):
     # -- what kind it is ----------------------------------------------------------------------
 
     def isNull(self) -> bool:
-        """Whether it stands for something that was not found."""
+        """Return whether it stands for something that was not found."""
         return self._native is MISSING
 
     def isBool(self) -> bool:
@@ -244,7 +244,7 @@ class Value(Portable):
         return Bottle._of(yarpy.Bottle(), is_null=True) if inner is None else inner.findGroup(key)
 
     def check(self, key: str, fallback: Value | str = "", comment: str = "") -> Any:
-        """Whether a list or dictionary has a key; see Bottle.check."""
+        """Return whether a list or dictionary has a key; see Bottle.check."""
         inner = self.asSearchable()
         if inner is not None:
             return inner.check(key, fallback, comment)

@@ -98,7 +98,7 @@ class View:
         return [*arguments[1]][: arguments[0]]
 
     def _tell(self, action: Callable[[], object]) -> bool:
-        """Whether it went well; what did not is said."""
+        """Return whether it went well; the log says what did not."""
         try:
             return action() is not False
         except FAILURES as error:

@@ -1,100 +1,98 @@
-"""A port whose messages are read in an event loop, each once and in order.
+"""Ports that are read and written in an event loop: Port and BufferedPort.
 
-Rules: what the loop has not read yet waits in a list of the loop's own; beyond its length senders
-wait.
+Rules: reading takes from the mailbox of the port underneath, in the loop. What leaves without
+waiting is written there too; the rest of it is done in a thread. Messages leave one after the
+other, in the order of the calls.
 """
 
 from __future__ import annotations
 
 import asyncio
-from collections import deque
 from collections.abc import AsyncIterator, Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack
 
 from yarpy.aio.base import BasePort
-from yarpy.aio.inbox import Arrival, Door
+from yarpy.aio.inbox import TaskRendezvous
+from yarpy.aio.thread import Turn, in_thread
+from yarpy.aio.wakeup import LONGEST_RUN
 from yarpy.data.stamp import Stamp
 from yarpy.errors import PortClosed, Timeout
-from yarpy.link.inbound import Inbound
-from yarpy.names.base import NameClient
+from yarpy.port import port
 from yarpy.port.assembly import open_hub
-from yarpy.port.connection import ConnectionEvent
-from yarpy.port.port import MessagePort
-from yarpy.wire.message import Message
-from yarpy.wire.stream import DEFAULT_LIMIT
+from yarpy.port.hub import Hub
+from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox
+from yarpy.port.options import PortOptions
+from yarpy.port.typed import of_type
+from yarpy.wire.message import Message, T
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike, NDArray
 
+M = TypeVar("M", bound=port.MessagePort)
 
-class Port(BasePort["_Port"]):
-    """A port for one event loop. Opens on `async with` or `await port.open()`.
 
-    Every message is read once, in order. `queue` is how many may wait unread; beyond that a sender
-    waits, and nothing is lost. With `latest` only the newest waits, older ones are dropped and
-    counted, in `drops` and on their connection. A question may be answered by any task, at any
-    time; one that is discarded unanswered gets an empty answer. Other parameters as
-    `yarpy.Port`.
-    """
+class MessagePort(BasePort[M], Generic[M, T]):
+    """A port that is read from and written to. Subclasses choose the mailbox of its hub; as other
+    ports they may be for one type of message, `aio.Port[Image]`."""
+
+    _type: ClassVar[Any] = None  # that of its messages; None: any
+
+    if not TYPE_CHECKING:
+
+        def __class_getitem__(cls, type_):
+            return cls if cls is MessagePort else of_type(cls, type_)
 
     def __init__(
         self,
         name: str,
-        *,
-        names: NameClient | None = None,
-        tcp_port: int = 0,
-        port_type: str = "",
-        queue: int = 256,
-        latest: bool = False,
-        limit: int = DEFAULT_LIMIT,
-        on_connection: Callable[[ConnectionEvent], object] | None = None,
+        callback: Callable[[Message[T]], object] | None,
+        options: PortOptions,
     ) -> None:
-        super().__init__(name, on_connection)
-        self._open_hub = partial(
-            open_hub, name, Door(self._take), names,
-            tcp_port=tcp_port, port_type=port_type, limit=limit, on_connection=self._tell,
-        )  # fmt: skip
-        self._limit = 1 if latest else max(1, queue)
-        self._latest = latest
-        self._inbox: deque[Arrival] = deque()
-        self._arrived = asyncio.Event()
-        self._asked: set[Arrival] = set()  # questions that were read and not answered yet
-        self._closed = False
-        self.drops = 0
+        super().__init__(name, options)
+        self._callback = callback
+        self._turn = Turn()  # of writing
+        self._run = 0  # messages that left at once, one after the other
 
-    def _make(self) -> _Port:
-        self._closed = False
-        return _Port(self._open_hub())
+    def _open_hub(self, kind: Callable[[], Mailbox]) -> Hub:
+        """Open the hub; messages wait in that kind of mailbox, unless a callback takes them."""
+        callback = self._callback
+        if callback is None:
+            mailbox = kind()
+        else:
+            mailbox = Callback(self._ask_loop(callback), type_=self._type)
+        return open_hub(self._name, self._belled(mailbox), **self._options)
 
-    async def close(self) -> None:
-        """Close the port; a waiting `read` raises PortClosed."""
-        port, self._port = self._port, None
-        self._closed = True
-        if port is not None:
-            self._arrived.set()
-            for arrival in self._inbox:
-                arrival.drop()
-            for arrival in self._asked:
-                arrival.release()
-            self._inbox.clear()
-            self._asked.clear()
-            await asyncio.to_thread(port.close)
+    async def read(self, timeout: float | None = None) -> Message[T]:
+        """The next message, waiting for one if needed.
 
-    # -- messages ---------------------------------------------------------------------------------
+        Raises Timeout after `timeout` seconds, PortClosed if the port is closed or interrupted.
+        """
+        # With a callback there is nothing to read: the port underneath says so.
+        look = self.port.poll if self._callback is None else partial(self.port.read, 0.0)
+        message = await self._wakeup.wait_for(look, timeout)
+        if message is None:
+            raise Timeout(f'nothing came to "{self.name}" within {timeout} s')
+        return message if self._type is None else message.typed(self._type)
 
-    async def read(self, timeout: float | None = None) -> Message:
-        """The next message. Raises Timeout after `timeout` seconds, PortClosed."""
-        try:
-            async with asyncio.timeout(timeout):
-                while True:
-                    if self._inbox:
-                        return self._next()
-                    _ = self.port
-                    self._arrived.clear()
-                    await self._arrived.wait()
-        except TimeoutError:
-            raise Timeout(f'nothing came to "{self.name}" within {timeout} s') from None
+    def poll(self) -> Message[T] | None:
+        """A message that is already there, or None."""
+        message = self.port.poll()
+        return message if message is None or self._type is None else message.typed(self._type)
+
+    @property
+    def waiting(self) -> int:
+        """Messages that came and were not read yet."""
+        return self.port.waiting
+
+    async def __aiter__(self) -> AsyncIterator[Message[T]]:
+        """Messages until the port is closed or interrupted."""
+        while True:
+            try:
+                message = await self.read()
+            except PortClosed:
+                return
+            yield message
 
     def prepare(self, shape: int | tuple[int, ...], dtype: DTypeLike = "u1") -> NDArray[Any]:
         """A new array to fill and write that programs on this computer get without a copy; see
@@ -103,7 +101,7 @@ class Port(BasePort["_Port"]):
 
     async def write(
         self,
-        value: object,
+        value: T,
         stamp: Stamp | str | None = None,
         *,
         wait: bool = False,
@@ -111,62 +109,111 @@ class Port(BasePort["_Port"]):
     ) -> int:
         """Send `value` to every connected port; see `yarpy.Port.write`.
 
-        The loop keeps running while this waits for a slow reader.
+        Messages of several tasks leave in the order of their calls. The loop keeps running while
+        this waits for a slow reader. Of a task that is cancelled meanwhile the message is a drop
+        where it has not begun to leave.
         """
         port = self.port
-        return await asyncio.to_thread(port.write, value, stamp, wait=wait, timeout=timeout)
+        if not self._turn.take():
+            await self._turn.wait()
+        begun: int | Callable[[], int]
+        try:
+            self._run += 1
+            if self._run >= LONGEST_RUN:
+                self._run = 0
+                await asyncio.sleep(0)
+            if wait:
+                begun = partial(port.write, value, stamp, wait=True, timeout=timeout)
+            else:
+                begun = port._begin_write(value, stamp, timeout)
+        except BaseException:
+            self._turn.release()
+            raise
+        if isinstance(begun, int):
+            self._turn.release()
+            return begun
+        self._run = 0
+        return await in_thread(begun, self._turn.release)
 
     async def flush(self, timeout: float | None = None) -> bool:
         """Wait until every message was sent and, where readers acknowledge, taken."""
-        return await asyncio.to_thread(self.port.flush, timeout)
-
-    async def __aiter__(self) -> AsyncIterator[Message]:
-        """Messages until the port is closed."""
-        while True:
-            try:
-                message = await self.read()
-            except PortClosed:
-                return
-            yield message
-
-    # -- from the threads of connections ----------------------------------------------------------
-
-    def _take(self, link: Inbound, message: Message) -> bool:
-        """A message came, in its connection's thread, which waits while the inbox is full."""
-        loop = self._loop
-        assert loop is not None
-        arrival = Arrival(link, message)
-        try:
-            loop.call_soon_threadsafe(self._put, arrival)
-        except RuntimeError:
-            return False  # the loop is closed
-        arrival.wait()
-        return True
-
-    def _put(self, arrival: Arrival) -> None:
-        """In the loop: keep the message, and let its connection go on if there is room."""
-        if self._closed:
-            arrival.drop()
-            return
-        if self._latest:
-            while self._inbox:
-                self._inbox.popleft().drop()
-                self.drops += 1
-        self._inbox.append(arrival)
-        if len(self._inbox) <= self._limit:
-            arrival.go_on()
-        self._arrived.set()
-
-    def _next(self) -> Message:
-        arrival = self._inbox.popleft()
-        arrival.go_on()
-        self._asked = {asked for asked in self._asked if not asked.done}
-        if not arrival.done:
-            self._asked.add(arrival)
-        if len(self._inbox) >= self._limit:
-            self._inbox[self._limit - 1].go_on()
-        return arrival.hand_out()
+        return await in_thread(partial(self.port.flush, timeout))
 
 
-class _Port(MessagePort):
-    """The port underneath, with a mailbox that leads to the loop."""
+class Port(MessagePort["_Port", T]):
+    """A port for one event loop: every message is read once, and its sender waits until it was.
+
+    Opens on `async with` or `await port.open()`. A question may be answered by any task, at any
+    time; one that is discarded unanswered gets an empty answer. `callback` is called with each
+    message, in the loop, and may be a coroutine function. Other parameters as `yarpy.Port`.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        callback: Callable[[Message[T]], object] | None = None,
+        **options: Unpack[PortOptions],
+    ) -> None:
+        super().__init__(name, callback, options)
+
+    def _make(self) -> _Port:
+        return _Port(self._open_hub(TaskRendezvous))
+
+    async def ask(self, value: object, timeout: float | None = None) -> list[Message]:
+        """Ask every connected port, one after the other; the answers of those that give one. See
+        `yarpy.Port.ask`."""
+        return await self._turn.run(partial(self.port.ask, value, timeout))
+
+
+class BufferedPort(MessagePort["_BufferedPort", T]):
+    """A port between loops that run at their own pace, for one event loop.
+
+    Reading gives the newest message, older ones are dropped and counted; with `strict` every
+    message comes, in order. Opens on `async with` or `await port.open()`. Other parameters as
+    `Port`.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        strict: bool = False,
+        callback: Callable[[Message[T]], object] | None = None,
+        **options: Unpack[PortOptions],
+    ) -> None:
+        super().__init__(name, callback, options)
+        self._strict = strict
+
+    def _make(self) -> _BufferedPort:
+        return _BufferedPort(self._open_hub(Fifo if self._strict else Latest), self._strict)
+
+    @property
+    def strict(self) -> bool:
+        """Return whether a writer waits for slow readers; else the newest message wins."""
+        return self._strict if self._port is None else self._port.strict
+
+    @strict.setter
+    def strict(self, strict: bool) -> None:
+        self._strict = strict
+        if self._port is not None:
+            self._port.strict = strict
+
+    def read_strictly(self, strict: bool = True) -> None:
+        """From now on every message comes, in order; or the newest only. What has come is kept."""
+        self.port.read_strictly(strict)
+
+
+class _Port(port.Port):
+    """The port underneath, with a mailbox that wakes the loop."""
+
+    def __init__(self, hub: Hub) -> None:
+        port.MessagePort.__init__(self, hub)
+
+
+class _BufferedPort(port.BufferedPort):
+    """The port underneath, with a mailbox that wakes the loop."""
+
+    def __init__(self, hub: Hub, strict: bool) -> None:
+        port.MessagePort.__init__(self, hub)
+        self.strict = strict

@@ -10,16 +10,18 @@ import asyncio
 from collections.abc import Callable
 from functools import partial
 from inspect import isawaitable
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, Unpack
 
-from yarpy.aio.base import BasePort
+from yarpy.aio.base import ENDED, BasePort
+from yarpy.aio.thread import Turn
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.names.base import NameClient
+from yarpy.errors import PortClosed
 from yarpy.port import rpc
-from yarpy.port.connection import ConnectionEvent
-from yarpy.wire.message import Message
-from yarpy.wire.stream import DEFAULT_LIMIT
+from yarpy.port.connection import PortConnection
+from yarpy.port.options import PortOptions
+from yarpy.port.typed import of_type
+from yarpy.wire.message import Message, T
 
 
 class RpcServer(BasePort[rpc.RpcServer]):
@@ -27,7 +29,8 @@ class RpcServer(BasePort[rpc.RpcServer]):
     function.
 
     Handlers run in the loop, those of different clients side by side. What one raises is answered
-    as `[fail] "reason"` and logged; those still at work when the server closes are cancelled.
+    as an error, which `call` raises as RemoteError, and logged; those still at work when the server
+    closes are cancelled.
     Parameters as `yarpy.RpcServer`.
     """
 
@@ -35,23 +38,24 @@ class RpcServer(BasePort[rpc.RpcServer]):
         self,
         name: str,
         handler: Callable[[Message], object],
-        *,
-        names: NameClient | None = None,
-        tcp_port: int = 0,
-        port_type: str = "",
-        limit: int = DEFAULT_LIMIT,
-        on_connection: Callable[[ConnectionEvent], object] | None = None,
+        **options: Unpack[PortOptions],
     ) -> None:
-        super().__init__(name, on_connection)
+        super().__init__(name, options)
         self._handler = handler
         self._working: set[asyncio.Task[object]] = set()
-        self._open_server = partial(
-            rpc.RpcServer, name, names=names,
-            tcp_port=tcp_port, port_type=port_type, limit=limit, on_connection=self._tell,
-        )  # fmt: skip
 
     def _make(self) -> rpc.RpcServer:
-        server = self._open_server(handler=self._ask_loop(self._answer))
+        ask = self._ask_loop(self._answer)
+
+        def answer(message: Message) -> object:
+            try:
+                return ask(message)
+            except PortClosed as error:
+                if str(error) != ENDED:
+                    raise
+                return Bottle([Vocab("fail"), ENDED])
+
+        server = rpc.RpcServer(self._name, answer, **self._options)
         page = getattr(self._handler, "page", None)
         if page is not None:
             server.on_page(page)
@@ -69,59 +73,73 @@ class RpcServer(BasePort[rpc.RpcServer]):
         finally:
             self._working.discard(task)
 
-    async def close(self) -> None:
+    async def close(self, timeout: float | None = None) -> None:
         """Close the server; handlers that are still at work are cancelled."""
         for task in tuple(self._working):
             task.cancel()
-        await super().close()
+        await super().close(timeout)
 
 
-class RpcClient(BasePort[rpc.RpcClient]):
+class RpcClient(BasePort[rpc.RpcClient], Generic[T]):
     """Asks the server called `target` without blocking the loop.
 
-    One call at a time goes over the connection; more wait their turn. It opens with the first call
-    at the latest. Parameters as `yarpy.RpcClient`.
+    `RpcClient[Arm]("/arm/rpc").remote` has the methods of Arm, a service of a `.thrift` file.
+
+    One call at a time goes over the connection; more wait their turn. A task that is cancelled ends
+    its own call alone. It opens with the first call at the latest. Parameters as `yarpy.RpcClient`.
     """
+
+    _type: ClassVar[Any] = None  # the service
+
+    if not TYPE_CHECKING:
+
+        def __class_getitem__(cls, service):
+            return of_type(cls, service)
 
     def __init__(
         self,
         target: str = "",
         *,
         name: str = "",
-        carrier: str = "tcp",
-        names: NameClient | None = None,
-        tcp_port: int = 0,
-        limit: int = DEFAULT_LIMIT,
-        on_connection: Callable[[ConnectionEvent], object] | None = None,
-        timeout: float | None = None,
+        carrier: str = "",
+        **options: Unpack[PortOptions],
     ) -> None:
-        super().__init__(name, on_connection)
-        self._make_client = partial(
-            rpc.RpcClient, target, name=name, carrier=carrier, names=names,
-            tcp_port=tcp_port, limit=limit, on_connection=self._tell, timeout=timeout,
-        )  # fmt: skip
-        self._turn = asyncio.Lock()
+        super().__init__(name, options)
+        self._target = target
+        self._carrier = carrier
+        self._timeout = options.get("timeout")
+        self._turn = Turn()
 
     def _make(self) -> rpc.RpcClient:
-        return self._make_client()
+        return rpc.RpcClient(self._target, name=self._name, carrier=self._carrier, **self._options)
 
     async def __aenter__(self) -> Self:
         return self
 
+    @property
+    def remote(self) -> Any:
+        """The methods of the service that this client is for, to be awaited; see
+        `yarpy.RpcClient.remote`."""
+        return rpc.methods_of(type(self), self, self._timeout, waits=True)
+
+    async def connect(
+        self, target: str, carrier: str = "", timeout: float | None = None
+    ) -> PortConnection:
+        """Choose the server to ask; see `yarpy.Port.connect`."""
+        await self.open()
+        return await super().connect(target, carrier, timeout)
+
     async def call(self, *args: object, timeout: float | None = None) -> Any:
         """Ask, and return the answer's value; see `yarpy.RpcClient.call`."""
-        async with self._turn:
-            client = (await self.open()).port
-            return await asyncio.to_thread(lambda: client.call(*args, timeout=timeout))
+        client = (await self.open()).port
+        return await self._turn.run(partial(client.call, *args, timeout=timeout))
 
     async def ask(self, question: object, timeout: float | None = None) -> Message | None:
         """As `call` with one argument, but returns the whole Message; None if there is no reply."""
-        async with self._turn:
-            client = (await self.open()).port
-            return await asyncio.to_thread(client.ask, question, timeout)
+        client = (await self.open()).port
+        return await self._turn.run(partial(client.ask, question, timeout))
 
-    async def tell(self, statement: object) -> None:
-        """Send it without waiting for an answer."""
-        async with self._turn:
-            client = (await self.open()).port
-            await asyncio.to_thread(client.tell, statement)
+    async def tell(self, statement: object, timeout: float | None = None) -> None:
+        """Send it without waiting for an answer; see `yarpy.RpcClient.tell`."""
+        client = (await self.open()).port
+        await self._turn.run(partial(client.tell, statement, timeout))

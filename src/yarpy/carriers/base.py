@@ -16,20 +16,23 @@ The initiator of a *push* carrier sends the data; of a pull carrier (`push = Fal
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from yarpy.data import codec
+from yarpy.data.codec import LISTS, any_list
+from yarpy.data.walker import Walk
+from yarpy.data.writer import list_blocks
 from yarpy.errors import AccessRefused, LocalProtocolError
+from yarpy.facts import MAGIC_SIZE, PORT, Reach
 from yarpy.route import CarrierSpec, Route
 from yarpy.wire import framing
-from yarpy.wire.effects import May
+from yarpy.wire.effects import BE_CALLED, May
 from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
-MAGIC_SIZE = 8  # bytes that identify the protocol
 PAGE = "page"  # what follows the port command `*` when a browser asks
 ASKS_FOR_KEY = "perhaps it wants a key (auth.conf) or TLS, which this side does not have"
 
@@ -38,17 +41,24 @@ ASKS_FOR_KEY = "perhaps it wants a key (auth.conf) or TLS, which this side does 
 class Delivery:
     """How messages are sent.
 
-    lossy: a slow consumer misses messages; its writer never waits. backlog: messages that may
-    be queued for such a reader. interval: minimum seconds between its messages. coalesces: small
-    messages of a burst may share one send. at_once: of a lossy connection, what does not leave in
-    its writer's thread without waiting is dropped.
+    lossy: a slow consumer misses messages; its writer never waits. backlog: messages that may be
+    queued for such a reader, with `at_once` of at most `held` bytes. interval: minimum seconds
+    between its messages. coalesces: small messages of a burst may share one send. at_once: of a
+    lossy connection, what does not leave in its writer's thread without waiting is dropped, unless
+    the backlog has room. connectionless: the peer must be told of the end in some other way.
+    broadcast: one send reaches every receiver of the group. attentive: what a reader says to
+    `listen` is to be heard at once.
     """
 
     lossy: bool = False
     backlog: int = 0
+    held: int = 0
     interval: float = 0.0
     coalesces: bool = True
     at_once: bool = False
+    connectionless: bool = False
+    broadcast: bool = False
+    attentive: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +66,14 @@ class Limits:
     """A peer's timeouts, in seconds; None: no limit.
 
     idle_timeout: for an accepted peer that sends nothing. ack_timeout: for an acknowledgement;
-    messages then go one at a time. message_timeout: for silence in the middle of a message; within
-    twice that time 60 kB of it must arrive. (For a whole message's time see the effect `Within`.)
+    messages then go one at a time. ahead: messages that may be without one. message_timeout: for
+    silence in the middle of a message; within twice that time 60 kB of it must arrive. (For a whole
+    message's time see the effect `Within`.)
     """
 
     idle_timeout: float | None = None
     ack_timeout: float | None = None
+    ahead: int = 256
     message_timeout: float | None = 30.0
 
 
@@ -71,7 +83,8 @@ class Carrier:
     `route` says who talks to whom: `route.source` and `route.target` are port names,
     `route.spec` the parsed carrier string. The acceptor fills in the source. `lost` counts messages
     that the protocol itself had to drop; the link adds it to its drops. `unwanted` counts those
-    that the reader had not asked for, and that were not sent.
+    that the reader had not asked for, and that were not sent. `reply_end`, set by whoever asks,
+    finds the end of a reply that is no Bottle, within so many bytes.
     """
 
     name: ClassVar[str] = ""
@@ -80,22 +93,19 @@ class Carrier:
     acks: bool = False  # the receiver confirms each message
     replies: ClassVar[bool] = True
     spelling: Spelling = "binary"  # what `encode` uses of a packet
-    foreign: ClassVar[bool] = False  # the peer we dial need not know YARP, nor its keys
-    nameless: ClassVar[bool] = False  # whoever speaks it where we dialled is the peer again
-    attentive: ClassVar[bool] = False  # what a reader says to `listen` is to be heard at once
-    introduces: ClassVar[bool] = True  # the initiator gives its name and modifiers
-    medium: ClassVar[str] = ""  # over which it goes instead of a connection: objects, not bytes
-    connectionless: ClassVar[bool] = False  # the peer must be told of the end in some other way
-    broadcast: ClassVar[bool] = False  # one send reaches every receiver of the group
-    ping: ClassVar[bytes] = b""  # what a peer that we have dialled wants to hear now and then ...
-    ping_interval: float = 0.0  # ... so often, in seconds; 0: it does not
+    pages: ClassVar[bool] = False  # web pages can speak it, too
+    reaches: ClassVar[Reach] = PORT  # what is at the other end of one that we dial
+    over: ClassVar[str] = ""  # the transport of its messages, if they leave where it has greeted
+    # What a peer that we have dialled wants to hear, and how often, in seconds; 0: never.
+    ping: tuple[bytes, float] = (b"", 0.0)
     delivery: Delivery = Delivery()
-    limits: ClassVar[Limits] = Limits()
+    limits: Limits = Limits()  # what a peer says in its greeting may set those of one connection
 
     def __init__(self, route: Route) -> None:
         self.route = route
         self.lost = 0
         self.unwanted = 0
+        self.reply_end: Callable[[int], Walk] | None = None
 
     @classmethod
     def of(cls, spec: CarrierSpec) -> type[Carrier]:
@@ -124,19 +134,8 @@ class Carrier:
         magic = self.recognises(first)
         if 0 < magic < MAGIC_SIZE:
             stream.unread(MAGIC_SIZE - magic)  # they belong to the name
-        yield from self.introduce(stream, (yield from framing.read_name(stream)))
+        yield from introduce(self, stream, (yield from framing.read_name(stream)))
         return None
-
-    def introduce(self, stream: ByteStream, specifier: str) -> Steps[None]:
-        """Take what the initiator says about itself. If it lacks a right, say so and raise
-        AccessRefused."""
-        route = self.route
-        route.introduce(specifier)
-        for right in to_write(route):
-            why = yield May(right)
-            if why:
-                stream.write(framing.encode_refusal(why))
-                raise AccessRefused(why)
 
     # -- messages ---------------------------------------------------------------------------------
 
@@ -153,8 +152,8 @@ class Carrier:
         stream.output += packet.framed or framing.encode(packet)
 
     def gathers(self, packet: Packet) -> bool:
-        """Whether what `encode` has just written may wait for others of a burst: it is small, and
-        in memory that the writer cannot change."""
+        """Return whether what `encode` has just written may wait for more messages of a burst: it
+        is small, and in memory that the writer cannot change."""
         return packet.small
 
     def parse(self, stream: ByteStream) -> Message | None:
@@ -169,17 +168,14 @@ class Carrier:
         payload is the carrier that continues, or empty for this one."""
         return (yield from framing.read_message(stream))
 
+    def last_word(self) -> Message | None:
+        """Return the message that a peer has left with us for the case that it goes without a
+        goodbye; None: there is none. It is asked for once, after the end."""
+        return None
+
     def encode_quit(self, stream: ByteStream) -> None:
         """Write the message that closes the connection cleanly, if there is one."""
         stream.write(framing.QUIT)
-
-    def drain(self, stream: ByteStream) -> Steps[None]:
-        """Without acknowledgements: after our goodbye, read whatever comes until the peer hangs up.
-
-        Closing with unread input resets the connection and loses our last output.
-        """
-        return
-        yield
 
     def listen(self, stream: ByteStream) -> Steps[None] | None:
         """Handle what a reader sends while we write to it, until it wants no more; None: it is not
@@ -188,16 +184,17 @@ class Carrier:
 
     # -- what comes back --------------------------------------------------------------------------
 
-    def encode_reply(self, stream: ByteStream, value: object) -> None:
+    def encode_reply(self, stream: ByteStream, value: Any) -> None:
         """Write the reply to a message: the object itself, without framing."""
-        stream.output += codec.encode(value)
+        found = list_blocks(value, any_list) if type(value) in LISTS else codec.encode(value)
+        stream.output += found
 
     def expect_reply(self, stream: ByteStream) -> Steps[Message | None]:
         """Read a reply; None if the peer's acknowledgement shows that there will be none."""
         yield from stream.more(8)
         if stream.buffer.startswith(framing.ACK, stream.head):
             return None
-        return Message(CALL, (yield from framing.read_payload(stream)))
+        return Message(CALL, (yield from framing.read_payload(stream, self.reply_end)))
 
     def parse_reply(self, stream: ByteStream) -> Message | None:
         """A reply that is already complete in the stream's buffer, or None; never waits."""
@@ -205,7 +202,7 @@ class Carrier:
 
     def encode_ack(self, stream: ByteStream, count: int) -> None:
         """Write `count` acknowledgements."""
-        stream.output.append(framing.ACK * count)
+        stream.output += (framing.ACK * count,)  # as the last step: a signal comes before or after
 
     def parse_acks(self, stream: ByteStream, most: int) -> int:
         """Take up to `most` acknowledgements that have already arrived; returns how many."""
@@ -219,6 +216,21 @@ class Carrier:
 
     def encode_lines(self, stream: ByteStream, lines: list[str]) -> None:
         """Write a port command's answer to a person; binary carriers write nothing."""
+
+
+def introduce(carrier: Carrier, stream: ByteStream, specifier: str) -> Steps[None]:
+    """Take what the initiator says about itself. If it lacks a right, say so and raise
+    AccessRefused."""
+    route = carrier.route
+    route.introduce(specifier)
+    for right in to_write(route):
+        why = yield May(right)
+        if why:
+            stream.write(framing.encode_refusal(why))
+            raise AccessRefused(why)
+    if route.source.startswith("/") and (why := (yield May(BE_CALLED, name=route.source))):
+        stream.write(framing.encode_refusal(why))
+        raise AccessRefused(why)
 
 
 def to_write(route: Route) -> list[str]:
@@ -264,7 +276,7 @@ class Indexed(Carrier):
     parse_reply = staticmethod(framing.parse_reply)
 
     def parse_acks(self, stream: ByteStream, most: int) -> int:
-        count = min(most, stream.waiting // len(framing.ACK))
+        count = min(most, (stream.tail - stream.head) // len(framing.ACK))
         if not count or not stream.buffer.startswith(framing.ACK * count, stream.head):
             return 0  # not all are plain acknowledgements: read them one by one
         stream.head += count * len(framing.ACK)

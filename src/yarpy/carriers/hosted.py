@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Final
 from yarpy.carriers.base import Carrier, Delivery, refuse_unknown
 from yarpy.data import codec
 from yarpy.data.value import Vocab
+from yarpy.facts import TOPIC
 from yarpy.route import CarrierSpec
 from yarpy.wire.message import CALL, Message
 from yarpy.wire.steps import Steps
@@ -25,15 +26,14 @@ LISTENS: Final = "sub"
 class Hosted(Carrier):
     """The end of a port at a middleware."""
 
-    foreign = True
-    nameless = True
+    reaches = TOPIC
     replies = False
     words: ClassVar[tuple[str, ...]] = ()  # what may be added to its name
     delivery = Delivery(coalesces=False)
 
     @classmethod
     def roles(cls) -> tuple[type[Carrier], type[Carrier], type[Carrier]]:
-        """Who reads, who asks, who answers."""
+        """Return the carriers that read, that ask, and that answer."""
         raise NotImplementedError
 
     @classmethod
@@ -51,7 +51,8 @@ class Hosted(Carrier):
         stream.write_object(item)
 
     def read_object(self, stream: ByteStream) -> Steps[Any]:
-        """What the endpoint has received; at first, itself."""
+        """Return the next object that the endpoint has received; the first is the endpoint
+        itself."""
         assert isinstance(stream, ObjectStream)
         return (yield from stream.read_object())
 

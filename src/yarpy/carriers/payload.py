@@ -20,13 +20,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
-from yarpy.data import codec, jpeg
-from yarpy.data.image import Image, is_image
+from yarpy.data import codec
 from yarpy.data.json import from_json, to_json
 from yarpy.data.json_plain import plain_json
+from yarpy.data.sig import jpeg
+from yarpy.data.sig.image import Image, is_image
 from yarpy.data.value import Buffer
 from yarpy.errors import DecodeError
-from yarpy.wire.message import UNSET, Encoded, Message, Packet
+from yarpy.wire.message import Encoded, Message, Packet
 
 JPEG: Final = b"\xff\xd8\xff"
 #: pixels that a JPEG file holds as they are, but for what compression loses
@@ -36,8 +37,8 @@ _PLAIN: Final = (str, int, float, Mapping, Image)
 
 
 def to_payload(packet: Packet) -> Buffer:
-    """What a packet is to others, made once for all of them. Raises TypeError, ValueError or
-    OverflowError for what cannot be sent."""
+    """Return a packet as other middlewares get it, encoded once for all of them. Raises TypeError,
+    ValueError or OverflowError for what cannot be sent."""
     found = packet.foreign
     if found is None:
         found = packet.foreign = payload_of(packet.value, packet.envelope)
@@ -45,7 +46,7 @@ def to_payload(packet: Packet) -> Buffer:
 
 
 def payload_of(value: Any, envelope: bytes = b"") -> Buffer:
-    """What a value is to others."""
+    """Return a value as other middlewares get it."""
     text = plain_json(value)
     if text is not None and text.isascii():
         return text.encode()
@@ -71,7 +72,7 @@ def payload_of(value: Any, envelope: bytes = b"") -> Buffer:
 
 
 def value_of(data: Buffer) -> Any:
-    """What a payload of others is to us."""
+    """Return the value that a payload of another middleware stands for."""
     if data[:3] == JPEG:
         try:
             return Image.from_wire(jpeg.decode(data))
@@ -92,40 +93,37 @@ class PayloadMessage(Message):
 
     __slots__ = ()
 
-    @property
-    def value(self) -> Any:
+    def natural(self) -> Any:
         """The value of the payload; of several frames, a list of theirs."""
-        if self._value is UNSET:
-            if len(self.payload) == 1:
-                self._value = value_of(self.payload[0])
-            else:
-                parts = [value_of(part) for part in self.payload]
-                self._value = codec.decode(b"".join(codec.encode(parts)))
-        return self._value
+        if len(self.payload) == 1:
+            return value_of(self.payload[0])
+        parts = [value_of(part) for part in self.payload]
+        return codec.decode(b"".join(codec.encode(parts)))
 
     def to_bytes(self) -> Buffer:
-        return b"".join(codec.encode(self.value))
+        return b"".join(codec.encode(self.natural()))
 
     def as_(self, type_: Any) -> Any:
+        type_ = codec.named(type_)
         if type_ is bytes and len(self.payload) == 1:
             return bytes(self.payload[0])
-        value = self.value
+        value = self.value if self.type is None else self.natural()
         if isinstance(type_, type) and type(value) is type_:
             return value
         return codec.decode_as(b"".join(codec.encode(value)), type_)
 
-    def __reduce__(self) -> tuple[Callable[..., Message], tuple[str, Buffer, str, str]]:
-        return _copied, (self.key, self.to_bytes(), self.envelope, self.source)
+    def __reduce__(self) -> tuple[Callable[..., Message], tuple[str, Buffer, str, str, Any]]:
+        return _copied, (self.key, self.to_bytes(), self.envelope, self.source, self.type)
 
 
-def _copied(key: str, data: Buffer, envelope: str, source: str) -> Message:
-    message = Message(key, data, envelope)
+def _copied(key: str, data: Buffer, envelope: str, source: str, type_: Any) -> Message:
+    message = Message[Any](key, data, envelope).typed(type_)
     message.source = source
     return message
 
 
 def message_of(key: str, frames: Sequence[Buffer]) -> Message:
-    """What came."""
+    """Return the message that has arrived in these frames."""
     envelope = ""
     if len(frames) == 1 and frames[0][:3] == JPEG:
         envelope = jpeg.comment(frames[0])

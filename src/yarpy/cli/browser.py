@@ -38,7 +38,7 @@ def open_page(url: str) -> None:
 
 
 def has_display(platform: str, environment: Mapping[str, str]) -> bool:
-    """Whether a window can appear; elsewhere a browser would take over the terminal."""
+    """Return whether a window can appear; elsewhere a browser would take over the terminal."""
     if platform in ("win32", "darwin"):
         return True
     return bool(environment.get("DISPLAY") or environment.get("WAYLAND_DISPLAY"))

@@ -1,4 +1,4 @@
-"""What Tab offers at a shell: verbs, options, the names of live ports, carriers, files.
+"""Completion by Tab at a shell: verbs, options, the names of live ports, carriers, files.
 
 Rules: shells ask `yarpy completion --line TEXT`, where TEXT is what stands before the cursor, and
 get a line for each candidate, `value<Tab>what it is`; `FILES` alone has the shell offer files. A
@@ -19,7 +19,7 @@ import click
 from yarpy.cli.verb_list import VERBS
 
 FILES: Final = "//files"
-PATIENCE: Final = 1.0  # seconds that a person waits after pressing Tab
+TIMEOUT: Final = 1.0  # seconds that a person waits after pressing Tab
 
 PORTS: Final = frozenset(
     {"port", "ports", "source", "sources", "target", "remotes", "words", "in_port", "outs", "robot"}
@@ -139,7 +139,7 @@ def _verbs(context: click.Context) -> Iterator[Candidate]:
 
 
 def _values(parameter: click.Parameter, word: str) -> Iterator[Candidate]:
-    """What an argument, or the value of an option, may be."""
+    """Yield the values that an argument, or an option, may have."""
     name = parameter.name or ""
     if isinstance(parameter.type, click.Choice):
         yield from (Candidate(str(choice)) for choice in parameter.type.choices)
@@ -177,5 +177,5 @@ def _ports(word: str) -> list[Candidate]:
 
     asking = threading.Thread(target=ask, name="yarpy completion", daemon=True)
     asking.start()
-    asking.join(PATIENCE)
+    asking.join(TIMEOUT)
     return list(found)

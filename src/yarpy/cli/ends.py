@@ -1,4 +1,4 @@
-"""What `yarpy qos` and `yarpy sched` share: something shown and set at both ends of a connection.
+"""Settings of both ends of a connection, shown and set: for `yarpy qos` and `yarpy sched`.
 
 Rules: `--src` is the end of the port that sends, `--des` that of the port that receives.
 """

@@ -1,4 +1,4 @@
-"""What the library logs, on standard error: `[INFO] Port /r active at tcp://127.0.0.1:10002/`.
+"""The library's log on standard error: `[INFO] Port /r active at tcp://127.0.0.1:10002/`.
 
 Rules: the texts are those of C++ YARP; its `|component|id|` part is left out. `YARP_QUIET` keeps
 only warnings, `YARP_VERBOSE` shows everything, `YARP_COLORED_OUTPUT` decides about colours, which
@@ -23,7 +23,7 @@ _COLOURS: Final = {"INFO": "blue", "WARNING": "yellow", "ERROR": "red", "CRITICA
 def show(level: int = logging.INFO) -> None:
     """Show what the library logs at `level` and above, or as the environment says."""
     handler = logging.StreamHandler(sys.stderr)
-    terminal = sys.stderr.isatty()
+    terminal = sys.stderr is not None and sys.stderr.isatty()
     handler.setFormatter(_Form(flag(os.environ, "YARP_COLORED_OUTPUT", terminal)))
     logger = logging.getLogger("yarpy")
     logger.handlers = [handler]

@@ -10,6 +10,7 @@ Exit codes: 0 done; 1 not done, or used wrongly; 255 no such verb; 128 + N ended
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Sequence
 from typing import Any, Final, NoReturn
@@ -67,15 +68,15 @@ def find_verb(name: str) -> click.Command | None:
     """The command called `name`, or None. Raises UnknownPlugin for one that does not load."""
     from importlib import import_module
 
-    name = ALIASES.get(name, name)
-    if name in VERBS:
-        command: Any = import_module(f"yarpy.cli.verbs.{name}").command
-    else:
-        from yarpy.registry import commands
+    from yarpy.registry import commands
 
-        if name not in commands.names():
-            return None
+    name = ALIASES.get(name, name)
+    if name in VERBS and commands.row(name) is None:
+        command: Any = import_module(f"yarpy.cli.verbs.{name}").command
+    elif name in commands.names():
         command = commands.load(name)
+    else:
+        return None
     if not isinstance(command, click.Command):
         raise UnknownPlugin(
             f'the command "{name}" is installed, but is not a click command '
@@ -117,6 +118,13 @@ def root(ctx: click.Context, version: bool) -> int:
     return 0
 
 
+def _plain(text: str) -> str:
+    """What click says of a number, for people who know no types."""
+    text = re.sub(r"is not a valid integer( range)?", "is no whole number", text)
+    text = re.sub(r"is not a valid float( range)?", "is no number", text)
+    return re.sub(r"is not in the range (\S+)<=x<=(\S+?)\.$", r"is not from \1 to \2.", text)
+
+
 def run(arguments: Sequence[str]) -> int:
     """Run `yarpy ARGUMENTS` in this process; the exit code."""
     try:
@@ -126,7 +134,7 @@ def run(arguments: Sequence[str]) -> int:
     except click.Abort:  # click's word for ^C and for the end of input at one of its prompts
         return 130
     except click.UsageError as error:
-        complain(error.format_message())
+        complain(_plain(error.format_message()))
         if error.ctx is not None and error.exit_code != NO_SUCH_VERB:
             click.echo(error.ctx.get_usage(), err=True)
         return NO_SUCH_VERB if error.exit_code == NO_SUCH_VERB else 1
@@ -148,7 +156,8 @@ def main() -> NoReturn:
     signals.watch()
     code = run(sys.argv[1:])
     try:
-        sys.stdout.flush()
+        if sys.stdout is not None:  # closed before we began
+            sys.stdout.flush()
     except BrokenPipeError:
         sys.stdout = None  # nobody reads: no complaint at exit
         code = code or 1

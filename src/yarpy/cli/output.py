@@ -51,6 +51,8 @@ def print_all_json(items: Iterable[Any]) -> None:
 def print_line(text: str) -> None:
     """One line on standard output, flushed: the reader of a pipe sees it at once."""
     out = sys.stdout
+    if out is None:
+        return  # it was closed by whoever started us: nobody wants to read
     if out.isatty():  # a terminal would obey what is in it; a program gets it as it is
         text = readable(text, keep="\n\t")
     out.write(text + "\n")

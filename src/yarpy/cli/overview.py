@@ -31,6 +31,7 @@ COLUMNS: Final = (
     Column("messages", 0, numeric=True, wide=True),
     Column("msg/s", 1, numeric=True),
     Column("MB/s", 3, numeric=True),
+    Column("replaced", 0, numeric=True, wide=True),
     Column("drops", 0, numeric=True),
     Column("missed", 0, numeric=True, wide=True),
     Column("unconfirmed", 0, numeric=True, wide=True),
@@ -83,6 +84,7 @@ def row(flow: Flow) -> Row:
         _number(flow.measured("messages"), 0),
         _number(flow.rate, 1),
         _number(flow.speed, 2, 1e-6),
+        _number(flow.replaced, 0),
         _number(flow.drops, 0),
         _number(flow.missed, 0),
         _number(flow.sender.unconfirmed if flow.sender else None, 0),
@@ -104,6 +106,7 @@ def connections_json(snapshot: Snapshot) -> list[dict[str, Any]]:
             "carrier": flow.carrier,
             "messages_per_second": flow.rate,
             "bytes_per_second": flow.speed,
+            "replaced": flow.replaced,
             "drops": flow.drops,
             "missed": flow.missed,
             "sender": flow.sender and asdict(flow.sender),
@@ -195,7 +198,7 @@ def _number(value: float | None, digits: int, scale: float = 1.0) -> str:
 
 
 def _pair(flow: Flow, spell: Any) -> str:
-    """What both ends have, once if they have the same."""
+    """Return what both ends have, once if they have the same."""
     ends = [spell(end) if end is not None else "" for end in (flow.sender, flow.receiver)]
     return ends[0] if ends[0] == ends[1] else " / ".join(one or "-" for one in ends)
 

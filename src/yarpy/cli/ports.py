@@ -7,7 +7,7 @@ it can still be connected to addresses (`/host:port`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 P = TypeVar("P", bound="BasePort")
 
 ANY = "..."
+_BESIDE: Final = 9  # programs of one kind, before any name will do
 
 
 def open_port(kind: Callable[..., P], name: str, category: Category = "", **options: Any) -> P:
@@ -31,8 +32,13 @@ def open_port(kind: Callable[..., P], name: str, category: Category = "", **opti
 
     The port closes with the command, at the latest: also when a signal comes while it opens.
     """
+    if not name:
+        raise yarpy.AddressError(
+            f"the name of the port is empty (an unset variable?): `{ANY}` stands for any free one"
+        )
     log.show()
     name = _with_category(name, category)
+    _check_type(options.get("port_type", ""))
     with signals.held():
         try:
             port = kind(name, **options)
@@ -45,6 +51,31 @@ def open_port(kind: Callable[..., P], name: str, category: Category = "", **opti
     return port
 
 
+def open_another(kind: Callable[..., P], base: str, **options: Any) -> P:
+    """As `open_port` with the name `base`, or `base/2` and so on for those that run beside it; any
+    without a name server."""
+    for number in range(1, _BESIDE + 1):
+        try:
+            return open_port(kind, base if number == 1 else f"{base}/{number}", **options)
+        except yarpy.AddressError:
+            continue  # taken
+        except yarpy.NoNameServer:
+            break
+    return open_port(kind, ANY, **options)
+
+
+def _check_type(port_type: str) -> None:
+    """Warn of a type of a package (`std_msgs/String`) that nobody has; others are only words."""
+    if "/" not in port_type:
+        return
+    try:
+        yarpy.idl.load(port_type)
+    except yarpy.UnknownType as error:
+        warn(str(error))
+    except yarpy.UnknownPlugin:
+        pass  # what could know it is not installed
+
+
 def _with_category(name: str, category: Category) -> str:
     """The name of a port, with what it does if it is that of a topic."""
     from yarpy.names.node_name import parse_node_name
@@ -55,7 +86,7 @@ def _with_category(name: str, category: Category) -> str:
     return f"{found.having(category)}" + (f"~{found.type}" if found.type else "")
 
 
-def send_to(port: BasePort, target: str, carrier: str | None = None) -> None:
+def send_to(port: BasePort, target: str, carrier: str = "") -> None:
     """Send what `port` writes to `target`, which may be decorated (`udp://x`, `topic://t`)."""
 
     if _registered(port):
@@ -64,7 +95,7 @@ def send_to(port: BasePort, target: str, carrier: str | None = None) -> None:
         port.connect(target, carrier or _carrier(target))
 
 
-def hear_from(port: BasePort, source: str, carrier: str | None = None) -> None:
+def hear_from(port: BasePort, source: str, carrier: str = "") -> None:
     """Have `source`, which may be decorated, send to `port`."""
 
     if _registered(port):

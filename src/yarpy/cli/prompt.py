@@ -34,8 +34,9 @@ def lines(prompt: str = ">>", history: str = "", complete: Complete | None = Non
 
 
 def at_terminal() -> bool:
-    """Whether a person sits at both ends."""
-    return sys.stdin.isatty() and sys.stdout.isatty()
+    """Return whether standard input and output are both a terminal."""
+    # A standard stream that was closed before we began is None.
+    return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout))
 
 
 def history_file(name: str) -> Path:
@@ -47,7 +48,7 @@ def history_file(name: str) -> Path:
 
 
 def _piped() -> Iterator[str]:
-    for line in sys.stdin:
+    for line in sys.stdin or ():
         yield line.rstrip("\r\n")
 
 
@@ -80,7 +81,7 @@ def _typed(prompt: str, history: str, complete: Complete | None) -> Iterator[str
 
 
 class Completer:
-    """What readline calls for the first, second ... word that `text` may become.
+    """The completer that readline calls for the first, second ... word that `text` may become.
 
     `commands` gives lines of one word or several; a word is offered behind those that precede it.
     """

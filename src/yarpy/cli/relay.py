@@ -20,7 +20,7 @@ class Whole:
 
 
 def forwardable(message: yarpy.Message) -> object:
-    """What to write in order to send `message` on. Raises DecodeError."""
+    """Return the object to write in order to send `message` on. Raises DecodeError."""
     if message.spelling == "binary":
         return Whole(message.payload)
     if message.spelling == "text":

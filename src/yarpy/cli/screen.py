@@ -26,7 +26,7 @@ LEAST: Final = 8  # characters that are left of a name
 
 @dataclass
 class View:
-    """What the user wants to see."""
+    """The view that the user has chosen: order, filter, and what is shown."""
 
     sort: str = "rate"
     reverse: bool = False
@@ -37,7 +37,7 @@ class View:
     over: bool = False
 
     def press(self, key: str) -> None:
-        """What a key does."""
+        """Carry out what a key stands for."""
         if self.typing:
             self._type(key)
         elif key in ("q", "\x03", "\x04"):
@@ -65,7 +65,8 @@ class View:
 
 
 def matches(pattern: str, *names: str) -> bool:
-    """Whether a name has the pattern in it, or, where that has wildcards, is like it."""
+    """Return whether one of the names contains the pattern, or matches it where that has
+    wildcards."""
     if any(letter in pattern for letter in "*?["):
         return any(fnmatch.fnmatchcase(name, pattern) for name in names)
     return any(pattern in name for name in names)

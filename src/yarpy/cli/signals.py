@@ -20,7 +20,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Final
 
-PATIENCE: Final = 2.0  # seconds that closing may take before another signal means: at once
+CLOSING: Final = 2.0  # seconds that closing may take before another signal means: at once
 AGAIN: Final = 0.01  # seconds until a signal that was dropped is raised again
 _NAMES: Final = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 
@@ -42,7 +42,7 @@ def watch() -> None:
             continue
         signal.signal(number, handler)
     sys.unraisablehook = handler.retry
-    if hasattr(signal, "pthread_kill"):
+    if sys.platform != "win32":
         reading, writing = os.pipe()
         os.set_blocking(writing, False)
         signal.set_wakeup_fd(writing, warn_on_full_buffer=False)
@@ -68,7 +68,7 @@ def held() -> Iterator[None]:
 
 
 class _Handler:
-    """What a signal does; it knows whether it is the first."""
+    """The handler of a signal, which knows whether it is the first."""
 
     def __init__(self) -> None:
         self.holding = False
@@ -84,7 +84,7 @@ class _Handler:
             if not self.holding:
                 raise Interrupted(number)
             self.waiting = number
-        elif now - self._first > PATIENCE:
+        elif now - self._first > CLOSING:
             os._exit(128 + number)
 
     def relay(self, reading: int) -> None:

@@ -14,11 +14,23 @@ from typing import TYPE_CHECKING, Final
 
 import yarpy
 from yarpy.cli.ports import hear_from
+from yarpy.cli.stderr import warn
 
 if TYPE_CHECKING:
     from yarpy.port.base import BasePort
 
 PAUSE: Final = 0.5  # seconds between looks
+
+
+def also_said(tell: Callable[[str], object]) -> Callable[[str], object]:
+    """Return a `tell` that also says on standard error what is waited for."""
+
+    def both(line: str) -> None:
+        if line:
+            warn(line)
+        tell(line)
+
+    return both
 
 
 class Source:
@@ -36,7 +48,7 @@ class Source:
         tell: Callable[[str], object] = lambda line: None,
     ) -> None:
         from yarpy.contact import parse_contact
-        from yarpy.link.handshake import find_carrier
+        from yarpy.link.begin.handshake import find_carrier
         from yarpy.route import masked, parse_carrier
 
         self._port = port
@@ -48,6 +60,7 @@ class Source:
         if self._contact.carrier != "topic":
             find_carrier(parse_carrier(carrier or self._contact.carrier or "tcp"))
         self._wanted = True
+        self._told = ""
         self._look()
         threading.Thread(
             target=self._follow, name=f"yarpy source {self._shown}", daemon=True
@@ -55,7 +68,7 @@ class Source:
 
     @property
     def connected(self) -> bool:
-        """Whether it sends to the port now."""
+        """Return whether it sends to the port now."""
         name = self._contact.label.rstrip("/")
         return any(link.source.rstrip("/") == name for link in self._port.inputs)
 
@@ -65,7 +78,8 @@ class Source:
             try:
                 self._look()
             except yarpy.YarpError as error:
-                self._tell(str(error))
+                if not self._port.closed:  # which is why it failed, and how commands end
+                    self._tell(str(error))
 
     def _look(self) -> None:
         """Connect it if it is wanted and there."""
@@ -78,14 +92,19 @@ class Source:
 
     def _connect(self) -> None:
         try:
-            hear_from(self._port, self._name, self._carrier)
+            hear_from(self._port, self._name, self._carrier or "")
         except (yarpy.UnknownPlugin, yarpy.AddressError, yarpy.NoNameServer):
             raise
         except yarpy.LoginRefused:
             self._wanted = False  # a camera locks those out who try again and again
             raise
         except yarpy.YarpError as error:
-            self._tell(f"Waiting for {self._shown}: {error}")
+            if self._port.closed:
+                return
+            line = f"Waiting for {self._shown}: {error}"
+            if line != self._told:  # once, not at every look
+                self._told = line
+                self._tell(line)
         else:
-            self._wanted = False
+            self._wanted, self._told = False, ""
             self._tell("")

@@ -1,16 +1,20 @@
-"""What went wrong, on standard error: `error: ...`, always one line."""
+"""Errors on standard error: `error: ...`, always one line."""
 
 from __future__ import annotations
+
+from typing import Final
 
 import click
 
 from yarpy.log import readable
 
+_FOR_PROGRAMS: Final = ", or use yarpy.LocalNames() inside one program"  # which is no command's way
+
 
 def complain(text: str) -> None:
     """Say on standard error what went wrong."""
     label = click.style("error:", fg="red", bold=True)
-    click.echo(f"{label} {readable(' '.join(text.split()))}", err=True)
+    click.echo(f"{label} {_line(text)}", err=True)
 
 
 def complain_of(error: Exception) -> None:
@@ -24,4 +28,9 @@ def complain_of(error: Exception) -> None:
 def warn(text: str) -> None:
     """Say on standard error what may surprise."""
     label = click.style("warning:", fg="yellow", bold=True)
-    click.echo(f"{label} {readable(' '.join(text.split()))}", err=True)
+    click.echo(f"{label} {_line(text)}", err=True)
+
+
+def _line(text: str) -> str:
+    """A text of the library as one line for whoever typed a command."""
+    return readable(" ".join(text.split()).replace(_FOR_PROGRAMS, ""))

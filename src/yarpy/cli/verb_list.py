@@ -28,7 +28,9 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
         "admin": Verb("write or rpc to the administrative side of a port", "admin rpc /listener"),
     },
     "Looking and hearing": {
-        "view": Verb("look at images in a browser", "view --connect /icubSim/cam/left"),
+        "view": Verb(
+            "look at images, or a recording, in a browser", "view --connect /icubSim/cam/left"
+        ),
         "scope": Verb("look at numbers as curves in a browser", "scope /icubSim/inertial"),
         "dash": Verb("see and change the whole network in a browser", "dash"),
         "log": Verb("see what the programs of the network log", "log --level WARNING"),
@@ -36,9 +38,33 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
         "hear": Verb("play what a port says, or record it", "hear /ears --record ears.wav"),
         "speak": Verb("send a WAV file or the microphone to ports", "speak /mouth --play hi.wav"),
     },
+    "Recording": {
+        "record": Verb("keep what ports send in a file", "record /icub/head/state:o -o walk"),
+        "play": Verb("send what was recorded again", "play walk.mcap --prefix /replay"),
+        "info": Verb("say what is in a recording", "info walk.mcap"),
+        "convert": Verb(
+            "write a recording in another way, or some of it",
+            "convert walk.mcap -o short --start 5",
+        ),
+    },
+    "Applications": {
+        "up": Verb("start the programs of a file and keep them running", "up robot.toml"),
+        "down": Verb("stop a running application", "down robot"),
+        "status": Verb("show how a running application is doing", "status"),
+        "logs": Verb("show what its programs have printed", "logs camera -n 100"),
+        "restart": Verb("end one of its programs and start it again", "restart camera"),
+        "new": Verb("write a project that runs and is tested", "new ball_tracker"),
+        "robot": Verb("open and join the devices of a robot", "robot icub.xml --check"),
+    },
     "A robot to try things with": {
         "demo": Verb("see and move a simulated robot in a browser", "demo"),
         "sim": Verb("simulate a robot", "sim --robot /icubSim"),
+    },
+    "Starting programs": {
+        "run": Verb(
+            "start programs here or on other computers",
+            "run --on /nodeA --as cam -- yarpdev --device fakeFrameGrabber",
+        ),
     },
     "Connections": {
         "connect": Verb(
@@ -95,6 +121,10 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
         ),
         "doctor": Verb("say why nothing arrives, and what mends it", "doctor /talker /listener"),
         "check": Verb("try whether ports can be opened, found and connected here", "check"),
+        "access": Verb(
+            "show who may do what with the ports here, or change it",
+            "access allow script 192.168.1.9",
+        ),
         "cert": Verb("make a certificate for TLS", "cert robot.lab 192.168.1.7"),
         "resource": Verb("find configuration files", "resource --from robot.ini"),
         "idl": Verb(
@@ -108,6 +138,7 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
         ),
         "env": Verb("print environment variables", "env"),
         "time": Verb("print the time, again and again", "time"),
+        "clock": Verb("send the time to programs that have YARP_CLOCK", "clock --rtf 0.5"),
         "version": Verb("print the version", "version"),
         "help": Verb("list the commands, or explain one", "help connect"),
     },

@@ -23,7 +23,7 @@ from yarpy.config.ini import read_ini
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.errors import LocalProtocolError, YarpError
-from yarpy.link.handshake import find_carrier
+from yarpy.link.begin.handshake import find_carrier
 from yarpy.qos import Qos
 from yarpy.route import parse_carrier
 

@@ -1,4 +1,4 @@
-"""Who may do what with the ports of this computer: rules, and what follows from them.
+"""Access rules: which peer may do what with the ports of this computer.
 
 Rules: pure, but for logging what is refused. What no rule allows is refused, also to programs of
 this computer. The rules are those of `access.toml`; `access_file` reads it.
@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Final
 
-from yarpy.link.admission import ASK, RIGHTS, Admission, Gate, Peer
+from yarpy.link.begin.admission import ASK, KNOWN, RIGHTS, RUN, SCRIPT, Admission, Gate, Peer
 from yarpy.log import logger
 from yarpy.wire.framing import REFUSED
 
@@ -32,6 +32,8 @@ _VERBS: Final = {
     "administer": "administer",
     "attach": "attach monitors to",
     "register": "register or change",
+    SCRIPT: "name scripts to",
+    RUN: "start programs through",
 }
 
 
@@ -45,15 +47,17 @@ class Rule:
     line: int = 0
 
     def meets(self, peer: Peer) -> bool:
-        """Whether the peer is among those of this rule."""
+        """Return whether the peer is among those of this rule."""
         return any(_is(peer, one) for one in self.who)
 
     def covers(self, port: str) -> bool:
-        """Whether it is about that port."""
+        """Return whether the rule is about that port."""
         return not self.ports or any(fnmatchcase(port, pattern) for pattern in self.ports)
 
     def __str__(self) -> str:
-        rights = ALL if self.may == frozenset(RIGHTS) else ", ".join(_sorted(self.may))
+        rest = self.may - frozenset(RIGHTS)
+        whole = self.may >= frozenset(RIGHTS)
+        rights = ", ".join((ALL, *sorted(rest)) if whole else _sorted(self.may))
         return f"{', '.join(self.who)} may {rights}: {', '.join(self.ports) or 'all ports'}"
 
 
@@ -77,11 +81,13 @@ class Access:
         return None
 
     def knows(self, peer: Peer) -> bool:
-        """Whether any rule is about this peer: then it may ask a name server where ports are."""
+        """Return whether any rule is about this peer: then it may ask a name server where ports
+        are."""
         return any(rule.meets(peer) for rule in self.rules)
 
     def token_name(self, token: str) -> str:
-        """Whose token that is; "" if it is nobody's. Takes the same time for all wrong ones."""
+        """Return the name of that web token; "" if there is no such token. Takes the same time for
+        all wrong ones."""
         shown = token.encode("utf-8", "surrogateescape")
         found = ""
         for name, secret in self.tokens.items():
@@ -101,7 +107,7 @@ class Access:
 
 
 class Ruled(Admission):
-    """What the rules let one peer do with one port; `names`: it is a name server."""
+    """The rights of one peer at one port, by the rules; `names`: the port is a name server."""
 
     open = False
 
@@ -110,11 +116,13 @@ class Ruled(Admission):
         self._access = access
         self._port = port
         self.directory = self._names = names
-        self._rights = {right for right in RIGHTS if access.rule_for(peer, right, port)}
+        self._rights = {right for right in KNOWN if access.rule_for(peer, right, port)}
         if names and access.knows(peer):
             # Commands are messages there; those that change something need `register`.
             self._rights |= {"read", "write"}
-        self.everything = not names and self._rights >= _PORT_RIGHTS
+        # Who may name scripts is guarded: the guard says on whose behalf a command is carried out.
+        plain = SCRIPT not in self._rights
+        self.everything = plain and not names and self._rights >= _PORT_RIGHTS
         self.takes_tokens = bool(access.tokens)
 
     def allows(self, right: str, name: str = "") -> bool:
@@ -182,4 +190,4 @@ def _within(address: str, network: str) -> bool:
 
 
 def _sorted(rights: frozenset[str] | set[str]) -> list[str]:
-    return [right for right in RIGHTS if right in rights]
+    return [right for right in KNOWN if right in rights]

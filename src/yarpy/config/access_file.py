@@ -2,7 +2,7 @@
 
     [[allow]]                               # as many of these as you like
     who = ["192.168.1.0/24", "tls:operator", "token:panel"]
-    may = ["read", "write"]                 # administer, attach, register; or "all"
+    may = ["read", "write"]                 # administer, attach, register; or "all"; script apart
     ports = ["/icubSim/*"]                  # without: all ports
 
     [tokens]                                # for web pages: http://HOST:PORT/?token=...
@@ -25,7 +25,7 @@ from typing import Any, Final
 from yarpy.config.access import ALL, FILE, Access, Door, Rule
 from yarpy.config.configuration import conf_directory, folder
 from yarpy.errors import AddressError
-from yarpy.link.admission import RIGHTS, Gate
+from yarpy.link.begin.admission import KNOWN, RIGHTS, Gate
 
 SETTING: Final = "YARPY_ACCESS"
 LEAST: Final = 16  # characters of a token
@@ -147,10 +147,10 @@ class _Reader:
         for right in self._words(table, "may", start):
             if right == ALL:
                 may |= {*RIGHTS}
-            elif right in RIGHTS:
+            elif right in KNOWN:
                 may.add(right)
             else:
-                known = (*RIGHTS, ALL)
+                known = (*KNOWN, ALL)
                 raise self.mistake(
                     self.line(f'"{right}"', start),
                     f'may: there is no right "{right}"{_meant(right, known)}; '
@@ -215,7 +215,8 @@ class _Reader:
             try:
                 value = file.read_text("utf-8").strip()
             except (OSError, UnicodeDecodeError) as error:
-                raise self.mistake(line, f"tokens: {file} cannot be read: {error}") from error
+                reason = error.strerror if isinstance(error, OSError) else error
+                raise self.mistake(line, f"tokens: {file} cannot be read: {reason}") from error
         if not isinstance(value, str):
             raise self.mistake(line, f'tokens: write {name} = "..." or {name} = {{file = "..."}}')
         if len(value) < LEAST or not _TOKEN.fullmatch(value):

@@ -1,4 +1,4 @@
-"""What the rules of access mean, in words: all of them, or why somebody may do something, or not.
+"""The rules of access in words: all of them, or why somebody may do something, or not.
 
 Rules: lines of at most 79 characters where names are short; nothing is printed here.
 """
@@ -13,7 +13,7 @@ from typing import Final
 
 from yarpy.config.access import FILE, Access, Rule
 from yarpy.errors import AddressError
-from yarpy.link.admission import RIGHTS, Peer, same_computer
+from yarpy.link.begin.admission import KNOWN, RIGHTS, RUN, SCRIPT, Peer, same_computer
 
 WIDTH: Final = 79
 
@@ -29,7 +29,8 @@ YARPY_BIND says from where a port is reached: now {reach}."""
 
 
 def defaults(where: Path, reach: str) -> list[str]:
-    """What holds without a file. where: its place. reach: who reaches ports here."""
+    """Return the lines that say what is allowed without a file. where: its place. reach: who
+    reaches ports here."""
     head = wrap(f"There is no {FILE}; it would be {where}.", WIDTH, break_long_words=False)
     return [*head, *_DEFAULTS.format(reach=reach).splitlines()]
 
@@ -40,7 +41,9 @@ def listing(access: Access) -> list[str]:
     for number, rule in enumerate(access.rules, 1):
         lines.append("")
         lines += _wrapped(f"{number}. ", ", ".join(rule.who))
-        rights = "everything" if rule.may == frozenset(RIGHTS) else ", ".join(_sorted(rule))
+        whole = rule.may >= frozenset(RIGHTS)
+        rest = [right for right in _sorted(rule) if right not in RIGHTS]
+        rights = ", ".join(["everything", *rest] if whole else _sorted(rule))
         lines += _wrapped("   may ", rights)
         lines += _wrapped("   ports ", ", ".join(rule.ports) or "all")
     lines += ["", "What no rule allows is refused. Programs read the file when they start."]
@@ -50,7 +53,7 @@ def listing(access: Access) -> list[str]:
 
 
 def notes(access: Access, *, authority: Path, has_key: bool) -> Iterator[str]:
-    """What may be missing for the rules to do what they are meant for. authority: where the
+    """Yield what may be missing for the rules to have their intended effect. authority: where the
     certificate is that others are checked against. has_key: there is an auth.conf."""
     named = {one for rule in access.rules for one in rule.who}
     if not named & {"loopback", "anyone"} and not any(one.startswith("127.") for one in named):
@@ -102,15 +105,21 @@ def peer_from(text: str, access: Access | None) -> Peer:
 
 
 def explained(access: Access | None, who: str, right: str, port: str) -> tuple[bool, list[str]]:
-    """Whether somebody may do that with a port, and which rule says so or comes near.
+    """Return whether a peer may do that with a port, and which rule says so or comes near.
 
     access: None without a file. Raises AddressError for what cannot be meant.
     """
-    if right not in RIGHTS:
-        raise AddressError(f'there is no right "{right}"; the rights are {", ".join(RIGHTS)}')
+    if right not in KNOWN:
+        raise AddressError(f'there is no right "{right}"; the rights are {", ".join(KNOWN)}')
     if not port.startswith("/"):
         raise AddressError(f'"{port}" is not the name of a port: names begin with "/"')
     peer = peer_from(who, access)
+    if access is None and right == SCRIPT:
+        text = f"there is no {FILE}, so scripts run where YARPY_SCRIPTS says so"
+        return False, _wrapped("no: ", text)
+    if access is None and right == RUN:
+        text = f"there is no {FILE}, so programs are started for their owner here alone"
+        return False, _wrapped("no: ", text)
     if access is None:
         limits = {"attach": " (scripts where YARPY_SCRIPTS says so)"}.get(right, "")
         text = f"there is no {FILE}, so whoever reaches {port} may {right}{limits}"
@@ -140,7 +149,7 @@ def _and(items: Sequence[str]) -> str:
 
 
 def _sorted(rule: Rule) -> list[str]:
-    return [right for right in RIGHTS if right in rule.may]
+    return [right for right in KNOWN if right in rule.may]
 
 
 def _wrapped(head: str, text: str) -> list[str]:

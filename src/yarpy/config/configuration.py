@@ -8,8 +8,8 @@ process it runs in. Nothing is printed.
     _name.conf            the same for namespace /name
 
 `YARPY_SERVER=HOST:PORT` takes precedence over every file and may list several, separated by commas.
-Names on Zenoh, without a server, are `zenoh`, `zenoh+tcp://ROUTER:7447`, `zenoh+lan` there (see
-`transports/zenoh_place.py`), or the mode `zenoh` in a file.
+Name services of other systems are there by their plug-in's name and a place, such as
+`zenoh+tcp://ROUTER:7447`; in a file they are the mode.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from functools import lru_cache
 from pathlib import Path
 
 from yarpy.errors import AddressError
+from yarpy.registry import names
 
 DEFAULT_PORT = 10000
 ROOT = "/root"
-ZENOH = "zenoh"
-MODES = ("yarp", "ros", "local", ZENOH)
+YARP, LOCAL = "yarp", "local"
 
 _YES = frozenset({"1", "true", "yes", "on"})
 _NO = frozenset({"0", "false", "no", "off"})
@@ -36,12 +36,12 @@ _UNSAFE = re.compile(r"[^0-9A-Za-z]")
 
 @dataclass(frozen=True, slots=True)
 class Server:
-    """One configured name server. `mode`: yarp, ros (a ROS master), local (no server at all) or
-    zenoh: then `host` is a place of Zenoh, if `port` is 0."""
+    """One configured name service. `mode`: yarp, local (no server at all), or the name of a plug-in
+    of the group `yarpy.names`: what `host` means is then its business, if `port` is 0."""
 
     host: str
     port: int
-    mode: str = "yarp"
+    mode: str = YARP
     namespace: str = ROOT
     path: Path | None = None  # the file that says so; None: the environment does
 
@@ -102,6 +102,18 @@ def folder(*parts: str) -> Path:
     return Path(*parts)
 
 
+def home_directory(environment: Mapping[str, str]) -> str:
+    """The home of this user: where services and cron set no HOME, as the system knows it; never the
+    current folder, in which another program of the same user would not look."""
+    named = environment.get("HOME") or environment.get("USERPROFILE")
+    if named:
+        return named
+    known = os.path.expanduser("~")  # the entry of this user in the system's list
+    if known == "~":
+        raise AddressError("nobody knows your home directory: set HOME, or YARP_CONFIG_HOME")
+    return known
+
+
 def conf_directory(environment: Mapping[str, str], platform: str = sys.platform) -> Path:
     """Where the configuration of this user lives."""
     if "YARP_CONFIG_HOME" in environment:
@@ -110,7 +122,7 @@ def conf_directory(environment: Mapping[str, str], platform: str = sys.platform)
         return folder(environment["XDG_CONFIG_HOME"], "yarp")
     if platform == "win32" and environment.get("APPDATA"):
         return folder(environment["APPDATA"], "yarp", "config")
-    home = environment.get("HOME") or environment.get("USERPROFILE") or os.path.curdir
+    home = home_directory(environment)
     if platform == "darwin":
         return folder(home, "Library", "Preferences", "yarp")
     return folder(home, ".config", "yarp")
@@ -197,10 +209,15 @@ def parse_server(text: str) -> Server | None:
         words = [word for word in re.split(r'[ \t\r\n"]+', text) if word]
     if len(words) < 2 or not words[0]:
         return None
-    mode = words[2] if len(words) > 2 and words[2] else "yarp"
-    mode = "yarp" if mode == "//" else mode
-    if mode not in MODES:
-        raise AddressError(f'no mode "{mode}" of a name server: use one of {", ".join(MODES)}')
+    mode = words[2] if len(words) > 2 and words[2] else YARP
+    mode = YARP if mode == "//" else mode
+    if mode not in (YARP, LOCAL) and mode not in names.names():
+        known = ", ".join([YARP, LOCAL, *names.names()])
+        shown = mode if mode.isprintable() and len(mode) < 30 else f"{mode[:12]!a}..."
+        raise AddressError(
+            f'no mode "{shown}" of a name server: use one of {known}; `yarpy conf HOST PORT` '
+            "writes the file anew"
+        )
     return Server(words[0], _number(words[1]), mode)
 
 
@@ -238,9 +255,9 @@ def port_number(name: str, environment: Mapping[str, str]) -> int:
 def _parse_host_port(text: str, environment: Mapping[str, str]) -> Server:
     """One item of YARPY_SERVER: `host:port`, `host`, `[ipv6]:port`."""
     word, _, place = text.partition("+")
-    if word == ZENOH:
+    if word.isidentifier() and word in names.names():
         kind, mark, rest = place.partition("://")
-        return Server(f"{kind}/{rest}" if mark and kind != "file" else place, 0, ZENOH)
+        return Server(f"{kind}/{rest}" if mark and kind != "file" else place, 0, word)
     host, colon, port = text.rpartition(":")
     if text.startswith("[") and text.endswith("]"):
         host, colon, port = text, "", ""
@@ -291,5 +308,10 @@ def _write(path: Path, text: str) -> None:
     """Replace the file atomically, so that no reader sees half an address."""
     path.parent.mkdir(parents=True, exist_ok=True)
     draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
-    draft.write_text(text, "utf-8", "surrogateescape")
-    draft.replace(path)
+    try:
+        draft.write_text(text, "utf-8", "surrogateescape")
+        draft.replace(path)
+    except OSError as error:
+        draft.unlink(missing_ok=True)
+        error.filename = str(path)  # a full disk does not say which file
+        raise

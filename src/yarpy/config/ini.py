@@ -23,9 +23,8 @@ from pathlib import Path
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import Balance, plain_text
 from yarpy.errors import DecodeError
+from yarpy.limit import INI_DEPTH, INI_FILE
 
-DEEPEST = 20  # files that include one another
-LARGEST = 16 << 20  # bytes of one file
 LONGEST = 1 << 20  # characters that the variables in a line may add to it
 
 # Finds a file, by name, in a context ("" for none); None if there is none.
@@ -86,7 +85,7 @@ class _Reader:
                 self._section = None
             return
         with path.open("rb") as stream:
-            data = stream.read(LARGEST)
+            data = stream.read(INI_FILE)
         self.parse(data.decode("utf-8", "surrogateescape"), [*parents, path])
 
     def parse(self, text: str, parents: list[Path]) -> None:
@@ -152,8 +151,8 @@ class _Reader:
 
     def _merge(self, path: Path, parents: list[Path]) -> None:
         try:
-            if len(parents) >= DEEPEST:
-                raise OSError(f"included through {DEEPEST} other files")
+            if len(parents) >= INI_DEPTH:
+                raise OSError(f"included through {INI_DEPTH} other files")
             self.read(path, parents)
         except OSError as error:
             from yarpy.log import logger

@@ -20,7 +20,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from yarpy.config.configuration import conf_directory, folder
+from yarpy.config.configuration import conf_directory, folder, home_directory
 from yarpy.data.text import plain_text
 
 
@@ -110,7 +110,7 @@ def data_home(environment: Mapping[str, str]) -> Path:
         return folder(environment["YARP_DATA_HOME"])
     if environment.get("XDG_DATA_HOME"):
         return folder(environment["XDG_DATA_HOME"], "yarp")
-    return folder(environment.get("HOME") or os.path.curdir, ".local", "share", "yarp")
+    return folder(home_directory(environment), ".local", "share", "yarp")
 
 
 def configuration_directories(environment: Mapping[str, str]) -> list[Path]:

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from yarpy.data.bottle import Bottle, Property
-    from yarpy.data.image import FlexImage, Image
-    from yarpy.data.matrix import Matrix
-    from yarpy.data.pointcloud import PointCloud
-    from yarpy.data.sound import Sound
+    from yarpy.data.sig.image import FlexImage, Image
+    from yarpy.data.sig.matrix import Matrix
+    from yarpy.data.sig.pointcloud import PointCloud
+    from yarpy.data.sig.sound import Sound
+    from yarpy.data.sig.vector import Vector
     from yarpy.data.stamp import Stamp
     from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
-    from yarpy.data.vector import Vector
     from yarpy.data.walker import Walker
 
 __all__ = [
@@ -40,7 +40,10 @@ __all__ = [
 
 _MODULES = {
     **dict.fromkeys(("Float32", "Int8", "Int16", "Int64", "Vocab"), "value"),
-    "FlexImage": "image",
+    **{
+        name: f"sig.{name.lower()}" for name in ("Image", "Matrix", "PointCloud", "Sound", "Vector")
+    },
+    "FlexImage": "sig.image",
     "Property": "bottle",
 }
 

@@ -12,13 +12,18 @@ Both are in one file because each may hold the other. The spellings are in `read
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any, Self
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, Self
 
-from yarpy.data.reader import read_leading, read_list
+from yarpy.data.numbers import Packed
+from yarpy.data.reader import read_list
 from yarpy.data.text import Groups, parse_text, plain_text, print_text, text_of
 from yarpy.data.value import Buffer
 from yarpy.data.writer import dict_elements, list_blocks
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 class Bottle(list[Any]):
@@ -43,7 +48,7 @@ class Bottle(list[Any]):
     def from_bytes(cls, data: bytes | bytearray | memoryview) -> Self:
         """Read a binary message; DecodeError or Truncated if it is none."""
         bottle = read_bottle(data)
-        return bottle if type(bottle) is cls else cls(bottle)
+        return bottle if isinstance(bottle, cls) else cls(bottle)
 
     def to_bytes(self) -> bytes:
         """The binary message; TypeError for elements that no message can hold."""
@@ -76,8 +81,45 @@ class Bottle(list[Any]):
                 return None
         return None
 
+    @property
+    def array(self) -> NDArray[Any]:
+        """The numbers as a numpy array: of two dimensions for rows, columns and a list of as many
+        numbers, which a Matrix is, else of one. Of a received list of numbers it is a view of the
+        received bytes. ValueError for what is no array."""
+        import numpy as np
+
+        if len(self) == 3 and isinstance(self[2], list):
+            rows, cols, numbers = self
+            if type(rows) is type(cols) is int and len(numbers) == rows * cols and rows >= 0:
+                flat: NDArray[Any] = np.asarray(numbers, "f8")
+                return flat.reshape(rows, cols)
+        return np.array(list(self))
+
+    def __array__(
+        self, dtype: np.dtype[Any] | None = None, copy: bool | None = None
+    ) -> NDArray[Any]:
+        array = self.array
+        if dtype is not None and dtype != array.dtype:
+            return array.astype(dtype)
+        return array.copy() if copy else array
+
     def __repr__(self) -> str:
         return f"Bottle({super().__repr__()})"
+
+
+class Numbers(Packed, Bottle):
+    """A Bottle of numbers of one kind, as it came. It is unpacked when an element is asked for;
+    `array` needs none."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> tuple[Callable[[list[Any]], Bottle], tuple[list[Any]]]:
+        return Bottle, (list(self),)
+
+    def __reduce_ex__(
+        self, protocol: Any
+    ) -> tuple[Callable[[list[Any]], Bottle], tuple[list[Any]]]:
+        return self.__reduce__()
 
 
 class Property(Groups):
@@ -159,9 +201,4 @@ class Property(Groups):
 
 def read_bottle(view: Buffer) -> Bottle:
     """The Bottle at the start of `view`; Truncated or DecodeError if there is none."""
-    return read_list(Bottle, Property.from_bottle, view)
-
-
-def read_leading_bottle(buffer: bytes) -> tuple[Bottle, int] | None:
-    """The Bottle that `buffer` begins with and the bytes it takes; None if it is incomplete."""
-    return read_leading(Bottle, Property.from_bottle, buffer)
+    return read_list(Bottle, Property.from_bottle, view, Numbers.over)

@@ -10,8 +10,10 @@
     dict, Property                              Property
     int, float, str, bool, bytes, Vocab ...     Value (a list of one that is never specialised)
     None                                        the null Value, an empty message
+    dataclass, complex, and what else is in     with a description: `python.described`
+    lists, tuples and dicts: arrays, None ...
     Stamp, Vector, Matrix, Image, Sound ...     their own layout
-    numpy arrays                                see `yarpy.data.array`
+    arrays of numpy, torch, DLPack, buffers     see `yarpy.data.python.array`
     anything with `to_wire() -> blocks`         what that returns
 
 Rules: decoding raises DecodeError or Truncated, nothing else. What cannot be read is tried as a
@@ -21,15 +23,21 @@ TypeError that says what can be sent. Large data are not copied, on the way out 
 
 from __future__ import annotations
 
+import reprlib
 import sys
 from collections.abc import Callable
-from importlib import import_module
 from struct import Struct
 from typing import Any, Final, TypeVar, cast
 
-from yarpy.data.bottle import Bottle, Property, read_bottle, read_leading_bottle
+from yarpy import registry
+from yarpy.data.bottle import Bottle, Numbers, Property, read_bottle
 from yarpy.data.embedded import with_article
-from yarpy.data.image import Image
+from yarpy.data.python import described, description, typed
+from yarpy.data.python.array import array_of, scalar
+from yarpy.data.python.array import blocks as array_blocks
+from yarpy.data.reader import SMALL, read_small
+from yarpy.data.sig.image import Image
+from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
 from yarpy.data.text import print_text, text_of
 from yarpy.data.value import (
@@ -46,9 +54,8 @@ from yarpy.data.value import (
     Int64,
     Vocab,
 )
-from yarpy.data.vector import Vector
 from yarpy.data.walker import Walker
-from yarpy.data.writer import dict_elements, list_blocks, value_blocks
+from yarpy.data.writer import dict_elements, list_blocks, long_blocks, value_blocks
 from yarpy.data.yarp4 import older
 from yarpy.errors import DecodeError
 
@@ -69,7 +76,10 @@ _read_head = Struct("<ii").unpack_from
 _read_i32 = Struct("<i").unpack_from
 
 _MAT: Final = 0x0074616D
+_KEY: Final = description.KEY.encode()
 _EMPTY: Final = Struct("<ii").pack(LIST, 0)
+LISTS: Final = frozenset((list, tuple, Bottle))  # what `list_blocks` encodes, with a step less
+_BYTES: Final = frozenset((bytes, bytearray, memoryview))
 _OWN_TEXT: Final = (list, tuple, dict, Stamp, str, int, float, bytes)
 
 
@@ -79,31 +89,67 @@ _OWN_TEXT: Final = (list, tuple, dict, Stamp, str, int, float, bytes)
 def encode(obj: Any) -> Blocks:
     """The payload in the binary spelling: blocks to be sent one after the other."""
     kind = type(obj)
-    if kind is list or kind is tuple or kind is Bottle:
-        return list_blocks(obj)
+    if kind in LISTS:
+        return list_blocks(obj, any_list)
     to_wire = getattr(obj, "to_wire", None)
     if to_wire is not None and kind is not type:
-        return cast(Blocks, to_wire())
+        blocks = to_wire()
+        if type(blocks) is not tuple or not _BYTES.issuperset(map(type, blocks)):
+            _check_blocks(blocks, kind)
+            return tuple(blocks)
+        return cast(Blocks, blocks)
     if isinstance(obj, dict):
-        return list_blocks(dict_elements(obj))
+        return (
+            described.blocks(obj) if described.is_needed(obj) else list_blocks(dict_elements(obj))
+        )
     if isinstance(obj, (list, tuple)):
-        return list_blocks(obj)
+        return list_blocks(obj, any_list)
     if obj is None:
         return (_EMPTY,)
     numpy = sys.modules.get("numpy")
     if numpy is not None and isinstance(obj, (numpy.ndarray, numpy.generic)):
-        array = sys.modules.get("yarpy.data.array") or import_module("yarpy.data.array")
         if isinstance(obj, numpy.ndarray) and obj.ndim:
-            return cast(Blocks, array.blocks(obj))
-        return value_blocks(array.scalar(obj))
+            return array_blocks(obj)
+        if obj.dtype.kind != "c":
+            return value_blocks(scalar(obj))
+        obj = obj.item()
+    if isinstance(obj, complex) or described.is_record(obj):
+        return described.blocks(obj)
+    if not isinstance(obj, (str, int, float, bytes, bytearray, memoryview)):
+        array = array_of(obj)
+        if array is not None:
+            return encode(array)
     try:
         return value_blocks(obj)
     except TypeError:
+        if hasattr(obj, "as_") and hasattr(obj, "spelling"):
+            raise TypeError(
+                "a received Message cannot be sent; its value can: message.value"
+            ) from None
         raise TypeError(
-            f"{with_article(kind.__name__)} cannot be sent; lists, dicts, int, float, str, "
-            "bool, bytes, Vocab, numpy arrays, yarpy.data objects and anything with a method "
-            "to_wire() can"
+            f"{with_article(kind.__name__)} cannot be sent; lists, dicts, dataclasses, int, float, "
+            "complex, str, bool, bytes, Vocab, arrays, yarpy.data objects and anything with a "
+            "method to_wire() can"
         ) from None
+
+
+def _check_blocks(blocks: object, kind: type) -> None:
+    """Raise TypeError for what a `to_wire` returned that is no blocks of bytes."""
+    try:
+        if not isinstance(blocks, (list, tuple)):
+            raise TypeError
+        for block in blocks:
+            memoryview(block)
+    except TypeError:
+        raise TypeError(
+            f"{kind.__name__}.to_wire() has to return blocks of bytes, such as (data,), and "
+            f"returned {reprlib.repr(blocks)}"
+        ) from None
+
+
+def any_list(items: Any) -> Blocks:
+    """The message of a list or tuple for which `list_blocks` has no short way."""
+    return described.blocks(items) if described.is_needed(items) else long_blocks(items)
 
 
 def encode_text(obj: Any) -> bytes:
@@ -112,6 +158,8 @@ def encode_text(obj: Any) -> bytes:
     A Stamp has its own text. What has no binary Bottle form (Sound, PointCloud) is an empty line,
     as it is from C++.
     """
+    if isinstance(obj, (list, tuple, dict)) and described.is_needed(obj):
+        return encode_as_text(b"".join(encode(obj)))
     if isinstance(obj, (list, tuple)):
         text = print_text(obj)
     elif isinstance(obj, dict):
@@ -135,8 +183,10 @@ def encode_as_text(message: Buffer) -> bytes:
 
 
 def has_own_text(obj: object) -> bool:
-    """Whether the text spelling is made from the object, not from its binary spelling."""
-    return isinstance(obj, _OWN_TEXT)
+    """Return whether the text spelling is made from the object, not from its binary spelling."""
+    if not isinstance(obj, _OWN_TEXT):
+        return False
+    return not isinstance(obj, (list, tuple, dict)) or not described.is_needed(obj)
 
 
 # ---------------------------------------------------------------------------------- receiving
@@ -146,13 +196,18 @@ def decode(view: Buffer) -> Any:
     """The natural value of a payload.
 
     A Bottle; a single value if it was sent as one; a Vector over the received bytes for a list of
-    floats; an Image; a Sound. DecodeError or Truncated if it is none of these.
+    floats; an Image; a Sound; what its description says, if it has one. DecodeError or Truncated if
+    it is none of these.
     """
     try:
         if len(view) < 12:
             return read_bottle(view)
         code, count = _read_head(view)
         if code == LIST:
+            if len(view) >= description.SMALLEST:
+                start = description.place(view)
+                if start:
+                    return described.restore(view, start)
             if count == 1:
                 tag = _read_i32(view, 8)[0]
                 bottle = read_bottle(view)
@@ -164,11 +219,14 @@ def decode(view: Buffer) -> Any:
                     if image is not None:
                         return image
                 elif tag == 0:
-                    from yarpy.data.sound import Sound
+                    from yarpy.data.sig.sound import Sound
 
                     return Sound.from_wire(view)
         elif count and (code == LIST + FLOAT64 or code == LIST + FLOAT32):
             return Vector.from_wire(view)
+        if code == LIST and len(view) <= SMALL:  # as nearly always, with a step less
+            small = view if type(view) is bytes else bytes(view)
+            return read_small(Bottle, Property.from_bottle, small, Numbers.over)[0]
         return read_bottle(view)
     except DecodeError:
         other = older(view)
@@ -192,28 +250,43 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
 
     None if it is incomplete, or is not of the usual kinds: lists and single values.
     """
-    if len(buffer) < 12:
+    if not 12 <= len(buffer) <= SMALL:
         return None
     code, count = _read_head(buffer)
     if code != LIST or count == 4:  # four elements may be an Image or a Sound
         return None
-    found = read_leading_bottle(buffer)
-    if found is None or count != 1 or _read_i32(buffer, 8)[0] & GROUP_MASK:
+    if len(buffer) >= description.SMALLEST and buffer.find(_KEY) >= 0:
+        return None  # perhaps a description; `in` would try to make a number of the key first
+    try:
+        found = read_small(Bottle, Property.from_bottle, buffer)
+    except DecodeError:
+        return None
+    if count != 1 or _read_i32(buffer, 8)[0] & GROUP_MASK:
         return found
     return found[0][0], found[1]
 
 
-def decode_text(line: bytes | str) -> Bottle:
-    """The Bottle of a line; what is not Bottle text is left out."""
-    return Bottle.from_text(line)
+def decode_text(line: bytes | str) -> Any:
+    """The Bottle of a line, or what its description says; what is not Bottle text is left out."""
+    bottle = Bottle.from_text(line)
+    if bottle and isinstance(bottle[-1], list):
+        return described.restore_text(bottle)
+    return bottle
+
+
+def named(type_: Any) -> Any:
+    """Return the type of that name (`yarpy.types`); what is no text, as it is. Raises
+    UnknownPlugin."""
+    return registry.types.load(type_) if isinstance(type_, str) else type_
 
 
 def decode_as(view: Buffer, type_: type[T]) -> T:
     """The payload as an object of `type_`; else a DecodeError that says what came instead.
 
     `type_` is Bottle, list, tuple, Property, dict, str, int, float, bool, bytes, Vocab (and the odd
-    widths), a type of this package, numpy.ndarray, `object` for the natural value, or any class
-    with `from_wire(view)`. Numbers convert where nothing is lost in kind (int to float), a word is
+    widths), a type of this package, numpy.ndarray, `object` for the natural value, a dataclass, a
+    TypedDict, a NamedTuple, `dict[str, numpy.ndarray]` and the like, or any class with
+    `from_wire(view)`. Numbers convert where nothing is lost in kind (int to float), a word is
     accepted as a Vocab and a Vocab as a word, because YARP programs do not tell them apart.
     """
     try:
@@ -226,6 +299,10 @@ def decode_as(view: Buffer, type_: type[T]) -> T:
 
 
 def _decode_as(view: Buffer, type_: type[T]) -> T:
+    if type_ is not Bottle:
+        start = description.place(view)
+        if start:
+            return cast(T, typed.convert(described.restore(view, start), type_))
     convert = _CONVERTERS.get(type_)
     if convert is not None:
         return cast(T, convert(view))
@@ -234,14 +311,18 @@ def _decode_as(view: Buffer, type_: type[T]) -> T:
         try:
             return cast(T, from_wire(view))
         except DecodeError as error:
-            raise _other(type_.__name__, view, error) from error
+            image = Image.found(view) if getattr(type_, "takes_images", False) else None
+            if image is not None and image.array.ndim == 2:
+                return cast(T, cast(Any, type_)(image.array))
+            raise _other(type_.__name__, view, error) from None
     if type_ is object or type_ is Any:
         return cast(T, decode(view))
-    origin = getattr(type_, "__origin__", None)
-    origin = getattr(origin, "__value__", origin)  # `type` aliases, as NDArray is from 3.12 on
-    origin = getattr(origin, "__origin__", origin)
-    if isinstance(origin, type):  # list[int]: what is in the list is the caller's business
-        return cast(T, _decode_as(view, origin))
+    if typed.is_typed(type_):
+        return cast(T, typed.convert(decode(view), type_))
+    if not isinstance(type_, type):
+        raise TypeError(
+            f"messages are read as a type, such as yarpy.Image or dict, not {reprlib.repr(type_)}"
+        )
     if type_.__name__ == "ndarray" and type_.__module__ == "numpy":
         return cast(T, _to_array(view))
     for base in (Bottle, Property, Vocab, str, int, float, bytes, list, tuple, dict):
@@ -262,10 +343,15 @@ def decode_text_as(line: bytes | str, type_: type[T]) -> T:
     """The line as an object of `type_`, as `decode_as` does."""
     if type_ is Stamp:
         return cast(T, Stamp.from_text(line))
-    bottle = decode_text(line)
-    if type_ is Bottle or type_ is object or type_ is Any:
+    bottle = Bottle.from_text(line)
+    if type_ is Bottle:
         return cast(T, bottle)
-    return decode_as(b"".join(list_blocks(bottle)), type_)
+    value = decode_text(line)
+    if type_ is object or type_ is Any:
+        return cast(T, value)
+    if isinstance(value, Bottle):
+        return decode_as(b"".join(list_blocks(value)), type_)
+    return cast(T, typed.convert(value, type_))
 
 
 def _single(view: Buffer, wanted: str) -> Any:
@@ -369,9 +455,11 @@ _VECTOR_CODES: Final = frozenset(LIST + tag for tag in (1, 10, 17, 32, 64, 128))
 def _to_array(view: Buffer) -> Any:
     """A numpy array, over the received bytes: from an Image, a Matrix, a Sound or a Vector."""
     natural = decode(view)
+    if isinstance(natural, Numbers):
+        return natural.array
     if isinstance(natural, (Bottle, int, float)):
         if len(view) >= 8 and _read_head(view) == (LIST, 3):
-            from yarpy.data.matrix import Matrix
+            from yarpy.data.sig.matrix import Matrix
 
             return Matrix.from_wire(view).array
         return _to_vector(view).array

@@ -1,4 +1,4 @@
-"""What may stand in a Bottle without being one of its kinds: numpy's, and whatever has `to_wire`.
+"""Values in a Bottle that are none of its kinds: numpy's, and whatever has `to_wire`.
 
 Rules: a numpy scalar is the Python number that it holds. An array, and an object with `to_wire()`,
 is the list that its message is. numpy is not imported for it: who has an array has numpy.
@@ -14,7 +14,7 @@ def plain(value: Any) -> Any:
     """The Python number that a numpy scalar holds; any other value as it is."""
     numpy = sys.modules.get("numpy")
     if numpy is not None and isinstance(value, (numpy.generic, numpy.ndarray)) and not value.ndim:
-        from yarpy.data import array
+        from yarpy.data.python import array
 
         return array.scalar(value)
     return value
@@ -24,11 +24,16 @@ def message_of(value: Any) -> bytes:
     """The message that a value is as an element, which is a list then; TypeError if it is none."""
     numpy = sys.modules.get("numpy")
     if numpy is not None and isinstance(value, numpy.ndarray):
-        from yarpy.data import array
+        from yarpy.data.python import array
 
         return b"".join(array.blocks(value))
     if hasattr(value, "to_wire") and not isinstance(value, type):
         return b"".join(value.to_wire())
+    from yarpy.data.python.array import array_of, blocks
+
+    found = array_of(value)
+    if found is not None and found.ndim:
+        return b"".join(blocks(found))
     raise TypeError(
         f"{with_article(type(value).__name__)} cannot be an element of a Bottle; int, float, str, "
         "bool, bytes, Vocab, lists, dicts, numpy arrays and yarpy.data objects can"

@@ -4,6 +4,8 @@
     x (a 1) (b 2)                   {"type": "x", "a": 1, "b": 2}
     Property, dict                  {"a": 1, "b": 2}
     bytes                           {"type": "blob", "base64": "AQL/"}
+    an array of no type of YARP's   {"type": "array", "dtype": "<f2", "shape": [2], "base64": ...}
+    complex                         [real, imaginary]
 
 Rules: every message gives valid JSON. Where C++ gives valid JSON this is the same value, so
 booleans, which are vocabs, are the strings "true" and "false", and a list of pairs is an object;
@@ -22,10 +24,11 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.json_plain import NOT_PLAIN, plain_json, plain_value
-from yarpy.data.limit import limits
+from yarpy.data.python.array import is_array
 from yarpy.data.text import plain_text
 from yarpy.data.value import MAX_DEPTH, Vocab, fits
 from yarpy.errors import DecodeError
+from yarpy.limit import check_json
 
 if TYPE_CHECKING:
     from json import JSONDecoder, JSONEncoder
@@ -35,7 +38,6 @@ Outer: TypeAlias = Literal["auto", "list", "dict"]
 _TYPE: Final = "type"
 _SMALL: Final = 1 << 62
 _SPACE: Final = " \t\n\r"  # of JSON
-_FREE: Final = 1 << 10  # characters that are too few to count their elements
 _C1 = re.compile(r"[\x80-\x9f]")  # control characters, which a terminal obeys
 
 
@@ -61,8 +63,7 @@ def from_json(text: str | bytes | bytearray | memoryview) -> Any:
     """
     try:
         data = text if isinstance(text, str) else bytes(text).decode("utf-8")
-        if len(data) > _FREE and sum(map(data.count, ",[{")) > (most := limits().elements):
-            raise DecodeError(f"JSON of more than {most} elements (YARPY_MAX_ELEMENTS)")
+        check_json(data)
         data = data.strip(_SPACE)
         found, end = _reader().raw_decode(data)
         if end != len(data):
@@ -102,12 +103,17 @@ def _plain_top(value: object, outer: Outer, pixels: bool) -> Any:
     # Vector, Image, Stamp, arrays ...: what a reader of the message would find in it.
     from yarpy.data import codec
 
-    described = _described(value, pixels) if outer == "auto" else None
+    described = None
+    if outer == "auto" and not is_array(value):
+        described = _described(value, pixels)
     if described is not None:
         return described
     message = b"".join(codec.encode(value))
     try:
-        described = _described(codec.decode(message), pixels) if outer == "auto" else None
+        natural = codec.decode(message)
+        described = _described(natural, pixels) if outer == "auto" else None
+        if described is None and isinstance(natural, (Mapping, complex)):
+            return _plain(natural, 0)
         return _list(Bottle.from_bytes(message), outer, 0) if described is None else described
     except DecodeError:
         return _plain(message, 0)  # a user's own format
@@ -115,10 +121,10 @@ def _plain_top(value: object, outer: Outer, pixels: bool) -> Any:
 
 def _described(value: object, pixels: bool = True) -> Any:
     """Images, matrices and sounds by their parts; None for other kinds."""
-    from yarpy.data.image import Image
-    from yarpy.data.matrix import Matrix
-    from yarpy.data.sound import Sound
-    from yarpy.data.vector import Vector
+    from yarpy.data.sig.image import Image
+    from yarpy.data.sig.matrix import Matrix
+    from yarpy.data.sig.sound import Sound
+    from yarpy.data.sig.vector import Vector
 
     if isinstance(value, Image):
         facts = {
@@ -138,6 +144,9 @@ def _described(value: object, pixels: bool = True) -> Any:
             "frequency": value.frequency,
             "channels": value.array.tolist(),
         }
+    if is_array(value):
+        facts = {_TYPE: "array", "dtype": value.dtype.str, "shape": [*value.shape]}
+        return {**facts, "base64": _base64(value.tobytes())} if pixels else facts
     return None
 
 
@@ -161,6 +170,8 @@ def _plain(value: object, depth: int) -> Any:
         return {str(key): _plain(item, depth + 1) for key, item in value.items()}
     if value is None:
         return None
+    if isinstance(value, complex):
+        return [_number(value.real), _number(value.imag)]
     from yarpy.data import codec
 
     inner = codec.decode(b"".join(codec.encode(value)))  # numpy numbers, vectors inside lists

@@ -12,7 +12,7 @@ from typing import Any, Self
 
 
 class Wired:
-    """What `copy.deepcopy`, `pickle` and `multiprocessing` need from a value with a wire form."""
+    """The base of values with a wire form, for `copy.deepcopy`, `pickle` and `multiprocessing`."""
 
     __slots__ = ()
 

@@ -7,7 +7,8 @@
 Rules: a count or length is checked against the bytes that are there before memory is taken for it.
 Only DecodeError and Truncated come out. Bytes after the end are ignored here. Like a C++ reader,
 this one looks only at the low byte of the first code. What lists and dicts are made of, the caller
-says: this file knows neither Bottle nor Property. (Protocol of YARP 3.x.)
+says: this file knows neither Bottle nor Property. A list of numbers is not looked into if the
+caller has something to keep it in as it came. (Protocol of YARP 3.x.)
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from struct import Struct, unpack_from
 from struct import error as struct_error
-from typing import Any, Final, TypeVar
+from typing import Any, Final, TypeAlias, TypeVar
 
-from yarpy.data.limit import limits
 from yarpy.data.value import (
+    BIG,
     BLOB,
     DICT,
     FIXED,
@@ -41,10 +42,11 @@ from yarpy.data.value import (
     vocab_of,
 )
 from yarpy.errors import DecodeError, Truncated
+from yarpy.limit import limits
 
 #: Messages up to this size are copied once: slicing bytes is much cheaper than slicing views. Their
 #: elements are not counted either.
-_SMALL: Final = 1 << 16
+SMALL: Final = 1 << 16
 
 _read_i32 = Struct("<i").unpack_from
 _read_pair = Struct("<ii").unpack_from
@@ -54,69 +56,96 @@ _read_f32 = Struct("<f").unpack_from
 _read_i16 = Struct("<h").unpack_from
 
 L = TypeVar("L", bound=list[Any])
+#: makes a list of the memory of its numbers, their tag, what each becomes, and how many elements
+#: the message may still have
+Keep: TypeAlias = Callable[[memoryview, int, Callable[[Any], Any] | None, list[int] | None], Any]
 
 
-def read_list(make_list: type[L], make_dict: Callable[[L], Any], view: Buffer) -> L:
+def read_list(
+    make_list: type[L], make_dict: Callable[[L], Any], view: Buffer, keep: Keep | None = None
+) -> L:
     """The list at the start of `view`; Truncated or DecodeError if there is none.
 
     It and the lists within are made by `make_list()`, a dict by `make_dict` of the list of its
-    `(key value ...)` lists.
+    `(key value ...)` lists; a list of numbers, and large ones in it, by `keep`.
     """
     size = len(view)
-    if size < 8:
-        raise Truncated(f"a Bottle takes at least 8 bytes, here are {size}", 8)
+    if keep is not None and size >= 8:
+        code, count = _read_pair(view)
+        kind = code & UNIT_MASK
+        if kind in KEPT:
+            packed = _packed(memoryview(view), 8, kind, count)
+            kept: L = keep(packed, kind, _FROM_FIXED.get(kind), room_for(size))
+            return kept
+    if size <= SMALL:
+        return read_small(make_list, make_dict, bytes(view), keep)[0]
     items = make_list()
+    buffer, room = memoryview(view), room_for(size)
     try:
-        if size <= _SMALL:
-            _read_small(bytes(view), items, make_list, make_dict)
-        else:
-            buffer, room = memoryview(view), _room(size)
-            code, count = _read_pair(buffer)
-            _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, room, make_list, make_dict)
+        code, count = _read_pair(buffer)
+        kind = code & UNIT_MASK
+        _read_items(buffer, 8, kind, count, 0, items, room, make_list, make_dict, keep)
     except struct_error:
-        raise Truncated(f"the Bottle goes on beyond its {size} bytes", size + 1) from None
+        raise _beyond(size) from None
     return items
 
 
-def read_leading(
-    make_list: type[L], make_dict: Callable[[L], Any], buffer: bytes
-) -> tuple[L, int] | None:
-    """The list that `buffer` begins with and the bytes it takes; None if it is incomplete."""
-    if not 8 <= len(buffer) <= _SMALL:
-        return None
+def read_element(
+    make_list: type[L],
+    make_dict: Callable[[L], Any],
+    view: memoryview,
+    pos: int,
+    depth: int,
+    room: list[int] | None,
+) -> tuple[Any, int]:
+    """The element at `pos`, tag and all, in a list that is `depth` lists deep; and where it ends.
+    `room`: how many elements the message may still have. Raises as `read_list`."""
     items = make_list()
     try:
-        end = _read_small(buffer, items, make_list, make_dict)
-    except (struct_error, DecodeError):
-        return None
-    return items, end
+        end = _read_items(view, pos, 0, 1, depth, items, room, make_list, make_dict, None)
+    except struct_error:
+        raise _beyond(len(view)) from None
+    return items[0], end
 
 
-def _read_small(buffer: bytes, items: L, make_list: type[L], make_dict: Callable[[L], Any]) -> int:
-    """Append the elements of the list at the start of `buffer` to `items`; gives where it ends.
+def read_small(
+    make_list: type[L], make_dict: Callable[[L], Any], buffer: bytes, keep: Keep | None = None
+) -> tuple[L, int]:
+    """The list that at most SMALL bytes begin with, and how many it takes; as `read_list`.
 
     Messages of a kind follow each other: if the last one of the same size and count held plain
     numbers alone, this one is taken apart in the same way, and the tags in it show whether that was
     right.
     """
-    code, count = _read_pair(buffer)
-    planned = code == LIST and 0 < count <= _PLANNED
-    if planned:
-        key = len(buffer), count
-        plan = _plans.get(key)
-        if plan is not None:
-            parts = plan.unpack_from(buffer)
-            if parts[::2] == plan.tags:
-                items.extend(parts[1::2])
-                return plan.end
-    end = _read_items(buffer, 8, code & UNIT_MASK, count, 0, items, None, make_list, make_dict)
+    size = len(buffer)
+    if size < 8:
+        raise Truncated(f"a Bottle takes at least 8 bytes, here are {size}", 8)
+    items = make_list()
+    try:
+        code, count = _read_pair(buffer)
+        planned = code == LIST and 0 < count <= _PLANNED
+        if planned:
+            plan = _plans.get((size, count))
+            if plan is not None:
+                parts = plan.unpack_from(buffer)
+                if parts[::2] == plan.tags:
+                    items.extend(parts[1::2])
+                    return items, plan.end
+        kind = code & UNIT_MASK
+        end = _read_items(buffer, 8, kind, count, 0, items, None, make_list, make_dict, keep)
+    except struct_error:
+        raise _beyond(size) from None
     if planned and _NUMBERS.issuperset(map(type, items)):
         fresh = _Plan([INT32 if type(item) is int else FLOAT64 for item in items])
         if fresh.end == end:  # else there was an int of 64 bits
             if len(_plans) >= _PLANS:
                 _plans.clear()
-            _plans[key] = fresh
-    return end
+            _plans[size, count] = fresh
+    return items, end
+
+
+def _beyond(size: int) -> Truncated:
+    return Truncated(f"the Bottle goes on beyond its {size} bytes", size + 1)
 
 
 class _Plan:
@@ -136,8 +165,11 @@ _PLANS: Final = 512  # kept; their number is the peers' choice
 _NUMBERS: Final = frozenset((int, float))
 _plans: Final[dict[tuple[int, int], _Plan]] = {}
 
+#: the tags of numbers
+KEPT: Final = frozenset(FIXED) - {VOCAB32}
 
-def _room(size: int) -> list[int] | None:
+
+def room_for(size: int) -> list[int] | None:
     """How many elements a message of `size` bytes may still have; None if there cannot be too many.
 
     An element takes a byte on the wire, and forty here."""
@@ -155,6 +187,7 @@ def _read_items(
     room: list[int] | None,
     make_list: type[L],
     make_dict: Callable[[L], Any],
+    keep: Keep | None,
 ) -> int:
     """Append `count` elements to `items`; gives the position after them."""
     if count <= 0:
@@ -169,7 +202,7 @@ def _read_items(
                 "in an array take less"
             )
     if kind:
-        return _read_uniform(buffer, pos, kind, count, items)
+        return read_run(buffer, pos, kind, count, items)
     size = len(buffer)
     if count * 5 > size - pos:
         raise _too_short(pos, count, 5, size)
@@ -198,14 +231,19 @@ def _read_items(
         elif LIST <= tag < 2 * DICT:
             if depth >= MAX_DEPTH:
                 raise DecodeError(f"lists nested more than {MAX_DEPTH} deep")
-            inner = make_list()
             if tag & DICT:
                 kind, start = word & UNIT_MASK, pos + 12
                 word = _read_i32(buffer, pos + 8)[0]
             else:
                 kind, start = tag & UNIT_MASK, pos + 8
+                if keep is not None and word * 8 >= BIG and kind in KEPT:
+                    packed = _packed(memoryview(buffer), start, kind, word)
+                    add(keep(packed, kind, _FROM_FIXED.get(kind), room))
+                    pos = start + len(packed)
+                    continue
+            inner = make_list()
             pos = _read_items(
-                buffer, start, kind, word, depth + 1, inner, room, make_list, make_dict
+                buffer, start, kind, word, depth + 1, inner, room, make_list, make_dict, keep
             )
             add(make_dict(inner) if tag & DICT else inner)
         elif tag == BLOB:
@@ -243,9 +281,18 @@ def _read_tiny(buffer: bytes | memoryview, pos: int, items: list[Any]) -> int:
     raise Truncated("the Bottle ends inside an element", pos + 8)
 
 
-def _read_uniform(
-    buffer: bytes | memoryview, pos: int, kind: int, count: int, items: list[Any]
-) -> int:
+def _packed(buffer: memoryview, pos: int, kind: int, count: int) -> memoryview:
+    """The memory of `count` numbers of that kind."""
+    if count < 0:
+        raise DecodeError(f"a list with {count} elements at byte {pos - 4}")
+    width = FIXED[kind][1]
+    end = pos + count * width
+    if end > len(buffer):
+        raise _too_short(pos, count, width, len(buffer))
+    return buffer[pos:end]
+
+
+def read_run(buffer: bytes | memoryview, pos: int, kind: int, count: int, items: list[Any]) -> int:
     """`count` > 0 elements that all have the tag `kind` and therefore carry none."""
     size = len(buffer)
     fixed = FIXED.get(kind)

@@ -18,7 +18,6 @@ from math import copysign, isfinite, isnan
 from typing import Any, Final
 
 from yarpy.data.embedded import message_of, plain
-from yarpy.data.limit import limits
 from yarpy.data.reader import read_list
 from yarpy.data.value import (
     MAX_DEPTH,
@@ -31,6 +30,7 @@ from yarpy.data.value import (
     vocab_of,
 )
 from yarpy.errors import DecodeError
+from yarpy.limit import limits
 
 #: bytes of a text that are too few to count its elements
 _FREE: Final = 1 << 10

@@ -132,7 +132,7 @@ def vocab_code(word: bytes) -> int:
 
 @lru_cache(maxsize=4096)
 def vocab_of(code: int) -> Vocab | bool:
-    """What a decoded vocab is in Python: booleans are the vocabs 0 and '1'."""
+    """Return the Python value of a decoded vocab: booleans are the vocabs 0 and '1'."""
     if code == TRUE:
         return True
     if code == 0:
@@ -148,7 +148,7 @@ def _vocab_text(code: int) -> str:
 
 
 def fits(value: int, bits: int) -> bool:
-    """Whether a signed integer of `bits` bits can hold `value`.
+    """Return whether a signed integer of `bits` bits can hold `value`.
 
     (Not `value in range(...)`: for an instance of a subclass of int, as Int8 is, that walks through
     all numbers of the range.)"""

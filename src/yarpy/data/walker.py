@@ -10,6 +10,7 @@ says so.
 from __future__ import annotations
 
 from struct import Struct
+from typing import Protocol
 
 from yarpy.data.value import (
     BLOB,
@@ -26,6 +27,15 @@ from yarpy.errors import DecodeError
 _read_i32 = Struct("<i").unpack_from
 _read_pair = Struct("<ii").unpack_from
 _read_sound = Struct("<10i").unpack_from
+
+
+class Walk(Protocol):
+    """Finds the end of a message in a buffer that grows."""
+
+    done: bool
+
+    def advance(self, view: Buffer) -> int:
+        """The least number of bytes that the message has; its length, once `done`."""
 
 
 class Walker:

@@ -14,6 +14,7 @@ from struct import error as struct_error
 from typing import Any, Final, TypeAlias
 
 from yarpy.data.embedded import message_of, plain
+from yarpy.data.numbers import Packed
 from yarpy.data.reader import read_list
 from yarpy.data.text import parse_text, sorted_groups, text_of
 from yarpy.data.value import (
@@ -53,26 +54,42 @@ _PAIR = Struct("<ii")
 _TRIPLE = Struct("<iii")
 
 
-def list_blocks(items: Sequence[Any]) -> Blocks:
-    """The message of a list: TypeError for an element that no tag stands for."""
+def list_blocks(
+    items: Sequence[Any], otherwise: Callable[[Sequence[Any]], Blocks] | None = None
+) -> Blocks:
+    """The message of a list: TypeError for an element that no tag stands for. `otherwise` makes it
+    where there is no short way: that is for numbers and words alone."""
+    if isinstance(items, Packed):
+        packed = items.packed_blocks()
+        if packed is not None:
+            return packed
     kinds = tuple(map(type, items))
     plan = _plan(kinds) if len(kinds) <= _PLANNED else _long_plan(kinds)
     if plan is not None:
         try:
-            return (plan(items),)
+            if type(plan) is not _NumberPlan:
+                return (plan(items),)
+            arguments = plan.head[:]  # as in its __call__
+            arguments[plan.start :: plan.step] = items
+            return (plan.pack(*arguments),)
         except struct_error:
             pass  # an int beyond 32 bits
+    return long_blocks(items) if otherwise is None else otherwise(items)
+
+
+def long_blocks(items: Sequence[Any]) -> Blocks:
+    """The message of a list, element by element."""
     code, parts = _list_parts(items, 0)
-    return _joined([_I32.pack(code), *parts])
+    return joined([_I32.pack(code), *parts])
 
 
 def value_blocks(value: Any) -> Blocks:
     """The message of a single value: a list of one that is never specialised."""
-    code, payload = _element(value, 0)
+    code, payload = element(value, 0)
     head = _TRIPLE.pack(LIST, 1, code)
     if isinstance(payload, bytes):
         return (head + payload,)
-    return _joined([head, *payload])
+    return joined([head, *payload])
 
 
 def dict_elements(values: Mapping[str, Any]) -> list[Any]:
@@ -123,13 +140,7 @@ def _plan(kinds: tuple[type, ...]) -> Callable[[Sequence[Any]], bytes] | None:
     if _NUMBERS.issuperset(kinds):
         gap = "" if uniform else "i"
         pack = Struct("<ii" + "".join(gap + FIXED[tag][0] for tag in tags)).pack
-
-        def pack_numbers(items: Sequence[Any]) -> bytes:
-            arguments = head[:]
-            arguments[start::step] = items
-            return pack(*arguments)
-
-        return pack_numbers
+        return _NumberPlan(pack, head, start, step)
 
     begin = _PAIR.pack(head[0], head[1])
     table = _PAYLOAD if uniform else _WITH_TAG
@@ -142,6 +153,23 @@ def _plan(kinds: tuple[type, ...]) -> Callable[[Sequence[Any]], bytes] | None:
         return b"".join(pieces)
 
     return pack_words
+
+
+class _NumberPlan:
+    """A packer for lists of numbers: `head` with the numbers from `start` on, `step` apart."""
+
+    __slots__ = ("head", "pack", "start", "step")
+
+    def __init__(self, pack: Callable[..., bytes], head: list[int], start: int, step: int) -> None:
+        self.pack = pack
+        self.head: list[Any] = head
+        self.start = start
+        self.step = step
+
+    def __call__(self, items: Sequence[Any]) -> bytes:
+        arguments = self.head[:]
+        arguments[self.start :: self.step] = items
+        return self.pack(*arguments)
 
 
 def _long_plan(kinds: tuple[type, ...]) -> Callable[[Sequence[Any]], bytes] | None:
@@ -214,7 +242,7 @@ def _list_parts(items: Sequence[Any], depth: int) -> tuple[int, list[bytes | mem
     """Code of a list, and what follows the code in pieces."""
     if depth > MAX_DEPTH:
         raise ValueError(f"lists nested more than {MAX_DEPTH} deep cannot be sent: flatten them")
-    elements = [_element(item, depth) for item in items]
+    elements = [element(item, depth) for item in items]
     codes = [code for code, _ in elements]
     uniform = bool(codes) and codes.count(codes[0]) == len(codes) and not codes[0] & GROUP_MASK
     parts: list[bytes | memoryview] = [_I32.pack(len(codes))]
@@ -228,7 +256,7 @@ def _list_parts(items: Sequence[Any], depth: int) -> tuple[int, list[bytes | mem
     return LIST + (codes[0] if uniform else 0), parts
 
 
-def _element(value: Any, depth: int) -> tuple[int, _Payload]:
+def element(value: Any, depth: int) -> tuple[int, _Payload]:
     """Tag and payload of one element."""
     kind = type(value)
     if kind is int:
@@ -250,7 +278,7 @@ def _element(value: Any, depth: int) -> tuple[int, _Payload]:
         return _odd(value)
     number = plain(value)
     if number is not value:
-        return _element(number, depth)
+        return element(number, depth)
     message = message_of(value)
     read_list(list, list, message)  # it has to be a Bottle: DecodeError
     return _I32.unpack_from(message)[0], message[4:]  # the code of a message is the tag of a list
@@ -276,6 +304,11 @@ def _odd(value: Any) -> tuple[int, bytes]:
 
 
 def _list(items: Sequence[Any], depth: int) -> tuple[int, _Payload]:
+    if isinstance(items, Packed):
+        packed = items.packed_blocks()
+        if packed is not None and depth <= MAX_DEPTH:
+            head = packed[0]
+            return LIST + items.tag, [head[4:], *packed[1:]]
     kinds = tuple(map(type, items))
     plan = _plan(kinds) if len(kinds) <= _PLANNED and depth <= MAX_DEPTH else None
     if plan is not None:
@@ -300,7 +333,7 @@ def _blob(value: Buffer) -> tuple[int, _Payload]:
     return BLOB, [_I32.pack(size), memoryview(value)]
 
 
-def _joined(parts: Sequence[bytes | memoryview]) -> Blocks:
+def joined(parts: Sequence[bytes | memoryview]) -> Blocks:
     """The pieces with all small neighbours joined; the views among them are kept."""
     if memoryview not in map(type, parts):
         return (b"".join(parts),)

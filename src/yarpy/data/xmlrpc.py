@@ -197,7 +197,7 @@ def _word(items: Sequence[Any]) -> str:
 
 
 def _is_struct(items: Sequence[Any]) -> bool:
-    """Whether C++ takes a list for a struct."""
+    """Return whether C++ takes a list for a struct."""
     if _word(items) == "dict":
         return True
     return bool(items) and all(isinstance(item, (list, tuple)) and len(item) == 2 for item in items)

@@ -82,7 +82,8 @@ def older(data: Buffer) -> Buffer | None:
 
 
 def is_yarp4(data: Buffer) -> bool | None:
-    """Whether a message is of 4.0; None if it is the same in both. DecodeError."""
+    """Return whether a message is of YARP 4; None if it is the same in both versions.
+    Raises DecodeError."""
     return _Walk(data, WIDTHS_3, {}).verdict()
 
 
@@ -193,7 +194,7 @@ class _Walk:
         self.patches.append((at, 8, _word(len(text)) + text))
 
     def _decided(self, tag: int, at: int, count: int) -> bool:
-        """Whether `count` elements of this tag say which of both it is."""
+        """Return whether `count` elements of this tag tell which of the two versions it is."""
         if tag in ONLY_4:
             self.is_4 = True
         elif tag in ONLY_3:

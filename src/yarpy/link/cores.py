@@ -12,7 +12,7 @@ import os
 from functools import cache
 from pathlib import Path
 
-from yarpy.transports.cgroup import OWN, ROOT, groups
+from yarpy.transports.shared.cgroup import OWN, ROOT, groups
 
 
 def cores() -> int:

@@ -7,22 +7,21 @@ ended, its counter is kept, not the link, which holds on to buffers.
 
 from __future__ import annotations
 
-import threading
 import time
-from collections import deque
 from dataclasses import asdict, dataclass
-from typing import Final
+from typing import Final, TypeAlias
 
 _SMOOTHING = 1 / 16  # the gain RFC 3550 uses for jitter
-SUMMED: Final = ("messages", "bytes", "drops", "unconfirmed")
+SUMMED: Final = ("messages", "bytes", "replaced", "drops", "unconfirmed")
 KEEP: Final = 64  # counters of ended links, which may still change a little
 
 
 @dataclass(slots=True)
 class Counter:
-    """`messages` and `bytes` carried, `drops` (messages this side did not pass on), `unconfirmed`
-    (on their way when the connection broke: some may have arrived), and timing. No message is in
-    two of these.
+    """`messages` and `bytes` carried, `replaced` (messages that gave way to newer ones, where the
+    newest wins), `drops` (messages that this side lost, or a monitor dropped), `unconfirmed` (on
+    their way when the connection broke: some may have arrived), and timing. No message is in two of
+    these.
 
     `period` is the smoothed time between messages, `jitter` the smoothed change of it (as RFC 3550
     does it), `latency` the smoothed time from sending to the reply or acknowledgement. Seconds;
@@ -31,6 +30,7 @@ class Counter:
 
     messages: int = 0
     bytes: int = 0
+    replaced: int = 0
     drops: int = 0
     unconfirmed: int = 0
     period: float = 0.0
@@ -39,14 +39,14 @@ class Counter:
     since: float = 0.0
     last: float = 0.0
 
-    def count(self, now: float) -> None:
-        """One more message at time `now` (time.perf_counter)."""
-        self.messages += 1
+    def count(self, now: float, more: int = 1) -> None:
+        """Count a message at time `now` (time.perf_counter); 0 `more`: it is counted already."""
+        self.messages += more
         gap = now - self.last
         if self.messages > 2:
             change = gap - self.period
             self.period += change * _SMOOTHING
-            self.jitter += (abs(change) - self.jitter) * _SMOOTHING
+            self.jitter += ((change if change > 0.0 else -change) - self.jitter) * _SMOOTHING
         elif self.messages == 2:
             self.period = gap
         self.last = now
@@ -73,35 +73,45 @@ class Counter:
         return {**found, "rate": self.rate}
 
 
+_State: TypeAlias = tuple[tuple[int, ...], tuple[tuple[Counter, int], ...]]
+
+
 class Past:
-    """Sums of `messages`, `bytes`, `drops` and `unconfirmed` over connections that have ended.
+    """Sums of the counts in SUMMED over connections that have ended.
 
     The last counters may still change, when what waited unread is dropped later; older ones are
-    added up for good.
+    added up for good. Whoever adds holds the lock of the connections; whoever looks holds none,
+    since a signal handler above may need that one.
     """
 
     def __init__(self) -> None:
-        self._sums = [0, 0, 0, 0]
-        self._last: deque[tuple[Counter, int]] = deque()
-        self._lock = threading.Lock()  # connections end in threads of their own
+        # The sums, and the last counters with drops that these do not include: replaced as one.
+        self._state: _State = ((0,) * len(SUMMED), ())
 
     def add(self, counter: Counter, lost: int = 0) -> None:
-        """A connection has ended; `lost` are drops that its counter does not include."""
-        with self._lock:
-            self._last.append((counter, lost))
-            if len(self._last) > KEEP:
-                self._sums = _sum(self._sums, *self._last.popleft())
+        """A connection has ended; `lost` are drops that its counter does not include. Once is
+        enough."""
+        while True:
+            state = self._state
+            sums, last = state
+            if any(one is counter for one, _ in last):
+                return
+            last = (*last, (counter, lost))
+            if len(last) > KEEP:
+                sums, last = _sum(sums, *last[0]), last[1:]
+            if self._state is state:  # else a signal handler has added another one meanwhile
+                self._state = sums, last
+                return
 
     def as_dict(self) -> dict[str, int]:
         """The sums by name."""
-        with self._lock:
-            sums = self._sums
-            for counter, lost in self._last:
-                sums = _sum(sums, counter, lost)
+        sums, last = self._state
+        for counter, lost in last:
+            sums = _sum(sums, counter, lost)
         return dict(zip(SUMMED, sums, strict=True))
 
 
-def _sum(sums: list[int], counter: Counter, lost: int) -> list[int]:
+def _sum(sums: tuple[int, ...], counter: Counter, lost: int) -> tuple[int, ...]:
     found = [before + getattr(counter, key) for before, key in zip(sums, SUMMED, strict=True)]
     found[SUMMED.index("drops")] += lost
-    return found
+    return tuple(found)

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from yarpy.errors import LocalProtocolError
-from yarpy.link.inbound import Inbound
-from yarpy.link.outbound import Outbound
+from yarpy.link.receive.inbound import Inbound
+from yarpy.link.send.outbound import Outbound
 from yarpy.qos import Qos, Sched, check, packets_name, schedule, scheduled
 
 
@@ -69,7 +69,8 @@ def grant(link: Inbound | Outbound, qos: Qos) -> None:
 
 
 def effective(link: Inbound | Outbound) -> Qos:
-    """What the system really does for a connection; without a thread of its own, no scheduling."""
+    """Return the scheduling and packet priority that a connection really has; without a thread of
+    its own, no scheduling."""
     thread = thread_of(link)
     sched = scheduled(thread) if thread >= 0 else Sched()
     found = Qos.of(sched, link.driver.transport.tos())

@@ -14,7 +14,7 @@ log = logger("yarpy.link")
 
 
 def number(name: str, default: int) -> int:
-    """What the variable `name` says, or `default`."""
+    """Return the number that the environment variable `name` gives, or `default`."""
     return _read(name, os.environ.get(name, ""), default)
 
 

@@ -25,7 +25,8 @@ OLDEST: Final = 3600.0  # a message that is older is played back
 
 
 class Timing:
-    """What is expected of a connection, and how it went. Seconds, and messages per second.
+    """The deadline and rate expected of a connection, and how well it keeps them. Seconds, and
+    messages per second.
 
     `missed` messages were late or did not come when they should; `late` of these were dropped for
     it; `worst` is the longest delay beyond the deadline; `missing` messages did not come at all, as
@@ -101,7 +102,7 @@ class Timing:
             self._tell(late, silent)
 
     def as_dict(self) -> dict[str, Any]:
-        """What is expected, and how it went until now."""
+        """Return what is expected, and how it went until now."""
         self.look()
         found: dict[str, Any] = {}
         if self.deadline is not None:
@@ -140,14 +141,9 @@ class Dated(NamedTuple):
     due: float
 
 
-def time_left(packet: Packet, limit: float) -> float:
-    """Seconds after which a packet that is written now is too late."""
-    age = age_of(packet.envelope.decode()) if packet.envelope else None
-    return limit - max(age or 0.0, 0.0)
-
-
 def expected(before: Qos | None, wanted: Qos) -> Qos:
-    """What is expected of a connection from now on; what is None in `wanted` stays, 0 ends it."""
+    """Return the QoS that is expected of a connection from now on; what is None in `wanted` stays,
+    0 ends it."""
     before = before or Qos()
     deadline = before.deadline if wanted.deadline is None else wanted.deadline
     rate = before.rate if wanted.rate is None else wanted.rate

@@ -69,7 +69,8 @@ class Competitor:
             self.active = True
 
     def _refractory(self, stimulus: float) -> bool:
-        """Whether messages cannot stimulate it: a neuron that is firing, or recovering from it."""
+        """Return whether messages cannot stimulate it: a neuron that is firing, or recovering from
+        it."""
         return self.rest > 0 and not 0 <= stimulus < THRESHOLD
 
 
@@ -105,7 +106,8 @@ class Contest:
         self._outcomes.clear()
 
     def decide(self, arrived: Competitor, now: float) -> bool:
-        """Whether a message that `arrived` delivers at `now` may pass. Raises Inconsistent."""
+        """Return whether a message that `arrived` delivers at `now` may pass. Raises
+        Inconsistent."""
         arrived.stimulate(now)
         return self.outcome(now).winner is arrived
 

@@ -105,7 +105,7 @@ class Place:
     is the port's largest message in bytes, which also holds for a monitor's results. `names` is the
     port's name client, to find other ports. `look` returns where a file may be, by its name and the
     contexts of robot and program. `foreign`: the monitor was requested over the network, not by the
-    program that owns the port.
+    program that owns the port. `scripts`: who requested it may name scripts of a context.
     """
 
     source: str
@@ -119,6 +119,7 @@ class Place:
     names: Any = None
     look: Callable[[str, Sequence[str]], Iterable[Path]] = _here
     foreign: bool = False
+    scripts: bool = False
 
     def __str__(self) -> str:
         if not self.carrier:
@@ -144,7 +145,8 @@ class Place:
         return default if value is None else value.to_text() if isinstance(value, Bottle) else value
 
     def flag(self, key: str) -> bool:
-        """Whether a word is present and not switched off (`+key`, `+key.1`; not `+key.0`)."""
+        """Return whether a word is present and not switched off (`+key`, `+key.1`; not
+        `+key.0`)."""
         value = self.find(key)
         return value is not None and value not in ("0", "off", "false")
 

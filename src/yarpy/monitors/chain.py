@@ -19,7 +19,7 @@ from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.log import logger
 from yarpy.monitors.base import DROP, FAILURES, Group, Place, Taken
-from yarpy.route import CarrierSpec
+from yarpy.route import CarrierSpec, Route
 from yarpy.wire.message import Message, Packet
 
 log = logger("yarpy.monitors")
@@ -56,8 +56,21 @@ def from_carrier(spec: CarrierSpec, place: Place) -> list[object]:
     return made
 
 
+def refused_there(spec: CarrierSpec, route: Route) -> str:
+    """Return what is likely to be wrong with the monitors of the receiver's end, which hung up:
+    what is wrong with them here."""
+    monitors = ", ".join(name for name, _ in spec.recv)
+    there = f"its log tells what is wrong with {monitors} there"
+    place = Place(route.source, route.target, spec.whole, foreign=True)
+    try:
+        Chain(from_carrier(spec, place), "").close()
+    except YarpError as error:
+        return f"most likely {error} ({there})"
+    return there
+
+
 class _Tally:
-    """What one monitor has dropped, and what went wrong in it last."""
+    """The count of what one monitor has dropped, and its last failure."""
 
     __slots__ = ("dropped", "failure")
 
@@ -86,7 +99,7 @@ class Chain:
         )
         self._watchers = tuple(one for one in monitors if hasattr(one, "confirmed"))
         self._replies = tuple(one.update_reply for one in monitors if hasattr(one, "update_reply"))
-        self._lock = threading.Lock()  # several writers may use one connection
+        self._lock = threading.RLock()  # several writers may use one connection
         self._told: set[str] = set()
 
     # -- messages ---------------------------------------------------------------------------------
@@ -155,7 +168,7 @@ class Chain:
 
     @property
     def watches(self) -> bool:
-        """Whether a monitor wants to know when messages are confirmed."""
+        """Return whether a monitor wants to know when messages are confirmed."""
         return bool(self._watchers)
 
     def watch(self, under_way: Callable[[], int]) -> None:
@@ -215,7 +228,7 @@ class Chain:
 
     @property
     def failures(self) -> list[str]:
-        """What went wrong last in each monitor, "" where nothing did."""
+        """Return the last failure of each monitor, "" where there was none."""
         return [tally.failure for tally in self._tallies]
 
     def close(self) -> None:

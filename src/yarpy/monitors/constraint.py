@@ -12,12 +12,12 @@ from collections.abc import Callable
 from typing import Final, TypeAlias
 
 from yarpy.errors import LocalProtocolError
+from yarpy.limit import CONSTRAINT_DEPTH
 
 RESERVED: Final = frozenset(("true", "false", "and", "or", "not"))
 
 _TOKEN: Final = re.compile(r"[()]|[^\s()]+")
 _LONGEST: Final = 10_000  # characters
-_DEEPEST: Final = 100  # parentheses and `not`s inside each other
 
 Has: TypeAlias = Callable[[str], bool]
 
@@ -39,7 +39,8 @@ class Constraint:
             raise self._wrong(f'"{self._tokens[self._next]}" is superfluous')
 
     def holds(self, has: Has) -> bool:
-        """Whether it is true. `has` says whether an event of that name is set."""
+        """Return whether the constraint is true. `has` says whether an event of that name is
+        set."""
         return self._holds(has)
 
     def _wrong(self, what: str) -> LocalProtocolError:
@@ -69,8 +70,8 @@ class Constraint:
         return parts[0] if len(parts) == 1 else lambda has: all(part(has) for part in parts)
 
     def _one(self, depth: int) -> Callable[[Has], bool]:
-        if depth > _DEEPEST:
-            raise self._wrong(f"more than {_DEEPEST} levels")
+        if depth > CONSTRAINT_DEPTH:
+            raise self._wrong(f"more than {CONSTRAINT_DEPTH} levels")
         if self._take("not"):
             inner = self._one(depth + 1)
             return lambda has: not inner(has)

@@ -8,16 +8,15 @@ outlives its monitor, and an expired one hides another monitor's.)
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable
 from math import inf
 from typing import Final
 
+from yarpy import fork
 from yarpy.errors import LocalProtocolError
+from yarpy.limit import SCRIPT_EVENTS
 from yarpy.monitors.constraint import RESERVED
-
-MOST: Final = 1000  # events of one owner
 
 
 class Events:
@@ -25,14 +24,15 @@ class Events:
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self._lock = threading.Lock()  # monitors of all connections share this
+        self._lock = fork.lock()  # monitors of all connections share this
         self._ends: dict[str, dict[object, float]] = {}
         self._names: dict[object, set[str]] = {}
 
     def set(self, owner: object, name: str, lifetime: float | None = None) -> None:
         """Set or renew an event for `lifetime` seconds; None or below 0: until it is unset.
 
-        Raises LocalProtocolError for a name that no constraint could test, and beyond MOST.
+        Raises LocalProtocolError for a name that no constraint could test, and
+        beyond SCRIPT_EVENTS.
         """
         if name in RESERVED or not name or any(c.isspace() or c in "()" for c in name):
             words = ", ".join(sorted(RESERVED))
@@ -41,11 +41,13 @@ class Events:
         with self._lock:
             now = self._clock()
             mine = self._names.setdefault(owner, set())
-            if name not in mine and len(mine) >= MOST:
+            if name not in mine and len(mine) >= SCRIPT_EVENTS:
                 for other in [n for n in mine if self._ends[n][owner] <= now]:
                     self._drop(owner, other)
-                if len(mine) >= MOST:
-                    raise LocalProtocolError(f"a monitor cannot set more than {MOST} events")
+                if len(mine) >= SCRIPT_EVENTS:
+                    raise LocalProtocolError(
+                        f"a monitor cannot set more than {SCRIPT_EVENTS} events"
+                    )
             mine.add(name)
             self._ends.setdefault(name, {})[owner] = inf if forever else now + (lifetime or 0)
 
@@ -63,7 +65,7 @@ class Events:
             self._names.pop(owner, None)
 
     def has(self, name: str) -> bool:
-        """Whether the event is set now."""
+        """Return whether the event is set now."""
         with self._lock:
             ends = self._ends.get(name)
             if not ends:

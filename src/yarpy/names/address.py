@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import socket
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from functools import cache, lru_cache
 from typing import Any
 
-from yarpy.contact import host_zid
+from yarpy import registry
 
 LOOPBACK = "127.0.0.1"
 
@@ -32,7 +32,7 @@ def plain_host(text: str) -> str:
 
 @lru_cache(maxsize=256)
 def is_loopback(host: str) -> bool:
-    """Whether only this computer can reach `host`."""
+    """Return whether only this computer can reach `host`."""
     if host == "localhost":
         return True
     import ipaddress  # late: 4 ms at import for one question
@@ -50,7 +50,8 @@ def local_addresses() -> list[str]:
     """
     try:
         found = list(_interface_addresses())
-    except (OSError, AttributeError, ValueError):  # no getifaddrs here, or a strange one
+    # No getifaddrs here, or a strange one. Windows, which knows all by its own name, takes no None.
+    except (OSError, AttributeError, ValueError, TypeError):
         found = []
     if not found:
         found = [LOOPBACK, *_addresses_of_own_name()]
@@ -58,11 +59,11 @@ def local_addresses() -> list[str]:
 
 
 def is_local(host: str) -> bool:
-    """Whether `host` is an address or a name of this computer."""
+    """Return whether `host` is an address or a name of this computer."""
     host = plain_host(host)
     if is_loopback(host):
         return True
-    if host_zid(host):
+    if registry.transports.of_host(host).hosts:
         return False  # no name of DNS
     local = set(local_addresses())
     if host in local:
@@ -72,29 +73,6 @@ def is_local(host: str) -> bool:
     except (OSError, UnicodeError):
         return False
     return any(plain_host(str(entry[4][0])) in local for entry in entries)
-
-
-def address_towards(
-    connection: socket.socket | None,
-    environment: Mapping[str, str],
-    addresses: Iterable[str] | None = None,
-) -> str:
-    """The address of this computer that the other side of `connection` can reach.
-
-    `YARP_IP` is a prefix that wins if one of our addresses begins with it.
-    Otherwise it is the local end of the connection: on a computer with several networks, the one
-    that leads to the name server. Without a connection: the best guess of `outward_address`.
-    """
-    prefix = environment.get("YARP_IP", "")
-    if prefix:
-        for address in local_addresses() if addresses is None else addresses:
-            if address.startswith(prefix):
-                return address
-    if connection is not None and connection.family in (socket.AF_INET, socket.AF_INET6):
-        host = plain_host(str(connection.getsockname()[0]))
-        if host not in ("", "0.0.0.0", "::"):
-            return host
-    return outward_address(addresses)
 
 
 def outward_address(addresses: Iterable[str] | None = None) -> str:
@@ -118,7 +96,7 @@ def _addresses_of_own_name() -> Iterator[str]:
 
 
 def _interface_addresses() -> Iterator[str]:
-    """What `getifaddrs` of the C library lists (Linux, macOS, the BSDs)."""
+    """Yield the addresses that `getifaddrs` of the C library lists (Linux, macOS, the BSDs)."""
     import ctypes  # late: 5 ms, and only processes that open ports need it
 
     library, link = _library()

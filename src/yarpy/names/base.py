@@ -1,4 +1,4 @@
-"""What a port needs of a name service. Ports are written against this and nothing else.
+"""The contract of a name service with ports, which are written against this and nothing else.
 
 Rules: a client may be used from any thread. `NoNameServer` means that no server answered; an
 unknown name is None, not an error.
@@ -80,6 +80,37 @@ class Medium(Protocol):
     def listen(self, port: int, welcome: Callable[[Any], object], /) -> Callable[[], None]:
         """Let the port with that TCP port number be called: `welcome` gets each connection, a
         transport, in a thread of its own. Returns what ends that."""
+        ...
+
+
+@runtime_checkable
+class Foreign(Protocol):
+    """A name service of another system, which is no name server of YARP's.
+
+    title: "names on Zenoh". instead: what those do who want a topic or a persistent connection,
+    which only a name server keeps. hint: what to do where nobody answers. A plug-in of the group
+    `yarpy.names` is called with what the configuration says, `open_names(host, port, namespace)`,
+    with "" and 0 for the usual place, and returns a NameClient that is this, too.
+    """
+
+    title: str
+    instead: str
+    hint: str
+
+    def place(self) -> str:
+        """Return where it is, for people. Raises NoNameServer."""
+        ...
+
+    def address(self) -> tuple[str, int]:
+        """Return what a configuration file says of where it is: a host and a number."""
+        ...
+
+    def alive(self) -> bool:
+        """Return whether it can be used now."""
+        ...
+
+    def line(self, contact: Contact) -> str:
+        """Return how `yarpy name list` shows an entry."""
         ...
 
 

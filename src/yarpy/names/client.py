@@ -11,14 +11,15 @@ may be repeated without harm.
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import socket
-import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
-from typing import Any, Literal, TypeVar
+from typing import Any, Final, Literal, TypeVar
 
+from yarpy import fork, scope
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
@@ -28,19 +29,24 @@ from yarpy.errors import (
     DecodeError,
     LinkClosed,
     NoNameServer,
+    PortClosed,
     RemoteProtocolError,
+    Timeout,
     YarpError,
 )
+from yarpy.limit import NAME_REPLY
 from yarpy.names.base import Contacts, Strings, Values
 from yarpy.names.registration_line import END, PREFIX, parse_registration
 from yarpy.transports.peer_timeout import notice_death
+from yarpy.transports.tcp import connected
 from yarpy.transports.tls_setting import required
 from yarpy.wire.framing import refused
 
+TIMEOUT: Final = 5.0  # seconds for a command
 IDLE = 10.0  # seconds after which an unused connection is not trusted any more
 SPARE = 2  # connections of each kind that are kept for the next command
 WHO = 1.0  # seconds to find out what listens there when it does not answer
-LARGEST = 64 << 20  # bytes of one whole reply
+SHARE: Final = 0.8  # of the time of a call, for the answer; the rest is for finding that out
 
 _ACK = "<ACK>"
 _FAILED = ("[fail]", "fail")
@@ -62,10 +68,12 @@ class _Line:
         self.kind = kind
         self.used = time.monotonic()
         self.process = os.getpid()
+        self.until = math.inf  # of what is being said, as of time.monotonic()
         self._buffer = bytearray()
 
     def send(self, data: bytes) -> None:
         try:
+            self.connection.settimeout(self._left())
             self.connection.sendall(data)
         except TimeoutError:
             raise
@@ -77,9 +85,10 @@ class _Line:
         start = 0
         while (end := self._buffer.find(b"\n", start)) < 0:
             start = len(self._buffer)
-            if start > LARGEST:
-                raise RemoteProtocolError(f"a name server's line of more than {LARGEST} bytes")
+            if start > NAME_REPLY:
+                raise RemoteProtocolError(f"a name server's line of more than {NAME_REPLY} bytes")
             try:
+                self.connection.settimeout(self._left())
                 data = self.connection.recv(65_536)
             except TimeoutError:
                 raise
@@ -92,9 +101,23 @@ class _Line:
         del self._buffer[: end + 1]
         return text.decode("utf-8", "surrogateescape")
 
+    def _left(self) -> float | None:
+        """The seconds for what comes next. Raises TimeoutError."""
+        if self.until == math.inf:
+            return None
+        left = self.until - time.monotonic()
+        if left <= 0.0:
+            raise TimeoutError("timed out")
+        return left
+
+    def wake(self) -> None:
+        """Free a thread that waits for the server."""
+        with contextlib.suppress(OSError):
+            self.connection.shutdown(socket.SHUT_RDWR)
+
     @property
     def clean(self) -> bool:
-        """Whether nothing is left over from the last command."""
+        """Return whether nothing is left over from the last command."""
         return not self._buffer
 
     def close(self) -> None:
@@ -105,7 +128,7 @@ class _Line:
 class YarpNameClient:
     """A `NameClient` that asks the name server at `host`:`port`.
 
-    timeout: seconds for connecting and for each part of a reply.
+    timeout: seconds for a whole command; less, where the call under way has less left.
     own_host: what to register when `register` is given no host (`YARP_IP`); normally "", and
     the server takes the address it sees.
     prepare: called with each new connection before anything else (the handshake of auth.conf).
@@ -115,20 +138,25 @@ class YarpNameClient:
 
     def __init__(
         self,
-        host: str,
-        port: int,
-        timeout: float = 10.0,
+        host: str = "",
+        port: int = 0,
+        timeout: float = TIMEOUT,
         *,
         own_host: str = "",
         prepare: Prepare | None = None,
     ) -> None:
+        self._idle: list[_Line] = []
+        if not (host and port):
+            raise TypeError(
+                "which name server? YarpNameClient(host, port) asks that one; ports that are given "
+                "no `names` ask the one that `yarpy where` shows"
+            )
         self.host = host
         self.port = port
         self.timeout = timeout
         self.own_host = own_host
         self._prepare = prepare
-        self._idle: list[_Line] = []
-        self._lock = threading.Lock()  # guards the list only, never held across I/O
+        self._lock = fork.lock()  # guards the list only, never held across I/O
 
     # --- the NameClient
 
@@ -163,7 +191,11 @@ class YarpNameClient:
         self.command("unregister", name)
 
     def query(self, name: str) -> Contact | None:
-        lines = self.command("query", name)
+        if any(line.kind == "acked" for line in self._idle):  # one connection less to make
+            words = ["query", name]
+            lines = [*map(plain_text, self.request(words))]
+        else:
+            lines = self.command("query", name)
         return parse_registration(lines[0]) if lines else None
 
     def announce(self, name: str, ok: bool = True) -> None:
@@ -239,31 +271,26 @@ class YarpNameClient:
         return reply
 
     def connect(self) -> socket.socket:
-        """A bare connection to the server: it ends when the server does.
+        """A bare connection to the server, on which nothing is said, nor TLS begun: it ends when
+        the server does.
 
         Raises NoNameServer.
         """
-        return self._open("lines").connection
+        return self._open("lines", bare=True).connection
+
+    @property
+    def proves_key(self) -> bool:
+        """Return whether each connection begins with a proof (auth.conf)."""
+        return self._prepare is not None
 
     def alive(self) -> bool:
-        """Whether something listens at the server's address."""
+        """Return whether something listens at the server's address."""
         try:
             line = self._open("lines")
         except NoNameServer:
             return False
         line.close()
         return True
-
-    @property
-    def local_address(self) -> str:
-        """The address of this computer that leads to the server. Raises NoNameServer."""
-        from yarpy.names.address import plain_host
-
-        line = self._open("lines")
-        try:
-            return plain_host(str(line.connection.getsockname()[0]))
-        finally:
-            line.close()
 
     # --- inside
 
@@ -283,46 +310,59 @@ class YarpNameClient:
         return Contact(host=self.host, port=self.port).address
 
     def _ask(self, kind: Literal["lines", "acked"], talk: Callable[[_Line], _T]) -> _T:
-        line = self._borrow(kind)
-        if line is not None:
+        seconds = self._patience()
+        until = time.monotonic() + seconds
+        try:
+            line = self._borrow(kind)
+            if line is not None:
+                try:
+                    return self._talk(line, talk, until)
+                except _Gone:
+                    pass  # perhaps the server was restarted: try once more on a new connection
             try:
-                return self._talk(line, talk)
-            except _Gone:
-                pass  # perhaps the server was restarted: try once more on a new connection
-        try:
-            return self._talk(self._open(kind), talk)
-        except _Gone as error:
-            raise self._nobody(f"hung up: {error}") from error
-
-    def _talk(self, line: _Line, talk: Callable[[_Line], _T]) -> _T:
-        try:
-            reply = talk(line)
+                return self._talk(self._open(kind, until), talk, until)
+            except _Gone as error:
+                raise self._nobody(f"hung up: {error}") from error
         except TimeoutError as error:
-            line.close()
-            raise self._silent() from error
+            if isinstance(error, YarpError):  # the time was over before anybody was asked
+                raise
+            raise self._silent(seconds) from error
+
+    def _patience(self) -> float:
+        """The seconds for a command. Raises Timeout if the call under way has none left."""
+        whole = scope.left()
+        return self.timeout if whole == math.inf else min(self.timeout, SHARE * whole)
+
+    def _talk(self, line: _Line, talk: Callable[[_Line], _T], until: float) -> _T:
+        line.until = until
+        try:
+            with scope.waking(line.wake):
+                reply = talk(line)
         except BaseException:
             line.close()
             raise
         self._give_back(line)
         return reply
 
-    def _open(self, kind: Literal["lines", "acked"]) -> _Line:
+    def _open(
+        self, kind: Literal["lines", "acked"], until: float | None = None, bare: bool = False
+    ) -> _Line:
+        if until is None:
+            until = time.monotonic() + self._patience()
         try:
-            connection = socket.create_connection((self.host, self.port), self.timeout)
-        except (OSError, UnicodeError) as error:
+            connection = connected(self.host, self.port, until - time.monotonic())
+        except (Timeout, PortClosed):
+            raise
+        except (OSError, AddressError) as error:
             raise self._nobody(str(error)) from error
         line = _Line(connection, kind)
+        line.until = until
         try:
-            with contextlib.suppress(OSError):
-                connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            notice_death(connection)
-            if required():
-                line.connection = connection = _in_tls(connection, self.host)
-            if self._prepare is not None:
-                self._prepare(connection)
-            if kind == "acked":
-                line.send(b"CONNACK admin\r\n")
-                line.line()  # "Welcome admin"
+            with scope.waking(line.wake):
+                self._greet(line, bare)
+        except (Timeout, PortClosed):
+            line.close()
+            raise
         except (_Gone, OSError, LinkClosed, RemoteProtocolError) as error:
             line.close()
             raise self._nobody(str(error)) from error
@@ -330,6 +370,21 @@ class YarpNameClient:
             line.close()
             raise
         return line
+
+    def _greet(self, line: _Line, bare: bool) -> None:
+        """Say what comes before any command; with `bare` not in TLS."""
+        connection = line.connection
+        connection.settimeout(max(0.001, line.until - time.monotonic()))
+        with contextlib.suppress(OSError):
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        notice_death(connection)
+        if required() and not bare:
+            line.connection = connection = _in_tls(connection, self.host)
+        if self._prepare is not None:
+            self._prepare(connection)
+        if line.kind == "acked":
+            line.send(b"CONNACK admin\r\n")
+            line.line()  # "Welcome admin"
 
     def _borrow(self, kind: str) -> _Line | None:
         now, process = time.monotonic(), os.getpid()
@@ -357,12 +412,11 @@ class YarpNameClient:
                 return
         line.close()
 
-    def _silent(self) -> NoNameServer:
-        """The error for a server that accepts but is silent: perhaps it is no name server."""
+    def _silent(self, seconds: float) -> NoNameServer:
+        """The error for a server that accepts but was silent: perhaps it is no name server."""
         found: str | None = None
         with contextlib.suppress(_Gone, OSError, YarpError):
-            line = self._open("acked")
-            line.connection.settimeout(WHO)
+            line = self._open("acked", time.monotonic() + scope.left(WHO))
             try:
                 line.send(b"*\r\n")
                 found = line.line()  # This is /name at tcp://host:port/
@@ -370,7 +424,7 @@ class YarpNameClient:
                 line.close()
         if found is not None and found.startswith("This is /"):
             return self._ordinary(found.split()[2])
-        return self._nobody(f"did not answer within {self.timeout:g} s")
+        return self._nobody(f"did not answer within {seconds:.2g} s")
 
     def _ordinary(self, name: str = "") -> NoNameServer:
         return NoNameServer(
@@ -397,8 +451,8 @@ def _old_style(line: _Line, command: str) -> list[str]:
             except DecodeError:
                 return []
         size += len(text) + 2
-        if size > LARGEST:
-            raise RemoteProtocolError(f"a name server's reply of more than {LARGEST} bytes")
+        if size > NAME_REPLY:
+            raise RemoteProtocolError(f"a name server's reply of more than {NAME_REPLY} bytes")
         lines.append(text)
     return lines
 
@@ -412,8 +466,8 @@ def _acknowledged(line: _Line, *commands: str) -> list[list[str]]:
         lines: list[str] = []
         while (text := line.line()) != _ACK:
             size += len(text) + 2
-            if size > LARGEST:
-                raise RemoteProtocolError(f"a name server's reply of more than {LARGEST} bytes")
+            if size > NAME_REPLY:
+                raise RemoteProtocolError(f"a name server's reply of more than {NAME_REPLY} bytes")
             lines.append(text)
         replies.append(lines)
     return replies

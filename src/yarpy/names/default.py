@@ -9,12 +9,10 @@ from __future__ import annotations
 
 import os
 import socket
-import sys
-import threading
-from typing import TYPE_CHECKING
 
+from yarpy import fork
 from yarpy.carriers.auth import prove_initiator
-from yarpy.config.configuration import ZENOH, Server, configuration
+from yarpy.config.configuration import YARP, Server, configuration
 from yarpy.config.resource import find_file
 from yarpy.data.text import plain_text
 from yarpy.errors import AddressError, NoNameServer
@@ -24,9 +22,6 @@ from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
 from yarpy.wire.stream import ByteStream
 
-if TYPE_CHECKING:
-    from yarpy.names.zenoh import ZenohNames
-
 
 class DefaultNames:
     """The process's choice. There is one instance, `DEFAULT`, since all ports share it."""
@@ -35,7 +30,7 @@ class DefaultNames:
         self._stack: list[NameClient] = []
         self._servers: tuple[Server, ...] = ()
         self._configured: NameClient | None = None
-        self._lock = threading.Lock()  # ports are opened from any thread
+        self._lock = fork.lock()  # ports are opened from any thread
 
     def push(self, client: NameClient) -> None:
         """Make `client` the default until `pop`."""
@@ -46,10 +41,6 @@ class DefaultNames:
         """Undo `push`, in whatever order."""
         with self._lock:
             self._stack = [item for item in self._stack if item is not client]
-
-    def start_over(self) -> None:
-        """A new lock for a forked process: the thread that held the old one may not exist there."""
-        self._lock = threading.Lock()
 
     def current(self) -> NameClient:
         """The service to use now. Raises NoNameServer when none is configured."""
@@ -73,28 +64,14 @@ class DefaultNames:
 
 
 def default_client(server: Server) -> NameClient:
-    """A client for a configured server, or ROS master."""
-    if server.mode == "ros":
-        from yarpy.names.ros import RosNames
-        from yarpy.names.ros_master import RosMaster, uri_of
+    """Return a client for a configured name service. Raises UnknownPlugin for one whose kind is
+    not installed."""
+    if server.mode == YARP:
+        return client_of(server)
+    from yarpy.registry import names
 
-        return RosNames(RosMaster(uri_of(server.host, server.port)), server.namespace)
-    if server.mode == ZENOH:
-        from yarpy.names.zenoh import ZenohNames
-
-        where = f"{server.host}:{server.port}" if server.port else server.host
-        return ZenohNames(where, server.namespace)
-    return client_of(server)
-
-
-def on_zenoh(names: NameClient) -> ZenohNames | None:
-    """`names`, or the first of several, if it is names on Zenoh."""
-    if "yarpy.names.zenoh" not in sys.modules:
-        return None
-    from yarpy.names.zenoh import ZenohNames
-
-    found = names.clients[0] if isinstance(names, SeveralNames) else names
-    return found if isinstance(found, ZenohNames) else None
+    client: NameClient = names.load(server.mode)(server.host, server.port, server.namespace)
+    return client
 
 
 def client_of(server: Server) -> YarpNameClient:

@@ -22,11 +22,11 @@ from collections.abc import Callable, Iterable
 
 from yarpy.contact import Contact
 from yarpy.errors import DecodeError
+from yarpy.limit import DISCOVERY_DATAGRAM
 from yarpy.names.registration_line import PREFIX, parse_registration
 
 GROUP = "224.2.1.1"
 MOST = 100  # servers that are told of
-LARGEST = 65_507  # bytes of payload in one UDP datagram over IPv4
 
 _HEADER = struct.Struct("<Ii")
 
@@ -81,7 +81,7 @@ def search(
             while (left := deadline - time.monotonic()) > 0:
                 listener.settimeout(left)
                 try:
-                    contact = parse_registration(decode_datagram(listener.recv(LARGEST)))
+                    contact = parse_registration(decode_datagram(listener.recv(DISCOVERY_DATAGRAM)))
                 except (DecodeError, OSError):
                     continue  # others talk in this group too, and our own question comes back
                 if contact is not None and contact.name == namespace:
@@ -104,7 +104,7 @@ def search_all(
         while (left := deadline - time.monotonic()) > 0 and len(found) < MOST:
             listener.settimeout(left)
             try:
-                contact = parse_registration(decode_datagram(listener.recv(LARGEST)))
+                contact = parse_registration(decode_datagram(listener.recv(DISCOVERY_DATAGRAM)))
             except (DecodeError, OSError):
                 continue  # as above
             if contact is not None and contact.name in asked and contact not in found:
@@ -162,7 +162,7 @@ class Responder:
             selector.register(sleeper, selectors.EVENT_READ)
             while all(key.fileobj is listener for key, _ in selector.select()):
                 try:
-                    reply = respond(listener.recv(LARGEST), self.answer)
+                    reply = respond(listener.recv(DISCOVERY_DATAGRAM), self.answer)
                     if reply is not None:
                         sender.sendto(reply, (self.group, self.port))
                 except OSError:

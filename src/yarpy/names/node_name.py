@@ -57,7 +57,7 @@ class NodeName:
 
     @property
     def is_service(self) -> bool:
-        """Whether it is a service, not a topic."""
+        """Return whether it is a service, not a topic."""
         return self.category in (CLIENT, SERVER)
 
     def having(self, category: Category) -> NodeName:
@@ -69,7 +69,7 @@ class NodeName:
 
 
 def parse_node_name(text: str) -> NodeName | None:
-    """What the name of a port says; None for that of an ordinary port.
+    """Parse the name of a port that belongs to a node of ROS; None for that of an ordinary port.
 
     Raises AddressError for a topic or node that does not begin with a slash.
     """

@@ -64,5 +64,6 @@ def plain(text: str) -> str:
 
 
 def is_last(line: str) -> bool:
-    """Whether a C++ client stops reading here: more than one character, beginning with * or [."""
+    """Return whether a C++ client stops reading here: more than one character, beginning with * or
+    [."""
     return len(line) > 1 and line[0] in "*["

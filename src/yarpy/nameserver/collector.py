@@ -22,8 +22,12 @@ from typing import Final
 
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
+from yarpy.limit import number_in
+from yarpy.log import logger
 from yarpy.names.address import local_addresses
 from yarpy.nameserver.command import NameService
+
+log = logger("yarpy.name_server")
 
 INTERVAL: Final = 2.0  # seconds between rounds
 STRIKES: Final = 2
@@ -74,7 +78,10 @@ class Collector:
             self._wake.wait(self._interval)
             self._wake.clear()
             if not self._closed:
-                self.look()
+                try:
+                    self.look()
+                except Exception:
+                    log.exception("a round of looking for dead ports failed; the next one comes")
 
     def look(self) -> None:
         """One round over all names."""
@@ -138,7 +145,7 @@ class Collector:
                     continue
                 process = self._service.store.values(contact.name, "process")
                 if process:
-                    found.append((contact, int(process[0]) if process[0].isdigit() else 0))
+                    found.append((contact, number_in(process[0]) or 0))
         return found
 
     def _judge(self, contact: Contact, refuses: bool) -> None:
@@ -161,7 +168,7 @@ class Collector:
 
 
 def _lives(process: int) -> bool:
-    """Whether there is a process with that number on this host."""
+    """Return whether there is a process with that number on this host."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -172,7 +179,7 @@ def _lives(process: int) -> bool:
 
 
 def _listens(contact: Contact, silent: set[str]) -> bool:
-    """Whether somebody listens there; hosts that do not even refuse go into `silent`."""
+    """Return whether somebody listens there; hosts that do not even refuse go into `silent`."""
     try:
         socket.create_connection((contact.host, contact.port), TIMEOUT).close()
     except ConnectionRefusedError:
@@ -184,8 +191,8 @@ def _listens(contact: Contact, silent: set[str]) -> bool:
 
 
 def _refuses(contact: Contact) -> bool | None:
-    """Whether the host itself says that nothing listens there. None: it is silent, which proves
-    nothing."""
+    """Return whether the host itself says that nothing listens there. None: it is silent, which
+    proves nothing."""
     try:
         socket.create_connection((contact.host, contact.port), TIMEOUT).close()
     except ConnectionRefusedError:

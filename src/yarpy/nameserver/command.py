@@ -1,4 +1,4 @@
-"""What a name server answers: the command language, without any connection.
+"""The command language of a name server, without any connection.
 
     register query unregister list runners set get check route gc help     the registry
     announce subscribe unsubscribe topic untopic type                      topics and rules
@@ -336,7 +336,7 @@ def without_request(command: Sequence[Any]) -> tuple[list[Any], bool]:
 def _registered(
     contact: Contact, nested: bool, events: Sequence[Bottle] = (), actions: Sequence[Action] = ()
 ) -> Reply:
-    """What is said of a port that was registered."""
+    """Return the reply about a port that was registered."""
     if nested:
         return old(broken(port_bottle(contact)), events, actions)
     return old([registration_line(contact)], events, actions)

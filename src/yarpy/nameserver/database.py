@@ -1,8 +1,9 @@
 """Persistence of a name service: every change is written to SQLite a moment later.
 
-Rules: commands never wait for a disk: what changed is noted, and one transaction for each file
-writes all of it, from a thread of its own. `save` does it at once. The layout of the files is in
-`sqlite_tables`.
+Rules: commands do not wait for a disk: what changed is noted, and one transaction for each file
+writes all of it, from a thread of its own. `save` does it at once. A cautious database has the
+answer to a command wait until its changes are on the disk (`settle`); those who wait meanwhile
+share the next transaction. The layout of the files is in `sqlite_tables`.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from pathlib import Path
 from yarpy.errors import AddressError
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.sqlite_tables import PortChanges, PortTable, RuleChanges, RuleTables
+from yarpy.platform.file_lock import hold
 
 DELAY = 0.05  # seconds during which changes are coalesced before they are written
 RETRY = 5.0  # seconds until a write that failed is tried again
@@ -23,7 +25,8 @@ class Database:
     """Persists a `NameService`. An empty path or `:memory:` keeps that half in memory only.
 
     `load` fills the service and watches it from then on; `start` writes in the background;
-    `close` writes what is left. `cautious`: every transaction waits for the disk.
+    `close` writes what is left. `cautious`: every transaction waits for the disk, and `settle` for
+    that.
     """
 
     def __init__(
@@ -33,8 +36,8 @@ class Database:
         *,
         cautious: bool = False,
     ) -> None:
-        """Open or create the files. Raises AddressError for a file that is no such database, or
-        that another server keeps."""
+        """Open or create the files, and read them. Raises AddressError for a file that is no such
+        database, is damaged, or that another server keeps."""
         self._ports: PortTable | None = None
         self._rules: RuleTables | None = None
         self._held: list[int] = []
@@ -51,6 +54,8 @@ class Database:
         self._service: NameService | None = None
         # kind -> keys in the order of their changes; guarded by the service's lock
         self._pending: dict[str, dict[str, None]] = {}
+        self._cautious = cautious
+        self._changing: set[int] = set()  # threads whose commands have changed something
         self._writing = threading.Lock()  # one transaction at a time, from whichever thread
         self._something = threading.Event()
         self._closing = threading.Event()
@@ -58,7 +63,7 @@ class Database:
 
     @property
     def persistent(self) -> bool:
-        """Whether anything is written at all."""
+        """Return whether anything is written to disk."""
         return self._ports is not None or self._rules is not None
 
     def load(self, service: NameService) -> None:
@@ -104,6 +109,17 @@ class Database:
                         self._pending.setdefault(kind, {}).update(keys)
                 raise
 
+    def settle(self) -> None:
+        """If cautious, return when what this thread's commands have changed is on the disk, or has
+        failed to get there, which is logged and tried again."""
+        if not self._cautious or threading.get_ident() not in self._changing:
+            return
+        self._changing.discard(threading.get_ident())
+        try:
+            self.save()
+        except AddressError:
+            self._something.set()  # the thread that writes tells of it, and tries again
+
     def close(self) -> None:
         """Write what is left and close the files."""
         self._closing.set()
@@ -133,6 +149,8 @@ class Database:
 
     def _note(self, kind: str, key: str) -> None:
         self._pending.setdefault(kind, {})[key] = None
+        if self._cautious:
+            self._changing.add(threading.get_ident())
         self._something.set()
 
     def _run(self) -> None:
@@ -152,27 +170,23 @@ class Database:
 def _held(path: str) -> list[int]:
     """The file, held for us alone: two servers would write over each other's registrations.
 
-    Raises AddressError if another server holds it. Nothing where the system has no such locks.
+    Raises AddressError if another server holds it. Nothing where the file system has no locks.
     """
-    try:
-        import fcntl
-    except ImportError:
-        return []
     try:
         file = os.open(path, os.O_RDONLY)
     except OSError:
         return []  # SQLite has opened it in a way of its own
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(file)
-        raise AddressError(
-            f"another name server keeps its names in {path}: end it, or give each a file of its own"
-        ) from None
+        held = hold(file)
     except OSError:  # a file system without locks
         os.close(file)
         return []
-    return [file]
+    if held:
+        return [file]
+    os.close(file)
+    raise AddressError(
+        f"another name server keeps its names in {path}: end it, or give each a file of its own"
+    )
 
 
 def _lasts(path: str | Path) -> bool:

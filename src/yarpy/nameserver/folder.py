@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Final
 
 import yarpy
-from yarpy.carriers.http.page import Pieces
+from yarpy.carriers.web.http.page import Pieces
 
 PREFIX: Final = "/web"
 PIECE: Final = 1 << 16  # bytes of a file that are in memory at a time

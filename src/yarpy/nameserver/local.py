@@ -8,8 +8,7 @@ that are to find each other.
 
 from __future__ import annotations
 
-import threading
-
+from yarpy import fork
 from yarpy.contact import Contact
 from yarpy.errors import AddressError
 from yarpy.names.base import Contacts, Strings
@@ -23,7 +22,7 @@ class LocalNames:
 
     def __init__(self) -> None:
         self._store = NameStore()
-        self._lock = threading.Lock()  # ports are opened and closed from any thread
+        self._lock = fork.lock()  # ports are opened and closed from any thread
 
     def register(
         self,

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Collection, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from typing import Any, Final
 
-from yarpy.carriers.http.page import HTML, Page
+from yarpy.carriers.web.http.page import HTML, Page, Site
 from yarpy.contact import Contact
 from yarpy.nameserver.folder import Folder
 from yarpy.nameserver.survey import Survey
@@ -26,7 +26,7 @@ _HABITS: Final = ("/favicon", "/web/main.css", "/form")
 
 
 class NamePage:
-    """What a server called `name` shows to browsers: a function for `on_page`.
+    """The pages that a server called `name` shows to browsers: a function for `on_page`.
 
     contacts: all registrations. verbs: first words of commands. folder: files at /web/.
     """
@@ -43,22 +43,25 @@ class NamePage:
         self._verbs = verbs
         self._folder = folder
         self._survey = Survey(contacts)
+        self.site = Site({path: partial(_file, *file) for path, file in _FILES.items()})
+        self.site["/ports"] = self._ports
 
-    def __call__(self, path: str, fields: Mapping[str, str]) -> Page | None:
+    def __call__(self, path: str, fields: Mapping[str, str]) -> Page | str | None:
         found = self._folder(path, fields) if self._folder is not None else None
         if found is not None:
             return found
-        if path in _FILES:
-            name, kind = _FILES[path]
-            return Page(_file(name), kind)
-        if path == "/ports":
-            self._survey.want()
-            return Page(json.dumps(self.told()), "application/json")
+        page = self.site(path, fields)
+        if page is not None:
+            return page
         known = path.strip("/").partition("/")[0] in self._verbs
         if known or "admin" in fields or path.startswith(_HABITS):
             return None
         text = "no such page, nor a command of a name server: /help lists them\n"
         return Page(text, "text/plain; charset=utf-8", 404)
+
+    def _ports(self, fields: Mapping[str, str]) -> Page:
+        self._survey.want()
+        return Page(json.dumps(self.told()), "application/json")
 
     def told(self) -> dict[str, Any]:
         """Plain data for the page."""
@@ -83,8 +86,12 @@ class NamePage:
         self._survey.close()
 
 
+def _file(name: str, kind: str, fields: Mapping[str, str]) -> Page:
+    return Page(_text(name), kind)
+
+
 @cache
-def _file(name: str) -> str:
+def _text(name: str) -> str:
     from importlib.resources import files
 
     return files("yarpy.nameserver").joinpath("assets", name).read_text("utf-8")

@@ -41,7 +41,7 @@ HELP = (
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """What to send back, and what else follows from a command.
+    """The reply to a command, and what else follows from it.
 
     `lines`: an old style reply with its end line; empty for a Bottle style one, which is in
     `bottle`. `events`: Bottles for everybody connected to the server's output. `actions`:

@@ -1,4 +1,4 @@
-"""What a command of the name service needs of its sender, where `access.toml` has rules.
+"""The rights that a command to the name service takes, where `access.toml` has rules.
 
 Rules: pure. Every peer that a rule mentions may ask where ports are. To register a name, to change
 it or to take it out needs `register` for that name, and for the names that go with it (`owns`);
@@ -40,7 +40,7 @@ def needed(command: Sequence[Any]) -> list[tuple[str, str]]:
 
 
 def is_old_style(command: Sequence[Any]) -> bool:
-    """Whether the answer to a change is lines, not a Bottle."""
+    """Return whether the answer to a change is lines, not a Bottle."""
     first = plain_text(command[0]) if command else ""
     return first in _OWN - {"announce"} or first in ("NAME_SERVER", "gc")
 

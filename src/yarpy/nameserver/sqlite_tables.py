@@ -16,13 +16,14 @@ write is `database`'s business.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from yarpy.errors import AddressError
+from yarpy.limit import number_in
 from yarpy.nameserver.pool import Row
 from yarpy.nameserver.store import NameStore
 from yarpy.nameserver.topology import Subscription, Topology
@@ -78,40 +79,22 @@ class PortTable:
     """The file of registrations."""
 
     def __init__(self, path: str | Path, cautious: bool = False) -> None:
-        """Open or create it. Raises AddressError for a file that is no such database."""
-        self.connection = _open(path, _PORTS, cautious)
-        self._port_ids: dict[str, int] = {}
+        """Open or create it, and read it. Raises AddressError for a file that is no such database,
+        or a damaged one."""
+        self.connection, self._ports, self._pools = _read(path, _PORTS, cautious, _registrations)
+        self._port_ids = {name: row for row, (name, _) in self._ports.items()}
         self._pool_ids: dict[str, int] = {}
 
     def load(self, store: NameStore) -> None:
-        """Fill an empty store. Raises AddressError."""
-        ports: dict[int, tuple[str, dict[str, list[str]]]] = {}
-        pools: dict[int, tuple[str, int, dict[str, list[Any]]]] = {}
+        """Fill an empty store with what was there when the file was opened."""
         known = store.pools
-        for row, ns, name, value in _rows(
-            self.connection, "SELECT id, ns, name, value FROM tags WHERE rid IS NULL ORDER BY id"
-        ):
-            if ns is None and name == "port" and value is not None:
-                ports[row] = (value, {})
-            elif ns == "alloc" and name in known:
-                pools[row] = (name, _integer(value), {})
-        for owner, ns, name, value in _rows(
-            self.connection,
-            "SELECT rid, ns, name, value FROM tags WHERE rid IS NOT NULL ORDER BY id",
-        ):
-            if owner in ports and ns is None:
-                ports[owner][1].setdefault(name or "", []).append(value or "")
-            elif owner in pools and ns in ("alloc", "prefer"):
-                state = pools[owner][2].setdefault(name or "", [None, None])
-                if ns == "alloc":
-                    state[0] = value == "in_use"
-                else:
-                    state[1] = value or ""
-        store.restore(dict(ports.values()))
-        self._port_ids = {name: row for row, (name, _) in ports.items()}
-        for row, (name, counter, states) in pools.items():
-            known[name].restore(counter, [(key, used, who) for key, (used, who) in states.items()])
-            self._pool_ids[name] = row
+        store.restore(dict(self._ports.values()))
+        for row, (name, counter, states) in self._pools.items():
+            if name in known:
+                rows = [(key, used, who) for key, (used, who) in states.items()]
+                known[name].restore(counter, rows)
+                self._pool_ids[name] = row
+        self._ports, self._pools = {}, {}
 
     def save(self, changes: PortChanges) -> None:
         """Write it all or, with AddressError, nothing."""
@@ -171,32 +154,14 @@ class RuleTables:
     """The file of subscriptions, topics, ports that live, and structures of types."""
 
     def __init__(self, path: str | Path, cautious: bool = False) -> None:
-        """Open or create it. Raises AddressError for a file that is no such database."""
-        self.connection = _open(path, _RULES, cautious)
-        _add_columns(self.connection)
+        """Open or create it, and read it. Raises AddressError for a file that is no such database,
+        or a damaged one."""
+        self.connection, *self._found = _read(path, _RULES, cautious, _kept_rules)
 
     def load(self, topology: Topology) -> None:
-        """Fill an empty topology. Raises AddressError."""
-        connection = self.connection
-        rules = [
-            Subscription(source or "", destination or "", mode if mode in ("from", "to") else "")
-            for source, destination, mode in _rows(
-                connection,
-                "SELECT ifnull(srcFull, src), ifnull(destFull, dest), mode "
-                "FROM subscriptions ORDER BY id",
-            )
-        ]
-        topics = _rows(connection, "SELECT topic, structure FROM topics ORDER BY id")
-        live = _rows(
-            connection, "SELECT name, CAST(strftime('%s', stamp) AS INTEGER) FROM live ORDER BY id"
-        )
-        structures = _rows(connection, "SELECT name, yarp FROM structures")
-        topology.restore(
-            rules,
-            {topic or "": structure or "" for topic, structure in topics},
-            {name or "": float(stamp or 0) for name, stamp in live},
-            {name or "": structure or "" for name, structure in structures},
-        )
+        """Fill an empty topology with what was there when the file was opened."""
+        topology.restore(*self._found)
+        self._found = []
 
     def save(self, changes: RuleChanges) -> None:
         """Write it all or, with AddressError, nothing."""
@@ -254,10 +219,81 @@ def _save_live(connection: sqlite3.Connection, changes: RuleChanges) -> None:
             )
 
 
+# --- reading
+
+_Ports: TypeAlias = dict[int, tuple[str, dict[str, list[str]]]]
+_Pools: TypeAlias = dict[int, tuple[str, int, dict[str, list[Any]]]]
+
+
+def _registrations(connection: sqlite3.Connection) -> tuple[_Ports, _Pools]:
+    """Ports with their fields, and pools with their counters and rows, by their ids."""
+    ports: _Ports = {}
+    pools: _Pools = {}
+    for row, ns, name, value in _rows(
+        connection, "SELECT id, ns, name, value FROM tags WHERE rid IS NULL ORDER BY id"
+    ):
+        if ns is None and name == "port" and value is not None:
+            ports[row] = (value, {})
+        elif ns == "alloc":
+            pools[row] = (name or "", _integer(value), {})
+    for owner, ns, name, value in _rows(
+        connection, "SELECT rid, ns, name, value FROM tags WHERE rid IS NOT NULL ORDER BY id"
+    ):
+        if owner in ports and ns is None:
+            ports[owner][1].setdefault(name or "", []).append(value or "")
+        elif owner in pools and ns in ("alloc", "prefer"):
+            state = pools[owner][2].setdefault(name or "", [None, None])
+            if ns == "alloc":
+                state[0] = value == "in_use"
+            else:
+                state[1] = value or ""
+    return ports, pools
+
+
+def _kept_rules(connection: sqlite3.Connection) -> tuple[Any, ...]:
+    """Return the arguments for `Topology.restore`."""
+    _add_columns(connection)
+    rules = [
+        Subscription(source or "", destination or "", mode if mode in ("from", "to") else "")
+        for source, destination, mode in _rows(
+            connection,
+            "SELECT ifnull(srcFull, src), ifnull(destFull, dest), mode "
+            "FROM subscriptions ORDER BY id",
+        )
+    ]
+    topics = _rows(connection, "SELECT topic, structure FROM topics ORDER BY id")
+    live = _rows(
+        connection, "SELECT name, CAST(strftime('%s', stamp) AS INTEGER) FROM live ORDER BY id"
+    )
+    structures = _rows(connection, "SELECT name, yarp FROM structures")
+    return (
+        rules,
+        {topic or "": structure or "" for topic, structure in topics},
+        {name or "": float(stamp or 0) for name, stamp in live},
+        {name or "": structure or "" for name, structure in structures},
+    )
+
+
 # --- SQLite
 
 
-def _open(path: str | Path, schema: str, cautious: bool) -> sqlite3.Connection:
+def _mend(path: str | Path, error: Exception) -> str:
+    """What to do about a database that cannot be opened."""
+    folder = Path(path).parent
+    if not folder.is_dir():
+        return f"there is no folder {folder}; make it first"
+    if "full" in str(error):
+        return "make room, or name a file on another disk"
+    return "move the file out of the way, or name another one"
+
+
+def _read(
+    path: str | Path,
+    schema: str,
+    cautious: bool,
+    read: Callable[[sqlite3.Connection], tuple[Any, ...]],
+) -> tuple[Any, ...]:
+    """The open file and what `read` finds in it. Raises AddressError."""
     import sqlite3  # late: most programs are clients
 
     connection = None
@@ -267,14 +303,17 @@ def _open(path: str | Path, schema: str, cautious: bool) -> sqlite3.Connection:
         connection.text_factory = _text
         connection.execute(f"PRAGMA synchronous = {'FULL' if cautious else 'OFF'}")
         connection.executescript(schema)
-    except sqlite3.Error as error:
+        return connection, *read(connection)
+    except (sqlite3.Error, _Damaged) as error:
         if connection is not None:
             connection.close()
         raise AddressError(
-            f'failed to open database "{path}" ({error}): '
-            "move the file out of the way, or name another one"
-        ) from error
-    return connection
+            f'failed to open database "{path}" ({error}): {_mend(path, error)}'
+        ) from (error)
+
+
+class _Damaged(ValueError):
+    """Rows that no name server has written."""
 
 
 def _add_columns(connection: sqlite3.Connection) -> None:
@@ -301,13 +340,11 @@ def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
         raise AddressError(f"the name server's database cannot be written: {error}") from error
 
 
-def _rows(connection: sqlite3.Connection, query: str) -> Iterable[Any]:
-    import sqlite3
-
-    try:
-        return connection.execute(query).fetchall()
-    except sqlite3.Error as error:
-        raise AddressError(f"the name server's database cannot be read: {error}") from error
+def _rows(connection: sqlite3.Connection, query: str) -> list[Any]:
+    found = connection.execute(query).fetchall()
+    if any(type(value) is bytes for row in found for value in row):
+        raise _Damaged("it holds bytes where a name server writes text")
+    return found
 
 
 def _inserted(cursor: sqlite3.Cursor) -> int:
@@ -323,4 +360,4 @@ def _bytes(text: str) -> bytes:
 
 
 def _integer(text: str | None) -> int:
-    return int(text) if text and text.isdigit() and len(text) < 12 else 0
+    return number_in(text or "", 10**11) or 0

@@ -18,13 +18,13 @@ from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.errors import Timeout, YarpError
 from yarpy.network.sampling import ends
-from yarpy.port import probe
+from yarpy.port.connect import probe
 from yarpy.route import parse_carrier
 
 PERIOD: Final = 2.0  # seconds between rounds, at least
 PER_PORT: Final = 0.02  # seconds more for each port: many ports are asked less often
 AT_ONCE: Final = 8  # ports that are asked at one time
-PATIENCE: Final = 1.0  # seconds for an answer
+TIMEOUT: Final = 1.0  # seconds for an answer
 WANTED: Final = 6.0  # seconds that a question for the survey keeps it going
 
 
@@ -40,7 +40,7 @@ class Survey:
         self._closed = threading.Event()
 
     def told(self, contact: Contact) -> dict[str, Any]:
-        """What is known of a port: plain data for a page.
+        """Return what is known of a port: plain data for a page.
 
         alive: None if it is not known; `silent` says why, if it was asked.
         """
@@ -78,7 +78,7 @@ class Survey:
             return {"at": contact.address, "alive": None}
         told: dict[str, Any] = {"at": contact.address, "alive": True}
         try:
-            about = probe.ask(contact, ["prop", "get", contact.name], timeout=PATIENCE)
+            about = probe.ask(contact, ["prop", "get", contact.name], timeout=TIMEOUT)
         except Timeout:
             return {**told, "alive": None, "silent": "does not answer: stopped, or very busy"}
         except (YarpError, OSError) as error:
@@ -101,7 +101,7 @@ class Survey:
 
 
 def is_port(contact: Contact) -> bool:
-    """Whether somebody can be asked there."""
+    """Return whether a registration is a port that can be asked."""
     return contact.carrier == "tcp" and contact.name.startswith("/") and bool(contact.port)
 
 

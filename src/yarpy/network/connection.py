@@ -7,10 +7,12 @@ here needs a port of its own. `names` None is the default name service.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
+from math import inf
+from typing import Any, Self
 
-from yarpy.contact import Contact, check_name, is_broker, is_medium, parse_contact
+from yarpy import registry, scope
+from yarpy.contact import Contact, check_name, parse_contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
@@ -24,28 +26,33 @@ from yarpy.errors import (
     UnknownName,
     UnknownPlugin,
 )
-from yarpy.link.handshake import find_carrier
+from yarpy.link.begin.handshake import find_carrier
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
 from yarpy.network.dialled import address_in, leads_to
-from yarpy.port import identity, probe, refusal
-from yarpy.port.choosing import offers_memory
-from yarpy.port.connecting import agreed, refuse_medium, unknown
+from yarpy.port.connect import identity, probe, refusal
+from yarpy.port.connect.choosing import offers_memory
+from yarpy.port.connect.connecting import agreed, refuse_medium, unknown
 from yarpy.route import CarrierSpec, masked, parse_carrier
+from yarpy.scope import ASKING, CONNECTING, Scope, apart, moment
 
 _CONFIRMING = 2.0  # seconds for a port to say its name
 _POLL = 0.05  # seconds between looks while waiting
 
 
-def query(name: str, names: NameClient | None = None) -> Contact | None:
+@apart
+def query(
+    name: str, names: NameClient | None = None, *, timeout: float | None = None
+) -> Contact | None:
     """Where the port `name` is, None if it is unknown. An address is returned as it is.
 
-    Raises NoNameServer.
+    Raises NoNameServer, also for one that has not answered within `timeout` seconds, else 3.
     """
     contact = parse_contact(name)
     if contact.placed:
         return contact
-    return (names or DEFAULT.current()).query(contact.name)
+    with Scope(moment(ASKING if timeout is None else timeout)):
+        return (names or DEFAULT.current()).query(contact.name)
 
 
 def find(name: str, names: NameClient | None = None) -> Contact:
@@ -56,7 +63,7 @@ def find(name: str, names: NameClient | None = None) -> Contact:
 def find_port(name: str, names: NameClient | None = None) -> Contact:
     """As `find`, of what can be asked: a topic of another middleware raises AddressError."""
     contact = find(name, names)
-    if is_medium(contact.carrier):
+    if contact.reaches.topic:
         medium = contact.carrier.partition("+")[0]
         raise AddressError(
             f'"{name}" is no port but a topic of {medium}, which cannot be asked; '
@@ -72,30 +79,37 @@ def _find(end: Contact, names: NameClient | None) -> Contact:
     return contact
 
 
+@apart
 def confirmed(
-    name: str, names: NameClient | None = None, *, carrier: str = "tcp", timeout: float = 10.0
+    name: str, names: NameClient | None = None, *, carrier: str = "tcp", timeout: float = ASKING
 ) -> Contact:
     """As `find`, once the listener there has been asked whether it is the port of that name, over
     `carrier`: what is sent next may move something. Raises also WrongPort, LinkClosed, Timeout.
     """
-    contact = find(name, names)
-    if is_medium(contact.carrier):
-        return contact  # nobody listens there, and no name service knows it
-    known = identity.properties_of(names or DEFAULT.current()) if contact.name else None
-    identity.confirm(contact, known, secret(), timeout, parse_carrier(carrier).in_tls)
-    return contact
+    with Scope(moment(timeout)):
+        contact = find(name, names)
+        if contact.reaches.topic:
+            return contact  # nobody listens there, and no name service knows it
+        known = identity.properties_of(names or DEFAULT.current()) if contact.name else None
+        identity.confirm(contact, known, secret(), timeout, parse_carrier(carrier).in_tls)
+        return contact
 
 
+@apart
 def admin(
-    name: str, *words: object, names: NameClient | None = None, timeout: float = 3.0
+    name: str, *words: object, names: NameClient | None = None, timeout: float | None = None
 ) -> Bottle:
-    """The answer of the port `name` to an administrative message, e.g. `admin("/p", "ver")`.
+    """The answer of the port `name` to an administrative message, e.g. `admin("/p", "ver")`, within
+    `timeout` seconds, else 3.
 
-    Words that are commands may be strings. Raises UnknownName, WrongPort, LinkClosed, Timeout.
+    Words that are commands may be strings. Raises UnknownName, WrongPort, LinkClosed, Timeout,
+    NoNameServer.
     """
+    seconds = ASKING if timeout is None else timeout
     try:
-        contact = confirmed(name, names, timeout=timeout)
-        return probe.ask(contact, list(words), timeout=timeout)
+        with Scope(moment(seconds)):
+            contact = confirmed(name, names, timeout=seconds)
+            return probe.ask(contact, list(words), timeout=seconds)
     except LinkClosed as error:
         raise LinkClosed(
             f'"{name}" is registered, but does not answer ({error}); if its program is gone, '
@@ -104,8 +118,8 @@ def admin(
 
 
 def called(port: str, peer: str, names: NameClient | None = None) -> str:
-    """What `port` calls its connection with `peer`: another name than that where it was dialled by
-    address. `peer` if it has none. Raises as `admin`."""
+    """Return the name that `port` gives its connection with `peer`: another than `peer` where that
+    was dialled by address. `peer` if it has none. Raises as `admin`."""
     host, contact = find(port, names).host, query(peer, names)
     if contact is None:
         return peer
@@ -129,9 +143,7 @@ class Pairing:
     """Two ports whose connection is made, checked or ended from outside: over which carrier, which
     of them is asked, and in which words."""
 
-    def __init__(
-        self, source: str, target: str, carrier: str | None, names: NameClient | None
-    ) -> None:
+    def __init__(self, source: str, target: str, carrier: str, names: NameClient | None) -> None:
         self.source_text, self.target_text = source, target
         from_, to = _end(source, "source"), _end(target, "destination")
         self.topical = "topic" in (from_.carrier, to.carrier)
@@ -147,14 +159,14 @@ class Pairing:
             if not _competent(contact):
                 constraint = contact.carrier
         given = carrier or _written(target) or _written(source)
-        if not (is_medium(from_.carrier) or is_medium(to.carrier)):
+        if not (from_.reaches.topic or to.reaches.topic):
             refuse_medium(given)
         self.spec = parse_carrier(given or constraint or "tcp")
         # Which carrier is then for the source to say.
         self.open = not (given or constraint or to.reachable)
         if given and constraint:
             self.spec = agreed(given, constraint)
-        heard = is_broker(from_.carrier) or is_medium(from_.carrier)
+        heard = from_.reaches.broker or from_.reaches.topic
         if heard and "sub" not in self.spec.tokens:
             self.spec = self.spec.plus("sub")
         self.pull = _pulls(self.spec)
@@ -165,11 +177,13 @@ class Pairing:
                 f'neither "{source}" nor "{target}" can be asked to make this connection: '
                 f"a {asked.carrier} endpoint takes no YARP commands"
             )
-        if self.spec.base == "http" and not probe.is_ours(asked):
-            raise NotAllowed(refusal.NO_HTTP.format(asked.name or asked.address))
-        if self.spec.base == "local":
+        facts = registry.carriers.facts(self.spec.base)
+        if facts.reaches.cpp and not probe.is_ours(asked):
+            raise NotAllowed(refusal.useless(asked, facts.reaches.cpp))
+        if facts.reaches.same_program:
             self._check_one_program(names or DEFAULT.current())
         self.asked = asked
+        self._visit: probe.Visit | None = None  # for all questions to that port
         self.peer = (from_ if self.pull else to).label
         # Perhaps a camera, which does not understand us: ask its receiver first.
         self.plain = from_.reachable and not from_.name and not self.pull
@@ -189,8 +203,9 @@ class Pairing:
     def admin(self, *words: object) -> Bottle:
         """Ask the port in charge. Raises LinkClosed if it does not answer."""
         try:
-            return probe.ask(self.asked, list(words), timeout=10.0)
+            return self._visited().ask(words)
         except (LinkClosed, Timeout, RemoteProtocolError) as error:
+            self.close()
             name = self.target_text if self.pull else self.source_text
             raise LinkClosed(f"Cannot connect to port {name}: {error}") from error
 
@@ -202,9 +217,33 @@ class Pairing:
 
     def _confirm(self, contact: Contact, names: NameClient) -> None:
         try:
-            identity.confirm(contact, names.get, secret(), _CONFIRMING)
-        except (LinkClosed, Timeout):
+            if contact is not self.asked:
+                identity.confirm(contact, names.get, secret(), _CONFIRMING)
+            elif contact.name and contact.carrier in ("", "tcp"):
+                identity.judge(contact, self._visited().name(), names.get)
+        except (LinkClosed, Timeout, RemoteProtocolError):
             pass  # perhaps it can be reached from the other one, if not from here
+
+    def _visited(self) -> probe.Visit:
+        if self._visit is None:
+            self._visit = probe.Visit(self.asked, CONNECTING)
+        return self._visit
+
+    def close(self) -> None:
+        """Hang up, if somebody was asked."""
+        visit = getattr(self, "_visit", None)
+        if visit is not None:
+            self._visit = None
+            visit.close()
+
+    def __del__(self) -> None:
+        self.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *details: object) -> None:
+        self.close()
 
     def existing(self) -> str:
         """The carrier of the connection that exists now, "" if there is none."""
@@ -242,7 +281,7 @@ class Pairing:
         if self.pull or not _competent(self.there):
             return Bottle()
         try:
-            return probe.ask(self.there, [*words, self.source.label], timeout=10.0)
+            return probe.ask(self.there, [*words, self.source.label])
         except (LinkClosed, Timeout, RemoteProtocolError):
             return Bottle()
 
@@ -273,29 +312,25 @@ def _written(text: str) -> str:
 
 
 def _competent(contact: Contact) -> bool:
-    """Whether a port accepts YARP commands; a camera's web server, registered by name, does not."""
-    return parse_carrier(contact.carrier).base not in _FOREIGN
+    """Return whether a port accepts YARP commands; a camera's web server, registered by name, does
+    not."""
+    return not contact.reaches.foreign
 
 
 def _pulls(spec: CarrierSpec) -> bool:
-    """Whether the receiver is the one that dials. For a carrier that is installed only at the ends,
-    the name is all that is known here."""
+    """Return whether the receiver dials. For a carrier that is installed only at the ends, the name
+    is all that is known here."""
     try:
         return not find_carrier(spec).push
     except UnknownPlugin:
-        return spec.base in _PULLED
+        return not registry.carriers.facts(spec.base).push
 
 
-_PULLED = frozenset({"h264"})
-_FOREIGN = frozenset(
-    {"mjpeg", "h264", "tcpros", "rossrv", "xmlrpc", "http", "zmq", "mqtt", "ros2", "zenoh"}
-)
-
-
+@apart
 def join(
     source: str,
     target: str,
-    carrier: str | None = None,
+    carrier: str = "",
     *,
     names: NameClient | None = None,
     timeout: float | None = None,
@@ -303,20 +338,40 @@ def join(
     """Connect two ports; returns the carrier and the answer of the port that was asked. Raises
     like `remote.connect`.
     """
-    deadline = None if timeout is None else time.monotonic() + timeout
-    while True:
-        try:
-            return _join(source, target, carrier, names)
-        except (UnknownName, LinkClosed):
-            if deadline is None or time.monotonic() >= deadline:
-                raise
-        time.sleep(_POLL)
+    with Scope(moment(CONNECTING if timeout is None else timeout)) as call:
+        first: UnknownName | None = None  # which tells whose name is near; later time may be over
+        while True:
+            try:
+                return _join(source, target, carrier, names)
+            except (UnknownName, LinkClosed) as error:
+                if isinstance(error, UnknownName):
+                    first = first or error
+                assert call.until is not None
+                if timeout is None or time.monotonic() + _POLL >= call.until:
+                    if isinstance(error, UnknownName):
+                        raise first or error from None
+                    raise
+            scope.sleep(_POLL)
 
 
-def _join(
-    source: str, target: str, carrier: str | None, names: NameClient | None
+def _join(source: str, target: str, carrier: str, names: NameClient | None) -> tuple[str, str]:
+    from_ = parse_contact(source)
+    offers = False
+    if not (carrier or from_.placed or _written(source) or _written(target)):
+        # First of all: where a name is can then be asked over the same connection.
+        offers = offers_memory(from_, names or DEFAULT.current())
+    with Pairing(source, target, carrier, names) as pairing:
+        return _joined(pairing, source, target, carrier, names, offers)
+
+
+def _joined(
+    pairing: Pairing,
+    source: str,
+    target: str,
+    carrier: str,
+    names: NameClient | None,
+    offers: bool,
 ) -> tuple[str, str]:
-    pairing = Pairing(source, target, carrier, names)
     if pairing.topical:
         ask_server(names, ["subscribe", _decorated(source, ""), _decorated(target, carrier or "")])
         return carrier or "tcp", "connection to topic added."
@@ -324,7 +379,7 @@ def _join(
     active = pairing.source if pairing.pull else pairing.target
     address = f"/{active.address}{active.name}" if active.reachable else active.name
     over, spec = f"{pairing.spec.whole}:/", str(pairing.spec)
-    chooses = pairing.open and offers_memory(pairing.here, names or DEFAULT.current())
+    chooses = pairing.open and offers
     reply = pairing.admin(Vocab("add"), address if chooses else over + address)
     text = plain_text(reply[1]).strip() if len(reply) > 1 else ""
     if reply and reply[0] == 0:
@@ -339,7 +394,8 @@ def _join(
         try:
             find_carrier(pairing.spec)
         except UnknownPlugin as unheard:  # so it may be a typing error
-            raise UnknownPlugin(f"{error}; {unheard}") from error
+            said = str(unheard) in str(error)  # by a port of ours
+            raise UnknownPlugin(str(error) if said else f"{error}; {unheard}") from None
     raise error
 
 
@@ -348,42 +404,79 @@ def _decorated(text: str, carrier: str) -> str:
     return text if contact.carrier or not carrier else f"{carrier}:/{contact.name}"
 
 
-def disconnect(source: str, target: str, *, names: NameClient | None = None) -> bool:
-    """End the connection of two ports; False if there was none. Raises like `join`."""
-    pairing = Pairing(source, target, None, names)
-    if pairing.topical:
-        ask_server(names, ["unsubscribe", source, target])
-        return True
-    return pairing.delete(names or DEFAULT.current())
-
-
-def is_connected(
-    source: str, target: str, carrier: str | None = None, *, names: NameClient | None = None
+@apart
+def disconnect(
+    source: str, target: str, *, names: NameClient | None = None, timeout: float | None = None
 ) -> bool:
-    """Whether two ports are connected (over `carrier`, if given)."""
+    """End the connection of two ports, within `timeout` seconds, else 5; False if there was none.
+    Raises like `join`."""
+    with (
+        Scope(moment(CONNECTING if timeout is None else timeout)),
+        Pairing(source, target, "", names) as pairing,
+    ):
+        if pairing.topical:
+            ask_server(names, ["unsubscribe", source, target])
+            return True
+        return pairing.delete(names or DEFAULT.current())
+
+
+@apart
+def is_connected(
+    source: str,
+    target: str,
+    carrier: str = "",
+    *,
+    names: NameClient | None = None,
+    timeout: float | None = None,
+) -> bool:
+    """Return whether two ports are connected (over `carrier`, if given). False also if the ports do
+    not answer within `timeout` seconds, else 3. Raises NoNameServer."""
+    with Scope(moment(ASKING if timeout is None else timeout)):
+        return _is_connected(source, target, carrier, names)
+
+
+def _is_connected(source: str, target: str, carrier: str, names: NameClient | None) -> bool:
     try:
-        found = Pairing(source, target, None, names).existing()
-    except (UnknownName, LinkClosed):
+        with Pairing(source, target, "", names) as pairing:
+            found = pairing.existing()
+    except (UnknownName, LinkClosed, Timeout):
         return False
-    return bool(found) and (carrier is None or masked(carrier) == found)
+    return bool(found) and (not carrier or masked(carrier) == found)
 
 
-def exists(name: str, target: str | None = None, *, names: NameClient | None = None) -> bool:
-    """Whether the port `name` is known and answers; with `target`, whether they are connected."""
+@apart
+def exists(
+    name: str,
+    target: str | None = None,
+    *,
+    names: NameClient | None = None,
+    timeout: float | None = None,
+) -> bool:
+    """Return whether the port `name` is known and answers within `timeout` seconds, else 3; with
+    `target`, whether they are connected. Raises NoNameServer."""
+    with Scope(moment(ASKING if timeout is None else timeout)):
+        return _exists(name, target, names)
+
+
+def _exists(name: str, target: str | None, names: NameClient | None) -> bool:
     if target is not None:
-        return is_connected(name, target, names=names)
+        return _is_connected(name, target, "", names)
     try:
-        return probe.answers(confirmed(name, names, timeout=probe.TIMEOUT))
+        return probe.answers(confirmed(name, names))
     except (UnknownName, LinkClosed, Timeout):  # perhaps another port listens there
         return False
 
 
-def ping(name: str, *, names: NameClient | None = None) -> list[str]:
-    """What the port says about itself and its connections. Raises UnknownName, LinkClosed,
-    AddressError for a topic of another middleware."""
-    return probe.describe(find_port(name, names))
+@apart
+def ping(name: str, *, names: NameClient | None = None, timeout: float | None = None) -> list[str]:
+    """Return what the port says about itself and its connections, within `timeout` seconds, else 3.
+    Raises UnknownName, LinkClosed, Timeout, NoNameServer, AddressError for a topic of another
+    middleware."""
+    with Scope(moment(ASKING if timeout is None else timeout)):
+        return probe.describe(find_port(name, names))
 
 
+@apart
 def wait_for(
     name: str,
     target: str | None = None,
@@ -393,15 +486,16 @@ def wait_for(
 ) -> bool:
     """Wait until the port `name` exists (with `target`: until the two are connected).
 
-    False when `timeout` seconds were not enough.
+    False when `timeout` seconds were not enough. Raises NoNameServer.
     """
-    deadline = None if timeout is None else time.monotonic() + timeout
-    condition: Callable[[], bool] = lambda: exists(name, target, names=names)  # noqa: E731
-    while not condition():
-        if deadline is not None and time.monotonic() >= deadline:
-            return False
-        time.sleep(_POLL)
-    return True
+    with Scope(moment(timeout)) as call:
+        while not exists(name, target, names=names):
+            left = inf if call.until is None else call.until - time.monotonic()
+            if left <= _POLL:  # too little for another look: the rest is waited out
+                time.sleep(max(left, 0.0))
+                return False
+            scope.sleep(_POLL)
+        return True
 
 
 def ask_server(names: NameClient | None, command: Sequence[Any]) -> Bottle:

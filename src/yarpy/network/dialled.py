@@ -29,7 +29,7 @@ def address_in(peer: str) -> Contact | None:
 
 
 def leads_to(address: Contact, contact: Contact, host: str) -> bool:
-    """Whether `address`, dialled by a port at `host`, is where `contact` is."""
+    """Return whether `address`, dialled by a port at `host`, is where `contact` is."""
     if address.port != contact.port:
         return False
     there, meant = plain_host(contact.host), plain_host(address.host)

@@ -15,16 +15,16 @@ from typing import Final, Self
 
 from yarpy.contact import Contact
 from yarpy.errors import YarpError
-from yarpy.link.handshake import greet
-from yarpy.link.receiver import Receiver
+from yarpy.limit import PEEK_MESSAGE
+from yarpy.link.begin.handshake import greet
+from yarpy.link.receive.receiver import Receiver
 from yarpy.names.default import secret
 from yarpy.route import Route
 from yarpy.wire import framing
 from yarpy.wire.message import CALL, DATA, Message
 
 NAME: Final = "peek"  # no name of a port: it displaces no connection
-PATIENCE: Final = 2.0  # seconds for the port to let us in
-LIMIT: Final = 64 << 20  # bytes of a message
+TIMEOUT: Final = 2.0  # seconds for the port to let us in
 
 
 class Peek:
@@ -35,7 +35,9 @@ class Peek:
 
     def __init__(self, contact: Contact, questions: bool = False) -> None:
         route = Route(NAME, contact.name, "fast_tcp+log.in" if questions else "fast_tcp")
-        self._driver, carrier = greet(contact, route, key=secret(), limit=LIMIT, timeout=PATIENCE)
+        self._driver, carrier = greet(
+            contact, route, key=secret(), limit=PEEK_MESSAGE, timeout=TIMEOUT
+        )
         self._receiver = Receiver(self._driver, carrier)
         self._newest: Message | None = None
         self.count = 0  # messages that came
@@ -43,7 +45,7 @@ class Peek:
         self.ended = ""  # why nothing comes any more
         try:
             self._driver.stream.write(*framing.encode_text_command("r"))
-            self._driver.flush(time.monotonic() + PATIENCE)
+            self._driver.flush(time.monotonic() + TIMEOUT)
         except BaseException:
             self._driver.transport.close()
             raise
@@ -70,6 +72,7 @@ class Peek:
                 if message.key not in (DATA, CALL):
                     self.ended = "the port ends the connection"
                     return
+                self._receiver.release()
                 self._newest = message
                 self.count += 1
                 self.at = time.monotonic()

@@ -19,10 +19,11 @@ from yarpy.qos import Qos, Sched, policy_of
 
 
 def granted(source: str, target: str, names: NameClient | None = None) -> tuple[Qos, Qos]:
-    """What the sender's and the receiver's system grant the connection `source` -> `target`.
+    """Return what the sender's and the receiver's system grant the connection `source` -> `target`.
 
     Raises UnknownName when there is no such port or connection, LinkClosed, Timeout.
     """
+    _check_direction(source, target, names)
     return _granted(source, target, names), _granted(target, source, names)
 
 
@@ -39,6 +40,7 @@ def grant(
     Raises UnknownName when there is no such port or connection, LocalProtocolError when a port or
     its system refuses.
     """
+    _check_direction(source, target, names)
     for qos, port, peer in ((sender, source, target), (receiver, target, source)):
         if qos is not None:
             name, _ = _find(port, peer, names)
@@ -48,6 +50,20 @@ def grant(
                 raise LocalProtocolError(f'"{port}" does not set this for "{peer}": {reason}')
             if qos.deadline or qos.rate:
                 _confirm(port, peer, names)
+
+
+def _check_direction(source: str, target: str, names: NameClient | None) -> None:
+    """Raise UnknownName where there is a connection from `target` to `source` alone. Both ends know
+    it by the other's name, and would change it."""
+    there, back = (
+        any(plain_text(one) == target for one in admin(source, "list", side, names=names))
+        for side in ("out", "in")
+    )
+    if back and not there:
+        raise UnknownName(
+            f'"{source}" does not send to "{target}", but hears from it: the sender stands first, '
+            f"{target} {source}"
+        )
 
 
 def _confirm(port: str, peer: str, names: NameClient | None) -> None:
@@ -64,7 +80,7 @@ def _granted(port: str, peer: str, names: NameClient | None) -> Qos:
 
 
 def _find(port: str, peer: str, names: NameClient | None) -> tuple[str, Qos]:
-    """What `port` calls its connection with `peer`, and what is granted to it."""
+    """Return the name that `port` gives its connection with `peer`, and the QoS that it grants."""
     reply = admin(port, "prop", "get", peer, names=names)
     if not _is_told(reply):
         peer = called(port, asked := peer, names)

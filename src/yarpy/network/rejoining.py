@@ -33,13 +33,13 @@ def rejoin(
     that it has; where that is refused it goes on over `before`. One that was dialled by address
     goes by the name then. Raises like `connection.join`."""
     had = settings(source, target, names)
-    if Pairing(source, target, None, names).dialled():
+    if Pairing(source, target, "", names).dialled():
         disconnect(source, target, names=names)  # by name it would be a second one
     try:
         join(source, target, carrier, names=names)
     except YarpError:
         with suppress(YarpError):
-            if before and not Pairing(source, target, None, names).existing():
+            if before and not Pairing(source, target, "", names).existing():
                 join(source, target, before, names=names)
                 give_back(source, target, had, names)
         raise
@@ -47,7 +47,8 @@ def rejoin(
 
 
 def settings(source: str, target: str, names: NameClient | None) -> Settings | None:
-    """What a connection was given at its two ends; None where one of them cannot be asked."""
+    """Return the settings of a connection at its two ends; None where one of them cannot be
+    asked."""
     try:
         return granted(source, target, names)
     except YarpError:
@@ -71,7 +72,7 @@ def give_back(source: str, target: str, had: Settings | None, names: NameClient 
 
 
 def _rest(had: Qos, has: Qos) -> Qos | None:
-    """What is missing; None for nothing."""
+    """Return the QoS that is still missing; None for nothing."""
     usual = (had.policy, had.priority) == (has.policy or "SCHED_OTHER", has.priority or 0)
     found = Qos(
         None if usual else had.policy,

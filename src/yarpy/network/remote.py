@@ -14,6 +14,7 @@ from yarpy.network import qos as remote_qos
 from yarpy.network.connection import disconnect, join
 from yarpy.network.sampling import flow
 from yarpy.port.connection import Connection
+from yarpy.port.stats import RemoteStats
 from yarpy.qos import Qos
 
 COUNTED = ("messages", "bytes", "rate", "jitter", "latency")
@@ -35,15 +36,16 @@ class RemoteConnection(Connection):
         self._names = names
 
     @property
-    def stats(self) -> dict[str, Any]:
-        """Counters of the sender, or of the receiver if only that one counts: `messages`, `bytes`,
-        `rate` (1/s), `jitter`, `latency` (s); `drops` of both. None: not counted."""
+    def stats(self) -> RemoteStats:
+        """What the sender has counted, or the receiver if only that one counts; `replaced` and
+        `drops` of both."""
         found = flow(self.source, self.target, self._names)
-        return {**{key: found.measured(key) for key in COUNTED}, "drops": found.drops}
+        counted: dict[str, Any] = {key: found.measured(key) for key in COUNTED}
+        return RemoteStats(**counted, replaced=found.replaced, drops=found.drops)
 
     @property
     def qos(self) -> Qos:
-        """What the sender's system grants this connection. Assign a Qos to change it.
+        """The QoS that the sender's system grants this connection. Assign a Qos to change it.
 
         Raises LocalProtocolError if the port or its system refuses.
         """
@@ -68,15 +70,16 @@ class RemoteConnection(Connection):
 def connect(
     source: str,
     target: str,
-    carrier: str | None = None,
+    carrier: str = "",
     *,
     names: NameClient | None = None,
     timeout: float | None = None,
 ) -> RemoteConnection:
     """Connect two ports. An existing connection is remade.
 
-    `source` or `target` may be `topic://name`. With `timeout`, wait for ports that do not exist
-    yet. Raises UnknownName, UnknownPlugin, LinkClosed, AccessRefused, LocalProtocolError (refused).
+    `source` or `target` may be `topic://name`. With `timeout`, wait that many seconds for ports
+    that do not exist yet; without, it is tried once, for 5 s. Raises UnknownName, UnknownPlugin,
+    LinkClosed, AccessRefused, LocalProtocolError (refused), NoNameServer.
     """
     used, reply = join(source, target, carrier, names=names, timeout=timeout)
     return RemoteConnection(_name(source), _name(target), used, reply, names)

@@ -22,11 +22,13 @@ from __future__ import annotations
 import queue
 import threading
 import time
+from pathlib import Path
+from typing import Protocol
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
+from yarpy.data.value import Buffer
 from yarpy.errors import DecodeError, LocalProtocolError, YarpError
-from yarpy.idl.thrift.observed import Interface
 from yarpy.monitors.base import Place
 from yarpy.port.assembly import open_hub
 from yarpy.port.mailbox import Latest
@@ -101,6 +103,13 @@ class RpcMonitor:
         self._port.close()
 
 
+class Interface(Protocol):
+    """Knows the questions of a typed connection."""
+
+    def request(self, data: Buffer) -> tuple[str, str, Bottle] | None:
+        """Return the service, the method and the arguments; None for what is unknown."""
+
+
 def _interface(place: Place) -> Interface | None:
     """The interface that the parameters name. LocalProtocolError if there is none, or if it was
     requested over the network: then the file could be any."""
@@ -109,16 +118,20 @@ def _interface(place: Place) -> Interface | None:
         return None
     if place.foreign:
         raise LocalProtocolError('"interface" of rpc_monitor is for the program that owns the port')
-    from yarpy.idl.thrift.library import load
+    from yarpy import registry
 
-    file = name if name.endswith(".thrift") else f"{name}.thrift"
+    language = Path(name).suffix.removeprefix(".") or "thrift"
+    if language not in registry.interfaces.names():
+        raise LocalProtocolError(f'rpc_monitor: "{name}" is no file of an interface')
+    file = name if Path(name).suffix else f"{name}.{language}"
     found = next((path for path in place.look(file, []) if path.is_file()), None)
     if found is None:
         raise LocalProtocolError(f'rpc_monitor: no file "{file}"')
     try:
-        return Interface(load(found))
+        interface: Interface = registry.interfaces.load(language)(found)
     except DecodeError as error:
         raise LocalProtocolError(f"rpc_monitor: {error}") from None
+    return interface
 
 
 def _bottle(message: Message) -> Bottle:

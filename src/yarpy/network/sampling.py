@@ -30,14 +30,15 @@ from yarpy.errors import (
     WrongPort,
     YarpError,
 )
-from yarpy.link.handshake import greet
-from yarpy.link.outbound import Outbound
+from yarpy.limit import SAMPLE_ANSWER, SAMPLE_ITEMS
+from yarpy.link.begin.handshake import greet
+from yarpy.link.ending import moment
+from yarpy.link.send.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
 from yarpy.network import qos
 from yarpy.network.connection import confirmed, query
 from yarpy.network.traffic import (
-    MOST,
     End,
     Flow,
     PortState,
@@ -48,15 +49,14 @@ from yarpy.network.traffic import (
     read_port,
     side_of,
 )
-from yarpy.port import probe
+from yarpy.port.connect import probe
 from yarpy.qos import tos_of
 from yarpy.route import Route
 from yarpy.wire.message import ADMIN, Packet
 
 AT_ONCE: Final = 16  # ports asked at the same time
-PATIENCE: Final = 1.0  # seconds for a port's answer
+TIMEOUT: Final = 1.0  # seconds for a port's answer
 REST: Final = 5.0  # seconds for which a port that did not answer is left alone
-LARGEST: Final = 1 << 22  # bytes of an answer
 
 Told = tuple[str, str, str, End]  # side, source, target, counters
 
@@ -69,18 +69,18 @@ class Line:
     RemoteProtocolError.
     """
 
-    def __init__(self, contact: Contact, timeout: float = PATIENCE, urgent: str = "") -> None:
+    def __init__(self, contact: Contact, timeout: float = TIMEOUT, urgent: str = "") -> None:
         self.contact = contact
         route = Route(urgent or "admin", contact.name or f"/{contact.address}", "tcp")
-        driver, carrier = greet(contact, route, key=secret(), limit=LARGEST, timeout=timeout)
+        driver, carrier = greet(contact, route, key=secret(), limit=SAMPLE_ANSWER, timeout=timeout)
         self._link = Outbound(driver, carrier)
         if urgent:
             driver.transport.set_dscp(tos_of("CRIT"))
             self.ask("prop", "set", urgent, ["qos", [["tos", tos_of("CRIT")]]], timeout=timeout)
 
-    def ask(self, *words: object, timeout: float = PATIENCE) -> Bottle:
+    def ask(self, *words: object, timeout: float = TIMEOUT) -> Bottle:
         """The answer to an administrative question. Raises LinkClosed, Timeout, DecodeError."""
-        reply = self._link.call(Packet(list(words), key=ADMIN), timeout)
+        reply = self._link.call(Packet(list(words), key=ADMIN), moment(timeout))
         return Bottle() if reply is None else reply.as_(Bottle)
 
     def close(self) -> None:
@@ -99,13 +99,13 @@ class Sampler:
         self,
         names: NameClient | None = None,
         only: Iterable[str] | None = None,
-        patience: float = PATIENCE,
+        timeout: float = TIMEOUT,
         urgent: str = "",
     ) -> None:
         self._urgent = urgent
         self._names = names
         self._only = None if only is None else list(dict.fromkeys(only))
-        self._patience = patience
+        self._timeout = timeout
         self._lines: dict[str, Line] = {}
         self._known: dict[str, PortState] = {}
         self._resting: dict[str, float] = {}  # until when, of time.monotonic
@@ -132,13 +132,13 @@ class Sampler:
         line = self._lines.get(port)
         if line is not None:
             try:
-                return line.ask(*words, timeout=self._patience)
+                return line.ask(*words, timeout=self._timeout)
             except LinkClosed:
                 self._lines.pop(port).close()
-        line = Line(confirmed(port, self._names, timeout=self._patience), self._patience,
+        line = Line(confirmed(port, self._names, timeout=self._timeout), self._timeout,
                     self._urgent)  # fmt: skip
         self._lines[port] = line
-        return line.ask(*words, timeout=self._patience)
+        return line.ask(*words, timeout=self._timeout)
 
     def extend(self, names: Iterable[str]) -> None:
         """Ask these from now on as well, where not all are asked anyway."""
@@ -193,15 +193,15 @@ class Sampler:
         line = self._lines.get(state.name)
         if line is not None:
             try:
-                return ends_of(line, state, self._patience)
+                return ends_of(line, state, self._timeout)
             except LinkClosed:
                 line.close()
-        self._lines[state.name] = line = Line(state.contact, self._patience, self._urgent)
-        reply = line.ask("prop", "get", state.name, timeout=self._patience)
+        self._lines[state.name] = line = Line(state.contact, self._timeout, self._urgent)
+        reply = line.ask("prop", "get", state.name, timeout=self._timeout)
         if reply and reply[0] == Vocab("fail"):  # as to any name that is not its own
             raise WrongPort(f'another port than "{state.name}" listens at {state.contact.address}')
         read_port(state, reply)
-        return ends_of(line, state, self._patience)
+        return ends_of(line, state, self._timeout)
 
     def _forget(self, name: str, keep: bool = False) -> None:
         line = self._lines.pop(name, None)
@@ -230,12 +230,12 @@ class Sampler:
 
 
 def can_answer(contact: Contact) -> bool:
-    """Whether what is registered there is a port that can be asked."""
+    """Return whether a registration is a port that can be asked."""
     return contact.carrier == "tcp" and contact.name.startswith("/") and bool(contact.port)
 
 
 def state_of(error: BaseException) -> State:
-    """What an error in asking says about a port."""
+    """Return the state of a port that an error in asking it stands for."""
     if isinstance(error, AccessRefused):
         return "denied"
     if isinstance(error, Timeout) and type(error.__cause__) is TimeoutError:
@@ -247,29 +247,29 @@ def state_of(error: BaseException) -> State:
     return "silent" if isinstance(error, Timeout) else "other"
 
 
-def ends_of(line: Line, state: PortState, patience: float = PATIENCE) -> list[Told]:
+def ends_of(line: Line, state: PortState, timeout: float = TIMEOUT) -> list[Told]:
     """The connections of one port. Raises as `Line.ask`."""
     if state.ours is not False:
-        reply = line.ask("stat", timeout=patience)
+        reply = line.ask("stat", timeout=timeout)
         refused = bool(reply) and reply[0] == Vocab("fail")
         state.ours = not refused
         if not refused:
-            told = [Property.from_bottle(pairs(item)) for item in reply[:MOST]]
+            told = [Property.from_bottle(pairs(item)) for item in reply[:SAMPLE_ITEMS]]
             return [(side_of(one), *read(one)) for one in told]
-    return list(_ask_each(line, state.name, patience))
+    return list(_ask_each(line, state.name, timeout))
 
 
-def _ask_each(line: Line, port: str, patience: float) -> Iterator[Told]:
+def _ask_each(line: Line, port: str, timeout: float) -> Iterator[Told]:
     """The connections of a port that has no counters."""
-    until = time.monotonic() + 3 * patience  # for all of them
+    until = time.monotonic() + 3 * timeout  # for all of them
     for side in ("out", "in"):
-        for name in map(plain_text, line.ask("list", side, timeout=patience)[:MOST]):
+        for name in map(plain_text, line.ask("list", side, timeout=timeout)[:SAMPLE_ITEMS]):
             if not name.startswith("/"):
                 continue
             if time.monotonic() > until:
                 raise Timeout(f'"{port}" takes too long to tell of its connections')
-            listed = line.ask("list", side, name, timeout=patience)
-            granted = qos.read(line.ask("prop", "get", name, timeout=patience))
+            listed = line.ask("list", side, name, timeout=timeout)
+            granted = qos.read(line.ask("prop", "get", name, timeout=timeout))
             ends = (port, name) if side == "out" else (name, port)
             yield side, *ends, End(plain_text(listed.find("carrier", "")), qos=granted)
 

@@ -16,11 +16,11 @@ from typing import Any, Final, Literal, TypeAlias
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
+from yarpy.limit import SAMPLE_ITEMS
 from yarpy.network.dialled import address_in, leads_to
 from yarpy.qos import Qos
 
 LONGEST: Final = 1000  # characters of a text that a port says
-MOST: Final = 4096  # connections of one port, and elements of a list
 
 #: `answers`; `refused`: nobody listens there; `silent`: somebody does, and says nothing;
 #: `unreachable`: no way there; `denied`: it does not let us ask; `other`: what answers is no port
@@ -45,6 +45,7 @@ class End:
     carrier: str = ""
     messages: int | None = None
     bytes: int | None = None
+    replaced: int | None = None
     drops: int | None = None
     unconfirmed: int | None = None
     unconnected: int | None = None
@@ -90,8 +91,15 @@ class Flow:
 
     @property
     def drops(self) -> int | None:
-        """Messages that either side dropped."""
+        """Messages that either side lost, or a monitor dropped."""
         counted = [e.drops for e in (self.sender, self.receiver) if e and e.drops is not None]
+        return sum(counted) if counted else None
+
+    @property
+    def replaced(self) -> int | None:
+        """Messages that gave way to newer ones on either side, as those who wait for nobody want
+        it."""
+        counted = [e.replaced for e in (self.sender, self.receiver) if e and e.replaced is not None]
         return sum(counted) if counted else None
 
     @property
@@ -240,7 +248,7 @@ def pairs(item: Any) -> Bottle:
 
 
 _COUNTED: Final = (
-    *("messages", "bytes", "drops", "unconfirmed", "unconnected", "unacknowledged"),
+    *("messages", "bytes", "replaced", "drops", "unconfirmed", "unconnected", "unacknowledged"),
     *("delivered", "waiting", "lost"),
 )
 
@@ -258,7 +266,7 @@ def _text(value: Any) -> str:
 
 
 def _list(value: Any) -> list[Any]:
-    return list(value[:MOST]) if isinstance(value, list | tuple) else []
+    return list(value[:SAMPLE_ITEMS]) if isinstance(value, list | tuple) else []
 
 
 def _count(value: Any) -> int | None:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
-from yarpy.link.inbound import Inbound
-from yarpy.link.outbound import Outbound
 from yarpy.link.qos import effective, grant
-from yarpy.port.monitoring import monitored
+from yarpy.link.receive.inbound import Inbound
+from yarpy.link.send.outbound import Outbound
+from yarpy.port.answer.monitoring import monitored
+from yarpy.port.stats import ConnectionStats, RemoteStats, connection_stats
 from yarpy.qos import Qos
 
 
@@ -31,13 +31,14 @@ class Connection:
         self.carrier = carrier
 
     @property
-    def stats(self) -> dict[str, Any]:
-        """Counters: `messages`, `bytes`, `drops`, `rate` (1/s), `jitter`, `latency` (s) ..."""
+    def stats(self) -> ConnectionStats | RemoteStats:
+        """What was counted: `messages`, `bytes`, `drops`, `rate` (1/s), `jitter`, `latency` (s)
+        ..."""
         raise NotImplementedError
 
     @property
     def qos(self) -> Qos:
-        """What the system really does for this connection. Assign a Qos to ask for something.
+        """The QoS that this connection really has. Assign a Qos to ask for something.
 
         Raises LocalProtocolError when the system refuses, telling what it wants; nothing is changed
         then.
@@ -75,18 +76,18 @@ class PortConnection(Connection):
         return self.source if isinstance(self._link, Inbound) else self.target
 
     @property
-    def stats(self) -> dict[str, Any]:
-        """Counters: messages, bytes, drops, rate (1/s), period, jitter, latency (s), since.
+    def stats(self) -> ConnectionStats:
+        """What this end has counted.
 
         For every mode: messages sent = messages delivered + drops, counted where they happen. Once
         a connection has broken, some of those `unconfirmed` may have been delivered as well.
         """
-        return self._link.snapshot()
+        return connection_stats(self.source, self.target, self.carrier, self._link.snapshot())
 
     @property
     def qos(self) -> Qos:
-        """What the system really does for this connection: its thread's scheduling, and the
-        priority of the packets that leave on our side. Assign a Qos to ask for something.
+        """The QoS that this connection really has: its thread's scheduling, and the priority of the
+        packets that leave on our side. Assign a Qos to ask for something.
 
         Raises LocalProtocolError when the system refuses, telling what it wants; nothing is changed
         then. An output that is given a scheduling policy sends from a thread of its own.

@@ -12,7 +12,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final
 
-from yarpy.link.inbound import Inbound
+from yarpy.link.receive.inbound import Inbound
+from yarpy.scope import Flag
 
 SHORTEST: Final = 0.002  # seconds between two looks
 LONGEST: Final = 0.5
@@ -41,7 +42,7 @@ class Watch:
 
     def __init__(self, name: str, inputs: Callable[[], Iterable[Inbound]]) -> None:
         self._inputs = inputs
-        self._stopped = threading.Event()
+        self._stopped = Flag()
         thread = threading.Thread(target=self._run, name=f"yarpy deadlines {name}", daemon=True)
         thread.start()
 

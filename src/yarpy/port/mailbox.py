@@ -9,13 +9,17 @@ from __future__ import annotations
 
 import sys
 import threading
+import time
+import weakref
 from collections.abc import Callable
+from functools import partial
 from queue import Empty, SimpleQueue
-from typing import ClassVar, Final, TypeAlias
+from typing import Any, ClassVar, Final, TypeAlias
 
 from yarpy.errors import PortClosed, YarpError
-from yarpy.link.inbound import Inbound
+from yarpy.link.receive.inbound import Inbound
 from yarpy.log import logger
+from yarpy.scope import Waiter
 from yarpy.wire.message import Message
 
 log = logger("yarpy.port")
@@ -35,28 +39,62 @@ class Mailbox:
     def __init__(self) -> None:
         self.stopped = False
         self.drops = 0
-        self._why = "the port was closed or interrupted while reading"
+        self.notify: Callable[[], None] | None = None  # there is something to take, or an end
+        self.why = "the port is closed or interrupted"  # what readers are told then
         self.held: dict[threading.Thread, Question] = {}  # questions of readers, by their thread
         self._ready: SimpleQueue[object] = SimpleQueue()
+        self.empty = self._ready.empty  # whether readers would have to wait
         # A message goes in, or the mailbox stops: what came in between would wait for ever.
-        self._gate = threading.Lock()
+        # Signal handlers may call `interrupt` above a frame that is inside.
+        self._gate = threading.RLock()
+        self.taken = 0.0  # when a message was taken last (time.perf_counter)
 
     def put(self, link: Inbound, message: Message) -> None:
         """Take a message that came over `link`."""
         raise NotImplementedError
 
+    def _offer(self, token: object) -> None:
+        """Let readers take a token."""
+        self._ready.put(token)
+        if self.notify is not None:
+            self.notify()
+
     def take(self, timeout: float | None = None) -> Message | None:
-        """The next message; None when `timeout` seconds are over. Raises PortClosed."""
+        """Return the next message; None when `timeout` seconds are over. Raises PortClosed.
+
+        An exception out of a signal handler, at any time, leaves the message here, in its place.
+        """
+        got: list[object] = []
+        timeout = None if timeout is None else max(0.0, timeout)
         try:
-            token = self._ready.get(True, timeout)
-        except (Empty, ValueError):
+            while True:
+                # What `get` returns is in the list in one step: no signal comes in between.
+                got.extend(map(self._ready.get, (True,), (timeout,)))
+                if got[0] is not _STOP:
+                    break
+                if self.stopped:
+                    self._ready.put(_STOP)  # for the next reader
+                    raise PortClosed(self.why)
+                got.clear()  # left over from an interrupt that was resumed
+            self.taken = time.perf_counter()
+            return self._next(got[0])
+        except Empty:
             return None
-        if token is _STOP:
-            if self.stopped:
-                self._ready.put(_STOP)  # for the next reader
-                raise PortClosed(self._why)
-            return self.take(timeout)  # left over from an interrupt that was resumed
-        return self._next(token)
+        except PortClosed:
+            raise
+        except BaseException:
+            if got:
+                self._put_back(got[0])
+            raise
+
+    def _put_back(self, token: object) -> None:
+        """Put what was taken in front of what waits."""
+        with self._gate:
+            tokens = [token]
+            while not self._ready.empty():
+                tokens.append(self._ready.get_nowait())
+            for one in tokens:
+                self._ready.put(one)
 
     def poll(self) -> Message | None:
         """A message that is already there, or None."""
@@ -72,6 +110,11 @@ class Mailbox:
         """This thread is done with the message it took last."""
 
     @property
+    def behind(self) -> bool:
+        """Return whether a connection waits for the program to read."""
+        return False
+
+    @property
     def waiting(self) -> int:
         """Messages that came and were not taken."""
         return 0 if self.stopped else self._ready.qsize()
@@ -80,8 +123,10 @@ class Mailbox:
         """Drop what waits and what comes; readers get PortClosed."""
         with self._gate:
             self.stopped = True
-            self._clear()
-            self._ready.put(_STOP)
+            try:
+                self._clear()
+            finally:
+                self._offer(_STOP)
 
     def resume(self) -> None:
         """Undo `interrupt`."""
@@ -90,31 +135,49 @@ class Mailbox:
             self.stopped = False
 
     def surrender(self) -> list[tuple[Inbound, Message]]:
-        """What waits here, for another mailbox."""
+        """Return the messages that wait here, for another mailbox."""
         return []
+
+    def release(self) -> object:
+        """Hand what the program wants to be called to its port, which keeps it from now on."""
+        return None
 
     def abandon(self, why: str) -> None:
         """Stop for ever, in a process where threads that had a lock may be missing."""
-        self._gate = threading.Lock()
+        self._gate = threading.RLock()
         self._ready = SimpleQueue()
-        self._why = why
+        self.empty = self._ready.empty
+        self.why = why
         self.stopped = True
-        self._ready.put(_STOP)
+        self._offer(_STOP)
 
     def _next(self, token: object) -> Message | None:
         raise NotImplementedError
 
     def _clear(self) -> None:
-        while True:
-            try:
-                token = self._ready.get_nowait()
-            except Empty:
-                return
-            if token is not _STOP:
-                self._discard(token)
+        got: list[object] = []
+        try:
+            while True:
+                got.extend(map(self._ready.get, (False,)))  # in one step, as in `take`
+                if got[0] is not _STOP:
+                    self._discard(got[0])
+                got.clear()
+        except Empty:
+            pass
+        except BaseException:  # out of a signal handler: what is not in the mailbox is counted
+            if got and got[0] is not _STOP:
+                self._discard(got[0])
+            raise
 
     def _discard(self, token: object) -> None:
-        self.drops += 1
+        """Drop and count what a token stands for; a second time does nothing."""
+
+    def _drop_once(self, token: Waiting | Offer) -> None:
+        """As `_drop`, for a message that has waited. In here Python looks for no signals."""
+        if not token.dropped:
+            token.dropped = True
+            self.drops += 1
+            token.link.counter.drops += 1
 
     def _drop(self, link: Inbound) -> None:
         """Count a drop; inside the gate, since several connections may."""
@@ -123,7 +186,7 @@ class Mailbox:
 
 
 class Latest(Mailbox):
-    """Only the newest message is kept; an older one that nobody took is dropped and counted."""
+    """Only the newest message is kept; an older one that nobody took is counted as replaced."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -136,9 +199,9 @@ class Latest(Mailbox):
                 return
             older, self._item = self._item, (link, message)
             if older is None:
-                self._ready.put(None)  # exactly one token while there is an item
+                self._offer(None)  # exactly one token while there is an item
             else:
-                self._drop(older[0])
+                older[0].counter.replaced += 1
 
     def surrender(self) -> list[tuple[Inbound, Message]]:
         with self._gate:
@@ -146,14 +209,36 @@ class Latest(Mailbox):
         return [item] if item else []
 
     def _next(self, token: object) -> Message | None:
-        with self._gate:
-            item, self._item = self._item, None
-        return item[1] if item else None
+        item = None
+        try:
+            with self._gate:
+                item, self._item = self._item, None
+            return item[1] if item else None
+        except BaseException:  # out of a signal handler
+            with self._gate:
+                if self._item is None:
+                    self._item = item
+                elif item is not None:
+                    self._drop(item[0])
+            raise
 
     def _discard(self, token: object) -> None:
-        item, self._item = self._item, None
+        item, self._item = self._item, None  # from here to the end Python looks for no signals
         if item:
-            self._drop(item[0])
+            self.drops += 1
+            item[0].counter.drops += 1
+
+
+class Waiting:
+    """A message that waits in a Fifo."""
+
+    __slots__ = ("dropped", "link", "message", "size")
+
+    def __init__(self, link: Inbound, message: Message, size: int) -> None:
+        self.link = link
+        self.message = message
+        self.dropped = False
+        self.size = size  # bytes that count for it; 0 once they do not any more
 
 
 class Fifo(Mailbox):
@@ -163,53 +248,58 @@ class Fifo(Mailbox):
         super().__init__()
         self._limit = limit
         self._bytes = 0
-        self._room = threading.Condition()  # guards the byte count, and lets senders wait
+        self._lock = threading.RLock()  # of the byte count
+        self._room = threading.Condition(self._lock)  # lets senders wait
 
     def put(self, link: Inbound, message: Message) -> None:
         payload = message.payload
         size = OVERHEAD + (len(payload) if message.spelling != "object" else memory(payload))
-        with self._room:
+        with self._lock:
             if self._bytes > self._limit:
                 self._room.wait_for(lambda: self._bytes <= self._limit or self.stopped)
             self._bytes += size
         with self._gate:
             if not self.stopped:
-                self._ready.put((size, link, message))
+                self._offer(Waiting(link, message, size))
                 return
             self._drop(link)
-        self._free(size)
+        self._free(Waiting(link, message, size))
+
+    @property
+    def behind(self) -> bool:
+        return self._bytes > self._limit
 
     def surrender(self) -> list[tuple[Inbound, Message]]:
         found = []
         with self._gate:
             while not self.stopped and not self._ready.empty():
                 token = self._ready.get_nowait()
-                assert isinstance(token, tuple)
-                found.append(token[1:])
-                self._free(token[0])
+                assert isinstance(token, Waiting)
+                found.append((token.link, token.message))
+                self._free(token)
         return found
 
     def _next(self, token: object) -> Message | None:
-        assert isinstance(token, tuple)
-        self._free(token[0])
-        message: Message = token[2]
-        return message
+        assert isinstance(token, Waiting)
+        self._free(token)
+        return token.message
 
     def _discard(self, token: object) -> None:
-        assert isinstance(token, tuple)
-        self._free(token[0])
-        self._drop(token[1])
+        assert isinstance(token, Waiting)
+        self._free(token)
+        self._drop_once(token)
 
-    def _free(self, size: int) -> None:
-        with self._room:
+    def _free(self, token: Waiting) -> None:
+        with self._lock:
             full = self._bytes > self._limit
-            self._bytes -= size
+            self._bytes -= token.size
+            token.size = 0  # at once: a reader that is interrupted here comes again
             if full:
                 self._room.notify_all()
 
     def interrupt(self) -> None:
         super().interrupt()
-        with self._room:
+        with self._lock:
             self._room.notify_all()
 
 
@@ -228,18 +318,19 @@ def memory(value: object, depth: int = 3) -> int:
 class Offer:
     """A message whose connection waits until the reader is done with it."""
 
-    __slots__ = ("done", "link", "message")
+    __slots__ = ("done", "dropped", "link", "message")
 
     def __init__(self, link: Inbound, message: Message) -> None:
         self.link = link
         self.message = message
-        self.done = threading.Event()
+        self.dropped = False
+        self.done = Waiter()
         if message.answer is not None:
-            message.answer.then = self.done.set
+            message.answer.then = self.done.wake
 
     def leave(self) -> None:
         """The reader is done with it; the connection's thread closes the question."""
-        self.done.set()
+        self.done.wake()
 
 
 class Read:
@@ -275,8 +366,12 @@ class Rendezvous(Mailbox):
             if self.stopped:
                 self._drop(link)
                 return
-            self._ready.put(offer)
+            self._offer(offer)
         offer.done.wait()
+
+    @property
+    def behind(self) -> bool:
+        return self.waiting > 0
 
     def keep(self, link: Inbound, message: Message) -> None:
         self.held[threading.current_thread()] = Read(link, message)
@@ -297,17 +392,21 @@ class Rendezvous(Mailbox):
     def _next(self, token: object) -> Message | None:
         assert isinstance(token, Offer)
         if token.message.answer is None:
-            token.done.set()
+            token.done.wake()
         else:
             self.held[threading.current_thread()] = token
             if self.stopped:
-                token.done.set()  # `interrupt` may have looked before it was there
+                token.done.wake()  # `interrupt` may have looked before it was there
         return token.message
+
+    def _put_back(self, token: object) -> None:
+        self.held.pop(threading.current_thread(), None)
+        super()._put_back(token)
 
     def _discard(self, token: object) -> None:
         assert isinstance(token, Offer)
-        self._drop(token.link)
-        token.done.set()
+        self._drop_once(token)
+        token.done.wake()
 
     def interrupt(self) -> None:
         super().interrupt()
@@ -319,40 +418,56 @@ class Rendezvous(Mailbox):
 class Callback(Mailbox):
     """Calls a function with each message, in the thread of its connection.
 
-    An exception in the function is logged with its traceback; the connection goes on. With `lock`
-    calls of different connections come one at a time.
+    The function is kept by the port alone, as other callbacks are (`answer.callbacks`). An
+    exception in it is logged with its traceback; the connection goes on. With `lock` calls of
+    different connections come one at a time; with `type_` their messages are of that type.
     """
 
-    def __init__(self, handler: Callable[[Message], None], lock: bool = False) -> None:
+    def __init__(
+        self, handler: Callable[[Message[Any]], object], lock: bool = False, type_: Any = None
+    ) -> None:
         super().__init__()
-        self._handler = handler
+        if not callable(handler):
+            raise TypeError(
+                f"a port calls a function of one argument with its messages, not {handler!r}"
+            )
+        try:
+            self._handler = weakref.ref(handler)
+        except TypeError:
+            handler = partial(handler)
+            self._handler = weakref.ref(handler)
+        self._kept: Callable[[Message[Any]], object] | None = handler  # until a port takes it
+        self._type = type_
         self._lock = threading.Lock() if lock else None  # the user asked for one call at a time
 
     def put(self, link: Inbound, message: Message) -> None:
-        if not (self.stopped or self._fails(link, message)):
-            return
-        with self._gate:
-            self._drop(link)
-
-    def _fails(self, link: Inbound, message: Message) -> bool:
-        """Call the function; whether it failed."""
         try:
-            if self._lock is None:
-                self._handler(message)
+            handler = self._handler()
+            if self._type is not None:
+                message.typed(self._type)
+            if self.stopped or handler is None:
+                pass
+            elif self._lock is None:
+                handler(message)
+                return
             else:
                 with self._lock:
-                    self._handler(message)
+                    handler(message)
+                return
         except PortClosed:
-            return True
+            pass
         except YarpError as error:
             link.failure = str(error)
             log.warning("%s: message from %s: %s", link.owner.name, link.route.source, error)
-            return True
         except Exception as error:
             link.failure = f"{type(error).__name__}: {error}"
             log.exception("%s: the callback failed on %r", link.owner.name, message)
-            return True
-        return False
+        with self._gate:
+            self._drop(link)
+
+    def release(self) -> object:
+        kept, self._kept = self._kept, None
+        return kept
 
     def take(self, timeout: float | None = None) -> Message | None:
         raise PortClosed("this port hands its messages to a callback; there is nothing to read")

@@ -9,60 +9,73 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, Final, TypeVarTuple
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Unpack
 
 from yarpy.contact import parse_contact
 from yarpy.data.stamp import Stamp
-from yarpy.errors import LinkClosed, PortClosed, Timeout, YarpError
-from yarpy.link.outbound import Outbound, Rest
-from yarpy.link.readiness import wait_for_any
-from yarpy.names.base import NameClient
-from yarpy.port import probe
+from yarpy.errors import LinkClosed, PortClosed, YarpError
+from yarpy.link.ending import moment
+from yarpy.link.send.fan_out import begin, finish, offer_to
+from yarpy.link.send.outbound import Outbound
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
-from yarpy.port.connection import ConnectionEvent
+from yarpy.port.connect import probe
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox, Rendezvous
+from yarpy.port.options import PortOptions
 from yarpy.port.reader import Reader
-from yarpy.transports.lease import freeze
-from yarpy.wire.message import CALL, Message, Packet
-from yarpy.wire.stream import DEFAULT_LIMIT
+from yarpy.port.typed import of_type
+from yarpy.scope import ASKING, apart
+from yarpy.transports.shared.lease import freeze
+from yarpy.wire.message import CALL, Message, Packet, T
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike, NDArray
 
-Args = TypeVarTuple("Args")
 
-# Seconds between two looks whether one of several slow readers takes something.
-_SHORTEST: Final = 0.0002
-_LONGEST: Final = 0.02
+class MessagePort(BasePort, Generic[T]):
+    """A port that is read from and written to. Subclasses choose the mailbox of its hub.
 
+    `Port[Image]` is for messages of one type: `message.value` is an Image, or a DecodeError says
+    what came instead.
+    """
 
-class MessagePort(BasePort):
-    """A port that is read from and written to. Subclasses choose the mailbox of its hub."""
+    _type: ClassVar[Any] = None  # that of its messages; None: any
+
+    if not TYPE_CHECKING:
+
+        def __class_getitem__(cls, type_):
+            return of_type(cls, type_)
 
     def __init__(self, hub: Hub, spin: bool = False) -> None:
         super().__init__(hub)
-        self._mailbox = hub.mailbox
+        self._mailbox = hub.inputs.mailbox
         self._reader = Reader(hub, spin)
 
-    def read(self, timeout: float | None = None) -> Message:
+    def read(self, timeout: float | None = None) -> Message[T]:
         """The next message, waiting for one if needed.
 
         Raises Timeout after `timeout` seconds, PortClosed if the port is closed or interrupted.
         """
-        return self._reader.read(timeout)
+        if self._type is None:
+            return self._reader.read(timeout)
+        return self._reader.read(timeout).typed(self._type)
 
-    def poll(self) -> Message | None:
+    def poll(self) -> Message[T] | None:
         """A message that is already there, or None."""
-        return self._reader.poll()
+        message: Message[T] | None = self._reader.poll()
+        if message is None or self._type is None:
+            return message
+        return message.typed(self._type)
 
     @property
     def waiting(self) -> int:
-        """Messages that came and were not read yet."""
+        """Messages that came and were not read yet. Raises PortClosed."""
+        self._check_not_closed()
         return self._mailbox.waiting
 
-    def __iter__(self) -> Iterator[Message]:
+    def __iter__(self) -> Iterator[Message[T]]:
         """Messages until the port is closed or interrupted."""
         try:
             while True:
@@ -84,7 +97,7 @@ class MessagePort(BasePort):
 
     def write(
         self,
-        value: object,
+        value: T,
         stamp: Stamp | str | None = None,
         *,
         wait: bool = False,
@@ -94,26 +107,27 @@ class MessagePort(BasePort):
 
         When it returns, the message is in the system's hands (in a burst: about to be, at the
         latest 0.2 ms later) and `value` may be changed, unless a connection is `local`: there the
-        reader gets `value` itself. Up to 256 messages per connection may be on their way
-        unacknowledged; beyond that a writer waits for its slowest reader, after the others have got
-        the message. With `timeout` it waits that many seconds at most: for a connection over which
-        the message has not begun to leave by then it is a drop. With `wait` it returns when every
-        reader that acknowledges has taken this message, and counts those. Readers that dialled this
-        port are waited for 10 s, then disconnected. `stamp` travels as the envelope. A connection
-        that breaks is dropped, counted, and made again in the background.
+        reader gets `value` itself. Messages of a burst may be on their way unacknowledged to a
+        reader: 256 of them, 64 KiB and 5 ms at most; then a writer waits for its slowest reader,
+        after the others have got the message. With `timeout` it waits that many seconds at most:
+        for a connection over which the message has not begun to leave by then it is a drop. With
+        `wait` it returns when every reader that acknowledges has taken this message, and counts
+        those. Readers that dialled this port are waited for 10 s, then disconnected. `stamp`
+        travels as the envelope. A connection that breaks is dropped, counted, and made again in the
+        background.
 
         Raises PortClosed; TypeError, ValueError or OverflowError for what cannot be sent.
         """
         hub = self._hub
-        if hub.closing or hub.interrupted:
+        if hub.life.closing or hub.life.interrupted:
             self._check_open()
         envelope = envelope_of(stamp) if stamp is not None else b""
         packet = Packet(value, envelope)
         if hub.preparing.begun:
             freeze(value, packet.blocks)
-        outputs = hub.outputs
+        outputs = hub.outputs.links
         if not outputs:
-            hub.count_unconnected()
+            hub.outputs.count_unconnected(value)
             return 0
         if hub.monitoring.output is not None:
             passed = hub.monitoring.output.send(packet)
@@ -122,23 +136,61 @@ class MessagePort(BasePort):
                     link.counter.drops += 1
                 return 0
             packet = passed
-        return self._send_all(packet, outputs, wait, timeout)
+        if len(outputs) == 1 and not wait:  # as nearly always
+            link, until = outputs[0], None if timeout is None else time.monotonic() + timeout
+            try:
+                if link.active and not link.log:
+                    return int(link.box.offer(packet, until) is True)
+            except PortClosed:
+                raise
+            except YarpError as error:
+                self._lose(link, error)
+            return 0
+        return self._send_all(packet, outputs, wait, moment(timeout))
+
+    def _begin_write(
+        self, value: T, stamp: Stamp | str | None = None, timeout: float | None = None
+    ) -> int | Callable[[], int]:
+        """As `write`, without waiting, for event loops. Where it takes waiting, or monitors look at
+        the message, return what does the rest, once, in another thread."""
+        hub = self._hub
+        if hub.life.closing or hub.life.interrupted:
+            self._check_open()
+        outputs, until = hub.outputs.links, moment(timeout)
+        if hub.monitoring.output is not None or any(link.sender.chain for link in outputs):
+            return partial(self.write, value, stamp, timeout=timeout)
+        packet = Packet(value, envelope_of(stamp) if stamp is not None else b"")
+        if hub.preparing.begun:
+            freeze(value, packet.blocks)
+        if not outputs:
+            hub.outputs.count_unconnected(value)
+            return 0
+        took, slow = begin(outputs, packet, self._lose)
+
+        def rest() -> int:
+            finish(slow, took, until, self._lose)
+            return len(took)
+
+        return rest if slow else len(took)
 
     @property
-    def links(self) -> tuple[Outbound, ...]:
-        """The connections out of it, for `Audience`."""
+    def _links(self) -> tuple[Outbound, ...]:
+        """The connections out of it, for `Dialects`."""
         hub = self._hub
-        if hub.closing or hub.interrupted:
+        if hub.life.closing or hub.life.interrupted:
             self._check_open()
-        return hub.outputs
+        return hub.outputs.links
 
-    def is_yarp4(self, target: str) -> bool:
-        """Whether a port that this one is connected to is of C++ YARP 4. Raises LinkClosed,
-        Timeout, RemoteProtocolError, NoNameServer."""
-        contact = self._hub.registration.locate(parse_contact(target))
-        return contact is not None and probe.is_yarp4(contact, secret_=self._hub.key)
+    @apart
+    def _is_yarp4(self, target: str, timeout: float | None = None) -> bool:
+        """Return whether a port that this one is connected to is of C++ YARP 4. Raises LinkClosed,
+        Timeout, RemoteProtocolError, NoNameServer, PortClosed."""
+        hub = self._hub
+        with hub.life.calls.scope(ASKING if timeout is None else timeout):
+            contact = hub.registration.locate(parse_contact(target))
+            return contact is not None and probe.is_yarp4(contact, secret_=hub.key)
 
-    def send(self, packet: Packet, links: tuple[Outbound, ...]) -> int:
+    def _send(self, packet: Packet, links: tuple[Outbound, ...]) -> int:
         """Send a packet over some of the connections; as `write`."""
         output = self._hub.monitoring.output
         if output is not None:
@@ -151,102 +203,59 @@ class MessagePort(BasePort):
         return self._send_all(packet, links, False, None)
 
     def _send_all(
-        self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool, timeout: float | None
+        self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool, until: float | None
     ) -> int:
-        deadline = None if timeout is None else time.monotonic() + timeout
-        if len(outputs) == 1:
-            link, took = outputs[0], []
-            try:
-                if link.active and not link.log and link.send(packet, deadline):
-                    took = [link]
-            except YarpError as error:
-                self._lose(link, error)
-        else:
-            took = self._send_to_several(packet, outputs, deadline)
+        took = offer_to(outputs, packet, until, self._lose, wait)
         if wait:
-            took = [link for link in took if self._attempt(link, _is_taken, deadline)]
+            took = [link for link in took if self._is_taken(link, until)]
         return len(took)
 
-    def _send_to_several(
-        self, packet: Packet, outputs: tuple[Outbound, ...], deadline: float | None
-    ) -> list[Outbound]:
-        """The connections that took it. Who is slow is waited for when the others have it."""
-        copies = deadline is not None
-        took: list[Outbound] = []
-        whole = Rest(packet)
-        todo = [(link, whole) for link in outputs]
-        pause, ready, before = _SHORTEST, False, -1
+    def _is_taken(self, link: Outbound, until: float | None) -> bool:
+        """Wait until everything was acknowledged; return False if `until` comes first."""
         try:
-            while todo:
-                slow: list[tuple[Outbound, Rest]] = []
-                for link, rest in todo:
-                    begun = self._attempt(link, Outbound.begin, rest, copies)
-                    if isinstance(begun, Rest):
-                        slow.append((link, begun))
-                    elif begun:
-                        took.append(link)
-                if len(slow) == len(todo):
-                    sent = sum(link.driver.bytes_out for link, _ in slow)
-                    if sent != before:
-                        pause, before = _SHORTEST, sent
-                    elif ready:  # something else is in the way
-                        time.sleep(pause)
-                        pause = min(2 * pause, _LONGEST)
-                    left = _LONGEST if deadline is None else deadline - time.monotonic()
-                    ready = wait_for_any((link for link, _ in slow), max(0.0, min(left, _LONGEST)))
-                todo = slow
-                if len(todo) == 1 or (deadline is not None and time.monotonic() >= deadline):
-                    break
-            while todo:
-                link, rest = todo.pop(0)
-                if self._attempt(link, Outbound.finish, rest, deadline):
-                    took.append(link)
-        finally:
-            for link, _ in todo:  # this writer was interrupted
-                link.sender.leave()
-        return took
-
-    def _attempt(
-        self, link: Outbound, act: Callable[[Outbound, *Args], bool | Rest], *arguments: *Args
-    ) -> bool | Rest:
-        """What `act` gives; False where the connection takes no messages, or no more."""
-        if not link.active or link.log:
-            return False
-        try:
-            return act(link, *arguments)
+            return link.wait_acknowledged(until)
+        except PortClosed:
+            raise
         except YarpError as error:
             self._lose(link, error)
         return False
 
     def _lose(self, link: Outbound, error: YarpError) -> None:
-        """A connection has failed: it is made again if that is because its peer went away."""
-        self._hub.drop_output(link, str(error), lost=isinstance(error, LinkClosed))
+        """Forget a connection that has failed: it is made again if its peer went away."""
+        self._hub.outputs.drop(link, str(error), lost=isinstance(error, LinkClosed))
 
     def flush(self, timeout: float | None = None) -> bool:
         """Wait until every message was sent and, where readers acknowledge, taken; False if that
-        takes more than `timeout` seconds, or a connection breaks."""
-        done = True
-        deadline = None if timeout is None else time.monotonic() + timeout
-        for link in self._hub.outputs:
+        takes more than `timeout` seconds, or a connection breaks. Raises PortClosed."""
+        self._check_not_closed()
+        done, until = True, moment(timeout)
+        for link in self._hub.outputs.links:
             try:
-                link.wait_acknowledged(_left(deadline))
+                done = link.wait_acknowledged(until) and done
+            except PortClosed:
+                raise
             except YarpError:
                 done = False
         return done
 
 
-class Port(MessagePort):
+class Port(MessagePort[T]):
     """A plain port: every message is read once, and its sender waits until it was.
 
     A question that was read and is left unanswered is closed by the next `read` of that thread.
 
+    `Port[Image](name)` is for messages of that type alone: any class, dataclass or hint that
+    `message.as_` knows.
     name: begins with `/`; `...` asks the name server for one; "" opens an unregistered port.
+    callback: called with each message in its connection's thread, instead of `read`.
+    spin: readers ask the socket again and again instead of sleeping: the lowest latency, one core.
+    options: of every kind of port:
     names: a name client, None for the default (see `yarpy.NameServer`, `yarpy.LocalNames`).
     tcp_port: the number to listen on, 0 to let the name server or the system choose.
     port_type: what the port says it takes or sends, for those who look it up (`yarp/image`).
-    callback: called with each message in its connection's thread, instead of `read`.
-    spin: readers ask the socket again and again instead of sleeping: the lowest latency, one core.
     limit: the largest message accepted, in bytes.
+    on_connection: called with an event when a connection comes or goes.
+    timeout: seconds for opening it, else 5.
     Raises AddressError (unusable name, or in use), NoNameServer.
     """
 
@@ -254,27 +263,12 @@ class Port(MessagePort):
         self,
         name: str,
         *,
-        names: NameClient | None = None,
-        tcp_port: int = 0,
-        port_type: str = "",
-        callback: Callable[[Message], None] | None = None,
+        callback: Callable[[Message[T]], object] | None = None,
         spin: bool = False,
-        limit: int = DEFAULT_LIMIT,
-        on_connection: Callable[[ConnectionEvent], None] | None = None,
+        **options: Unpack[PortOptions],
     ) -> None:
-        mailbox = Rendezvous() if callback is None else Callback(callback)
-        super().__init__(
-            open_hub(
-                name,
-                mailbox,
-                names,
-                tcp_port=tcp_port,
-                port_type=port_type,
-                limit=limit,
-                on_connection=on_connection,
-            ),
-            spin,
-        )
+        mailbox = Rendezvous() if callback is None else Callback(callback, type_=self._type)
+        super().__init__(open_hub(name, mailbox, **options), spin)
 
     def ask(self, value: object, timeout: float | None = None) -> list[Message]:
         """Ask every connected port, one after the other; the answers of those that give one.
@@ -283,22 +277,24 @@ class Port(MessagePort):
         no answer came within `timeout` seconds, is dropped, counted and logged. Raises PortClosed.
         """
         self._check_open()
-        packet = Packet(value, key=CALL)
+        packet, until = Packet(value, key=CALL), moment(timeout)
         answers = []
-        for link in self._hub.outputs:
+        for link in self._hub.outputs.links:
             if link.log or link.carrier.delivery.lossy:
                 continue  # somebody looks on
             try:
-                answer = link.call(packet, timeout)
+                answer = link.call(packet, until)
+            except PortClosed:
+                raise
             except YarpError as error:
-                self._hub.drop_output(link, str(error), lost=isinstance(error, LinkClosed))
+                self._lose(link, error)
                 continue
             if answer is not None:
                 answers.append(answer)
         return answers
 
 
-class BufferedPort(MessagePort):
+class BufferedPort(MessagePort[T]):
     """A port between loops that run at their own pace.
 
     Reading gives the newest message, older ones are dropped and counted; with `strict` every
@@ -313,27 +309,26 @@ class BufferedPort(MessagePort):
         name: str,
         *,
         strict: bool = False,
-        names: NameClient | None = None,
-        tcp_port: int = 0,
-        port_type: str = "",
-        callback: Callable[[Message], None] | None = None,
+        callback: Callable[[Message[T]], object] | None = None,
         spin: bool = False,
-        limit: int = DEFAULT_LIMIT,
-        on_connection: Callable[[ConnectionEvent], None] | None = None,
+        **options: Unpack[PortOptions],
     ) -> None:
         mailbox: Mailbox
-        mailbox = Callback(callback) if callback is not None else Fifo() if strict else Latest()
+        if callback is not None:
+            mailbox = Callback(callback, type_=self._type)
+        else:
+            mailbox = Fifo() if strict else Latest()
+        super().__init__(open_hub(name, mailbox, **options), spin)
         self.strict = strict
-        hub = open_hub(
-            name,
-            mailbox,
-            names,
-            tcp_port=tcp_port,
-            port_type=port_type,
-            limit=limit,
-            on_connection=on_connection,
-        )
-        super().__init__(hub, spin)
+
+    @property
+    def strict(self) -> bool:
+        """Return whether writers wait for slow readers, instead of leaving messages out."""
+        return not self._hub.outputs.newest
+
+    @strict.setter
+    def strict(self, strict: bool) -> None:
+        self._hub.outputs.newest = not strict
 
     def read_strictly(self, strict: bool = True) -> None:
         """From now on every message comes, in order; or the newest only. What has come is kept.
@@ -344,37 +339,7 @@ class BufferedPort(MessagePort):
             return
         if not isinstance(self._mailbox, Callback):
             self._reader.exchange(Fifo() if strict else Latest())
-            self._mailbox = self._hub.mailbox
-
-    def _send_all(
-        self, packet: Packet, outputs: tuple[Outbound, ...], wait: bool, timeout: float | None
-    ) -> int:
-        if self.strict or wait:
-            return super()._send_all(packet, outputs, wait, timeout)
-        sent = 0
-        for link in outputs:
-            if link.broken:
-                link.counter.drops += 1
-                self._hub.drop_output(link, link.reason, lost=True)
-            elif self._attempt(link, Outbound.try_send, packet):
-                sent += 1
-        return sent
-
-
-def _is_taken(link: Outbound, deadline: float | None) -> bool:
-    """Wait until everything was acknowledged; False if `deadline` comes first."""
-    try:
-        link.wait_acknowledged(_left(deadline))
-    except Timeout:
-        if deadline is None:
-            raise
-        return False
-    return True
-
-
-def _left(deadline: float | None) -> float | None:
-    """Seconds until `deadline`."""
-    return None if deadline is None else max(0.0, deadline - time.monotonic())
+            self._mailbox = self._hub.inputs.mailbox
 
 
 def envelope_of(stamp: Stamp | str | bytes) -> bytes:

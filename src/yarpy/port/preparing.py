@@ -11,8 +11,8 @@ from operator import index
 from typing import TYPE_CHECKING, Any
 
 from yarpy.errors import LocalProtocolError
-from yarpy.transports.arena import Arena, arena_of, available
-from yarpy.transports.lease import HEADROOM, lease_type
+from yarpy.transports.shared.arena import Arena, arena_of, available
+from yarpy.transports.shared.lease import HEADROOM, lease_type
 from yarpy.wire.stream import LARGE
 
 if TYPE_CHECKING:

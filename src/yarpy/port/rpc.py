@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Unpack, cast
 
+from yarpy import scope
 from yarpy.data.bottle import Bottle
+from yarpy.data.failure import answer_of, error_of, mark
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError, LinkClosed, LocalProtocolError, YarpError
-from yarpy.link.outbound import Outbound
+from yarpy.errors import (
+    DecodeError,
+    LinkClosed,
+    LocalProtocolError,
+    Timeout,
+    YarpError,
+)
+from yarpy.link.ending import NEVER
+from yarpy.link.send.outbound import Outbound
 from yarpy.log import logger
-from yarpy.names.base import NameClient
 from yarpy.names.node_name import CLIENT, SERVER
-from yarpy.port import connecting
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
-from yarpy.port.connection import ConnectionEvent, PortConnection
+from yarpy.port.connect import connecting
+from yarpy.port.connection import PortConnection
+from yarpy.port.graph import Role
 from yarpy.port.mailbox import Callback, Mailbox
-from yarpy.port.part import Part
+from yarpy.port.options import PortOptions
+from yarpy.port.typed import of_type
 from yarpy.route import Route
-from yarpy.wire.message import CALL, UNSENDABLE, Malformed, Message, Packet
-from yarpy.wire.stream import DEFAULT_LIMIT
+from yarpy.scope import CONNECTING, Flag, Scope, apart, moment
+from yarpy.wire.message import CALL, UNSENDABLE, Malformed, Message, Packet, T
 
 log = logger("yarpy.port")
 
@@ -32,10 +43,11 @@ class RpcServer(BasePort):
     """Answers every message with what `handler(message)` returns; None is an empty answer.
 
     The handler runs in the connection's thread, so calls of different clients run side by side;
-    with `lock` one at a time. What it raises is answered as `[fail] "reason"` and logged. It may
-    also call `message.reply(...)` itself. If it has a method `page`, that is what browsers see, as
-    of `on_page`. Without `register` no name service hears of it; `part` is what it does in the
-    graph of another system. Other parameters as `Port`.
+    with `lock` one at a time. What it raises is logged, and raised as RemoteError by the client's
+    `call`; a client of C++ gets `[fail] "TYPE: reason" (raised TYPE)`. It may also call
+    `message.reply(...)` itself. If it has a method `page`, that is what browsers see, as of
+    `on_page`. Without `register` no name service hears of it; `role` is what it does in the graph
+    of another system. Other parameters as `Port`.
     """
 
     def __init__(
@@ -43,63 +55,73 @@ class RpcServer(BasePort):
         name: str,
         handler: Handler,
         *,
-        names: NameClient | None = None,
-        tcp_port: int = 0,
-        port_type: str = "",
         lock: bool = False,
-        limit: int = DEFAULT_LIMIT,
-        on_connection: Callable[[ConnectionEvent], None] | None = None,
         register: bool = True,
-        part: Part | None = None,
+        role: Role | None = None,
+        **options: Unpack[PortOptions],
     ) -> None:
+        if isinstance(handler, type):
+            raise TypeError(
+                f"the handler of {name} is the class {handler.__name__}, not an object of it: "
+                f"RpcServer({name!r}, {handler.__name__}())"
+            )
+        if not callable(handler):
+            raise TypeError(
+                f"the handler of {name} is a function of one argument that returns the answer, or "
+                f"an object of a Thrift service; not {handler!r}"
+            )
         self._handler = handler
-        self._opened = threading.Event()  # a client may be there before this constructor is done
+        # A client may be there before this constructor is done, which frees it.
+        opening = Flag()
+        self._opening: Flag | None = opening
         try:
             super().__init__(
                 open_hub(
                     name,
                     Callback(self._answer, lock),
-                    names,
-                    tcp_port=tcp_port,
-                    port_type=port_type,
                     admits_outputs=False,
-                    limit=limit,
-                    on_connection=on_connection,
                     register=register,
                     category=SERVER,
-                    part=part,
+                    role=role,
+                    **options,
                 )
             )
             page = getattr(handler, "page", None)
             if page is not None:
                 self.on_page(page)
         finally:
-            self._opened.set()
+            self._opening = None
+            opening.set()
 
     def _answer(self, message: Message) -> None:
-        if not self._opened.is_set():
-            self._opened.wait()
+        opening = self._opening
+        if opening is not None:
+            opening.wait()
+        reply: object
         try:
             reply = self._handler(message)
         except DecodeError as error:
             log.warning("%s: message from %s: %s", self.name, message.source, error)
-            reply = Malformed(str(error))
+            reply = refusal = Malformed(str(error))
+            refusal.append(mark(type(error).__name__))
         except Exception as error:
             log.exception("%s: the handler failed on %r", self.name, message)
-            reply = Bottle([Vocab("fail"), f"{type(error).__name__}: {error}"])
+            reply = answer_of(error)
         answer = Bottle() if reply is None else reply
-        self._forward(message, answer)
+        if self._hub.outputs.links:
+            self._forward(message, answer)
         # A handler that has answered by `message.reply` returns None: there is nothing left to say.
-        if message.answer is not None and (reply is not None or message.wants_reply):
+        way = message.answer
+        if way is not None and (reply is not None or way.open):
             try:
-                message.reply(answer)
+                (way.give if way.open else message.reply)(answer)
             except UNSENDABLE as error:
                 log.error("%s: the answer of the handler: %s", self.name, error)
-                message.reply(Bottle([Vocab("fail"), str(error)]))
+                message.reply(answer_of(error))
 
     def _forward(self, message: Message, answer: object) -> None:
         """Tell connected loggers (`+log.in`) what was asked and answered."""
-        for link in self._hub.outputs:
+        for link in self._hub.outputs.links:
             if not link.log:
                 continue
             request = message.value
@@ -110,133 +132,203 @@ class RpcServer(BasePort):
             try:
                 link.send(Packet(record))
             except YarpError as error:
-                self._hub.drop_output(link, str(error))
+                self._hub.outputs.drop(link, str(error))
 
 
 def _as_list(value: object) -> Bottle:
     return Bottle(value) if isinstance(value, (list, tuple)) else Bottle([value])
 
 
-class RpcClient(BasePort):
+class RpcClient(BasePort, Generic[T]):
     """Asks the server called `target`: `RpcClient("/server").call("add", 1, 2)`.
+
+    `RpcClient[Arm]("/arm/rpc").remote` has the methods of Arm, a service of a `.thrift` file.
 
     name: the client's own name, for servers that want to know and for `yarpy connect`; without one
     it is not registered. A client with a name may be made without a target and connected later. A
-    server that was restarted is found again by the next call. Other parameters as `Port`.
-    Raises UnknownName, LinkClosed when the server is not there.
+    server that was restarted is found again by the next call. `timeout` is that of every call that
+    names none, and of opening and connecting, for which it is 5 s otherwise. Other parameters as
+    `Port`. Raises UnknownName, LinkClosed when the server is not there.
     """
 
+    _type: ClassVar[Any] = None  # the service
+
+    if not TYPE_CHECKING:
+
+        def __class_getitem__(cls, service):
+            return of_type(cls, service)
+
+    @apart
     def __init__(
         self,
         target: str = "",
         *,
         name: str = "",
-        carrier: str = "tcp",
-        names: NameClient | None = None,
-        tcp_port: int = 0,
-        limit: int = DEFAULT_LIMIT,
-        on_connection: Callable[[ConnectionEvent], None] | None = None,
-        timeout: float | None = None,
+        carrier: str = "",
+        **options: Unpack[PortOptions],
     ) -> None:
+        timeout = options.get("timeout")
         mailbox: Mailbox = Callback(lambda message: None)
-        super().__init__(
-            open_hub(
-                name,
-                mailbox,
-                names,
-                tcp_port=tcp_port,
-                rpc=True,
-                category=CLIENT,
-                limit=limit,
-                on_connection=on_connection,
-            )
-        )
-        self._target = ""
-        self._carrier = carrier
-        self._last: Route | None = None  # of the last call; the next has to reach the same port
-        if target:
-            try:
-                carrier = _over(target, carrier)
-                connecting.connect(self._hub, target, carrier, None, patience=timeout)
-                self._target, self._carrier = target, carrier
-            except YarpError:
-                self.close()
-                raise
+        with Scope(moment(timeout)):
+            super().__init__(open_hub(name, mailbox, rpc=True, category=CLIENT, **options))
+            self._target = ""
+            self._carrier = carrier
+            self._timeout = timeout
+            turn: Any = threading.RLock()
+            self._turn = turn  # one question at a time
+            self._asking: Callable[[], bool] = turn._is_owned  # this thread; see `held_here`
+            self._last: Route | None = None  # of the last call; the next has to reach the same port
+            if target:
+                try:
+                    self.connect(target, carrier)
+                except BaseException:
+                    self.close()
+                    raise
 
     def connect(
-        self, target: str, carrier: str = "tcp", timeout: float | None = None
+        self, target: str, carrier: str = "", timeout: float | None = None
     ) -> PortConnection:
-        """Choose the server to ask; see Port.connect."""
+        """Choose the server to ask, over tcp where no carrier is named; see Port.connect."""
         carrier = _over(target, carrier)
         made = super().connect(target, carrier, timeout)
         self._last = None
         self._target, self._carrier = target, carrier
         return made
 
+    @property
+    def remote(self) -> T:
+        """The methods of the service that this client is for, each of which is a call with the
+        client's `timeout`; errors as of the `connect` of a service. Raises TypeError for a client
+        of no service."""
+        return cast(T, methods_of(type(self), self, self._timeout))
+
     def call(self, *args: object, timeout: float | None = None) -> Any:
         """Ask, and return the answer's value.
 
         One argument that is a list, dict or message object is the question itself; otherwise the
-        arguments are its elements. Raises Timeout after `timeout` seconds (10 ms accuracy),
-        LinkClosed when the server is gone, WrongPort when another port listens where it was,
-        LocalProtocolError when no server is connected.
+        arguments are its elements. Without `timeout`, here or of the client, it waits until the
+        answer comes, the connection ends, or the client is interrupted or closed.
+
+        Raises RemoteError for what the server's handler raises; Timeout after `timeout` seconds;
+        LinkClosed when the server goes away, and says whether it may have done what it was told: a
+        question that never left is asked again by itself. WrongPort when another port listens where
+        it was, LocalProtocolError when no server is connected, PortClosed.
         """
         message = self.ask(
             args[0] if len(args) == 1 and _is_message(args[0]) else Bottle(args), timeout
         )
-        return Bottle() if message is None else message.value
+        if message is None:
+            return Bottle()
+        value = message.value
+        error = error_of(value) if type(value) is Bottle and len(value) == 3 else None
+        if error is not None:
+            raise error
+        return value
 
     def ask(self, question: object, timeout: float | None = None) -> Message | None:
-        """As `call` with one argument, but returns the whole Message; None if there is no reply."""
-        self._check_open()
-        link = self._link(timeout)
-        packet = Packet(question, key=CALL)
-        output = self._hub.monitoring.output
-        if output is not None:
-            passed = output.send(packet)
-            if passed is None:
-                link.counter.drops += 1
-                return None
-            packet = passed
-        try:
-            return link.call(packet, timeout)
-        except LinkClosed as error:
-            self._hub.drop_output(link, str(error))
-            # Not asked again: the server may have done what it was told before it went away.
-            raise LinkClosed(f'"{link.route.target}" went away during the call') from error
-        except YarpError as error:
-            if link.broken:
-                self._hub.drop_output(link, str(error))
-            raise
+        """As `call` with one argument, but returns the whole Message, whatever it says; None if
+        there is no reply."""
+        hub = self._hub
+        if hub.life.closing or hub.life.interrupted:
+            self._check_open()
+        seconds = self._timeout if timeout is None else timeout
+        return hub.life.calls.run(seconds, self._ask, Packet(question, key=CALL))
 
-    def tell(self, statement: object) -> None:
+    def _ask(self, call: Scope, packet: Packet) -> Message | None:
+        self._take_turn()
+        try:
+            link = self._link()
+            output = self._hub.monitoring.output
+            if output is not None:
+                passed = output.send(packet)
+                if passed is None:
+                    link.counter.drops += 1
+                    return None
+                packet = passed
+            again = False
+            while True:
+                driver, until = link.driver, call.until
+                before = driver.bytes_out
+                try:
+                    call.wake = driver.transport.interrupt
+                    if call.ended or (until is not None and time.monotonic() >= until):
+                        scope.left()  # which raises
+                    reply = link.call(packet, until)
+                    call.wake = None
+                    return reply
+                except LinkClosed as error:
+                    self._hub.outputs.drop(link, str(error))
+                    scope.check()
+                    left = driver.bytes_out != before or link.carrier.spelling == "object"
+                    if left or again:
+                        raise _lost(link.route.target, left) from error
+                except YarpError as error:
+                    if link.broken:
+                        self._hub.outputs.drop(link, str(error))
+                    raise
+                again = True
+                link = self._link()
+        finally:
+            self._turn.release()
+
+    def tell(self, statement: object, timeout: float | None = None) -> None:
         """Send it without waiting for an answer; errors as of `call`."""
         self._check_open()
-        link = self._link()
-        try:
-            link.send(Packet(statement))
-        except LinkClosed as error:
-            self._hub.drop_output(link, str(error))
-            raise
+        seconds = self._timeout if timeout is None else timeout
+        self._hub.life.calls.run(seconds, self._tell, Packet(statement))
 
-    def _link(self, patience: float | None = None) -> Outbound:
-        """The connection to the server: the one there is, if it lives, else a new one. `patience`:
-        the seconds for which it may be silent."""
-        for link in self._hub.outputs:
+    def _tell(self, call: Scope, packet: Packet) -> None:
+        self._take_turn()
+        try:
+            link = self._link()
+            try:
+                link.send(packet, call.until)
+            except LinkClosed as error:
+                self._hub.outputs.drop(link, str(error))
+                raise
+        finally:
+            self._turn.release()
+
+    def _take_turn(self) -> None:
+        """One question at a time: one that did not answer in time ends the connection, and those
+        that wait here never knew that one."""
+        turn = self._turn
+        if self._asking():
+            raise LocalProtocolError(
+                f'"{self.name}" is asking already, in the frame beneath: a signal handler or a '
+                "callback needs a client of its own"
+            )
+        try:
+            taken = turn.acquire(False) or NEVER.acquire(turn)
+        except BaseException:
+            if self._asking():  # and only then a signal handler raised
+                turn.release()
+            raise
+        if not taken:
+            scope.check()
+            raise Timeout(
+                f'"{self._target}" was not asked: an earlier question of this client is still '
+                "waiting for its answer"
+            )
+
+    def _link(self) -> Outbound:
+        """The connection to the server: the one there is, if it lives, else a new one."""
+        for link in self._hub.outputs.links:
             if link.carrier.delivery.lossy:
                 continue  # somebody looks on
             self._last = link.route
             if not link.ended():
                 return link
             # The server was restarted, or the last call did not end well.
-            self._hub.drop_output(link, "the server hung up")
+            self._hub.outputs.drop(link, "the server hung up")
         last = self._last
         target, carrier = self._target, self._carrier
         if last is not None:
             target, carrier = last.target, "" if last.spec.chosen else last.spec.whole
         if target:
-            connecting.connect(self._hub, target, carrier, None, last, patience)
-            for link in self._hub.outputs:
+            with Scope(moment(CONNECTING)):
+                connecting.connect(self._hub, target, carrier, last)
+            for link in self._hub.outputs.links:
                 if not link.carrier.delivery.lossy:
                     return link
             raise LinkClosed(f'"{target}" went away at once')
@@ -246,11 +338,32 @@ class RpcClient(BasePort):
         )
 
 
+def methods_of(cls: Any, client: object, timeout: float | None, waits: bool = False) -> Any:
+    """Return the methods of the service that a class of clients is for, as calls of `client`."""
+    remote = getattr(cls._type, "__remote__", None)
+    if remote is None:
+        raise TypeError(
+            f"{cls.__name__} is not the client of a service: RpcClient[Arm](...) is, where Arm is "
+            'of a module that `yarpy.idl.load("arm.thrift")` gives'
+        )
+    return remote(client, timeout, waits)
+
+
+def _lost(server: str, asked: bool) -> LinkClosed:
+    """Return the error for a server that went away, before or after the question left. That is not
+    asked again: the server may have done what it was told before it went away."""
+    if not asked:
+        return LinkClosed(f'"{server}" went away before it was asked')
+    return LinkClosed(
+        f'"{server}" went away during the call: nobody knows whether it has done what it was told'
+    )
+
+
 def _over(target: str, carrier: str) -> str:
-    """The carrier to ask over: tcp, unless the target says another one."""
-    return "" if carrier == "tcp" and ":/" in target else carrier
+    """The carrier to ask over: tcp, unless the program or the target says another one."""
+    return carrier or ("" if ":/" in str(target) else "tcp")
 
 
 def _is_message(value: object) -> bool:
-    """Whether an only argument is the whole question rather than its one element."""
+    """Return whether a single argument is the whole question rather than its one element."""
     return not isinstance(value, (str, int, float, bytes, bool))

@@ -25,7 +25,8 @@ class ConformanceCase:
     modifiers: appended to the carrier's name in connections, such as `+ack`.
     names_sender: the acceptor learns who dialled. carries_envelopes: envelopes arrive.
     values: messages to send; replace them if your carrier cannot carry all of these.
-    patience: seconds that a live connection may take.
+    timeout: seconds that a live connection may take.
+    missing: why this computer cannot carry it, "" if it can: then nothing is tried live.
     """
 
     carrier: ClassVar[type[Carrier]]
@@ -46,12 +47,13 @@ class ConformanceCase:
         2.5,
     )
     sizes: ClassVar[Sequence[int]] = SIZES
-    patience: ClassVar[float] = 5.0
+    timeout: ClassVar[float] = 5.0
+    missing: ClassVar[str] = ""
 
     # -- to override where a spelling loses something ---------------------------------------------
 
     def expected(self, value: Any) -> Any:
-        """What the receiver of `value` gets."""
+        """Return what the receiver of `value` gets."""
         if self.carrier.spelling == "text":
             return codec.decode_text(codec.encode_text(value))
         if self.carrier.spelling == "object":
@@ -83,7 +85,7 @@ class ConformanceCase:
             talk.acknowledge()
 
     def _acknowledges(self, talk: Dialogue) -> bool:
-        """Whether messages are acknowledged, and that is waited for."""
+        """Return whether messages are acknowledged, and the sender waits for that."""
         (_, sending), (_, receiving) = talk.sender, talk.receiver
         return receiving is not None and receiving.acks and sending.acks
 

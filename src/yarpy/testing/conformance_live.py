@@ -1,4 +1,4 @@
-"""What a carrier must do between two real ports of this process: messages, calls, goodbyes.
+"""Tests of a carrier between two real ports of this process: messages, calls, goodbyes.
 
 Rules: the ports find each other by `LocalNames`, without a server; a carrier that is not installed
 is registered for the duration of a test.
@@ -36,11 +36,11 @@ class LiveConformance(ConformanceCase):
             # A sender counts when its send returns, which may be after the message has arrived.
             for end in (sender.outputs[0], receiver.inputs[0]):
                 _await(
-                    lambda end=end: end.stats["messages"] == len(self.values),  # type: ignore[misc]
-                    self.patience,
+                    lambda end=end: end.stats.messages == len(self.values),  # type: ignore[misc]
+                    self.timeout,
                     f"the count differs from the {len(self.values)} messages sent",
                 )
-            assert sender.outputs[0].stats["drops"] == receiver.inputs[0].stats["drops"] == 0
+            assert sender.outputs[0].stats.drops == receiver.inputs[0].stats.drops == 0
 
     def test_live_sizes(self) -> None:
         """Real ports, messages of every size."""
@@ -64,7 +64,7 @@ class LiveConformance(ConformanceCase):
             ):
                 client.connect("/receiver", self.carrier.name + self.modifiers)
                 for value in self.values:
-                    reply = client.ask(value, timeout=self.patience)
+                    reply = client.ask(value, timeout=self.timeout)
                     assert reply is not None, "no reply came"
                     self._check(reply, value)
 
@@ -79,8 +79,8 @@ class LiveConformance(ConformanceCase):
                 if self.carrier.push:
                     assert not sender.outputs, "the sender keeps its output"
                 else:  # the dialled side must notice
-                    _await(lambda: not sender.outputs, self.patience, "the sender keeps its output")
-                _await(lambda: not receiver.inputs, self.patience, "the receiver keeps its input")
+                    _await(lambda: not sender.outputs, self.timeout, "the sender keeps its output")
+                _await(lambda: not receiver.inputs, self.timeout, "the receiver keeps its input")
 
     def test_live_sender_vanishes(self) -> None:
         """A sender that closes leaves nothing behind at its receiver."""
@@ -89,13 +89,15 @@ class LiveConformance(ConformanceCase):
             sender.write(self.values[0])
             self._read(receiver)
             sender.close()
-            _await(lambda: not receiver.inputs, self.patience, "the receiver keeps its input")
+            _await(lambda: not receiver.inputs, self.timeout, "the receiver keeps its input")
 
     # -- inside -----------------------------------------------------------------------------------
 
     @contextmanager
     def _offered(self) -> Iterator[None]:
         """The carrier can be found by its name, installed or not."""
+        if self.missing:
+            raise SkipTest(self.missing)
         name = self.carrier.name
         if name in registry.carriers.names():
             yield
@@ -109,21 +111,21 @@ class LiveConformance(ConformanceCase):
     def _connect(self, names: LocalNames, sender: Port, receiver: Port) -> None:
         name = self.carrier.name + self.modifiers
         network.connect("/sender", "/receiver", name, names=names)
-        assert sender.wait_for_outputs(timeout=self.patience), "the sender has no output"
+        assert sender.wait_for_outputs(timeout=self.timeout), "the sender has no output"
         if self._greets():
-            _await(lambda: receiver.inputs, self.patience, "the receiver has no input")
+            _await(lambda: receiver.inputs, self.timeout, "the receiver has no input")
         assert sender.outputs[0].carrier == name
         if self.names_sender:
             assert receiver.inputs[0].carrier.startswith(self.carrier.name)
 
     def _read(self, receiver: Port) -> Message:
-        message = receiver.read(timeout=self.patience)
+        message = receiver.read(timeout=self.timeout)
         if message.wants_reply:  # if every message is a call, the connection waits for this
             message.reply([])
         return message
 
     def _greets(self) -> bool:
-        """Whether the acceptor knows of the connection before the first message."""
+        """Return whether the acceptor knows of the connection before the first message."""
         return bool(self._greeted().traffic)
 
 
@@ -134,8 +136,8 @@ def _ports() -> Iterator[tuple[LocalNames, Port, Port]]:
         yield names, sender, receiver
 
 
-def _await(condition: Callable[[], object], patience: float, problem: str) -> None:
-    deadline = time.monotonic() + patience
+def _await(condition: Callable[[], object], timeout: float, problem: str) -> None:
+    deadline = time.monotonic() + timeout
     while not condition():
         assert time.monotonic() < deadline, problem
         time.sleep(0.005)

@@ -16,9 +16,10 @@ from types import SimpleNamespace
 from typing import Any
 
 from yarpy import registry
-from yarpy.carriers.base import MAGIC_SIZE, Carrier
+from yarpy.carriers.base import Carrier
 from yarpy.errors import RemoteProtocolError
-from yarpy.link.handshake import recognise
+from yarpy.facts import MAGIC_SIZE
+from yarpy.link.begin.handshake import recognise
 from yarpy.route import Route
 from yarpy.wire.effects import Claim, Flush, Group, May, Open, Show, Switch, Within
 from yarpy.wire.message import DATA, Message, Packet

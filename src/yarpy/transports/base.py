@@ -1,4 +1,4 @@
-"""What a transport is: it moves bytes and knows no protocol.
+"""Transport: moves bytes and knows no protocol.
 
 Rules: blocking calls, no Python-level timeouts (a kernel receive timeout costs nothing per call);
 `interrupt` wakes the threads inside; `close` is idempotent. Errors are OSError,
@@ -12,27 +12,52 @@ import socket
 import struct
 import sys
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from yarpy.wire.stream import Buffer
 
 Address = tuple[str, int]
 
 
-class Transport(Protocol):
-    """One side of a byte pipe."""
+class Transport:
+    """One side of a pipe: of bytes, or, as an ObjectTransport, of whole objects.
+
+    `scheme`: its name in the registry. `secure`: in TLS. `eager`: polling for what comes may beat
+    sleeping. `cost`: seconds that a send takes at least, where threads of its own do most of it.
+    `dropped`: what was lost before it could be read. `peer_names`: those of the peer's certificate.
+    `lends`: `borrow` may give views of what has come. `whole`: a wait that an exception out of a
+    signal handler has ended has lost nothing. `sock`: the socket below it, for polling and closing,
+    if there is one.
+    """
+
+    scheme: str = ""
+    secure: bool = False
+    eager: bool = True
+    cost: float = 0.0
+    dropped: int = 0
+    lends: bool = False
+    whole: bool = False
+    sock: socket.socket | None = None
+
+    @property
+    def peer_names(self) -> tuple[str, ...]:
+        """The names in the peer's certificate, none without TLS."""
+        return ()
 
     @property
     def local(self) -> Address:
         """Our address, `(host, port)`."""
+        return "", 0
 
     @property
     def remote(self) -> Address:
         """The peer's address."""
+        return "", 0
 
     @property
     def port(self) -> int:
         """The number the peer needs to find us, 0 if none."""
+        return 0
 
     def ready(self, look: Callable[[], object] | None = None) -> None:
         """Called once before the first byte: here the two ends wait for each other.
@@ -42,75 +67,99 @@ class Transport(Protocol):
 
     def recv_into(self, view: memoryview) -> int:
         """Wait for bytes; 0 is the end. Raises BlockingIOError when a time limit is over."""
+        raise NotImplementedError
 
     def try_recv_into(self, view: memoryview) -> int:
         """Bytes that have come already; -1 if there are none, 0 at the end."""
+        raise NotImplementedError
 
-    def send(self, buffers: Sequence[Buffer]) -> None:
+    def borrow(self, count: int, back: int) -> memoryview | None:
+        """The next `count` bytes, read-only, where they have come; None: they have to be copied.
+        They begin with the last `back` bytes of those that were received."""
+        return None
+
+    def send(self, buffers: Sequence[Any]) -> None:
         """Send everything."""
+        raise NotImplementedError
 
-    def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
+    def try_send(self, buffers: Sequence[Any]) -> list[Any]:
         """Send what leaves without waiting; what is left. An empty buffer in that stands for bytes
         that the transport holds back itself."""
+        raise NotImplementedError
 
     def wait_writable(self, seconds: float) -> bool:
         """Wait until something can be sent, or an error is to be had; False if time is over."""
+        return True
+
+    def wait_readable(self, seconds: float) -> bool:
+        """Wait until something can be read, or the end; False if time is over."""
+        return True
 
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         """Limit the wait of each receive, and of each send if `sends`; None: for ever."""
+        raise NotImplementedError
+
+    def limit_silence(self, seconds: float) -> bool:
+        """Take the peer's host for dead after so many seconds without a word from it; return
+        whether that can be told here."""
+        return False
+
+    def limit_unsent(self, size: int) -> None:
+        """Limit the unsent bytes in the system to `size`, where that can be done."""
+
+    def spare_slow_reader(self) -> None:
+        """Called now and then while we send: a reader that takes nothing, but whose host answers,
+        may do so for ever."""
 
     def set_dscp(self, tos: int) -> None:
-        """Set the IP type-of-service byte (DSCP << 2) of outgoing packets."""
+        """Set the IP type-of-service byte (DSCP << 2) of outgoing packets, if there are any."""
 
     def tos(self) -> int:
         """That byte, as the system has it."""
+        return 0
 
     def ended(self) -> bool:
-        """Whether the peer has closed its side, without reading anything."""
+        """Return whether the peer has closed its side, without reading anything."""
+        raise NotImplementedError
 
     def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        """How many bytes the peer's system has confirmed, and whether it is certain that its
-        program has read them; None: nobody can say. `sent`, `received`: so many went and came
+        """How many bytes the peer's system has confirmed, and whether the peer has hung up as one
+        does that has read them all; None: nobody can say. `sent`, `received`: so many went and came
         here."""
+        return None
+
+    def failed(self, error: OSError) -> None:
+        """Called when receiving or sending has failed."""
 
     def interrupt(self) -> None:
         """Wake the threads that wait inside; nothing more will be sent or received."""
+        raise NotImplementedError
 
     def close(self) -> None:
         """Release it."""
+        raise NotImplementedError
 
 
-class Answerable(Transport, Protocol):
+class Answerable(Transport):
     """The transport of a peer that has called us, and that speaks first."""
 
     def peek(self) -> int:
         """The first byte that comes, left unread; -1 for the end."""
+        raise NotImplementedError
 
 
-class ObjectTransport:
-    """What all transports have in common that carry whole Python objects instead of bytes: within
-    a process, or over a library that has sockets of its own. `send` gets objects, too."""
-
-    port = 0
-
-    @property
-    def local(self) -> Address:
-        return "", 0
-
-    @property
-    def remote(self) -> Address:
-        return "", 0
-
-    def ready(self, look: Callable[[], object] | None = None) -> None:
-        """Nobody else needs to come."""
+class ObjectTransport(Transport):
+    """The base of transports that carry whole Python objects instead of bytes: within a process, or
+    over a library that has sockets of its own. `send` gets objects, too."""
 
     def receive(self, wait: bool = True) -> tuple[object] | None:
         """The next object in a one-element tuple; None is the end. Raises BlockingIOError when a
         time limit is over, or there is none and nobody is to wait."""
         raise NotImplementedError
 
-    def send(self, buffers: Sequence[Any]) -> None:
-        raise NotImplementedError
+    def unread(self) -> list[object]:
+        """The objects that had come when it was closed: nobody reads them any more."""
+        return []
 
     def recv_into(self, view: memoryview) -> int:
         raise TypeError("it carries objects, not bytes")
@@ -122,38 +171,26 @@ class ObjectTransport:
         self.send(buffers)
         return []
 
-    def wait_writable(self, seconds: float) -> bool:
-        return True
 
-    def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
-        raise NotImplementedError
+class SocketTransport(Answerable):
+    """The base of transports on sockets."""
 
-    def set_dscp(self, tos: int) -> None:
-        """No packets of its own, no priority."""
-
-    def tos(self) -> int:
-        return 0
-
-    def ended(self) -> bool:
-        raise NotImplementedError
-
-    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        return None
-
-    def interrupt(self) -> None:
-        raise NotImplementedError
-
-    def close(self) -> None:
-        raise NotImplementedError
-
-
-class SocketTransport:
-    """What all transports on sockets have in common."""
+    sock: socket.socket
+    whole = True
 
     def __init__(self, sock: socket.socket) -> None:
         self.sock = sock
         sock.setblocking(True)
-        self._recv_into = sock.recv_into
+        self.use(sock)
+
+    def use(self, sock: socket.socket) -> None:
+        """Send and receive through this socket."""
+        self.sock = sock
+        #: What `recv_into` and `try_send` come down to: one call into the system each, which an
+        #: exception out of a signal handler comes before or after. None: they do more than that.
+        self.recv_call: Callable[..., int] | None = sock.recv_into
+        self.send_call: Callable[..., int] | None = sock.send
+        self._poll: Any = None  # asks whether there is something to be read
 
     @property
     def local(self) -> Address:
@@ -163,21 +200,14 @@ class SocketTransport:
     def remote(self) -> Address:
         return address_of(self.sock.getpeername())
 
-    @property
-    def port(self) -> int:
-        return 0
-
-    def ready(self, look: Callable[[], object] | None = None) -> None:
-        """Sockets that were accepted or connected are ready."""
-
     def recv_into(self, view: memoryview) -> int:
-        return self._recv_into(view)
+        return self.sock.recv_into(view)
 
     def try_recv_into(self, view: memoryview) -> int:
         if not MSG_DONTWAIT and not self._readable():
             return -1
         try:
-            return self._recv_into(view, 0, MSG_DONTWAIT)
+            return self.sock.recv_into(view, 0, MSG_DONTWAIT)
         except BlockingIOError:
             return -1
 
@@ -205,6 +235,8 @@ class SocketTransport:
                     return rest
                 self.send(rest)
                 return []
+            if sys.platform == "win32":
+                return rest  # which was dealt with above
             while rest:
                 _drop_sent(rest, self.sock.sendmsg(rest[:_IOV_MAX], (), MSG_DONTWAIT))
         except BlockingIOError:
@@ -215,31 +247,32 @@ class SocketTransport:
         number = self.sock.fileno()
         if number < 0:
             return True  # closed, as sending tells
-        if not hasattr(select, "poll"):  # Windows
+        if sys.platform == "win32" or not hasattr(select, "poll"):
             return bool(select.select([], [number], [], seconds)[1])
         poll = select.poll()
         poll.register(number, select.POLLOUT)
         return bool(poll.poll(max(0.0, seconds) * 1000))
 
     def wait_readable(self, seconds: float) -> bool:
-        """Wait until something can be read, or the end; False if time is over."""
         number = self.sock.fileno()
         if number < 0:
             return True  # closed, as reading tells
-        if not hasattr(select, "poll"):  # Windows
+        if sys.platform == "win32" or not hasattr(select, "poll"):
             return bool(select.select([number], [], [], seconds)[0])
         poll = select.poll()
         poll.register(number, select.POLLIN)
         return bool(poll.poll(seconds * 1000))
 
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
-        value = timeval(seconds)
+        value = _FOR_EVER if seconds is None else timeval(seconds)
         try:
             self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, value)
             if sends:
                 self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, value)
-        except OSError:
-            pass  # closed by another thread meanwhile: readers and writers get the error
+        except OSError as error:
+            if error.errno is None:
+                raise  # out of a signal handler
+            # Closed by another thread meanwhile: readers and writers get the error.
 
     def set_dscp(self, tos: int) -> None:
         if self.sock.family == socket.AF_INET6:
@@ -262,17 +295,25 @@ class SocketTransport:
         return bool(select.select([self.sock], [], [], 0)[0])
 
     def ended(self) -> bool:
-        if not self.wait_readable(0.0):  # as nearly always, and cheaper than an exception
-            return False
+        number = self.sock.fileno()
+        if _POLL is None:
+            if not self.wait_readable(0.0):
+                return False
+        elif number >= 0:  # spelled out, and cheaper than an exception
+            poll, self._poll = self._poll, None  # it serves one thread at a time
+            if poll is None:
+                poll = _POLL()
+                poll.register(number, _READABLE)
+            found = poll.poll(0)
+            self._poll = poll
+            if not found:  # as nearly always
+                return False
         try:
             return not self.sock.recv(1, _MSG_PEEK)
         except BlockingIOError:
             return False
         except OSError:
             return True
-
-    def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        return None
 
     def interrupt(self) -> None:
         try:
@@ -287,6 +328,8 @@ class SocketTransport:
 # Plain numbers: combining the enumerations of `socket` costs as much as a system call.
 MSG_DONTWAIT: int = int(getattr(socket, "MSG_DONTWAIT", 0))
 _MSG_PEEK: int = int(socket.MSG_PEEK) | MSG_DONTWAIT
+_POLL = getattr(select, "poll", None)  # not on Windows
+_READABLE: int = getattr(select, "POLLIN", 0)
 _IOV_MAX = 512
 # So many bytes are sooner joined than walked through by the kernel as a list: of two or three
 # buffers, of more.
@@ -327,6 +370,9 @@ def timeval(seconds: float | None) -> bytes:
         return struct.pack("@ll", 0, 0)
     micros = max(1, int(seconds * 1e6))
     return struct.pack("@ll", micros // 1_000_000, micros % 1_000_000)
+
+
+_FOR_EVER = timeval(None)
 
 
 def address_of(raw: object) -> Address:

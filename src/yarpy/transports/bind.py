@@ -23,7 +23,7 @@ def listening_host() -> str:
 
 
 def reach() -> str:
-    """Who can reach the ports of this program, as a text for people."""
+    """Return which networks can reach the ports of this program, as a text for people."""
     host = listening_host()
     if not host:
         return "all networks"

@@ -14,8 +14,9 @@ import struct
 import sys
 from collections.abc import Sequence
 
-from yarpy.transports.base import MSG_DONTWAIT, Address, SocketTransport
+from yarpy.transports.base import MSG_DONTWAIT, Address, SocketTransport, Transport
 from yarpy.transports.bind import listening_host
+from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.pace import Pace
 from yarpy.wire.stream import Buffer
 
@@ -44,8 +45,12 @@ class DatagramTransport(SocketTransport):
                 break
             except OSError:
                 continue
-        if _SO_RXQ_OVFL:
+        if sys.platform == "linux" and _SO_RXQ_OVFL:
             sock.setsockopt(socket.SOL_SOCKET, _SO_RXQ_OVFL, 1)
+
+    def use(self, sock: socket.socket) -> None:
+        super().use(sock)
+        self.recv_call = self.send_call = None  # senders and losses are looked at as well
 
     @property
     def remote(self) -> Address:
@@ -64,7 +69,8 @@ class DatagramTransport(SocketTransport):
                 return count  # an empty datagram is not an end: anybody can send one
 
     def _rest(self, view: memoryview) -> int:
-        """What had come before the wake-up: it was sent before the end. 0 when that is all."""
+        """Return the size of what had come before the wake-up: it was sent before the end. 0 when
+        that is all."""
         while MSG_DONTWAIT and self._room > 0:  # a sender that goes on is not read for ever
             try:
                 count = self._recv_datagram(view, MSG_DONTWAIT)
@@ -77,7 +83,7 @@ class DatagramTransport(SocketTransport):
 
     def _recv_datagram(self, view: memoryview, flags: int = 0) -> int:
         """The size of the next datagram, 0 if it is empty or not for us."""
-        if _SO_RXQ_OVFL:
+        if sys.platform == "linux" and _SO_RXQ_OVFL:
             count, ancillary, _, sender = self.sock.recvmsg_into([view], 64, flags)
             for level, kind, data in ancillary:
                 if level == socket.SOL_SOCKET and kind == _SO_RXQ_OVFL:
@@ -210,3 +216,29 @@ class McastReceiver(DatagramTransport):
 
     def interrupt(self) -> None:
         self._woken = True
+
+
+class Udp(Opener):
+    """Datagrams from one port to another."""
+
+    name = "udp"
+    meets = False
+    datagrams = True
+
+    @classmethod
+    def meet(cls, place: Elsewhere) -> Transport:
+        through = place.through
+        return open_udp(place.listen, through.local, through.remote, place.port)
+
+
+class Mcast(Opener):
+    """Datagrams from one port to a group."""
+
+    name = "mcast"
+    meets = False
+    datagrams = True
+
+    @classmethod
+    def meet(cls, place: Elsewhere) -> Transport:
+        listen, group, port = place.listen, place.group, place.port
+        return open_mcast(listen, place.through.local, place.through.remote, group, port)

@@ -30,7 +30,7 @@ class Inbox(ObjectTransport):
         self._inbox: SimpleQueue[Any] = SimpleQueue()
         self._bytes = 0  # of what waits there
         self._over = False
-        self._counting = threading.Lock()
+        self._counting = threading.RLock()
         self._timeout: float | None = None
 
     @property

@@ -6,16 +6,18 @@ this process are in the meeting place, so a stranger's greeting finds nobody.
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Sequence
 from queue import Empty, SimpleQueue
 from typing import Any
 
+from yarpy import fork
 from yarpy.errors import RemoteProtocolError
-from yarpy.transports.base import Address, ObjectTransport
+from yarpy.scope import Flag
+from yarpy.transports.base import Address, ObjectTransport, Transport
+from yarpy.transports.opener import Elsewhere, Opener
 
-PATIENCE = 5.0  # seconds for the two ends to meet
+TIMEOUT = 5.0  # seconds for the two ends to meet
 LOOK = 0.01  # seconds between checks whether the other end will still come
 _END = object()
 
@@ -25,7 +27,7 @@ class Meeting:
 
     def __init__(self) -> None:
         self._waiting: dict[tuple[int, int], InprocTransport] = {}
-        self._lock = threading.Lock()  # initiator and acceptor are different threads
+        self._lock = fork.lock()  # initiator and acceptor are different threads
 
     def leave(self, key: tuple[int, int], end: InprocTransport) -> None:
         """Wait here for the other side."""
@@ -44,14 +46,19 @@ MEETING = Meeting()
 class InprocTransport(ObjectTransport):
     """One end of a pipe of objects."""
 
+    scheme = "inproc"
+    whole = True
+
     def __init__(self, local: Address, remote: Address) -> None:
         self._local = local
         self._remote = remote
         self._inbox: SimpleQueue[object] = SimpleQueue()
+        self._came: list[object] = []  # taken out of it, and not handed on yet
         self._peer: InprocTransport | None = None
         self._timeout: float | None = None
-        self._ended = False
-        self._joined = threading.Event()
+        self._over = False  # nothing more is taken from the peer, but what it has sent by then
+        self._gone = False  # nobody reads any more what comes now
+        self._joined = Flag()
 
     @property
     def local(self) -> Address:
@@ -69,7 +76,7 @@ class InprocTransport(ObjectTransport):
 
     def ready(self, look: Callable[[], object] | None = None) -> None:
         """Wait until the other end has come. Raises TimeoutError if it does not."""
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + TIMEOUT
         try:
             while not self._joined.wait(LOOK):
                 if time.monotonic() > deadline:
@@ -83,36 +90,67 @@ class InprocTransport(ObjectTransport):
             raise
 
     def receive(self, wait: bool = True) -> tuple[object] | None:
+        came = self._came
         try:
-            item = self._inbox.get(wait, self._timeout)
+            if not came:  # in one step: an exception out of a signal handler loses nothing
+                came.extend(map(self._inbox.get, (wait,), (self._timeout,)))
         except Empty:
             raise BlockingIOError("nothing has come") from None
-        if item is _END:
-            self._inbox.put(_END)
-            return None
-        return (item,)
+        if came[0] is _END:  # which stays, as long as this end does
+            self._gone = True
+            while len(came) < 2 or came[1] is _END:
+                del came[1:]
+                try:
+                    came.extend(map(self._inbox.get, (False,)))
+                except Empty:
+                    return None
+        item = (came[-1],)
+        del came[-1:]
+        return item
 
     def send(self, buffers: Sequence[Any]) -> None:
         peer = self._peer
-        if peer is None or peer._ended or self._ended:
+        if peer is None or peer._over or self._over:
             raise BrokenPipeError("the other end is closed")
         for item in buffers:
             peer._inbox.put(item)
+            # Its reader may have found the end just before; else it finds this.
+            if peer._gone and peer._withdraw(item):
+                raise BrokenPipeError("the other end is closed")
+
+    def _withdraw(self, item: object) -> bool:
+        """Take back what came too late; return whether nobody has read it."""
+        left = self._empty()
+        return any(one is item for one in left)
+
+    def _empty(self) -> list[object]:
+        """Take what nobody has read: each object is taken once, whoever looks for it."""
+        left: list[object] = []
+        try:
+            while True:
+                left.append(self._inbox.get_nowait())
+        except Empty:
+            return [one for one in left if one is not _END]
+
+    def unread(self) -> list[object]:
+        left = [one for one in self._came if one is not _END]
+        self._came[:] = [_END]
+        return left + self._empty()
 
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         self._timeout = seconds
 
     def ended(self) -> bool:
-        return self._peer is not None and self._peer._ended
+        return self._peer is not None and self._peer._over
 
     def interrupt(self) -> None:
+        self._over = True
         self._inbox.put(_END)
 
     def close(self) -> None:
-        if not self._ended:
-            self._ended = True
-            if self._peer is not None:
-                self._peer._inbox.put(_END)
+        self._over = self._gone = True
+        if self._peer is not None:
+            self._peer._inbox.put(_END)
 
 
 def open_inproc(listen: bool, local: Address, remote: Address) -> InprocTransport:
@@ -126,3 +164,16 @@ def open_inproc(listen: bool, local: Address, remote: Address) -> InprocTranspor
         raise RemoteProtocolError("the carrier local joins ports of one process; use unix_stream")
     end.join(peer)
     return end
+
+
+class Inproc(Opener):
+    """Objects handed from thread to thread."""
+
+    name = "inproc"
+    meets = False
+    stays = True
+
+    @classmethod
+    def meet(cls, place: Elsewhere) -> Transport:
+        through = place.through
+        return open_inproc(place.listen, through.local, through.remote)

@@ -71,13 +71,15 @@ def notice_death(sock: socket.socket, timeout: float | None = None) -> None:
         "TCP_KEEPCNT": 3,
         "TCP_USER_TIMEOUT": round(1000 * timeout),
     }
-    with suppress(OSError):  # the peer has gone already, as the first use tells
+    try:
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         for name, value in settings.items():
             if hasattr(socket, name):
                 sock.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
         if sys.platform == "linux":  # the pauses between two attempts grow up to this
             sock.setsockopt(socket.IPPROTO_TCP, _RTO_MAX, 1000 * pause)
+    except OSError:
+        pass  # the peer has gone already, as the first use tells
 
 
 class Vigil:
@@ -93,8 +95,10 @@ class Vigil:
         self._spared = False  # TCP_USER_TIMEOUT is off
 
     def gives_up(self, sock: socket.socket) -> bool:
-        """Whether the host of a reader that takes nothing does not answer either."""
-        info = tcp_info(sock) if hasattr(socket, "TCP_USER_TIMEOUT") else None
+        """Return whether the host of a reader that takes nothing does not answer either."""
+        if sys.platform != "linux":
+            return False
+        info = tcp_info(sock)
         timeout = peer_timeout() if self._timeout is None else self._timeout
         if info is None or not timeout:
             return False

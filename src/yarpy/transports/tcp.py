@@ -10,16 +10,21 @@ from __future__ import annotations
 
 import socket
 import sys
+import threading
+import time
 from contextlib import suppress
-from typing import Final
+from functools import partial
+from typing import Any, Final
 
+from yarpy import scope
+from yarpy.contact import Contact
 from yarpy.errors import AddressError
+from yarpy.route import Route
 from yarpy.transports.base import Address, SocketTransport
 from yarpy.transports.bind import listening_host
+from yarpy.transports.opener import CONNECT_TIMEOUT, Elsewhere, Opener
 from yarpy.transports.peer_timeout import Vigil, notice_death
 from yarpy.transports.tcp_info import tcp_info
-
-CONNECT_TIMEOUT = 10.0  # seconds, as C++ YARP
 
 # Bytes on their way to a program on this computer. Left to itself, Linux lets megabytes of an image
 # pile up, which then have left the processor's cache before the reader copies them. With 112 to 208
@@ -30,6 +35,8 @@ NEAR: Final = 176 << 10
 
 class TcpTransport(SocketTransport):
     """A connected TCP socket."""
+
+    scheme = "tcp"
 
     def __init__(self, sock: socket.socket) -> None:
         super().__init__(sock)
@@ -42,25 +49,23 @@ class TcpTransport(SocketTransport):
             _limit_what_is_near(sock)
         self._vigil = Vigil()
 
-    def limit_silence(self, seconds: float) -> None:
-        """Take the peer's host for dead after so many seconds without a word from it."""
+    def limit_silence(self, seconds: float) -> bool:
         if self.sock.family != getattr(socket, "AF_UNIX", None):
             notice_death(self.sock, seconds)
             self._vigil = Vigil(seconds)
+        return True
 
     def peek(self) -> int:
-        """The first byte that comes, left unread; -1 for the end."""
         first = self.sock.recv(1, socket.MSG_PEEK)
         return first[0] if first else -1
 
     def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        """How many bytes the peer's system has confirmed, and whether it is certain that its
-        program has read them; None: nobody can say. `sent`, `received`: so many went and came
-        here.
+        """As of every transport.
 
         A system that closes a connection says goodbye (FIN) if the program had read all that came,
-        otherwise it resets it. The goodbye counts as a byte; and what we send after it is not
-        confirmed any more.
+        otherwise it resets it; but a program may also say it (shutdown) before it has read all, or
+        end with what it has read in its hands. The goodbye counts as a byte; and what we send after
+        it is not confirmed any more.
         """
         info = tcp_info(self.sock)
         if info is None:
@@ -68,13 +73,10 @@ class TcpTransport(SocketTransport):
         return info.confirmed - self._origin, info.came == received + 1 and self.ended()
 
     def spare_slow_reader(self) -> None:
-        """Called now and then while we send: a reader that takes nothing, but whose host answers,
-        may do so for ever."""
         if self.sock.family != getattr(socket, "AF_UNIX", None) and self._vigil.gives_up(self.sock):
             self.interrupt()
 
     def limit_unsent(self, size: int) -> None:
-        """Limit the unsent bytes in the kernel to `size`, on systems that can."""
         option = getattr(socket, "TCP_NOTSENT_LOWAT", None)
         if option is not None:
             self.sock.setsockopt(socket.IPPROTO_TCP, option, size)
@@ -82,25 +84,90 @@ class TcpTransport(SocketTransport):
 
 def _limit_what_is_near(sock: socket.socket) -> None:
     if sys.platform == "linux":
-        with suppress(OSError):  # closed already: reading tells
+        try:
             if sock.getpeername()[0] == sock.getsockname()[0]:
                 sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, NEAR)
+        except OSError:
+            pass  # closed already: reading tells
 
 
 def dial(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TcpTransport:
     """Connect to a port. Raises OSError (ConnectionRefusedError ...), AddressError."""
     if not 0 < port < 65536:
         raise AddressError(f"{host}:{port}: a TCP port number lies between 1 and 65535")
-    try:
-        return TcpTransport(socket.create_connection((host, port), timeout))
-    except UnicodeError as error:  # from the encoding of names for DNS
-        raise AddressError(f'"{host}" is no host name: {error}') from error
+    return TcpTransport(connected(host, port, timeout))
+
+
+def connected(host: str, port: int, timeout: float) -> socket.socket:
+    """Return a socket that is connected to `host`:`port`. All of it, the look-up of a name
+    included, takes `timeout` seconds at most, and ends with the call under way (`scope`).
+
+    Raises OSError (TimeoutError, ConnectionRefusedError ...), AddressError.
+    """
+    limit = time.monotonic() + scope.left(timeout)
+    failure: OSError | None = None
+    addresses = _addresses(host, port, limit)
+    for number, (family, kind, protocol, _, address) in enumerate(addresses):
+        left = (limit - time.monotonic()) / (len(addresses) - number)
+        if left <= 0.0:
+            break
+        try:
+            sock = socket.socket(family, kind, protocol)
+        except OSError as error:  # of a family that this system does not have
+            failure = error
+            continue
+        try:
+            sock.settimeout(left)
+            with scope.waking(partial(_cut, sock)):
+                sock.connect(address)
+            return sock
+        except OSError as error:
+            sock.close()
+            failure = error
+        except BaseException:
+            sock.close()
+            raise
+    raise failure or TimeoutError("timed out")
+
+
+def _cut(sock: socket.socket) -> None:
+    with suppress(OSError):  # the connection was not begun, or has failed
+        sock.shutdown(socket.SHUT_RDWR)
+
+
+def _addresses(host: str, port: int, limit: float) -> list[Any]:
+    """Return what the system knows of a host, as socket.getaddrinfo does. Raises OSError."""
+    look = partial(socket.getaddrinfo, port=port, type=socket.SOCK_STREAM)
+    if host.isascii() and "\0" not in host:
+        try:  # as bytes: the encoding of names for DNS takes a while to load
+            return look(host.encode(), flags=socket.AI_NUMERICHOST)
+        except socket.gaierror:
+            pass  # a name, which somebody has to be asked for, who may be silent for long
+    found: list[Any] = []
+    failed: list[Exception] = []
+    waiter = scope.Waiter()
+
+    def ask() -> None:
+        try:
+            found.extend(look(host))
+        except (OSError, UnicodeError) as error:
+            failed.append(error)
+        waiter.wake()
+
+    threading.Thread(target=ask, name=f"yarpy look up {host}", daemon=True).start()
+    waiter.wait(limit - time.monotonic())
+    if failed and isinstance(failed[0], UnicodeError):
+        raise AddressError(f'"{host}" is no host name: {failed[0]}') from failed[0]
+    if failed:
+        raise failed[0]
+    if not found:
+        raise TimeoutError(f"nobody says where {host} is")
+    return found
 
 
 def is_taken(port: int) -> bool:
-    """Whether that port number of this computer is in use: by a listener, or by an outgoing
-    connection.
-    """
+    """Return whether that port number of this computer is in use: by a listener, or by an outgoing
+    connection."""
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as sock:
         try:
             if sys.platform != "win32":
@@ -139,7 +206,7 @@ class TcpListener:
 
     @property
     def closed(self) -> bool:
-        """Whether `close` was called."""
+        """Return whether `close` was called."""
         return self._closed
 
     def close(self) -> None:
@@ -161,3 +228,17 @@ class TcpListener:
     def release(self) -> None:
         """Give the number back; called by the thread that waited."""
         self.sock.close()
+
+
+class Tcp(Opener):
+    """Connections of the system, and another one to the same peer."""
+
+    name = "tcp"
+
+    @classmethod
+    def dial(cls, contact: Contact, timeout: float, route: Route | None = None) -> TcpTransport:
+        return dial(contact.host, contact.port, timeout)
+
+    @classmethod
+    def meet(cls, place: Elsewhere) -> TcpTransport:
+        return dial(*place.through.remote, place.timeout)

@@ -1,4 +1,4 @@
-"""What the system knows about a TCP connection.
+"""The system's knowledge of a TCP connection.
 
 Rules: Linux alone tells, in its struct tcp_info; elsewhere there is nothing to know.
 """
@@ -31,7 +31,7 @@ class TcpInfo(NamedTuple):
 
 
 def tcp_info(sock: socket.socket) -> TcpInfo | None:
-    """What is known of the connection of `sock`; None if that is nothing."""
+    """Return what the kernel knows of the connection of `sock`; None if it tells nothing."""
     if _OPTION is None:
         return None
     try:

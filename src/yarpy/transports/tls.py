@@ -18,7 +18,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from yarpy.transports.base import MSG_DONTWAIT
-from yarpy.transports.tcp import CONNECT_TIMEOUT, TcpTransport, dial
+from yarpy.transports.opener import CONNECT_TIMEOUT, Elsewhere, Opener
+from yarpy.transports.tcp import TcpTransport, dial
 from yarpy.transports.tls_setting import folder, mutual
 from yarpy.wire.stream import Buffer
 
@@ -37,6 +38,9 @@ class TlsTransport(TcpTransport):
     dialled us is asked for a certificate, and may go without.
     """
 
+    scheme = "tls"
+    secure = True
+
     def __init__(self, sock: socket.socket, host: str = "", asks_names: bool = False) -> None:
         super().__init__(sock)
         self.host = host
@@ -45,14 +49,14 @@ class TlsTransport(TcpTransport):
         self._tls = context.wrap_bio(
             self._incoming, self._outgoing, server_side=not host, server_hostname=host or None
         )
-        self._lock = threading.Lock()  # of the SSL object
+        self._lock = threading.RLock()  # of the SSL object
         self._sending = threading.Lock()
         self._reading = threading.Lock()
         self._raw = memoryview(bytearray(_RAW))
         self._over = False  # the peer has said goodbye
         self._unsent: list[Buffer] = []  # records for which there was no room
         self._ahead = memoryview(b"")  # read ahead to see whether the peer has gone
-        self._patience: float | None = None  # seconds for a record, as for each wait
+        self._timeout: float | None = None  # seconds for a record, as for each wait
 
     def shake_hands(self, deadline: float) -> None:
         """The TLS handshake. Raises ssl.SSLError, and BlockingIOError when it takes too long."""
@@ -90,32 +94,48 @@ class TlsTransport(TcpTransport):
     # -- bytes ------------------------------------------------------------------------------------
 
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
-        self._patience = seconds
+        self._timeout = seconds
         super().limit_waiting(seconds, sends)
+
+    def use(self, sock: socket.socket) -> None:
+        super().use(sock)
+        self.recv_call = self.send_call = None  # there is TLS between the system and us
 
     def recv_into(self, view: memoryview) -> int:
         with self._reading:
             due = 0.0
-            fresh = 0
-            while (count := self._decrypted(view, fresh)) < 0:
-                fresh = self._recv_into(self._raw)
-                if not fresh:
-                    return 0
-                if self._patience is not None:  # a record may come byte by byte
-                    now = time.monotonic()
-                    due = due or now + self._patience
-                    if now > due:
-                        raise BlockingIOError("the peer is slow")
+            came = [0]
+            try:
+                while (count := self._decrypted(view, came[0])) < 0:
+                    came = []
+                    came.extend(map(self.sock.recv_into, (self._raw,)))
+                    if not came[0]:
+                        return 0
+                    if self._timeout is not None:  # a record may come byte by byte
+                        now = time.monotonic()
+                        due = due or now + self._timeout
+                        if now > due:
+                            raise BlockingIOError("the peer is slow")
+            except OSError:
+                raise
+            except BaseException:
+                if came:  # a signal came while a record was read, not while one was waited for
+                    self.interrupt()
+                raise
             return count
 
     def try_recv_into(self, view: memoryview) -> int:
-        with self._reading:
+        if not self._reading.acquire(blocking=False):
+            return -1  # another thread reads, or the frame beneath this signal handler
+        try:
             fresh = 0
             while (count := self._decrypted(view, fresh)) < 0:
                 fresh = super().try_recv_into(self._raw)
                 if fresh <= 0:
                     return fresh
             return count
+        finally:
+            self._reading.release()
 
     def send(self, buffers: Sequence[Buffer]) -> None:
         with self._sending:
@@ -235,25 +255,25 @@ def _cut(buffers: Sequence[Buffer]) -> Iterator[Buffer]:
 def dial_tls(host: str, port: int, timeout: float = CONNECT_TIMEOUT) -> TlsTransport:
     """Connect to a port with TLS. Raises OSError: as `dial`, ssl.SSLError, NoCertificate."""
     deadline = time.monotonic() + timeout
-    return secured(dial(host, port, timeout), host, deadline)
+    return secured(dial(host, port, timeout).sock, host, deadline)
 
 
 def secured(
-    transport: TcpTransport, host: str, deadline: float, asks_names: bool = False
+    sock: socket.socket, host: str, deadline: float, asks_names: bool = False
 ) -> TlsTransport:
-    """TLS on an existing connection. `host` empty: we were dialled. Raises as `dial_tls`; the
+    """Begin TLS on an existing connection. `host` empty: we were dialled. Raises as `dial_tls`; the
     connection is closed then."""
     try:
-        made = TlsTransport(transport.sock, host, asks_names)
+        made = TlsTransport(sock, host, asks_names)
         made.shake_hands(deadline)
     except BaseException:
-        transport.close()
+        sock.close()
         raise
     return made
 
 
 def explained(error: OSError) -> str:
-    """What went wrong with TLS, and what to do."""
+    """Return what went wrong with TLS, and what to do."""
     if isinstance(error, ssl.SSLCertVerificationError):
         return (
             f"its certificate is not valid: {error.verify_message}. The authority is ca.pem in "
@@ -261,6 +281,11 @@ def explained(error: OSError) -> str:
         )
     if isinstance(error, ssl.SSLError):
         return f"no TLS: {error.reason or error.strerror or error}"
+    if isinstance(error, ConnectionError):
+        return (
+            f"the peer hung up when TLS was to begin ({error.strerror or error}): most likely its "
+            "computer has no certificate, which `yarpy cert` makes there, as its log says"
+        )
     return str(error)
 
 
@@ -330,3 +355,15 @@ def _own(context: ssl.SSLContext, where: Path, age: tuple[float, ...]) -> bool:
     except OSError as error:
         raise NoCertificate(f"cert.pem and key.pem in {where} cannot be used: {error}") from error
     return True
+
+
+class Tls(Opener):
+    """Another connection to the same peer, in TLS as the first one."""
+
+    name = "tls"
+
+    @classmethod
+    def meet(cls, place: Elsewhere) -> TlsTransport:
+        through = place.through
+        assert isinstance(through, TlsTransport)
+        return dial_tls(through.host or through.remote[0], through.remote[1], place.timeout)

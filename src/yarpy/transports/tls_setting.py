@@ -1,4 +1,4 @@
-"""What the environment says of TLS: `YARPY_TLS`, and where the certificates are.
+"""Settings of TLS from the environment: `YARPY_TLS`, and where the certificates are.
 
     (nothing)   the initiator chooses: `+tls`, https and wss are TLS, the rest is plain
     require     every connection of this program is TLS, to it and from it
@@ -26,7 +26,8 @@ WORD: Final = "tls"  # in a carrier string
 
 
 def required() -> bool:
-    """Whether every connection must be TLS. Raises LocalProtocolError for a senseless setting."""
+    """Return whether every connection must be TLS. Raises LocalProtocolError for a senseless
+    setting."""
     said = os.environ.get(SETTING, "")
     if said not in ("", "require", "mutual"):
         raise LocalProtocolError(f'{SETTING} is "require", "mutual" or nothing, not "{said[:40]}"')
@@ -34,7 +35,7 @@ def required() -> bool:
 
 
 def mutual() -> bool:
-    """Whether those who dial us must show a certificate."""
+    """Return whether those who dial us must show a certificate."""
     return os.environ.get(SETTING, "") == "mutual"
 
 
@@ -49,12 +50,12 @@ def folder() -> Path:
         return Path(known["XDG_CONFIG_HOME"], "yarp", "tls")
     if sys.platform == "win32" and known.get("APPDATA"):
         return Path(known["APPDATA"], "yarp", "config", "tls")
-    home = Path(known.get("HOME") or known.get("USERPROFILE") or os.path.curdir)
+    home = Path(known.get("HOME") or known.get("USERPROFILE") or os.path.expanduser("~"))
     if sys.platform == "darwin":
         return home / "Library" / "Preferences" / "yarp" / "tls"
     return home / ".config" / "yarp" / "tls"
 
 
 def has_certificate() -> bool:
-    """Whether this computer can be dialled with TLS."""
+    """Return whether this computer can be dialled with TLS."""
     return (folder() / "cert.pem").is_file()

@@ -7,18 +7,23 @@ processes compute alike. The accepting side binds, waits for one peer, and remov
 
 from __future__ import annotations
 
+import array
 import os
 import socket
+import sys
 import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 from yarpy.errors import LocalProtocolError
-from yarpy.transports.base import Address
+from yarpy.platform.user import user
+from yarpy.transports.base import MSG_DONTWAIT, Address, Transport
+from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.tcp import TcpTransport
 
-PATIENCE = 5.0  # seconds for the two sides to meet
+TIMEOUT = 5.0  # seconds for the two sides to meet
+_SIOCOUTQ = 0x5411  # of Linux: what was sent, and not read
 
 
 def runtime_directory() -> Path:
@@ -29,8 +34,9 @@ def runtime_directory() -> Path:
     shared = os.environ.get("XDG_RUNTIME_DIR")
     if shared:
         return Path(shared) / "yarp"
-    user = os.environ.get("USER") or str(os.getuid() if hasattr(os, "getuid") else "")
-    return Path(os.environ.get("TMPDIR") or tempfile.gettempdir()) / f"runtime-{user}" / "yarp"
+    number = user()
+    name = os.environ.get("USER") or ("" if number is None else str(number))
+    return Path(os.environ.get("TMPDIR") or tempfile.gettempdir()) / f"runtime-{name}" / "yarp"
 
 
 def _made(directory: Path) -> Path:
@@ -40,7 +46,7 @@ def _made(directory: Path) -> Path:
         return directory  # where its owner wants it
     for path in (directory.parent, directory):
         found = path.lstat()
-        if found.st_uid != os.getuid():
+        if user() not in (None, found.st_uid):
             raise LocalProtocolError(
                 f"another user of this computer made {path}, and could read what goes through "
                 "sockets in it: set XDG_RUNTIME_DIR, or take the carrier tcp"
@@ -66,9 +72,13 @@ def open_unix(listen: bool, local: Address, remote: Address) -> UnixTransport:
 class UnixTransport(TcpTransport):
     """A Unix stream socket; connected once `ready` has returned."""
 
+    _reset = False  # the peer hung up without having read all
+
     def __init__(self, path: str, listen: bool) -> None:
         self._path = path
         self._listen = listen
+        if sys.platform == "win32":
+            raise NotImplementedError
         super().__init__(socket.socket(socket.AF_UNIX, socket.SOCK_STREAM))
         if listen:
             Path(path).unlink(missing_ok=True)
@@ -87,14 +97,14 @@ class UnixTransport(TcpTransport):
         if self._listen:
             listener = self.sock
             try:
-                listener.settimeout(PATIENCE)
-                self.sock, _ = listener.accept()
+                listener.settimeout(TIMEOUT)
+                self.use(listener.accept()[0])
             finally:
                 listener.close()
                 Path(self._path).unlink(missing_ok=True)
             self.sock.setblocking(True)
         else:
-            deadline = time.monotonic() + PATIENCE
+            deadline = time.monotonic() + TIMEOUT
             while True:
                 try:
                     self.sock.connect(self._path)
@@ -105,21 +115,64 @@ class UnixTransport(TcpTransport):
                     if look is not None:
                         look()
                     time.sleep(0.01)  # the other side is about to listen
-        self._recv_into = self.sock.recv_into
 
     def set_dscp(self, tos: int) -> None:
         raise LocalProtocolError("a Unix socket has no packet priority; use tcp for that")
 
     def taken(self, sent: int, received: int) -> tuple[int, bool] | None:
-        """What the peer has not read takes room in our send buffer; more than fits there, it has
-        read."""
+        """Return how much the peer has read, and whether that was all before it hung up. What it
+        has not read takes room in our send buffer; more than fits there, it has read. If it closes
+        before it has read all, the system says so once, and throws the rest away after that."""
         try:
-            room = self.sock.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF)
-        except OSError:
+            room = _unread(self.sock)
+            if self.sock.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR):
+                self._reset = True
+            if not room and not self._reset:
+                return sent, self.ended() and not self._reset
+            return sent - self.sock.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF), False
+        except (OSError, ValueError):  # or another thread has closed the socket
             return None
-        return sent - room, False
+
+    def ended(self) -> bool:
+        if not self.wait_readable(0.0):
+            return False
+        try:
+            return not self.sock.recv(1, socket.MSG_PEEK | MSG_DONTWAIT)
+        except BlockingIOError:
+            return False
+        except OSError as error:
+            self.failed(error)
+            return True
+
+    def failed(self, error: OSError) -> None:
+        self._reset = self._reset or isinstance(error, ConnectionResetError)
 
     def close(self) -> None:
         super().close()
         if self._listen:
             Path(self._path).unlink(missing_ok=True)
+
+
+def _unread(sock: socket.socket) -> int:
+    """Return about how many bytes the peer has not read, at least 1 where the system does not
+    tell."""
+    if sys.platform != "linux":
+        return 1
+    import fcntl
+
+    found = array.array("i", [0])
+    fcntl.ioctl(sock.fileno(), _SIOCOUTQ, found)
+    return found[0]
+
+
+class Unix(Opener):
+    """Unix sockets between programs of one computer."""
+
+    name = "unix"
+    meets = False
+    stays = True
+
+    @classmethod
+    def meet(cls, place: Elsewhere) -> Transport:
+        through = place.through
+        return open_unix(place.listen, through.local, through.remote)

@@ -48,7 +48,7 @@ class Assembler:
 
     @property
     def idle(self) -> bool:
-        """Whether nothing is held of an unfinished message."""
+        """Return whether no part of an unfinished message is held."""
         return self._data is None
 
     def add(self, datagram: bytes) -> bytes | bytearray | None:

@@ -1,9 +1,9 @@
-"""What a protocol may ask its driver for besides bytes: the values that a `Steps` generator yields.
+"""Effects: a protocol's requests besides bytes, which a `Steps` generator yields.
 
 Rules: plain values, no behaviour. `None` asks for more bytes; everything else is listed here. A
 connection greets over TCP; carriers that move elsewhere (UDP, multicast, Unix sockets, in-process)
 `Open` the new place, tell the peer about it, and `Switch` onto it. One whose peer hangs up after
-the first answer opens `tcp` to ask again. `Show` is for `decode` alone.
+the first answer opens another one to ask again. `Show` is for `decode` alone.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from yarpy.wire.stream import ByteStream
 class Open(Effect):
     """Open another way to the same peer; the driver sends back a handle with `.port` (0: none).
 
-    `kind` names the transport (`tcp`, `udp`, `mcast`, `unix`, `memory`, `shmem`, `inproc`).
+    `kind` names the transport (`udp`, `unix`, `memory` ...); "": the one of this connection, anew.
     `listen` is true on the side that accepted the TCP connection. `group` and `port` say where: a
     multicast group, the peer's port. For `memory` they are whose it is, and the number where its
     sender can be met; the handle is None if that cannot be seen from here.
@@ -74,16 +74,24 @@ class Show(Effect):
 HEAR: Final = "hear"
 
 
+#: to send datagrams, to a port that has a place for another sender of them
+SEND_DATAGRAMS: Final = "send datagrams"
+
+#: to come under a name that nobody else has who sends to this port
+BE_CALLED: Final = "be called so"
+
+
 @dataclass(frozen=True, slots=True)
 class May(Effect):
     """Ask whether the peer may do that here; the driver sends back why not, or "".
 
-    `link/admission.py` lists the rights, and there is HEAR. `asking`: the peer did not try to, so
-    nothing is logged.
+    `link/admission.py` lists the rights, and there are HEAR, SEND_DATAGRAMS and BE_CALLED.
+    `asking`: the peer did not try to, so nothing is logged. `name`: what the peer calls itself.
     """
 
     right: str
     asking: bool = False
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,10 +8,13 @@ right (hand-made clients write anything): then the payload itself is walked to f
 from __future__ import annotations
 
 import struct
-from typing import Final
+from collections.abc import Callable
+from typing import Any, Final
 
-from yarpy.data.codec import decode_leading
-from yarpy.data.walker import Walker
+from yarpy.data.codec import LISTS, any_list, decode_leading
+from yarpy.data.codec import encode as encode_value
+from yarpy.data.walker import Walk, Walker
+from yarpy.data.writer import list_blocks
 from yarpy.errors import AccessRefused, LinkClosed, RemoteProtocolError
 from yarpy.log import readable
 from yarpy.wire.message import Message, Packet
@@ -79,7 +82,13 @@ def encode(packet: Packet) -> list[Buffer]:
     place."""
     framed = packet.framed
     if framed is None:
-        blocks = packet.blocks
+        blocks = packet._blocks
+        if blocks is None:  # spelled out: each step of it would be a call for every message
+            value: Any = packet.value
+            if type(value) in LISTS:
+                blocks = packet._blocks = list_blocks(value, any_list)
+            else:
+                blocks = packet._blocks = encode_value(value)
         if len(blocks) == 1:
             # The common case, kept short: two blocks, the second is the payload.
             payload = blocks[0]
@@ -150,7 +159,8 @@ def read_message(stream: ByteStream) -> Steps[Message]:
 def parse_plain(stream: ByteStream) -> Message | None:
     """A whole message at the head of the stream's buffer, or None: look closer.
 
-    The hot path: nothing is waited for, no generator runs, the payload is copied out once.
+    The hot path: nothing is waited for, no generator runs, the payload is copied out once. `head`
+    moves in the last step, so that a reader that a signal interrupts finds all or nothing done.
     """
     head = stream.head
     buffer = stream.buffer
@@ -166,8 +176,9 @@ def parse_plain(stream: ByteStream) -> Message | None:
     key = _CHARACTERS.get(code)
     if key is None or mark != 0x7E:
         return None
+    message = Message(key, stream.view[start + 8 : end].tobytes())
     stream.head = end
-    return Message(key, bytes(buffer[start + 8 : end]))
+    return message
 
 
 def _parse_stamped(stream: ByteStream, start: int, body: int, end: int) -> Message | None:
@@ -228,7 +239,8 @@ def _read_any(stream: ByteStream) -> Steps[Message | None]:
 
 
 def _parse_large(stream: ByteStream) -> tuple[Message, int] | None:
-    """What begins a large message without envelope, and how much follows; None: look closer.
+    """Parse the start of a large message without envelope; return it and how much follows, or None:
+    look closer.
 
     As with `parse_plain`, no generator runs: what a large message costs beside its bytes.
     """
@@ -292,10 +304,13 @@ def parse_command(text: str) -> Message:
     return Message(key, text=text[1:])
 
 
-def read_payload(stream: ByteStream) -> Steps[bytes | memoryview]:
-    """A payload that comes without a length, as replies come: walk it to its end."""
+def read_payload(
+    stream: ByteStream, end: Callable[[int], Walk] | None = None
+) -> Steps[bytes | memoryview]:
+    """A payload that comes without a length, as replies come: walk it to its end. `end`: what finds
+    that, within so many bytes, where it is no Bottle."""
     limit = stream.limit
-    walker = Walker(limit) if stream.ending is None else stream.ending(limit)
+    walker = Walker(limit) if end is None else end(limit)
 
     def extent(view: memoryview) -> tuple[bytes, int] | int:
         need = walker.advance(view)
@@ -312,15 +327,17 @@ def parse_reply(stream: ByteStream) -> Message | None:
     As with `parse_plain`, nothing is waited for. Replies have no length: decoding finds it.
     """
     head, tail = stream.head, stream.tail
-    if tail - head > LARGE or stream.ending is not None:
+    if tail - head > LARGE:
         return None
-    data = bytes(stream.buffer[head:tail])
+    data = stream.view[head:tail].tobytes()
     found = decode_leading(data)
     if found is None or found[1] > stream.limit:
         return None
     value, size = found
     stream.head = head + size
-    return Message.decoded("d", data[:size], value)
+    message = Message("d", data[:size])
+    message._value = value
+    return message
 
 
 def read_name(stream: ByteStream) -> Steps[str]:
@@ -351,10 +368,16 @@ def refused(line: bytes) -> AccessRefused | None:
 
 
 def read_answer(stream: ByteStream) -> Steps[bytes]:
-    """The eight bytes that answer a greeting. Raises AccessRefused if they begin such a line."""
+    """The eight bytes that answer a greeting. Raises AccessRefused or RemoteProtocolError if they
+    begin a line that says why not."""
     answer = bytes((yield from stream.read_exact(8)))
-    if answer == b"* Access":
-        error = refused(answer + bytes((yield from stream.read_line(MAX_NAME + 8))))
-        if error is not None:
-            raise error
+    if answer.startswith(b"* "):
+        line = answer
+        if not line.endswith(b"\n"):
+            try:
+                line += bytes((yield from stream.read_line(MAX_NAME + 8)))
+            except LinkClosed:
+                return answer
+        said = readable(line[2:].decode("utf-8", "replace").strip())
+        raise refused(line) or RemoteProtocolError(f'the peer answers "{said[:300]}"')
     return answer

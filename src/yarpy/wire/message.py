@@ -7,7 +7,7 @@ dropped is never parsed. This is the one file of the wire that knows the data ro
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Final, Generic, Literal, Self, TypeAlias, overload
 
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
@@ -17,10 +17,19 @@ from yarpy.errors import DecodeError, LocalProtocolError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from typing_extensions import TypeVar
+
     from yarpy.data.stamp import Stamp
     from yarpy.wire.stream import Buffer
 
-T = TypeVar("T")
+    #: what a port is for: `Port[Image]`; without it its messages may be anything
+    T = TypeVar("T", default=Any)
+else:
+    from typing import TypeVar
+
+    T = TypeVar("T")
+
+K = TypeVar("K")
 #: `foreign`: bytes of another system, which its own class of Message can read
 Spelling: TypeAlias = Literal["binary", "text", "object", "foreign"]
 
@@ -38,7 +47,7 @@ UNSENDABLE: Final = (TypeError, ValueError, OverflowError)
 SMALL: Final = 2048  # bytes; larger messages gain nothing from coalescing
 
 UNSET: Final = object()  # the value of a message that nobody has looked at
-_COPIED: Final = ("key", "envelope", "spelling", "text", "source")
+_COPIED: Final = ("key", "envelope", "spelling", "text", "source", "type")
 
 
 class Lines(tuple[str, ...]):
@@ -91,7 +100,7 @@ class Encoded:
 
 
 class Packet:
-    """What to send: an object, its envelope, and whether a reply is wanted.
+    """A message to send: an object, its envelope, and whether a reply is wanted.
 
     `key` is the port command: `D` data, `d` data with a reply wanted, `a` administrative.
     """
@@ -136,13 +145,13 @@ class Packet:
 
     @property
     def small(self) -> bool:
-        """Whether it is encoded into memory of its own, which the writer cannot change."""
+        """Return whether it is encoded into memory of its own, which the writer cannot change."""
         framed = self.framed
         return framed is not None and len(framed) == 1 and len(framed[0]) < SMALL
 
     @classmethod
     def of(cls, message: Message, before: Packet) -> Packet:
-        """What a monitor made of the packet `before`."""
+        """Return the packet that a monitor made of the packet `before`."""
         value = Encoded(message.payload) if message.spelling == "binary" else message.payload
         if value is before.value and message.envelope.encode() == before.envelope:
             return before
@@ -192,14 +201,17 @@ class Answer:
                 self.then()
 
 
-class Message:
-    """What came in. `value` is the natural Python object, `as_(Type)` the same bytes as that type.
+class Message(Generic[T]):
+    """A message that was received. `value` is the natural Python object, or that of a port's type;
+    `as_(Type)` the same bytes as any type.
 
     `source` is the name of the sending port, `envelope` the text that travels beside the data,
     `stamp` that text read as count and time. `reply(obj)` answers a sender that wants an answer.
     """
 
-    __slots__ = ("_value", "answer", "envelope", "key", "payload", "source", "spelling", "text")
+    __slots__ = (
+        *("_value", "answer", "envelope", "key", "payload", "source", "spelling", "text", "type"),
+    )
 
     def __init__(
         self,
@@ -216,14 +228,8 @@ class Message:
         self.text = text  # what followed a port command; behind data, the form of the answer: JSON
         self.source = ""
         self.answer: Answer | None = None  # set by the link of a question
+        self.type: Any = None  # what the port that it came to is for; None: anything
         self._value: object = UNSET
-
-    @classmethod
-    def decoded(cls, key: str, payload: bytes, value: object) -> Message:
-        """A message whose value is decoded already."""
-        message = cls(key, payload)
-        message._value = value
-        return message
 
     @classmethod
     def of(cls, packet: Packet) -> Message:
@@ -236,7 +242,7 @@ class Message:
         With `binary`, `value` is a bytes-like object: the new value's binary spelling.
         """
         fresh = Message(self.key, value, self.envelope, "binary" if binary else "object", self.text)
-        fresh.source, fresh.answer = self.source, self.answer
+        fresh.source, fresh.answer, fresh.type = self.source, self.answer, self.type
         return fresh
 
     def __getstate__(self) -> dict[str, Any]:
@@ -259,32 +265,55 @@ class Message:
         if self.spelling == "binary":
             payload: Buffer = self.payload
             return payload
-        return b"".join(codec.encode(self.value))
+        return b"".join(codec.encode(self.natural()))
 
     @property
-    def value(self) -> Any:
-        """The payload as the natural Python object (Bottle, str, number, Image, Vector ...).
+    def value(self) -> T:
+        """The payload as the natural Python object (Bottle, str, number, Image, Vector ...), or as
+        the type of the port that it came to: an Image of a `Port[Image]`.
 
-        Raises DecodeError if the payload is not what it claims to be.
+        Raises DecodeError if the payload is not what it claims to be, or something else.
         """
         if self._value is UNSET:
-            if self.spelling == "binary":
-                self._value = codec.decode(self.payload)
-            elif self.spelling == "text":
-                self._value = codec.decode_text(self.payload)
-            else:
-                self._value = self.payload
-        return self._value
+            self._value = self.natural() if self.type is None else self.as_(self.type)
+        return self._value  # type: ignore[return-value]
+
+    def typed(self, type_: Any) -> Self:
+        """Let `value` be of that type, and return the message."""
+        self.type = type_
+        if type(self._value) is not type_:
+            self._value = UNSET
+        return self
+
+    def natural(self) -> Any:
+        """Return the payload as the Python object that is nearest to it, whatever the port is for.
+        Raises DecodeError."""
+        if self.spelling == "binary":
+            return codec.decode(self.payload)
+        if self.spelling == "text":
+            return codec.decode_text(self.payload)
+        return self.payload
+
+    def to_json(self) -> str:
+        """The JSON text of the payload, as web pages get it; see `yarpy.to_json`. Raises
+        DecodeError."""
+        from yarpy.data.json import to_json
+
+        return to_json(self.natural())
 
     @overload
-    def as_(self, type_: type[T]) -> T: ...
+    def as_(self, type_: type[K]) -> K: ...
     @overload
     def as_(self, type_: object) -> Any: ...
     def as_(self, type_: Any) -> Any:
         """The payload as `type_` (Bottle, Property, dict, Vector, Image, Stamp, numpy.ndarray ...).
 
-        Arrays are views of the received bytes. Raises DecodeError if the payload is something else.
+        Arrays are views of the received bytes. A type may also be named, as `yarpy plugin` lists
+        them: "image", or one of another package. Raises DecodeError if the payload is something
+        else, UnknownPlugin for a name that nobody knows.
         """
+        if isinstance(type_, str):
+            type_ = codec.named(type_)
         if self.spelling == "binary":
             return codec.decode_as(self.payload, type_)
         if self.spelling == "text":
@@ -306,7 +335,7 @@ class Message:
 
     @property
     def wants_reply(self) -> bool:
-        """Whether the sender is waiting for a reply."""
+        """Return whether the sender is waiting for a reply."""
         return self.answer is not None and self.answer.open
 
     def reply(self, value: object) -> None:

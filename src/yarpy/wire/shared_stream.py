@@ -1,7 +1,6 @@
 """SharedStream: bytes through a pipe, and beside it payloads in memory that both ends see.
 
-Rules: pure. What that memory is a transport knows; here is only what a protocol may ask of it. A
-payload that lies there is counted with the bytes that go through the pipe.
+Rules: pure. What that memory is a transport knows; here is only what a protocol may ask of it.
 """
 
 from __future__ import annotations
@@ -9,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from yarpy.wire.stream import DEFAULT_LIMIT, Buffer, ByteStream
+from yarpy.wire.aside_stream import AsideStream
+from yarpy.wire.stream import DEFAULT_LIMIT, Buffer
 
 
 class Parcel(Protocol):
@@ -24,7 +24,7 @@ class Parcel(Protocol):
 
 
 class SharedMemory(Protocol):
-    """What the two ends of one connection share."""
+    """The memory that the two ends of one connection share."""
 
     key: object
     """The same for all connections that have the same memory."""
@@ -43,7 +43,7 @@ class SharedMemory(Protocol):
         lies nowhere."""
 
 
-class SharedStream(ByteStream):
+class SharedStream(AsideStream):
     """A stream with `memory` beside it."""
 
     __slots__ = ("memory",)

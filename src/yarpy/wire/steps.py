@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 class Effect:
-    """What a protocol may ask its driver for besides bytes."""
+    """A request of a protocol to its driver, for something besides bytes."""
 
     __slots__ = ()
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable
-from typing import Final, Protocol, TypeAlias, TypeVar
+from typing import Final, TypeAlias, TypeVar
 
 from yarpy.errors import LinkClosed, RemoteProtocolError
 from yarpy.wire.steps import Steps
@@ -29,7 +29,7 @@ CUT_OFF: Final = "the peer closed the connection in the middle of a message"
 
 
 def _parts_hold() -> bool:
-    """Whether a part of a view alone keeps its bytearray from being resized, as in CPython.
+    """Return whether a view of a part alone keeps its bytearray from being resized, as in CPython.
 
     PyPy checks the whole view only, or nothing: there no buffer is reused.
     """
@@ -43,7 +43,8 @@ def _parts_hold() -> bool:
 
 
 def _is_free(buffer: bytearray) -> bool:
-    """Whether no view of it is left: a bytearray refuses to be resized while a view of it lives.
+    """Return whether no view of it is left: a bytearray refuses to be resized while a view of it
+    lives.
 
     One byte less and one more moves no memory. Reference counts alone would tell less: a view holds
     one reference however many hold the view.
@@ -79,59 +80,47 @@ def _unused() -> int:
 _UNUSED: Final = _unused()
 
 
-class Walk(Protocol):
-    """Finds the end of a message in a buffer that grows; see `yarpy.data.walker`."""
-
-    done: bool
-
-    def advance(self, view: Buffer) -> int:
-        """The least number of bytes that the message has; its length, once `done`."""
-
-
 class ByteStream:
     """Bytes in, bytes out. `limit` is the largest message, in bytes, that is accepted.
 
     `buffer`, `head` and `tail` are open to protocols that parse in place: `buffer[head:tail]` has
     arrived and was not read; move `head` past what was used. `output` waits to be taken: what is
     appended to it was written.
+
+    `view` is all of `buffer`, and `big` where a large read lands, if one is under way: for a driver
+    that spells out `get_buffer` and `buffer_updated`.
     """
 
     __slots__ = (
-        "_big",
         "_big_filled",
         "_eof",
+        "_large",
         "_proven",
         "_spare",
-        "_view",
-        "aside",
+        "big",
         "buffer",
-        "came_aside",
-        "ending",
         "head",
-        "lend",
         "limit",
+        "mark",
         "output",
         "paused",
         "tail",
+        "view",
     )
 
     def __init__(self, limit: int = DEFAULT_LIMIT, size: int = BUFFER_SIZE) -> None:
         self.buffer = bytearray(size)
-        self._view = memoryview(self.buffer)
+        self.view = memoryview(self.buffer)
         self.head = 0
         self.tail = 0
         self.limit = limit
         self.paused = False
-        self.aside = 0  # bytes that go to the peer in another way, behind what was written here
-        self.came_aside = 0  # bytes that have come in another way
-        #: what finds the end of the reply that is expected, where it is no Bottle
-        self.ending: Callable[[int], Walk] | None = None
-        #: the next so many bytes where a transport has them, of which the last so many of those
-        #: that have come here are the first; None: they have to be copied
-        self.lend: Callable[[int, int], memoryview | None] | None = None
+        self.mark = -1  # where the message begins that is being read; -1: it cannot be read again
+        #: Its large parts: where each began, how much of it the buffer had, its size, its memory.
+        self._large: list[tuple[int, int, int, bytearray]] = []
         self._eof = False
         self.output: list[Buffer] = []
-        self._big: memoryview | None = None  # where a large read lands
+        self.big: memoryview | None = None  # where a large read lands
         self._big_filled = 0
         self._spare: list[bytearray] = []
         self._proven = 0  # bytes that the peer has sent in one message
@@ -140,18 +129,18 @@ class ByteStream:
 
     def get_buffer(self) -> memoryview:
         """Where the next bytes go; never empty."""
-        if self._big is not None:
-            return self._big[self._big_filled :]
-        if self.head == self.tail:
+        if self.big is not None:
+            return self.big[self._big_filled :]
+        if self.head == self.tail and self.mark < 0:
             self.head = self.tail = 0
-            return self._view
+            return self.view
         if self.tail == len(self.buffer):
-            self._compact()
-        return self._view[self.tail :]
+            self._compact(self.tail - self.head + 1)
+        return self.view[self.tail :]
 
     def buffer_updated(self, count: int) -> None:
         """`count` bytes were put into what `get_buffer` returned."""
-        if self._big is not None:
+        if self.big is not None:
             self._big_filled += count
         else:
             self.tail += count
@@ -172,8 +161,40 @@ class ByteStream:
         """The peer sends no more."""
         self._eof = True
 
+    def begin(self) -> None:
+        """A message begins here, which may have to be read again."""
+        if len(self.buffer) > KEPT:
+            self._shrink()
+        self._large = []
+        self.mark = self.head
+
+    def finish(self) -> None:
+        """The message is read. (Without calls: a signal cannot come in its middle.)"""
+        self.mark = -1
+        self._large = []
+
+    def rewind(self) -> bool:
+        """Put back what was read since `begin`; return False if it is not there any more."""
+        if self.mark < 0:
+            return False
+        data = bytearray()
+        start = self.mark
+        for where, had, size, memory in self._large:
+            data += self.buffer[start:where]
+            data += memory[: self._big_filled if memory is self._large[-1][3] else size]
+            start = where + had
+        data += self.buffer[start : self.tail]
+        size = len(data)
+        data += bytes(BUFFER_SIZE)
+        view = memoryview(data)
+        # From here to the end Python looks for no signals.
+        self.buffer, self.view, self.big = data, view, None
+        self.head, self.tail, self.mark = 0, size, 0
+        self._large = []
+        return True
+
     def take_output(self) -> list[Buffer]:
-        """What the protocol wrote since the last call, in order."""
+        """Return what the protocol wrote since the last call, in order."""
         output, self.output = self.output, []
         return output
 
@@ -183,7 +204,7 @@ class ByteStream:
         self._proven = 0
 
     def put_back(self, rest: Iterable[Buffer]) -> None:
-        """What was taken and could not be sent is to be taken first."""
+        """Put back what was taken and could not be sent: it is taken first next time."""
         self.output[:0] = rest
 
     def snapshot_output(self) -> None:
@@ -192,7 +213,7 @@ class ByteStream:
 
     @property
     def pending(self) -> bool:
-        """Whether there is output to take."""
+        """Return whether there is output to take."""
         return bool(self.output)
 
     def written(self, start: int = 0) -> tuple[int, int]:
@@ -218,18 +239,18 @@ class ByteStream:
             if self._eof:
                 self._ended()
             if self.head + count > len(self.buffer):
-                self._compact()
+                self._compact(count)
             yield None
 
     def read_exact(self, count: int) -> Steps[bytes | memoryview]:
         """Exactly `count` bytes; large ones as a view of a buffer of their own."""
         if count > LARGE:
-            return (yield from self._read_large(count))
+            return (yield from self.read_large(count))
         if self.tail - self.head < count:
             yield from self.more(count)
         start = self.head
         self.head = start + count
-        return bytes(self._view[start : self.head])
+        return bytes(self.view[start : self.head])
 
     def unread(self, count: int) -> None:
         """Put back the last `count` bytes of a short read that has just ended."""
@@ -261,12 +282,12 @@ class ByteStream:
                 slashes -= 1
 
     def read_parsed(self, parse: Callable[[memoryview], tuple[T, int] | int]) -> Steps[T]:
-        """What `parse` makes of the bytes that have arrived.
+        """Return what `parse` makes of the bytes that have arrived.
 
         `parse` gets a view of them and returns `(value, bytes used)`, or how many bytes it needs.
         """
         while True:
-            with self._view[self.head : self.tail] as view:
+            with self.view[self.head : self.tail] as view:
                 result = parse(view)
             if not isinstance(result, int):
                 value, used = result
@@ -278,13 +299,14 @@ class ByteStream:
                 raise RemoteProtocolError(
                     f"a message of {result} bytes; the limit is {self.limit} bytes"
                 )
-            if self.tail - self.head == len(self.buffer):
+            read = self.head - self.mark if self.mark >= 0 else 0  # of this message, and kept
+            if self.tail - self.head + read == len(self.buffer):
                 self._enlarge(result)
-            yield from self.more(min(result, len(self.buffer)))
+            yield from self.more(min(result, len(self.buffer) - read))
 
     def pause(self) -> None:
-        """What was read up to here is done with, though no message came of it; the next has not
-        begun."""
+        """Mark what was read up to here as done with, though no message came of it; the next has
+        not begun."""
         self.paused = True
 
     def skip(self, count: int) -> Steps[None]:
@@ -299,62 +321,78 @@ class ByteStream:
     # -- inside -----------------------------------------------------------------------------------
 
     def _ended(self) -> None:
-        if self.tail > self.head or self._big is not None:
+        if self.tail > self.head or self.big is not None:
             raise LinkClosed(CUT_OFF)
         raise LinkClosed("the peer closed the connection")
 
-    def _compact(self) -> None:
-        count = self.tail - self.head
-        self._view[:count] = self._view[self.head : self.tail]
-        self.head, self.tail = 0, count
+    def _compact(self, need: int) -> None:
+        """Make room behind `head` for so many bytes; what was read of the message is kept if that
+        leaves room enough."""
+        read = self.head - self.mark if self.mark >= 0 else 0
+        if read + need > len(self.buffer):
+            self.mark, read = -1, 0
+        start = self.head - read
+        count = self.tail - start
+        large = [(at - start, had, size, memory) for at, had, size, memory in self._large]
+        self.view[:count] = self.view[start : self.tail]
+        self.head, self.tail = read, count
+        if self.mark >= 0:
+            self.mark, self._large = 0, large
 
     def _enlarge(self, size: int) -> None:
         """The buffer is full and `size` bytes are announced: make it longer, up to twice as long.
 
         Never more at once: the peer must have sent as much as we allocate for it.
         """
-        fresh = bytearray(max(min(size, 2 * len(self.buffer)), len(self.buffer)))
-        count = self.tail - self.head
-        fresh[:count] = self._view[self.head : self.tail]
-        self.buffer, self._view = fresh, memoryview(fresh)
-        self.head, self.tail = 0, count
+        read = self.head - self.mark if self.mark >= 0 and not self._large else 0
+        fresh = bytearray(max(min(size, 2 * len(self.buffer)), len(self.buffer)) + read)
+        start = self.head - read
+        count = self.tail - start
+        fresh[:count] = self.view[start : self.tail]
+        self.buffer, self.view, self.mark = fresh, memoryview(fresh), 0 if read else -1
+        self.head, self.tail = read, count
 
     def _shrink(self) -> None:
         """A very large message is over: go on with a buffer of the usual size, if the rest fits."""
         count = self.tail - self.head
         if count < BUFFER_SIZE:
             fresh = bytearray(BUFFER_SIZE)
-            fresh[:count] = self._view[self.head : self.tail]
-            self.buffer, self._view = fresh, memoryview(fresh)
+            fresh[:count] = self.view[self.head : self.tail]
+            self.buffer, self.view, self.mark = fresh, memoryview(fresh), -1
             self.head, self.tail = 0, count
 
-    def _read_large(self, count: int) -> Steps[memoryview]:
+    def read_large(self, count: int) -> Steps[memoryview]:
+        """Exactly `count` bytes as a view of a buffer of their own."""
         if count > self.limit:
             raise RemoteProtocolError(
                 f"a message of {count} bytes is announced; the limit is {self.limit} bytes"
             )
-        lent = None if self.lend is None else self.lend(count, self.tail - self.head)
-        if lent is not None:
-            self.came_aside += count - (self.tail - self.head)
-            self.head = self.tail
-            return lent
-        target = self._spare_buffer(count)
+        where, target = self.head, self._spare_buffer(count)
         view = memoryview(target)
-        filled = min(self.tail - self.head, len(target))
-        view[:filled] = self._view[self.head : self.head + filled]
+        filled = had = min(self.tail - self.head, len(target))
+        view[:filled] = self.view[self.head : self.head + filled]
+        if self.mark >= 0:
+            self._large += ((where, had, count, target),)
+        self._big_filled = filled
         self.head += filled
         while filled < count:
             if filled == len(target):
                 view.release()
-                self._big = None
-                target.extend(bytes(min(len(target), count - filled)))
+                self.big = None
+                more = bytes(min(len(target), count - filled))
+                if _is_free(target):
+                    target.extend(more)
+                else:  # whoever keeps the traceback of an interrupted reader holds on to it
+                    target = target + more
+                    if self.mark >= 0:
+                        self._large[-1:] = [(where, had, count, target)]
                 view = memoryview(target)
-            self._big, self._big_filled = view, filled
+            self.big, self._big_filled = view, filled
             if self._eof:
                 self._ended()
             yield None
             filled = self._big_filled
-        self._big = None
+        self.big = None
         self._proven = max(self._proven, count)
         return view
 
@@ -372,23 +410,23 @@ class ByteStream:
 class ObjectStream(ByteStream):
     """A stream whose items are whole Python objects: the in-process carrier passes references."""
 
-    __slots__ = ("_items",)
+    __slots__ = ("items",)
 
     def __init__(self) -> None:
         super().__init__(size=1)
-        self._items: list[object] = []
+        self.items: list[object] = []  # that have come
 
     def feed_object(self, item: object) -> None:
-        """An object arrived."""
-        self._items.append(item)
+        """An object has come."""
+        self.items.append(item)
 
     def read_object(self) -> Steps[object]:
         """The next object."""
-        while not self._items:
+        while not self.items:
             if self._eof:
                 self._ended()
             yield None
-        return self._items.pop(0)
+        return self.items.pop(0)
 
     def write_object(self, item: object) -> None:
         """Queue an object for the peer."""
@@ -405,10 +443,14 @@ class DatagramStream(ByteStream):
         self._ready: list[bytes] = []
 
     def get_buffer(self) -> memoryview:
-        return self._view
+        return self.view
 
     def buffer_updated(self, count: int) -> None:
-        self._ready.append(bytes(self._view[:count]))
+        self._ready += (bytes(self.view[:count]),)  # in one step: a signal comes before or after
+
+    def rewind(self) -> bool:
+        """Go on with the next datagram: one more that is lost is nothing new."""
+        return True
 
     def feed(self, data: Buffer) -> None:
         self._ready.append(bytes(data))

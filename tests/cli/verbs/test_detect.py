@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from support.multicast import needs_multicast
 from support.port import free_port
 from support.ros_graph import ros_graph
 
@@ -19,14 +20,12 @@ def test_the_configured_server(cli, server):
 @pytest.fixture
 def found(server, here, monkeypatch):
     """A server that is found by multicast only."""
+    needs_multicast()
     port = free_port()
     monkeypatch.delenv("YARPY_SERVER")
     monkeypatch.setenv("YARP_PORT_RANGE", str(port))
     responder = Responder(server.service.answer_multicast, port)
-    try:
-        responder.start()
-    except OSError as error:
-        pytest.skip(f"no multicast on this computer: {error}")
+    responder.start()
     yield server
     responder.close()
 
@@ -63,6 +62,7 @@ def test_no_multicast(here, monkeypatch):
     assert said.err == "error: this computer has no multicast: No such device\n"
 
 
+@pytest.mark.peer("ros", "rosmaster")
 def test_a_ros_master_is_stored_for_the_namespace(here, tmp_path, monkeypatch):
     for name in ("YARPY_SERVER", "YARP_NAMESPACE"):
         monkeypatch.delenv(name, raising=False)
@@ -71,8 +71,8 @@ def test_a_ros_master_is_stored_for_the_namespace(here, tmp_path, monkeypatch):
         here("namespace", "/ros")
         said = here("detect", "--ros", "--write")
         assert said.code == 0
-        assert f"Trying ROS_MASTER_URI={graph.uri}\nReachable.  Writing.\n" in said.out
-        assert f"ROS Name server /ros is available at ip 127.0.0.1 port {graph.port}" in said.out
+        assert f"Trying a ROS master, {graph.uri}\nReachable.  Writing.\n" in said.out
+        assert f"/ros is now a ROS master, at http://127.0.0.1:{graph.port}/" in said.out
         assert here("where").code == 0
         listed = here("name", "list")
         assert listed.code == 0
@@ -93,5 +93,5 @@ def test_no_ros_master(here, tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_MASTER_URI", f"http://127.0.0.1:{free_port()}/")
     said = here("detect", "--ros")
     assert said.code == 1
-    assert "Could not reach server." in said.out
+    assert "Could not reach it." in said.out
     assert "roscore" in said.err

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from yarpy.ros2.listing import Entry
+from yarpy.peers.ros2.zenoh.listing import Entry
 
 END = "*** end of message\n"
 
@@ -110,7 +110,7 @@ def test_json_of_ros2(here, monkeypatch):
         Entry("topic", "/t", "std_msgs/msg/String"),
     ]
     monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")
-    monkeypatch.setattr("yarpy.ros2.listing.listing", lambda prefix: found)
+    monkeypatch.setattr("yarpy.peers.ros2.zenoh.listing.listing", lambda prefix: found)
     plain = here("name", "list", "/nothing").out.splitlines()[:-1]
     assert plain == [f'{item.kind} "{item.target}"' for item in found]
     told = [json.loads(line) for line in here("name", "list", "/x", "--json").out.splitlines()]

@@ -3,6 +3,8 @@
 import json
 from importlib.metadata import EntryPoint
 
+import pytest
+
 from yarpy import registry
 
 
@@ -10,8 +12,8 @@ def test_list(cli):
     said = cli.run("plugin")
     assert said.returncode == 0
     lines = said.stdout.splitlines()
-    assert lines[0] == "carrier   tcp"
-    assert "command   read" in lines
+    assert lines[:2] == ["core:", "  carrier     tcp"]
+    assert "  command     read" in lines
     assert "tcp" in cli.run("plugin", "--list").stdout.splitlines()
 
 
@@ -20,7 +22,7 @@ def test_one(here):
     assert said.code == 0
     assert said.out.startswith(
         "Yes, fast_tcp is a carrier\n"
-        "  * module: yarpy.carriers.tcp\n"
+        "  * module: yarpy.carriers.own.tcp\n"
         "  * object: FastTcp\n"
         "  * about:  Messages follow one another"
     )
@@ -44,5 +46,23 @@ def test_one_that_does_not_load(here, monkeypatch):
 
 def test_json(here):
     found = [json.loads(line) for line in here("plugin", "--json").out.splitlines()]
-    assert {"kind": "carrier", "name": "udp"} in found
+    assert {"kind": "carrier", "name": "udp", "home": "core", "needs": ""} in found
     assert len(found) > 30
+
+
+def test_core_peers_and_kits_are_apart_with_what_each_needs(here):
+    lines = here("plugin").out.splitlines()
+    homes = [line[:-1] for line in lines if not line.startswith(" ")]
+    rings = [home.partition(".")[0] for home in homes]
+    assert homes[0] == "core" and {"peers.zenoh", "kits.sim"} <= set(homes)
+    ours = [ring for ring in rings if ring in ("core", "peers", "kits")]
+    assert ours == sorted(ours, key=("core", "peers", "kits").index)
+    zenoh = lines[lines.index("peers.zenoh:") :]
+    assert zenoh[1].split(maxsplit=2) == ["carrier", "zenoh", 'pip install "yarpy[zenoh]"']
+
+
+def test_the_list_loads_nothing(here, monkeypatch):
+    monkeypatch.setattr(
+        registry.Registry, "load", lambda self, name: pytest.fail(f"{name} was loaded")
+    )
+    assert "transport   mpi" in here("plugin").out

@@ -1,5 +1,7 @@
 """`yarpy qos`: the priority of packets."""
 
+import time
+
 import pytest
 from support.wait import wait_until
 
@@ -51,3 +53,17 @@ def test_when_messages_should_come(here, ports):
     assert "expects nothing" in here("qos", "time", *ports).out
     said = here("qos", "time", *ports, "--deadline", "-1")
     assert (said.code, "from 0 to 86400" in said.err) == (1, True)
+
+
+def test_what_the_sender_dropped_is_counted_too(here, names):
+    with (
+        yarpy.BufferedPort("/qos/late/in", strict=True, names=names) as in_,
+        yarpy.Port("/qos/late/out", names=names) as out,
+    ):
+        out.connect("/qos/late/in")
+        wait_until(lambda: in_.inputs)
+        ends = "/qos/late/out", "/qos/late/in"
+        assert here("qos", "time", *ends, "--deadline", "600", "--late", "drop").code == 0
+        for number in range(3):
+            out.write([number], yarpy.Stamp(number, time.time() - 1000))
+        assert "(missed 0) (dropped 3) " in here("qos", "time", *ends).out

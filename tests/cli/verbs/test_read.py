@@ -5,7 +5,7 @@ import re
 import signal
 
 import pytest
-from support.patience import patience
+from support.wait import HANG
 
 import yarpy
 from yarpy.cli.verbs.read import Intent, Printer, parse_words
@@ -59,7 +59,7 @@ def test_prints_what_arrives(cli, writer):
 def test_image_is_told_in_short(cli, writer):
     numpy = pytest.importorskip("numpy")
     with cli.start("read", "/read/b", "/read/writer", "once") as process:
-        assert writer.wait_for_outputs(timeout=patience(10))
+        assert writer.wait_for_outputs(timeout=HANG)
         writer.write(yarpy.Image(numpy.zeros((1, 2, 3), numpy.uint8)))
         assert process.wait() == 0
     assert re.fullmatch(r"<image rgb 2x1, \d+ bytes>\n", process.stdout)
@@ -114,7 +114,7 @@ def test_what_is_no_bottle_does_not_end_it(cli, writer):
         writer.write(Odd())
         writer.write(["x"])
         process.wait_line("^x$", stream="out")
-    assert "error: a message from /read/writer cannot be printed: " in process.stderr
+        process.wait_line("error: a message from /read/writer cannot be printed: ", stream="err")
 
 
 def test_a_living_name_is_refused_with_the_hint(here, writer):
@@ -177,3 +177,8 @@ def test_only_an_integer_and_a_string_are_verbatim(capsys, value, line):
     message = yarpy.Message("D", value, spelling="object")
     assert Printer().show(message) is True
     assert capsys.readouterr().out == line
+
+
+def test_a_word_that_can_never_become_right_ends_it(here):
+    code, _, err = here("read", "/read/x", "onse")
+    assert code == 1 and "error: invalid source" in err

@@ -6,8 +6,8 @@ from support.ros2_peer import ros2_router
 import yarpy
 from yarpy.cli.verbs.rpc import Target, commands_of, many, print_reply
 from yarpy.data.yarp4 import is_yarp4
-from yarpy.devices import ControlBoardServer
-from yarpy.port import admin
+from yarpy.kits.devices import ControlBoardServer
+from yarpy.port.answer import admin
 
 
 @pytest.fixture(scope="module")
@@ -159,6 +159,13 @@ def test_many(reply, items):
 def test_empty_reply(capsys):
     print_reply(yarpy.Bottle())
     assert capsys.readouterr().out == "Response: \n"
+
+
+def test_a_port_that_answers_nobody(cli, names):
+    with yarpy.Port("/rpc/writer", callback=lambda message: None, names=names):
+        said = cli.run("rpc", "/rpc/writer", input="one\ntwo\n")
+    assert said.stdout == "Response: \nResponse: \n"
+    assert said.stderr.count('warning: the answer is empty: "/rpc/writer" has nothing to say') == 1
 
 
 def test_nothing_is_asked_of_another_port(cli, names, server_port):

@@ -43,8 +43,8 @@ def test_single_closes_each_connection(cli, names):
             assert client.call("x", timeout=10) == ["x"]
             process.wait_line("Waiting", count=2)
             assert client.call("y", timeout=10) == ["y"]  # over a new connection
-            assert client.outputs[0].stats["messages"] == 1
-            assert link.stats["messages"] == 1
+            assert client.outputs[0].stats.messages == 1
+            assert link.stats.messages == 1
 
 
 def test_who_wants_no_reply_gets_none(cli, names):

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 from support.command_line import CommandLine
+from support.multicast import needs_multicast
 from support.port import free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.cli.verbs.server import BACKLOG, LONGEST, QUESTIONS, SILENT, Scribe, decide
@@ -149,6 +150,38 @@ def test_databases_survive_it(lone, port, tmp_path):
         assert lone.run("topic", "--list").stdout == 'Topics: "/t"\n'
 
 
+def test_who_is_cautious_keeps_what_was_acknowledged_when_it_is_killed(lone, port, tmp_path):
+    words = ("server", "--ip", "127.0.0.1", "--socket", str(port), "--cautious")
+    words = (*words, "--portdb", str(tmp_path / "ports.db"))
+    acknowledged = []
+
+    def register(by):
+        names = client_of(Server("127.0.0.1", port))
+        try:
+            for number in range(10_000):
+                names.register(f"/{by}/{number}", "tcp", "127.0.0.1", 1000 + number)
+                acknowledged.append(f"/{by}/{number}")
+        except yarpy.YarpError:
+            pass  # it was killed
+
+    for _ in range(3):
+        with lone.start(*words) as process:
+            process.wait_line("Ready", stream="out")
+            before = len(acknowledged)
+            threads = [threading.Thread(target=register, args=(by,)) for by in "abc"]
+            for thread in threads:
+                thread.start()
+            wait_until(lambda: len(acknowledged) > before + 30)  # noqa: B023
+            process.signal(signal.SIGKILL)
+            process.wait()
+            for thread in threads:
+                thread.join(HANG)
+    with lone.start(*words) as process:
+        process.wait_line("Ready", stream="out")
+        names = client_of(Server("127.0.0.1", port))
+        assert {*acknowledged} <= {contact.name for contact in names.list()}
+
+
 @pytest.mark.skipif(not hasattr(resource, "prlimit"), reason="files are limited on Linux alone")
 def test_an_end_on_a_full_disk_keeps_the_last_good_file(lone, port, tmp_path):
     """The disk is a file that may not grow any more."""
@@ -184,10 +217,9 @@ def test_what_is_no_database(lone, port, tmp_path):
 
 
 def test_is_found_by_multicast(lone, port):
+    needs_multicast()
     with lone.start("server", "--ip", "127.0.0.1", "--socket", str(port)) as process:
         process.wait_line("Ready", stream="out")
-        if "cannot be found by multicast" in process.stderr:
-            pytest.skip("no multicast on this computer")
         conf(lone).unlink()
         said = lone.run("detect")
         assert f"/root is available at ip 127.0.0.1 port {port}" in said.stdout
@@ -297,6 +329,11 @@ def said(capsys, *commands: str) -> list[str]:
     return [line.removeprefix(" * ") for line in capsys.readouterr().out.splitlines()]
 
 
+def test_what_a_terminal_would_obey_is_escaped(capsys):
+    """Also where the output is a file, which somebody reads in a terminal."""
+    assert said(capsys, 'query "/a\x1b[2J\nb"') == [r'query "/a\x1b[2J\nb"']
+
+
 DIAL = ('query "/dead"', 'get "/dead" ips', 'announce "/dead" 0')
 
 
@@ -344,7 +381,7 @@ def test_nobody_else_reaches_a_local_one(lone, port):
     with lone.start("server", "--local", "--socket", str(port)) as process:
         process.wait_line("Ready", stream="out")
         assert "IP address: 127.0.0.1" in process.stdout
-        assert "open to this computer alone" in process.stderr
+        process.wait_line("open to this computer alone", stream="err")
         with pytest.raises(OSError, match="refused"):
             socket.create_connection(("127.0.0.2", port), 2.0)
         socket.create_connection(("127.0.0.1", port), 2.0).close()

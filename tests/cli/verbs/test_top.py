@@ -9,8 +9,7 @@ import sys
 import time
 
 import pytest
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.cli.verbs.top import looks
@@ -63,7 +62,7 @@ def test_a_terminal(cli, ports):
     try:
         os.close(secondary)
         seen = b""
-        deadline = time.monotonic() + patience(10)
+        deadline = time.monotonic() + HANG
         while b"/top/[bold]out" not in seen and time.monotonic() < deadline:
             seen += os.read(primary, 65536)
         assert b"/top/[bold]out" in seen
@@ -76,7 +75,7 @@ def test_a_terminal(cli, ports):
             if not data:
                 break
             seen += data
-        assert process.wait(patience(10)) == 0
+        assert process.wait(HANG) == 0
         assert b"answers" in seen
         assert seen.rstrip().endswith((b"\x1b[?25h", b"\x1b[?1049l"))
     finally:

@@ -24,11 +24,16 @@ def test_a_connection_that_comes(cli, names):
 
 
 def test_the_time_is_over(here):
-    assert here("wait", "/wait/never", "--timeout", "0.2") == (
-        1,
-        "Waiting for /wait/never...\n",
-        "",
-    )
+    code, out, err = here("wait", "/wait/never", "--timeout", "0.2")
+    assert (code, out) == (1, "Waiting for /wait/never...\n")
+    assert err.startswith('error: the 0.2 s are over: no port "/wait/never" is registered')
+
+
+def test_it_says_what_is_missing(here, names):
+    with yarpy.Port("/wait/here", names=names):
+        assert here("wait", "/wait/here", "/wait/there", "--timeout", "0.2")[2] == (
+            'error: the 0.2 s are over: "/wait/here" is there, but does not send to "/wait/there"\n'
+        )
 
 
 def test_a_name_server_that_comes(cli, tmp_path):

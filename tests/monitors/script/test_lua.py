@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from yarpy.data.bottle import Bottle, Property
-from yarpy.data.image import Image
-from yarpy.data.matrix import Matrix
+from yarpy.data.sig.image import Image
+from yarpy.data.sig.matrix import Matrix
+from yarpy.data.sig.vector import Vector
 from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
-from yarpy.data.vector import Vector
 from yarpy.errors import LocalProtocolError
 from yarpy.monitors import extra
 from yarpy.monitors.event import Events
@@ -552,6 +552,119 @@ def test_script_is_stopped_and_goes_on_with_the_next_message(body: str) -> None:
         assert script.accept(message("hi", "ho"))
     if body in ENDLESS:
         assert "it runs for more than 2000000 instructions" in str(caught.value)
+
+
+HUGE = "setmetatable({}, { __len = function() return 1 << 60 end, __index = type })"
+IN_THE_LIBRARY = [
+    "string.find(string.rep('a', 5000), '.-.-.-.-b')",
+    "string.match(('a'):rep(3000), '(a*)a-a+a-b')",
+    "for word in ('a'):rep(3000):gmatch('a-a-a-a-b') do end",
+    "string.gsub(('a'):rep(3000), 'a-a-a-a-b', '')",
+    "string.find(('a'):rep(30), ('a?'):rep(30) .. ('a'):rep(30))",
+    "string.find(('a'):rep(1 << 20), ('a'):rep(1 << 19) .. 'b', 1, true)",
+    "string.rep('', 1e15)",
+    "string.rep('', '1000000000000000')",
+    "table.move({}, 1, 1e15, 2)",
+    f"table.insert({HUGE}, 1, 2)",
+    f"table.remove({HUGE}, 1)",
+    f"table.concat({HUGE})",
+    f"table.sort({HUGE})",
+    "getmetatable('').__index = function() while true do end end while true do end",
+    "string.sub = function() while true do end end while true do end",
+    "local s = ('x'):rep(2 << 20) for i = 1, 1e9 do local y = s .. i end",
+    "local s = ('x = 1 '):rep(1 << 18) for i = 1, 1e9 do load(s) end",
+    "local s = ('1 '):rep(1 << 16) for i = 1, 1e9 do yarp.Bottle(s) end",
+]
+
+
+@pytest.mark.parametrize("body", IN_THE_LIBRARY)
+def test_no_function_of_the_library_takes_longer_than_a_script_may(
+    body: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing counts instructions there, and nobody could end it."""
+    monkeypatch.setattr(lua, "SCRIPT_SECONDS", 0.1)
+    fine = "if t:asBottle():size() > 1 then return true end"
+    script = load(f"PortMonitor.accept = function(t) {fine} {body} end", memory=16 << 20)
+    for _ in range(2):
+        with pytest.raises(ScriptError, match="nowhere/gate"):
+            script.accept(message("hi"))
+        assert script.accept(message("hi", "ho"))
+
+
+PATTERNS = [
+    *(
+        "a",
+        "a*",
+        "a-b",
+        "(a+)(b?)",
+        "^a",
+        "a$",
+        "^(a*)$",
+        "()a()",
+        "%a+",
+        "[ab]+",
+        "[^a]",
+        "[a-c]*",
+    ),
+    *("(a)(b)%1", "%b()", "%f[%w]%w+", ".", "%.", "[]]", "[%]a]", "[a-]", "(.)%1", "(a(b)c)", ""),
+    *("a**", "^", "$", "a$b", "%d%s", "(a*(.)%w(%s*))", "[%a_][%w_]*", "^%s*(.-)%s*$", "[^%s]+"),
+]
+WRONG = ["(", "%", "[a", "a)", "%1", "%f", "%b(", "(()", "[%", "(a%1)"]
+SUBJECTS = [
+    "",
+    "a",
+    "aab abc",
+    "  key = value ",
+    "(a(b)c) (d",
+    "aa]b-c",
+    "a_1 b2",
+    "\0a\xffb",
+    "][",
+]
+
+
+def test_patterns_match_as_those_of_lua() -> None:
+    """What is done step by step where the original might take for ever."""
+    lua_state = lua.lupa().LuaRuntime(encoding=None, unpack_returned_tuples=True)
+    source = lua._source("pattern")
+    load_it = lua_state.eval(b"function(s) return assert(load(s, '=pattern', 't')) end")
+    originals = {
+        name: lua_state.eval(f"string.{name}".encode())
+        for name in ("find", "match", "gmatch", "gsub")
+    }
+    nothing = lua_state.eval(b"function() end")  # ... is quick
+    load_it(source)(nothing, lua_state.eval(b"function(why) error(why, 0) end"), nothing)
+    ours = {name: lua_state.eval(f"string.{name}".encode()) for name in originals}
+    collect = lua_state.eval(
+        b"function(gmatch, s, p) local found = {} "
+        b"for a, b in gmatch(s, p) do found[#found + 1] = tostring(a) .. '/' .. tostring(b) end "
+        b"return table.concat(found, ' ') end"
+    )
+    protected = lua_state.eval(b"pcall")
+    upper = lua_state.eval(b"function(a, b) return a ~= 'b' and tostring(a) .. tostring(b) end")
+    table = lua_state.eval(b"{ a = 'x', b = 7 }")
+    for pattern in (*PATTERNS, *WRONG):
+        for text in SUBJECTS:
+            s, p = text.encode("latin-1"), pattern.encode()
+            calls = [
+                ("find", (s, p)),
+                ("match", (s, p)),
+                ("find", (s, p, 2)),
+                ("match", (s, p, -2)),
+            ]
+            calls += [("gsub", (s, p, by)) for by in (b"<%0>", b"<%1%%>", upper, table, b"", b"%")]
+            calls += [("gsub", (s, p, b"%0%0", 1))]
+            for name, arguments in calls:
+                expected = protected(originals[name], *arguments)
+                found = protected(ours[name], *arguments)
+                assert isinstance(found, tuple) == isinstance(expected, tuple)
+                if expected is True or expected[0] is True:
+                    assert found == expected or pattern in WRONG, (name, arguments)
+                else:
+                    assert found[0] is False and found[1] in expected[1], (name, arguments)
+            if pattern in PATTERNS:
+                expected = collect(originals["gmatch"], s, p)
+                assert collect(ours["gmatch"], s, p) == expected, (s, p)
 
 
 def test_other_threads_run_while_a_script_does() -> None:

@@ -44,3 +44,22 @@ def test_network_looks_into_contexts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("YARPY_SCRIPTS")
     with pytest.raises(LocalProtocolError, match="YARPY_SCRIPTS=network"):
         look_for(place(True), "b.py", "app")
+
+
+@pytest.mark.parametrize(
+    ("argv", "command"),
+    [
+        (["/home/lab/robot.py", "--secret"], "YARPY_SCRIPTS=network python robot.py ..."),
+        (["/usr/bin/yarpy", "server"], "YARPY_SCRIPTS=network yarpy ..."),
+        (["-c"], "YARPY_SCRIPTS=network PROGRAM ..."),
+        ([], "YARPY_SCRIPTS=network PROGRAM ..."),
+    ],
+)
+def test_the_refusal_names_what_the_owner_types(
+    argv: list[str], command: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("YARPY_SCRIPTS", raising=False)
+    monkeypatch.setattr("sys.argv", argv)
+    with pytest.raises(LocalProtocolError) as caught:
+        look_for(Place("/a", "/b", foreign=True), "x.lua", "demo")
+    assert f"`{command}`" in str(caught.value)

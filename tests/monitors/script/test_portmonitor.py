@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import network, registry
@@ -21,9 +21,10 @@ from yarpy.data.bottle import Bottle, Property
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, UnknownPlugin, YarpError
 from yarpy.monitors.base import DROP, Place
+from yarpy.monitors.script import portmonitor as module
 from yarpy.monitors.script import script
 from yarpy.monitors.script.portmonitor import PortMonitor, portmonitor
-from yarpy.port import monitoring
+from yarpy.port.answer import monitoring
 from yarpy.route import parse_carrier
 from yarpy.wire.message import DATA, Message
 
@@ -40,7 +41,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     """Look at files with every message."""
-    monkeypatch.setattr(script, "PATIENCE", 0.0)
+    monkeypatch.setattr(script, "INTERVAL", 0.0)
 
 
 def message(*values: object) -> Message:
@@ -491,7 +492,7 @@ def test_arbitration_by_events(
         wait_until(lambda: heard and heard[-1].value == ["line"])
         ball.write(["ball"])
         wait_until(lambda: heard[-1].value == ["ball"])
-        until(lambda: (ball.write([1]), line.write([2])), lambda: of_line.stats["drops"] > 5)
+        until(lambda: (ball.write([1]), line.write([2])), lambda: of_line.stats.drops > 5)
         until(lambda: line.write(["late"]), lambda: bool(heard[-1].value == ["late"]))
 
 
@@ -507,7 +508,7 @@ def test_others_of_the_port_are_triggered(names: yarpy.LocalNames, app: Path) ->
         a.connect("/in", "tcp+recv.portmonitor+type.python+context.app+file.a+constraint.e_test_go")
         b.connect("/in", "tcp+recv.portmonitor+type.python+context.app+file.b")
         a.write(["a1"])
-        wait_until(lambda: any(link.stats["drops"] for link in in_.inputs))
+        wait_until(lambda: any(link.stats.drops for link in in_.inputs))
         b.write(["b1"])
         assert in_.read(timeout=5).value == ["b1"]
         a.write(["a2"])
@@ -619,3 +620,156 @@ def test_program_may_attach_what_it_likes(names: yarpy.LocalNames, ran: Path, fo
         assert ran.exists()
         with pytest.raises(yarpy.LocalProtocolError, match="nosuch"):
             in_.attach("in", {"type": "python", "file": "nosuch"})
+
+
+@pytest.mark.parametrize("right", ["", "script"])
+@pytest.mark.parametrize("end", ["recv", "send", "atch"])
+def test_scripts_run_for_whom_the_rules_name(
+    names: yarpy.LocalNames, ran: Path, monkeypatch: pytest.MonkeyPatch, right: str, end: str
+) -> None:
+    rules = ran.parent / "access.toml"
+    may = '["all", "script"]' if right else '"all"'
+    rules.write_text(f'[[allow]]\nwho = "loopback"\nmay = {may}\n')
+    monkeypatch.setenv("YARPY_ACCESS", str(rules))
+    monkeypatch.delenv("YARPY_SCRIPTS", raising=False)
+    with yarpy.Port("/in", names=names), yarpy.Port("/out", names=names):
+        if end == "atch":
+            text = "(type python) (file evil) (context app)"
+            reply = network.admin("/in", "atch", "in", text, names=names)
+            refused = reply[0] == Vocab("fail")
+        else:
+            carrier = f"tcp+{end}.portmonitor+type.python+context.app+file.evil"
+            reply = network.admin("/out", "add", "/in", carrier, names=names)
+            refused = reply[0] == -1
+        assert refused == (not right), reply
+        assert ran.exists() == bool(right)
+        if right:  # never by a path
+            ran.unlink()
+            text = f"(type python) (file {ran.parent / 'evil.py'})"
+            assert "not a path" in network.admin("/in", "atch", "in", text, names=names)[1]
+            assert not ran.exists()
+
+
+# -- scripts that never come back -----------------------------------------------------------------
+
+
+ENDLESS = """
+import threading
+entered, go_on = threading.Event(), threading.Event()
+def {callback}(*given):
+    entered.set()
+    while not go_on.wait(60):  # longer than any test waits
+        pass
+"""
+
+
+def endless(script: Any) -> tuple[threading.Event, threading.Event]:
+    module = script._script._module
+    return module.entered, module.go_on
+
+
+def closed_in_time(*ports: Any) -> None:
+    """Close each in a thread of its own."""
+    for port in ports:
+        thread = threading.Thread(target=port.close, daemon=True)
+        thread.start()
+        thread.join(HANG)
+        assert not thread.is_alive(), f"close() of {port.name} does not return"
+
+
+@pytest.mark.parametrize("where", ["sender", "port out", "port in"])
+def test_a_port_closes_without_a_python_script_that_never_returns(
+    folder: Path, caplog: pytest.LogCaptureFixture, where: str
+) -> None:
+    python(folder, ENDLESS.format(callback="accept"), "stuck.py")
+    names = yarpy.LocalNames()
+    a, b = yarpy.Port("/a", names=names), yarpy.BufferedPort("/b", names=names)
+    script = {"type": "python", "file": "stuck"}
+    if where == "sender":
+        a.connect("/b", "tcp+send.portmonitor+type.python+file.stuck")
+        found = a._hub.outputs.links[0].chain.monitors[0]
+    else:
+        a.connect("/b")
+        owner = a if where == "port out" else b
+        owner.attach(where.split()[1], script)
+        chain = a._hub.monitoring.output if owner is a else b._hub.monitoring.input
+        assert chain is not None
+        found = chain.monitors[0]
+    entered, go_on = endless(found)
+    writer = threading.Thread(target=a.write, args=([1],), daemon=True)
+    writer.start()
+    assert entered.wait(HANG)
+    closed_in_time(a, b)
+    assert "a callback still runs, and nothing can end it" in caplog.text
+    go_on.set()
+    writer.join(HANG)
+
+
+def test_a_destroy_that_never_returns(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+    python(folder, ENDLESS.format(callback="destroy"))
+    monitor = make("type.python+file.gate")
+    entered, go_on = endless(monitor)
+    started = threading.Thread(target=monitor.close, daemon=True)
+    started.start()
+    assert entered.wait(HANG)
+    started.join(HANG)
+    assert not started.is_alive()
+    assert "destroy still runs, and nothing can end it" in caplog.text
+    go_on.set()
+
+
+def test_a_script_that_never_returns_holds_no_other_thread(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "PATIENCE", 0.05)
+    python(folder, ENDLESS.format(callback="accept") + "def trig(): pass\n")
+    monitor = make("type.python+file.gate")
+    entered, go_on = endless(monitor)
+    reader = threading.Thread(target=monitor.accept, args=(message(1),), daemon=True)
+    reader.start()
+    assert entered.wait(HANG)
+    monitor.trigger()  # of another connection
+    for act in (monitor.parameters, lambda: monitor.configure(Property())):
+        with pytest.raises(LocalProtocolError, match="a callback still runs"):
+            act()
+    go_on.set()
+    reader.join(HANG)
+    monitor.parameters()
+    monitor.close()
+
+
+HOSTILE = [
+    "while true do end",
+    "string.find(string.rep('a', 5000), '.-.-.-.-b')",
+    "getmetatable('').__index = function() while true do end end while true do end",
+    "local t = setmetatable({}, {__index = function(t, k) return t[k + 1] end}) local x = t[1]",
+    "coroutine.wrap(function() while true do end end)()",
+]
+
+
+@pytest.mark.parametrize("body", HOSTILE)
+def test_ports_with_a_hostile_lua_script(
+    folder: Path, body: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Writing comes back, what else the port writes arrives, and both ports close."""
+    lua = pytest.importorskip("yarpy.monitors.script.lua", reason="needs Lua")
+    pytest.importorskip("lupa.lua54", reason='Lua is missing: pip install "yarpy[lua]"')
+    monkeypatch.setattr(lua, "SCRIPT_SECONDS", 0.2)
+    monkeypatch.setattr(lua.LuaScript.__init__, "__defaults__", (1_000_000, 16 << 20, False))
+    for callback in ("accept", "destroy"):
+        (folder / f"{callback}.lua").write_text(
+            f"PortMonitor.{callback} = function(t)\n{body}\nreturn true end\n"
+        )
+    names = yarpy.LocalNames()
+    a, b = yarpy.Port("/a", names=names), yarpy.BufferedPort("/b", names=names, strict=True)
+    c = yarpy.BufferedPort("/c", names=names, strict=True)
+    a.connect("/b", "tcp+send.portmonitor+type.lua+file.accept")
+    a.connect("/c", "tcp+send.portmonitor+type.lua+file.destroy")
+    c.attach("in", {"type": "lua", "file": "destroy"})
+    writer = threading.Thread(target=lambda: [a.write([n]) for n in range(2)], daemon=True)
+    writer.start()
+    writer.join(HANG)
+    assert not writer.is_alive(), "write() does not return"
+    found = [c.read(HANG) for _ in range(2)]
+    assert [one.value for one in found if one] == [[0], [1]]
+    closed_in_time(a, b, c)

@@ -58,12 +58,21 @@ def test_without_a_port_files_are_taken_by_their_path(tmp_path: Path) -> None:
 def test_unreadable_and_huge_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(LocalProtocolError, match="cannot be read"):
         read_script(tmp_path)
-    monkeypatch.setattr(script, "LARGEST", 10)
+    monkeypatch.setattr(script, "SCRIPT_FILE", 10)
     (tmp_path / "small").write_bytes(b"x" * 10)
     (tmp_path / "large").write_bytes(b"x" * 11)
     assert read_script(tmp_path / "small") == b"x" * 10
     with pytest.raises(LocalProtocolError, match="over 10 bytes"):
         read_script(tmp_path / "large")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no FIFOs")
+def test_what_is_no_file_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "gate.lua")
+    (tmp_path / "endless.lua").symlink_to("/dev/zero")
+    for name in ("gate.lua", "endless.lua"):
+        with pytest.raises(LocalProtocolError, match="cannot be read: it is no regular file"):
+            read_script(tmp_path / name)
 
 
 class Clock:

@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.monitor import damaged
 
-from yarpy.data.image import Image
-from yarpy.data.pixel import pixel_of
+from yarpy.data.sig.image import Image
+from yarpy.data.sig.pixel import pixel_of
 from yarpy.errors import DecodeError
 from yarpy.monitors.stock import png
 

@@ -10,8 +10,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from support.patience import patience
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import network
@@ -250,7 +249,7 @@ def only(port: yarpy.BufferedPort, name: str) -> None:
             last.append(port.read(timeout=5).value[0])
         return set(last[-20:]) == {name}
 
-    wait_until(settled, timeout=patience(20), what=f"only {name} gets through")
+    wait_until(settled, timeout=HANG, what=f"only {name} gets through")
 
 
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "udp", "unix_stream", "local", "text_ack"])
@@ -262,7 +261,7 @@ def test_one_of_three_gets_through(senders: Senders, carrier: str) -> None:
         senders.add("/middle", f"{carrier}+recv.priority+tc.2+bs.5")
         only(port, "/strong")
         wait_until(
-            lambda: all(link.stats["drops"] for link in port.inputs if link.source != "/strong")
+            lambda: all(link.stats.drops for link in port.inputs if link.source != "/strong")
         )
         reply = network.admin("/in", "set", "in", "/weak", ["bs", 3.0], names=senders.names)
         assert reply == [0, "Configured connection from /weak\r\n"]

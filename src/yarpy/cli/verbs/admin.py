@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import click
 
-import yarpy
-from yarpy.cli import prompt
+from yarpy.cli import prompt, typed
 from yarpy.cli.verbs import rpc
 
 
@@ -42,7 +41,7 @@ def admin_write(port: str, remotes: tuple[str, ...]) -> int:
     targets = [rpc.Target(remote, port, admin=True) for remote in remotes]
     for line in prompt.lines(history=f"admin_{port}"):
         for target in targets:
-            target.ask(yarpy.Bottle.from_text(line))
+            target.ask(typed.bottle(line))
     for target in targets:
         target.close()
     return 0

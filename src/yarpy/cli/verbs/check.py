@@ -9,9 +9,6 @@ allowed; 1 not.
 
 from __future__ import annotations
 
-import os
-import textwrap
-
 import click
 
 import yarpy
@@ -36,25 +33,17 @@ def command(access: bool, question: tuple[str, ...]) -> int:
 
 def _tell_access(question: tuple[str, ...]) -> int:
     """Explain access.toml. Raises AddressError where there is a mistake in it."""
+    from yarpy.cli.verbs.access import show
     from yarpy.config import access_file, access_report
-    from yarpy.names.default import secret
-    from yarpy.transports.bind import reach
-    from yarpy.transports.tls_setting import folder
 
     if len(question) not in (0, 3):
         raise click.UsageError(
             "ask for WHO RIGHT PORT, for example: --access 192.168.1.9 write /icubSim/head/rpc:i"
         )
-    access = access_file.current()
-    if question:
-        allowed, lines = access_report.explained(access, *question)
-    elif access is None:
-        allowed, lines = True, access_report.defaults(access_file.path(os.environ), reach())
-    else:
-        allowed, lines = True, access_report.listing(access)
-        authority = folder() / "ca.pem"
-        for note in access_report.notes(access, authority=authority, has_key=bool(secret())):
-            lines += textwrap.wrap(note, 79, initial_indent="note: ", subsequent_indent="      ")
+    if not question:
+        show()
+        return 0
+    allowed, lines = access_report.explained(access_file.current(), *question)
     for line in lines:
         print_line(line)
     return 0 if allowed else 1

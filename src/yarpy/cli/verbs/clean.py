@@ -65,7 +65,7 @@ def command(timeout: float | None) -> int:
 
 
 def is_kept(contact: yarpy.Contact, own: tuple[str, int]) -> bool:
-    """Whether a registration is none of our business: groups, topics, the server itself."""
+    """Return whether a registration is left alone: groups, topics, the server itself."""
     return (
         contact.carrier in ("mcast", "topic")
         or contact.name in ("", "fallback")
@@ -83,7 +83,7 @@ def reason_of_death(contact: yarpy.Contact, timeout: float) -> str:
         return ""  # a cut cable, a host that is off: nobody knows what runs there
     if contact.carrier != "tcp":
         return ""  # a camera or a ROS node: it listens, and speaks no YARP
-    from yarpy.port import probe
+    from yarpy.port.connect import probe
 
     try:
         lines = probe.describe(contact, timeout=timeout)

@@ -57,9 +57,10 @@ def command(
         return _persist(source, target, carrier or "", "" if mode == "always" else mode)
 
     existing = _existing(source, target, carrier)
+    made = yarpy.connect(source, target, carrier or "")
     if existing:
         print_line(f"Connection found between {source} and {target} using carrier {existing}")
-    print_line(f"Success: {yarpy.connect(source, target, carrier).reply}")
+    print_line(f"Success: {made.reply}")
     return 0
 
 
@@ -91,7 +92,7 @@ def _existing(source: str, target: str, carrier: str | None) -> str:
     from yarpy.network.connection import Pairing
 
     try:
-        pairing = Pairing(source, target, carrier, None)
+        pairing = Pairing(source, target, carrier or "", None)
         return "" if pairing.topical else pairing.existing()
     except yarpy.YarpError:
         return ""  # connecting will say it

@@ -1,7 +1,8 @@
 """`yarpy detect [--write]`: find a name server, the configured one or any in the network.
 
 With `--ros`: see whether the ROS master of ROS_MASTER_URI answers, and store where it is for the
-current namespace. `yarpy namespace /ros` before it stores that in a file of its own.
+current namespace; likewise with `--zenoh`. `yarpy namespace /ros` before it stores that in a file
+of its own.
 
 Exit codes: 0 found; 1 not.
 """
@@ -9,26 +10,28 @@ Exit codes: 0 found; 1 not.
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import click
 
 from yarpy.cli.output import print_line
 from yarpy.cli.stderr import complain
 from yarpy.cli.verbs.where import framed
+from yarpy.registry import names
 
 TRIES = 3
 
 
 @click.command()
 @click.option("--write", is_flag=True, help="Store the address that was found.")
-@click.option("--ros", is_flag=True, help="Store where the ROS master is.")
-def command(write: bool, ros: bool) -> int:
+def command(write: bool, **others: bool) -> int:
     """Find a name server: the configured one, or, by multicast, any that answers.
 
-    With --ros: the ROS master of ROS_MASTER_URI; where it is, is stored in any case, as in C++.
+    With the name of another system, such as --ros: its names; where they are is stored in any case.
     """
-    if ros:
-        return _detect_ros()
+    for kind in others:
+        if others[kind]:
+            return _store(kind)
     from yarpy.config.configuration import Server, configuration, default_port, write_server
     from yarpy.names.default import client_of
     from yarpy.names.discovery import search
@@ -83,27 +86,30 @@ def command(write: bool, ros: bool) -> int:
     return 0
 
 
-def _detect_ros() -> int:
-    from yarpy.config.configuration import Server, configuration, write_server
-    from yarpy.names.ros_master import DEFAULT_URI, VARIABLE, RosMaster, parse_uri
+for _kind in names.names():
+    command.params.append(
+        click.Option([f"--{_kind}"], is_flag=True, help=f"Store where the names of {_kind} are.")
+    )
 
-    uri = os.environ.get(VARIABLE, "")
-    if not uri:
-        uri = DEFAULT_URI
-        complain(f"{VARIABLE} is not set; trying {uri}")
-    print_line(f"Trying {VARIABLE}={uri}")
-    where = parse_uri(uri)
-    if not RosMaster(uri).answers():
-        print_line("Could not reach server.")
-        complain("start it with `roscore`, or correct ROS_MASTER_URI")
+
+def _store(kind: str) -> int:
+    """Store where the names of another system are, if they answer."""
+    from yarpy.config.configuration import Server, configuration, write_server
+    from yarpy.names.default import default_client
+
+    found = configuration(os.environ)
+    client: Any = default_client(Server("", 0, kind, found.namespace))
+    where = client.place()
+    print_line(f"Trying {client.title}, {where}")
+    if not client.alive():
+        print_line("Could not reach it.")
+        complain(client.hint)
         return 1
     print_line("Reachable.  Writing.")
-    found = configuration(os.environ)
-    namespace = found.namespace
-    write_server(found.directory, Server(where.host, where.port, "ros", namespace))
-    print_line("Configuration stored.  Testing.")
-    notice = f"ROS Name server {_place(namespace, where.host, where.port)}"
-    print_line(framed(notice))
+    host, port = client.address()
+    stored = Server(host, port, kind, found.namespace)
+    print_line(f"New configuration stored to {write_server(found.directory, stored)}")
+    print_line(framed(f"{found.namespace} is now {client.title}, at {where}"))
     return 0
 
 

@@ -32,8 +32,8 @@ def command(source: str, target: str, persist: bool) -> int:
 
 
 def _is_topic(name: str) -> bool:
-    """Whether it is something of another middleware, which cannot be asked."""
-    from yarpy.contact import is_broker, is_medium, parse_contact
+    """Return whether a name is that of another middleware, which cannot be asked."""
+    from yarpy.contact import parse_contact
 
-    carrier = parse_contact(name).carrier
-    return is_broker(carrier) or is_medium(carrier)
+    reaches = parse_contact(name).reaches
+    return reaches.broker or reaches.topic

@@ -34,11 +34,11 @@ def command(port: str, target: str | None, as_json: bool) -> int:
 
 
 def _carrier(port: str, target: str) -> str:
-    """What the two are connected over, "" if they are not."""
+    """Return the carrier that connects the two, "" if they are not connected."""
     from yarpy.errors import LinkClosed, Timeout, UnknownName
     from yarpy.network.connection import Pairing
 
     try:
-        return Pairing(port, target, None, None).existing()
+        return Pairing(port, target, "", None).existing()
     except (UnknownName, LinkClosed, Timeout):
         return ""

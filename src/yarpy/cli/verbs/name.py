@@ -4,9 +4,9 @@
     set NAME KEY VALUE...   get NAME KEY   check NAME KEY VALUE   route A B   runners   gc   help
     bot ...   topic ...   subscribe ...   and whatever else a server understands
 
-Where a ROS master is configured, its nodes, topics and services are listed too; and those of ROS 2
-where RMW_IMPLEMENTATION, ZENOH_SESSION_CONFIG_URI or YARPY_ZENOH say that it goes over Zenoh. With
-names on Zenoh there is no server: `list`, `query` and `get` ask the ports.
+What other systems know is listed too: the nodes, topics and services of a ROS master that is
+configured, those of ROS 2. Where there is no name server of YARP's, as with names on Zenoh, `list`,
+`query` and `get` ask what there is instead.
 
 Arguments are values of Bottle text. `register` takes any address, a camera's for example; the word
 `...` leaves a part to the server.
@@ -19,7 +19,6 @@ Exit codes: 0 answered; 1 `query` finds nothing, the server knows no such comman
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -30,9 +29,7 @@ from yarpy.cli.output import print_all_json, print_json, print_line
 from yarpy.cli.stderr import complain
 
 if TYPE_CHECKING:
-    from yarpy.names.ros import RosNames
-    from yarpy.names.zenoh import ZenohNames
-    from yarpy.ros2.listing import Entry
+    from yarpy.names.base import NameClient
 
 END = "*** end of message"
 #: What all servers understand.
@@ -52,22 +49,20 @@ _BOTTLES = frozenset({"bot", "announce", "subscribe", "unsubscribe", "topic", "u
 @click.option("--json", "as_json", is_flag=True, help="Print list, query, get ... as JSON.")
 def command(words: tuple[str, ...], as_json: bool) -> int:
     """Send a command to the name server: `name list`, `name query /port`, `name help` ..."""
-    from yarpy.cli.service import masters, server, zenoh_names
+    from yarpy.cli.service import server, services
     from yarpy.config.command_line import parse_value
+    from yarpy.names.base import Foreign
     from yarpy.network.connection import find
 
     verb, arguments = (words[0], words[1:]) if words else ("help", ())
-    zenoh = zenoh_names()
-    if zenoh is not None:
-        return _answer_for_zenoh(verb, arguments, zenoh, as_json)
-    graphs = masters() if verb in ("list", "query") else []
-    if graphs and _answer_for_ros(verb, arguments, graphs, as_json):
-        return 0
+    in_use = services()
+    if isinstance(in_use[0], Foreign):
+        return _answer_for(in_use[0], verb, arguments, as_json)
     client = server()
     if verb == "query" and len(arguments) == 1:
         _print_contact(client.query(arguments[0]) or find(arguments[0], client), as_json)
     elif verb == "list" and as_json:
-        _print_list(client.list(*arguments[:1]), arguments)
+        _print_list((item for one in in_use for item in one.list(*arguments[:1])), arguments)
     elif verb == "register" and arguments:
         _print_contact(client.register(*parse_address(arguments)), as_json)
     elif verb == "unregister" and len(arguments) == 1:
@@ -88,28 +83,23 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
         if as_json:
             print_json(lines)
         else:
-            ros2 = _lines_of_ros2(arguments) if verb == "list" else []
-            for line in (*lines, *_lines_of(graphs, arguments), *ros2, END):
+            others = _lines(in_use, arguments) if verb == "list" else []
+            for line in (*lines, *others, END):
                 print_line(line)
     return 0
 
 
-def _answer_for_zenoh(
-    verb: str, arguments: tuple[str, ...], names: ZenohNames, as_json: bool
-) -> int:
-    """What ports tell themselves, in the words of a name server."""
-    from yarpy.names.registration_line import registration_line
+def _answer_for(names: Any, verb: str, arguments: tuple[str, ...], as_json: bool) -> int:
+    """Answer in the words of a name server where there is none, but `names` of another system."""
     from yarpy.network.connection import find
 
     if verb == "query" and len(arguments) == 1:
         _print_contact(find(arguments[0], names), as_json)
+    elif verb == "list" and as_json:
+        _print_list(names.list(*arguments[:1]), arguments)
     elif verb == "list":
-        contacts = names.list(*arguments[:1])
-        if as_json:
-            _print_list(contacts, arguments)
-        else:
-            for line in (*map(registration_line, contacts), *_lines_of_ros2(arguments), END):
-                print_line(line)
+        for line in (*_lines([names], arguments), END):
+            print_line(line)
     elif verb == "get" and len(arguments) == 2:
         values = names.get(*arguments)
         if as_json:
@@ -121,74 +111,46 @@ def _answer_for_zenoh(
             print_line(END)
     else:
         complain(
-            f'with names on Zenoh there is no server to ask for "{verb}", only ports, for list, '
-            "query and get; `yarpy server --zenoh` is one, which keeps names and connections"
+            f'with {names.title} there is no server to ask for "{verb}", only for list, query and '
+            f"get: {names.instead}"
         )
         return 1
     return 0
 
 
-def _answer_for_ros(
-    verb: str, arguments: tuple[str, ...], graphs: list[RosNames], as_json: bool
-) -> bool:
-    """What ROS masters know, where there is no YARP server to ask, or both are asked for JSON;
-    whether that is all."""
-    from yarpy.names.default import DEFAULT
+def _lines(services: Iterable[NameClient], arguments: tuple[str, ...]) -> list[str]:
+    """Return what name services of other systems list, and what else there is in the network."""
+    from yarpy.names.base import Foreign
 
-    names = DEFAULT.current()
-    alone = names in graphs
-    if verb == "query" and len(arguments) == 1 and alone:
-        contact = names.query(arguments[0])
-        if contact is None:
-            from yarpy.port.connecting import unknown
-
-            raise unknown(arguments[0], names)
-        _print_contact(contact, as_json)
-        return True
-    if verb != "list" or not (alone or as_json):
-        return False
-    if as_json:
-        asked = getattr(names, "clients", [names])
-        _print_list((item for one in asked for item in one.list(*arguments[:1])), arguments)
-    else:
-        for line in (*_lines_of(graphs, arguments), *_lines_of_ros2(arguments), END):
-            print_line(line)
-    return True
-
-
-def _lines_of(graphs: list[RosNames], arguments: tuple[str, ...]) -> list[str]:
-    """Nodes, topics and services, as C++ lists them."""
-    kinds = {"xmlrpc": "node", "topic": "topic", "rossrv": "service"}
-    return [
-        f'{kinds[item.carrier]} "{item.name}"'
-        for graph in graphs
-        for item in graph.list(*arguments[:1])
+    named = [
+        one.line(item)
+        for one in services
+        if isinstance(one, Foreign)
+        for item in one.list(*arguments[:1])
     ]
+    return [*named, *(item["line"] for item in _listed(arguments))]
 
 
-def _lines_of_ros2(arguments: tuple[str, ...]) -> list[str]:
-    """Nodes, topics and services of ROS 2, by what they are connected to, if there is any."""
-    return [f'{item.kind} "{item.target}"' for item in _listed_of_ros2(arguments)]
+def _listed(arguments: tuple[str, ...]) -> list[dict[str, str]]:
+    """Return what other systems list that have no names of their own for ports, each with the
+    `line` that people see."""
+    from yarpy.registry import listings
 
-
-def _listed_of_ros2(arguments: tuple[str, ...]) -> list[Entry]:
-    from yarpy.ros2.listing import is_used, listing
-
-    if not is_used(os.environ):
-        return []
-    try:
-        return listing("".join(arguments[:1]))
-    except yarpy.YarpError as error:
-        complain(f"ROS 2 is not listed: {error}")
-        return []
+    found: list[dict[str, str]] = []
+    for system in listings.names():
+        try:
+            found += listings.load(system)("".join(arguments[:1]))
+        except yarpy.YarpError as error:
+            complain(f"{system} is not listed: {error}")
+    return found
 
 
 def _print_list(contacts: Iterable[yarpy.Contact], arguments: tuple[str, ...]) -> None:
-    """`list` for programs: ports, and what there is in ROS 2."""
+    """Print a list for programs: ports, and what there is in other systems."""
     print_all_json(map(as_dict, contacts))
-    for item in _listed_of_ros2(arguments):
-        place = yarpy.Contact(item.carrier, item.name)
-        print_json({**as_dict(place), "kind": item.kind, "type": item.type})
+    for item in _listed(arguments):
+        place = yarpy.Contact(item["carrier"], item["name"])
+        print_json({**as_dict(place), "kind": item["kind"], "type": item["type"]})
 
 
 def parse_address(words: tuple[str, ...]) -> list[Any]:

@@ -1,18 +1,20 @@
-"""`yarpy plugin [NAME]`: the carriers, types, monitors, findings and commands that are installed.
+"""`yarpy plugin [NAME]`: the carriers, transports, types, monitors, middlewares, findings, devices
+and commands that are installed.
 
-Without NAME lists them, one per line (`--list`: names only); with NAME tells what it is and whether
-it loads. Exit codes: 0; 1 there is no such plug-in, or it does not load.
+Without NAME lists them, one per line (`--list`: names only), with what installs what they need:
+first the core, then each peer, each kit, and other packages; nothing is loaded. With NAME tells
+what it is and whether it loads. Exit codes: 0; 1 there is no such plug-in, or it does not load.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
 from yarpy.cli.output import print_all_json, print_line
 from yarpy.cli.stderr import complain
+from yarpy.registry import Registry
 
 
 @click.command()
@@ -22,31 +24,70 @@ from yarpy.cli.stderr import complain
 def command(name: str | None, names_only: bool, as_json: bool) -> int:
     """List the plug-ins that are installed, or tell about one."""
 
-    found = [entry for entry in installed() if name in (None, entry[1])]
+    found = [entry for entry in installed() if name in (None, entry.name)]
     if not found:
         complain(f'no plug-in "{name}"; `yarpy plugin` lists what is installed')
         return 1
     if as_json:
-        print_all_json({"kind": kind, "name": found_name} for kind, found_name in found)
+        print_all_json(entry._asdict() for entry in found)
+    elif names_only:
+        for entry in found:
+            print_line(entry.name)
     elif name is None:
-        for kind, found_name in found:
-            print_line(found_name if names_only else f"{kind:<10}{found_name}")
+        for home in dict.fromkeys(entry.home for entry in found):
+            print_line(f"{home}:")
+            for entry in found:
+                if entry.home == home:
+                    line = f"  {entry.kind:<12}{entry.name:<30}{entry.needs}"
+                    print_line(line.rstrip())
     else:
-        for kind, _ in found:
-            describe(kind, name)
+        for entry in found:
+            describe(entry.kind, name)
     return 0
 
 
-def installed() -> Iterator[tuple[str, str]]:
-    """Kind and name of every plug-in: ours, and those of other packages."""
+class Installed(NamedTuple):
+    """A plug-in. `home`: `core`, a peer or a kit of yarpy, or the distribution that brings it.
+    `needs`: what to type so that it can be loaded, "" where yarpy alone is enough."""
+
+    kind: str
+    name: str
+    home: str
+    needs: str = ""
+
+
+def installed() -> list[Installed]:
+    """Return every plug-in: the core's first, then those of peers, kits and other packages."""
     from yarpy import registry
     from yarpy.cli.verb_list import VERBS
 
-    for kind in (registry.carriers, registry.types, registry.monitors, registry.findings):
-        for name in kind.names():
-            yield kind.kind.removesuffix("s"), name
+    found = [
+        _installed(kind, name)
+        for kind in (
+            *(registry.carriers, registry.transports, registry.types, registry.monitors),
+            *(registry.middlewares, registry.findings, registry.devices),
+        )
+        for name in kind.names()
+    ]
     for name in sorted({*VERBS, *registry.commands.names()}):
-        yield "command", name
+        own = name in VERBS and registry.commands.row(name) is None
+        found.append(
+            Installed("command", name, "core") if own else _installed(registry.commands, name)
+        )
+    rings = ("core", "peers", "kits")
+    order = {
+        home: rings.index(ring)
+        for home in {one.home for one in found}
+        if (ring := home.partition(".")[0]) in rings
+    }
+    return sorted(found, key=lambda one: (order.get(one.home, len(rings)), one.home))
+
+
+def _installed(plugins: Registry[Any], name: str) -> Installed:
+    row, kind = plugins.row(name), plugins.kind.removesuffix("s")
+    if row is None or not row.home:
+        return Installed(kind, name, plugins.owner(name) or "added by hand")
+    return Installed(kind, name, row.home, row.advice if row.extra else "")
 
 
 def describe(kind: str, name: str) -> None:

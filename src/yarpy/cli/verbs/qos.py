@@ -100,7 +100,7 @@ def time_(
     """Set by when and how often messages should come, and show how often they did not.
 
     TARGET counts; with --late drop it drops what comes late, and SOURCE does not send what is late
-    already.
+    already: `dropped` are both.
     """
     from yarpy.network import qos
     from yarpy.network.sampling import flow
@@ -115,8 +115,11 @@ def time_(
             qos.grant(source, target, sender=wanted)
         except LocalProtocolError as error:  # a port of C++; what counts is the receiver
             complain(str(error))
-    end = flow(source, target).receiver
-    timing = end.timing if end is not None else {}
+    found = flow(source, target)
+    timing = dict(found.receiver.timing) if found.receiver is not None else {}
+    unsent = found.sender.timing.get("dropped") if found.sender is not None else None
+    if timing and isinstance(unsent, int):
+        timing["dropped"] = timing.get("dropped", 0) + unsent
     if not timing:
         print_line(f'"{target}" expects nothing of "{source}"')
     else:

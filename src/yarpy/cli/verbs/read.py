@@ -96,7 +96,7 @@ class Printer:
 
 
 def _summary(message: yarpy.Message) -> str:
-    """What an image is and how large; "" for what can be read as text."""
+    """Return the format and size of an image; "" for what can be read as text."""
     value = message.value
     if not isinstance(value, yarpy.Image):
         return ""
@@ -135,6 +135,8 @@ def command(
             for remote in intent.remotes:
                 try:
                     hear_from(reader, remote)
+                except (yarpy.AddressError, yarpy.UnknownPlugin):
+                    raise  # it can never become right
                 except yarpy.YarpError as error:
                     complain(str(error))
                     note = "waiting for whoever sends here, which this does: yarpy connect /PORT"

@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 import yarpy
-from yarpy.cli import prompt
+from yarpy.cli import prompt, typed
 from yarpy.cli.output import print_line
-from yarpy.cli.stderr import complain
+from yarpy.cli.stderr import complain, warn
 from yarpy.errors import (
     DecodeError,
     LinkClosed,
@@ -38,7 +38,7 @@ from yarpy.wire.message import UNSENDABLE
 
 if TYPE_CHECKING:
     from yarpy.contact import Contact
-    from yarpy.port.probe import Caller
+    from yarpy.port.connect.probe import Caller
 
 PAUSES: Final = (0.2, 0.6, 1.2)  # seconds before each attempt to reach a target that went away
 COMMANDS: Final = "*** Available commands:"
@@ -56,7 +56,7 @@ class Target:
         self._port = port
         self._name = name
         self._admin = admin
-        self._of_ros = False  # a node or service of ROS or ROS 2, or the master of ROS
+        self._foreign = False  # a node or service of ROS or ROS 2, or the master of ROS
         self._contact: Contact | None = None  # where it was found
         self._yarp4: bool | None = None  # whether it is of YARP 4; None: nobody asked yet
         self._caller: Caller | None = self._dial()
@@ -76,7 +76,7 @@ class Target:
             except WrongPort:
                 raise
             except UNSENDABLE as error:
-                if self._of_ros:
+                if self._foreign:
                     self._hang_up()
                     raise DecodeError(str(error)) from error
                 raise RemoteProtocolError(
@@ -98,12 +98,12 @@ class Target:
     def _spelled(self, question: Any) -> Any:
         """The question as the target reads it: YARP 4 has other tags for fractions."""
         from yarpy.data.yarp4 import to_yarp4
-        from yarpy.port.probe import is_yarp4
+        from yarpy.port.connect.probe import is_yarp4
         from yarpy.wire.message import Encoded
 
         data = yarpy.Bottle(question).to_bytes()
         newer = to_yarp4(data)
-        if newer is data or self._of_ros or self._admin:
+        if newer is data or self._foreign or self._admin:
             return question  # it is the same for all
         if self._yarp4 is None:
             self._yarp4 = False
@@ -117,28 +117,30 @@ class Target:
             caller.close()
 
     def _dial(self) -> Caller:
-        from yarpy.contact import is_medium, parse_contact
+        from yarpy.contact import parse_contact, reach
         from yarpy.network.connection import confirmed
-        from yarpy.port.probe import ANONYMOUS, Caller, is_of_ros
-        from yarpy.ros.part import services
+        from yarpy.port.connect.probe import ANONYMOUS, Caller
+        from yarpy.registry import graphs
 
         carrier = parse_contact(self._port).carrier or "tcp"
         name = self._name or ANONYMOUS
         found = self._contact = confirmed(self._port, carrier=carrier)
         self._yarp4 = None
-        self._of_ros = is_of_ros(found) or is_medium(carrier)
-        if is_of_ros(found):
-            with suppress(NoNameServer):
-                services(None)  # finds the master, and with it the type server
+        self._foreign = found.reaches.foreign or reach(carrier).topic
+        if found.reaches.foreign:
+            for graph in graphs:
+                with suppress(NoNameServer):
+                    graph().prepare()
         return Caller(found, name, carrier=carrier, admin=self._admin)
 
 
-def converse(ask: Ask, history: str, label: str = "Response: ") -> None:
-    """Ask line by line and print the replies."""
-
+def converse(ask: Ask, history: str, label: str = "Response: ", port: str = "") -> None:
+    """Ask line by line and print the replies. Where `port` says nothing at all in its first answer,
+    it is said once what that may mean."""
+    first = True
     for line in prompt.lines(history=history, complete=lambda: commands_of(ask)):
         try:
-            question = yarpy.Bottle.from_text(line)
+            question = typed.bottle(line)
         except yarpy.DecodeError as error:
             complain(str(error))
             continue
@@ -150,6 +152,12 @@ def converse(ask: Ask, history: str, label: str = "Response: ") -> None:
         if question == HELP and _refused(reply):
             reply = ask(yarpy.Bottle(HELP_ALL))
         print_reply(reply, label)
+        if first and port and not reply:
+            warn(
+                f'the answer is empty: "{port}" has nothing to say to that, or it is a port that '
+                "only sends or reads, which answers nobody"
+            )
+        first = False
 
 
 def print_reply(reply: Any, label: str = "Response: ") -> None:
@@ -198,9 +206,10 @@ def _refused(reply: Any) -> bool:
 
 
 def _ends_connection(question: Any) -> bool:
-    """Whether ports hang up behind the answer, as they do to what nodes of ROS ask."""
+    """Return whether ports hang up after the answer, as they do after a question that nodes of ROS
+    ask."""
     from yarpy.data.text import plain_text
-    from yarpy.port.guard import ROS, TOLD
+    from yarpy.port.answer.guard import ROS, TOLD
 
     word = plain_text(question[0]) if question and isinstance(question[0], str) else ""
     return word in ROS or word in TOLD
@@ -213,10 +222,11 @@ def talk(port: str, name: str = "", admin: bool = False) -> int:
         target = Target(port, name, admin)
     except YarpError as error:
         complain(f"Cannot make connection: {error}")
-        click.echo("Alternative method: precede port name with --client", err=True)
+        if not (admin or isinstance(error, NoNameServer)):
+            click.echo("Alternative method: precede port name with --client", err=True)
         return 1
     try:
-        converse(target.ask, f"rpc_{port}")
+        converse(target.ask, f"rpc_{port}", port="" if admin else port)
     finally:
         target.close()
     return 0

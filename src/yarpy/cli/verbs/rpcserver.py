@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import click
 
 import yarpy
-from yarpy.cli import prompt
+from yarpy.cli import prompt, typed
 from yarpy.cli.output import print_line
 from yarpy.cli.ports import open_port
 from yarpy.cli.signals import Interrupted
@@ -70,7 +70,7 @@ def _answer(message: yarpy.Message, answers: Iterator[str], echo: bool) -> None:
     if not message.wants_reply:
         return
     print_line("Reply: ")
-    reply = question if echo else yarpy.Bottle.from_text(next(answers, ""))
+    reply = question if echo else typed.bottle(next(answers, ""))
     try:
         message.reply(reply)
     except yarpy.LinkClosed as error:

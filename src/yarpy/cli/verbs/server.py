@@ -6,8 +6,8 @@
     --read                   use the stored address even if it is not one of this computer
     --web DIR                show the files of a directory to browsers, at /web/
     --zenoh [ROUTER]         tell names on Zenoh, and ask there for names: C++ programs take part
-    --ros                    tell the ROS master of ROS_MASTER_URI of topics and services, and ask
-                             it for names; YARP_USE_ROS in the environment means the same
+    --ros [URI]              tell a ROS master of topics and services, and ask it for names, that of
+                             ROS_MASTER_URI; YARP_USE_ROS in the environment means the same
 
 Where it listens: what the options say; else the address that is stored for the namespace (or that
 YARPY_SERVER says), because that is where programs look; else an address of this computer and port
@@ -38,6 +38,8 @@ from yarpy.cli.output import print_line
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import warn
 from yarpy.errors import AddressError
+from yarpy.log import readable
+from yarpy.registry import delegates
 
 if TYPE_CHECKING:
     from yarpy.config.configuration import Configuration, Server
@@ -56,7 +58,7 @@ ANY_NAME: Final = '"..."'  # as it is printed: the server chooses
 
 
 @dataclass(frozen=True)
-class Place:
+class Decision:
     """Where to serve, and whether to store that."""
 
     server: Server
@@ -72,7 +74,7 @@ def decide(
     read: bool = False,
     write: bool = False,
     environment: Mapping[str, str] = os.environ,
-) -> Place:
+) -> Decision:
     """Where to serve, from the options and what is stored. Raises AddressError when they differ."""
     from yarpy.config.configuration import Server, default_port, server_file
     from yarpy.names.address import is_local, outward_address
@@ -92,14 +94,15 @@ def decide(
     if not is_local(host):
         note = f"{host} is no address of this computer; others will look for the server there"
     if stored is None:
-        return Place(wanted, True, note)
+        return Decision(wanted, True, note)
     if (stored.host, stored.port) == (wanted.host, wanted.port):
-        return Place(wanted, False, note)
+        return Decision(wanted, False, note)
     if stored.path is None:
         says = f"YARPY_SERVER says {stored.host}:{stored.port}"
-        return Place(wanted, False, f"{says}: programs started from here will look there")
+        says = f"{says}: programs started from here will look there"
+        return Decision(wanted, False, f"{note}; {says}" if note else says)
     if write:
-        return Place(wanted, True, note)
+        return Decision(wanted, True, note)
     raise AddressError(
         f"need to change settings in {path}: it says {stored.host} {stored.port}, wanted is "
         f"{wanted.host} {wanted.port}; give --write to overwrite it, --read to use what it says, "
@@ -136,11 +139,13 @@ class Scribe:
             if len(self._lines) >= BACKLOG:
                 self._skipped += 1
                 return
-            self._lines.append(self._mark(text) + text)
+            # A log, which is also read in a terminal when it went to a file.
+            self._lines.append(self._mark(text) + readable(text))
             self._changed.notify()
 
     def _is_old(self, text: str) -> bool:
-        """Whether this was printed since the port that it is about is reported not to answer."""
+        """Return whether this was printed already since the port that it is about was reported not
+        to answer."""
         verb, name, rest = _parts(text)
         if verb == "register" or (verb == "announce" and rest != "0"):
             self._silent.pop(name, None)
@@ -210,7 +215,7 @@ def _parts(text: str) -> tuple[str, str, str]:
 )  # fmt: skip
 @click.option("--portdb", default=MEMORY, metavar="F", help="File that remembers registrations.")
 @click.option("--subdb", default=MEMORY, metavar="F", help="File that remembers connections.")
-@click.option("--cautious", is_flag=True, help="Have every change wait for the disk.")
+@click.option("--cautious", is_flag=True, help="Answer changes once they are on the disk.")
 @click.option("--write", is_flag=True, help="Replace the stored address.")
 @click.option("--read", is_flag=True, help="Use the stored address as it is.")
 @click.option(
@@ -218,14 +223,6 @@ def _parts(text: str) -> tuple[str, str, str]:
     type=click.Path(exists=True, file_okay=False),
     metavar="DIR",
     help="Show the files of a directory at /web/.",
-)
-@click.option("--ros", is_flag=True, help="Tell the ROS master of topics, ask it for names.")
-@click.option(
-    "--zenoh",
-    is_flag=False,
-    flag_value="",
-    metavar="ROUTER",
-    help="Tell names on Zenoh, and ask there; with a router, or the usual one.",
 )
 @click.option("--local", is_flag=True, help="Let nobody but this computer reach it.")
 @click.option("--silent", is_flag=True, help="Print warnings and errors only.")
@@ -239,11 +236,10 @@ def command(
     write: bool,
     read: bool,
     web: str | None,
-    ros: bool,
-    zenoh: str | None,
     local: bool,
     silent: bool,
     verbose: bool,
+    **others: str | None,
 ) -> int:
     """Run a name server."""
     import logging
@@ -256,15 +252,16 @@ def command(
     if local:
         os.environ[SETTING] = "local"
     found = configuration(os.environ)
-    place = decide(found, ip=ip, socket=socket, read=read, write=write)
-    if place.note:
-        warn(place.note)
+    decision = decide(found, ip=ip, socket=socket, read=read, write=write)
+    if decision.note:
+        warn(decision.note)
     say = _nothing if silent else print_line
-    master = _ros_master() if ros or os.environ.get("YARP_USE_ROS") else ""
-    if master:
-        say(f"Using ROS with ROS_MASTER_URI={master}")
+    for system in others:
+        if others[system] is None and os.environ.get(f"YARP_USE_{system.upper()}"):
+            others[system] = ""  # as C++ has it
+    beside = {system: where for system, where in others.items() if where is not None}
     try:
-        _serve(found, place, portdb, subdb, cautious, web, master, zenoh, say)
+        _serve(found, decision, portdb, subdb, cautious, web, beside, say)
     except Interrupted:
         say("Name server ends.")
     return 0
@@ -272,13 +269,12 @@ def command(
 
 def _serve(
     found: Configuration,
-    place: Place,
+    decision: Decision,
     portdb: str,
     subdb: str,
     cautious: bool,
     web: str | None,
-    ros: str,
-    zenoh: str | None,
+    beside: dict[str, str],
     say: object,
 ) -> None:
     """Serve until a signal comes."""
@@ -292,7 +288,7 @@ def _serve(
     say(f"Using subscription database: {subdb}")
     if {portdb, subdb} != {MEMORY}:
         say("[If you ever need to clear the name server's state, just delete those files.]")
-    server = place.server
+    server = decision.server
     try:
         service = yarpy.NameServer(
             server.port,
@@ -303,8 +299,7 @@ def _serve(
             cautious=cautious,
             discoverable=not is_loopback(listening_host()),
             web=web,
-            ros=ros,
-            zenoh=zenoh,
+            beside=beside,
         )
     except AddressError as error:
         raise _explained(server, error) from error
@@ -312,7 +307,7 @@ def _serve(
     try:
         say(f"IP address: {server.host}")
         say(f"Port number: {server.port}")
-        if place.store:
+        if decision.store:
             try:
                 say(f"Address stored in {write_server(found.directory, server)}")
             except OSError as error:
@@ -322,6 +317,8 @@ def _serve(
             service.on_command = scribe.command
         where = url_of(f"{server.host}:{server.port}")
         say(f"Name server can be browsed at {where}")
+        for delegate in service.delegates:
+            say(f"Using {delegate.about}")
         if web is not None:
             say(f"Files of {web} are shown at {where}web/")
         say("Ok. Ready!")
@@ -333,21 +330,20 @@ def _serve(
             scribe.close()
 
 
-def _ros_master() -> str:
-    """The address of the ROS master. Raises AddressError if the environment names none."""
-    from yarpy.names.ros_master import VARIABLE, RosMaster
-
-    uri = os.environ.get(VARIABLE, "")
-    if not uri:
-        raise AddressError(f"--ros needs {VARIABLE}: export {VARIABLE}=http://localhost:11311/")
-    master = RosMaster(uri, 1.0)
-    if not master.answers():
-        warn(f"no ROS master answers at {uri} yet; it is asked again for every name")
-    return uri
+for _system in delegates.names():
+    command.params.append(
+        click.Option(
+            [f"--{_system}"],
+            is_flag=False,
+            flag_value="",
+            metavar="WHERE",
+            help=f"Tell {_system} of what is registered here, and ask it for names.",
+        )
+    )
 
 
 def _nothing(text: str) -> None:
-    """What `--silent` says."""
+    """Print nothing: `--silent`."""
 
 
 def _explained(server: Server, error: AddressError) -> AddressError:

@@ -20,7 +20,7 @@ FAILED = 255
 
 
 def part(element: Any) -> Any:
-    """What an element is sent as."""
+    """Return an element as it is sent."""
 
     return element if isinstance(element, list) else yarpy.Bottle([element])
 

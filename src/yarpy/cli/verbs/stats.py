@@ -32,7 +32,7 @@ FAILED = 255
 
 @dataclass(slots=True)
 class Tally:
-    """What came since `started`."""
+    """The messages that came since `started`."""
 
     started: float = field(default_factory=time.perf_counter)
     messages: int = 0

@@ -19,7 +19,7 @@ from yarpy.cli.output import print_line
 def command(name: str) -> int:
     """Ask the program that listens at NAME/quit to end."""
     from yarpy.network.connection import confirmed, find
-    from yarpy.port import probe
+    from yarpy.port.connect import probe
 
     wanted = name if "/quit" in name else f"{name.rstrip('/')}/quit"
     if wanted != name and yarpy.query(wanted) is None:

@@ -127,10 +127,13 @@ def keys() -> Iterator[queue.Queue[str]]:
     """The keys that are pressed, as they are; the terminal is as before afterwards. None come where
     standard input is no terminal, or the system has none of this."""
     pressed: queue.Queue[str] = queue.Queue()
+    if sys.platform == "win32":
+        yield pressed
+        return
     try:
         import termios
         import tty
-    except ImportError:
+    except ImportError:  # a Python that was built without
         yield pressed
         return
     if not sys.stdin.isatty():

@@ -13,7 +13,7 @@ import click
 
 import yarpy
 from yarpy.cli.output import print_line
-from yarpy.cli.stderr import complain
+from yarpy.cli.stderr import complain, warn
 
 REMIND = 3.0  # seconds between reminders that it still waits
 
@@ -33,7 +33,18 @@ def command(port: str, target: str | None, timeout: float | None) -> int:
             if yarpy.wait_for(port, target, left):
                 return 0
         except yarpy.NoNameServer as error:
-            complain(f"{error}; waiting for one")
+            warn(f"{error}; waiting for one")
             time.sleep(max(0.0, left))
         if deadline is not None and time.monotonic() >= deadline:
+            complain(_why_not(port, target, timeout))
             return 1
+
+
+def _why_not(port: str, target: str | None, timeout: float | None) -> str:
+    """Return what is still missing when the time is over."""
+    over = f"the {timeout:g} s are over"
+    try:
+        yarpy.ping(port, timeout=1.0)
+    except yarpy.YarpError as error:
+        return f"{over}: {error}"
+    return f'{over}: "{port}" is there' + (f', but does not send to "{target}"' if target else "")

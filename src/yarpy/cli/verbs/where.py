@@ -16,6 +16,7 @@ from yarpy.errors import NoNameServer
 
 if TYPE_CHECKING:
     from yarpy.config.configuration import Server
+    from yarpy.names.base import Foreign
     from yarpy.names.client import YarpNameClient
 
 FRAME = "=" * 57
@@ -31,7 +32,8 @@ def framed(*lines: str) -> str:
 def command(as_json: bool) -> int:
     """Tell where the name server is, and whether it answers."""
     from yarpy.config.configuration import configuration, server_file
-    from yarpy.names.default import client_of
+    from yarpy.names.base import Foreign
+    from yarpy.names.default import client_of, default_client
 
     found = configuration(os.environ)
     path = server_file(found.directory, found.namespace)
@@ -51,13 +53,15 @@ def command(as_json: bool) -> int:
         return 1
     code = 1
     for server in found.servers:
-        if server.mode == "zenoh":
-            code = 0 if _tell_zenoh(server, as_json) else code
+        names = default_client(server)
+        if isinstance(names, Foreign):
+            code = 0 if _tell(names, server, as_json) else code
+            names.close()
             continue
         if not as_json:
             print_line(f"Looking for name server on {server.host}, port number {server.port}")
             print_line("If there is a long delay, try:\n  yarpy conf --clean")
-        alive = _master_answers(server) if server.mode == "ros" else _serves(client_of(server))
+        alive = _serves(client_of(server))
         code = 0 if alive else code
         if as_json:
             print_json(
@@ -89,35 +93,25 @@ def command(as_json: bool) -> int:
     return code
 
 
-def _tell_zenoh(server: Server, as_json: bool) -> bool:
-    """Whether names on Zenoh can be used."""
-    from yarpy.names.default import default_client
-    from yarpy.names.zenoh import ZenohNames
-
-    names = default_client(server)
-    assert isinstance(names, ZenohNames)
+def _tell(names: Foreign, server: Server, as_json: bool) -> bool:
+    """Tell where names of another system are; whether they can be used."""
     try:
-        place, alive, problem = names.place, names.alive(), ""
+        place, alive, problem = names.place(), names.alive(), ""
     except NoNameServer as error:
         place, alive, problem = server.host, False, str(error)
-    names.close()
     if as_json:
-        print_json({"namespace": server.namespace, "zenoh": place, "available": alive})
+        said = {"namespace": server.namespace, "mode": server.mode, "place": place}
+        print_json({**said, "available": alive})
     elif alive:
-        print_line(f"Names of {server.namespace} are on Zenoh, at {place}; there is no name server")
+        print_line(f"Names of {server.namespace}: {names.title}, at {place}")
+        print_line("There is no name server of YARP there.")
     else:
-        print_line(framed("PROBLEM", problem or f"No Zenoh router answers at {place}."))
+        print_line(framed("PROBLEM", problem or f"Nobody answers for {names.title} at {place}."))
     return alive
 
 
-def _master_answers(server: Server) -> bool:
-    from yarpy.names.ros_master import RosMaster, uri_of
-
-    return RosMaster(uri_of(server.host, server.port)).answers()
-
-
 def _serves(client: YarpNameClient) -> bool:
-    """Whether a name server answers there; what else does is said."""
+    """Return whether a name server answers there; print what else does."""
     if not client.alive():
         return False
     try:

@@ -16,7 +16,7 @@ from typing import Any
 import click
 
 import yarpy
-from yarpy.cli import prompt
+from yarpy.cli import prompt, typed
 from yarpy.cli.ports import open_port, send_to
 from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain
@@ -25,9 +25,9 @@ EOF = (1, "<EOF>")
 
 
 def value_of(line: str, verbatim: bool) -> Any:
-    """What a line is sent as. Raises DecodeError for hundreds of brackets."""
+    """Return the value that a line is sent as. Raises DecodeError for hundreds of brackets."""
 
-    return yarpy.Bottle([0, line]) if verbatim else yarpy.Bottle.from_text(line)
+    return yarpy.Bottle([0, line]) if verbatim else typed.bottle(line)
 
 
 def feed(
@@ -115,4 +115,4 @@ def command(
 
 
 def _ignore(message: object) -> None:
-    """What arrives at a port that only writes."""
+    """Drop what arrives at a port that only writes."""

@@ -93,7 +93,7 @@ class Control:
     # -- for the monitor --------------------------------------------------------------------------
 
     def allows(self) -> bool:
-        """Whether the constraint is true now."""
+        """Return whether the constraint is true now."""
         return self._constraint.holds(self._events.has)
 
     def close(self) -> None:

@@ -1,7 +1,8 @@
 """Lua scripts for a portmonitor: those of C++ YARP, with the callbacks in the table PortMonitor.
 
-Rules: every script has its own Lua state, whose calls are limited to LIMIT instructions and whose
-memory to MEMORY bytes (binding/sandbox.lua). Scripts see YARP's classes (the rest of binding).
+Rules: every script has its own Lua state, whose calls are limited in instructions and seconds, and
+whose memory in bytes (`limit.py`, binding/sandbox.lua), so that whoever writes or closes comes
+back. Scripts see YARP's classes (the rest of binding).
 Between the languages pass only numbers and strings, and once the functions of `_Host`: for speed,
 and because lupa (2.8) loses an object that is passed again while Lua collects garbage.
 """
@@ -16,17 +17,15 @@ from pathlib import Path
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle, Property
-from yarpy.data.image import Image
-from yarpy.data.matrix import Matrix
-from yarpy.data.pixel import pixel_of
-from yarpy.data.vector import Vector
+from yarpy.data.sig.image import Image
+from yarpy.data.sig.matrix import Matrix
+from yarpy.data.sig.pixel import pixel_of
+from yarpy.data.sig.vector import Vector
+from yarpy.limit import SCRIPT_INSTRUCTIONS, SCRIPT_MEMORY, SCRIPT_SECONDS, SCRIPT_UNWATCHED
 from yarpy.monitors.extra import needed
 from yarpy.monitors.script.control import Control
-from yarpy.monitors.script.script import ScriptError
+from yarpy.monitors.script.script import ScriptError, read_script
 from yarpy.wire.message import Message
-
-LIMIT: Final = 100_000_000  # instructions in one call: a second or so
-MEMORY: Final = 128 << 20  # bytes of one script
 
 _CALLBACKS: Final = (
     *("create", "destroy", "accept", "update", "update_reply", "trig", "setparam", "getparam"),
@@ -143,6 +142,10 @@ def _guarded(function: Callable[..., object], *arguments: object) -> tuple[objec
     return (None, *found) if isinstance(found, tuple) else (None, found)
 
 
+def _module(path: bytes) -> bytes:
+    return read_script(Path(_text(path)))
+
+
 class LuaScript:
     """The script of one connection. Raises ScriptError if the file cannot be run."""
 
@@ -151,8 +154,8 @@ class LuaScript:
         path: Path,
         source: bytes,
         control: Control,
-        limit: int = LIMIT,
-        memory: int = MEMORY,
+        limit: int = SCRIPT_INSTRUCTIONS,
+        memory: int = SCRIPT_MEMORY,
         system: bool = False,
     ) -> None:
         self._path = path
@@ -169,11 +172,22 @@ class LuaScript:
         folder = b"%s/?.lua;" % _data(str(path.parent))
         lua.globals()[b"package"][b"path"] = folder + lua.globals()[b"package"][b"path"]
         # Without `system`, scripts can load only the modules in their own folder.
-        run, fail = self._load("sandbox", limit, None if system else _data(str(path.parent)))
-        kit = self._load("element", lua.table_from(self._host.given()), fail)
+        reach = None if system else _data(str(path.parent))
+        run, fail, guard, charge, afford = self._load(
+            "sandbox",
+            limit,
+            SCRIPT_SECONDS,
+            SCRIPT_UNWATCHED,
+            time.thread_time,
+            partial(_guarded, _module),
+            reach,
+        )
+        kit = self._load("element", lua.table_from(self._host.given()), fail, charge)
         for name in ("value", "list", "number", "image"):
             self._load(name, kit)
         self._inside = self._load("thing", kit, run)
+        self._load("pattern", charge, fail, afford)
+        guard()
         self._call("load", source, b"@%s" % _data(str(path)))
         # As in C++, callbacks that a script defines later are not used.
         self._has = {name for name in _CALLBACKS if self._call("has", name.encode())}

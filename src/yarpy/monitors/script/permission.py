@@ -4,6 +4,8 @@
     network     also those requested over the network: a sender's carrier string, `add` and `atch`
     system      Lua scripts have all of Lua: io, os, require of any file
 
+Besides, `access.toml` may give a peer the right `script`, which is `network` for that peer alone.
+
 Rules: a request over the network may name only a file in a context's folder, put there by the owner
 of the machine: no path, no `..`. A Python script may do whatever its program may.
 """
@@ -11,6 +13,7 @@ of the machine: no path, no `..`. A Python script may do whatever its program ma
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Final
@@ -24,7 +27,7 @@ SYSTEM: Final = "system"
 
 
 def granted(word: str) -> bool:
-    """Whether the setting contains this word."""
+    """Return whether the setting contains this word."""
     return word in os.environ.get(SETTING, "").replace(",", " ").split()
 
 
@@ -32,10 +35,11 @@ def look_for(place: Place, file: str, context: str) -> Iterator[Path]:
     """Where a script may be. Raises LocalProtocolError if it must not run."""
     if not place.foreign:
         return iter(place.look(file, [context] if context else []))
-    if not granted(NETWORK):
+    if not (granted(NETWORK) or place.scripts):
         raise LocalProtocolError(
-            f"scripts requested over the network do not run here: start the program that owns this "
-            f"port with {SETTING}=network, or let it attach the script itself (Port.attach)"
+            "scripts requested over the network do not run here, unless the owner of this port "
+            f"starts its program so: `{_command()}`; or allows them to you: `yarpy access allow "
+            "script FROM`; or lets it attach the script itself (Port.attach)"
         )
     if not context or not (_is_plain(file) and _is_plain(context)):
         raise LocalProtocolError(
@@ -43,6 +47,16 @@ def look_for(place: Place, file: str, context: str) -> Iterator[Path]:
             f'not a path: "{file}" of "{context}"'
         )
     return _in_context(place.look(file, [context]), context, file)
+
+
+def _command() -> str:
+    """Return the command that the owner types; of the program its name alone, since a stranger
+    reads it."""
+    program = Path(sys.argv[0] if sys.argv else "").name
+    start = f"python {program}" if program.endswith(".py") else program
+    if start in ("", "-c", "-m"):
+        start = "PROGRAM"
+    return f"{SETTING}={NETWORK} {start} ..."
 
 
 def _in_context(paths: Iterable[Path], context: str, file: str) -> Iterator[Path]:

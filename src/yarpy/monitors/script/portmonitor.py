@@ -11,17 +11,20 @@ Rules: as in C++ YARP, each message goes through `accept`; then the other monito
 triggered; then, at the receiving end of a connection, the constraint; then `update`. If `accept`
 fails the message is dropped, if `update` fails it passes unchanged; each different error is logged
 once. A script that has changed on disk is loaded again; if the new one does not start, the old one
-stays in use.
+stays in use. A script that never comes back holds whoever gave it a message, and nobody else: what
+other threads want of it fails after PATIENCE, and its connection or port is closed without it.
 """
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
+from yarpy import scope
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import parse_text
 from yarpy.errors import LocalProtocolError, YarpError
@@ -31,7 +34,15 @@ from yarpy.monitors.base import DROP, Place, read_token
 from yarpy.monitors.monitor_list import Series, places
 from yarpy.monitors.script.control import Control
 from yarpy.monitors.script.permission import SYSTEM, granted
-from yarpy.monitors.script.script import Load, Script, ScriptError, Watch, find_script, read_script
+from yarpy.monitors.script.script import (
+    PATIENCE,
+    Load,
+    Script,
+    ScriptError,
+    Watch,
+    find_script,
+    read_script,
+)
 from yarpy.wire.message import Message
 
 log = logger("yarpy.monitors")
@@ -81,6 +92,7 @@ class PortMonitor:
         self._lock = threading.RLock()  # messages, triggers and settings come from several threads
         self._told: set[str] = set()
         self._closed = False
+        self._stuck = False  # a callback did not return in time
         self._constrained = not place.sending and place.source != place.target
         self._watch = Watch(path)
         self._script, self.control = self._start(place.text("constraint"))
@@ -165,22 +177,21 @@ class PortMonitor:
                 return None
 
     def trigger(self) -> None:
-        with self._lock:
-            if self._closed:
-                return
-            try:
-                self._current().trigger()
-            except ScriptError as error:
-                self._complain(error, "the next trigger still comes")
+        try:
+            with self._holding():
+                if not self._closed:
+                    self._current().trigger()
+        except ScriptError as error:
+            self._complain(error, "the next trigger still comes")
 
     _on_timer = trigger
 
     def configure(self, parameters: Property) -> None:
-        with self._lock:
+        with self._holding():
             self._current().configure(parameters)
 
     def parameters(self) -> Mapping[str, Any]:
-        with self._lock:
+        with self._holding():
             return self._current().parameters()
 
     def state(self) -> dict[str, Any]:
@@ -189,10 +200,29 @@ class PortMonitor:
         return {"script": str(self._path), **({"constraint": constraint} if constraint else {})}
 
     def close(self) -> None:
-        with self._lock:
-            if not self._closed:
-                self._closed = True
-                self._end()
+        try:
+            with self._holding():
+                if not self._closed:
+                    self._closed = True
+                    self._end()
+        except ScriptError as error:
+            self._closed = True
+            log.warning("%s: %s; it is closed without it", self._place, error)
+            self.control.close()
+
+    @contextmanager
+    def _holding(self) -> Iterator[None]:
+        """Hold the script, for what is no message. Raises ScriptError if a callback does not
+        return: no thread can be ended."""
+        patience = 0.0 if self._stuck else max(0.0, min(PATIENCE, scope.remaining()))
+        if not self._lock.acquire(timeout=patience):
+            self._stuck = True
+            raise ScriptError(f"{self._path}: a callback still runs, and nothing can end it")
+        self._stuck = False
+        try:
+            yield
+        finally:
+            self._lock.release()
 
     def _end(self) -> None:
         """End the running script."""

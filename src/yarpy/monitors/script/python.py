@@ -22,16 +22,18 @@ from __future__ import annotations
 import inspect
 import itertools
 import sys
+import threading
 import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
+from yarpy import scope
 from yarpy.data.bottle import Property
 from yarpy.monitors.base import FAILURES
 from yarpy.monitors.script.control import Control
-from yarpy.monitors.script.script import ScriptError
+from yarpy.monitors.script.script import PATIENCE, ScriptError
 from yarpy.wire.message import Message
 
 _NAMES: Final = {
@@ -140,9 +142,31 @@ class PythonScript:
     def close(self) -> None:
         try:
             if self._destroy is not None:
-                self._call(self._destroy)
+                self._part(self._destroy)
         finally:
             sys.modules.pop(self._module.__name__, None)
+
+    def _part(self, destroy: Callback) -> None:
+        """The last callback, in a thread of its own: if it never returns, nobody else waits."""
+        failed: list[ScriptError] = []
+
+        def run() -> None:
+            try:
+                self._call(destroy)
+            except ScriptError as error:
+                failed.append(error)
+
+        thread = threading.Thread(target=run, name=f"yarpy destroy {self._path}", daemon=True)
+        try:
+            thread.start()
+        except RuntimeError:  # Python is ending, and starts no more threads
+            run()
+        else:
+            thread.join(max(0.0, min(PATIENCE, scope.remaining())))
+        if thread.is_alive():
+            raise ScriptError(f"{self._path}: destroy still runs, and nothing can end it")
+        for error in failed:
+            raise error
 
     def _call(self, callback: Callback, *arguments: object) -> Any:
         """Call it with as many of the arguments as it takes."""

@@ -6,7 +6,9 @@ ScriptError, which names file and line.
 
 from __future__ import annotations
 
+import errno
 import os
+import stat
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,13 +16,14 @@ from typing import Final, Protocol
 
 from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError
+from yarpy.limit import SCRIPT_FILE
 from yarpy.monitors.base import Place
 from yarpy.monitors.script.control import Control
 from yarpy.monitors.script.permission import look_for
 from yarpy.wire.message import Message
 
-PATIENCE: Final = 0.5  # seconds between checks of a file
-LARGEST: Final = 4 << 20  # bytes of a script
+INTERVAL: Final = 0.5  # seconds between checks of a file
+PATIENCE: Final = 3.0  # seconds that who closes or sets it up waits for a callback to return
 
 
 class ScriptError(LocalProtocolError):
@@ -34,10 +37,11 @@ class Script(Protocol):
         """The first call; False: the script refuses the connection."""
 
     def accept(self, message: Message) -> bool:
-        """Whether the message may pass."""
+        """Return whether the message may pass."""
 
     def update(self, message: Message) -> object:
-        """What replaces it: a value, a Message, DROP; None: the message unchanged."""
+        """Return what replaces the message: a value, a Message, DROP; None: the message
+        unchanged."""
 
     def update_reply(self, message: Message) -> object:
         """The same for the reply to a call."""
@@ -78,32 +82,43 @@ def find_script(place: Place, name: str, context: str, endings: Sequence[str]) -
 
 
 def read_script(path: Path) -> bytes:
-    """The text of a script. Raises LocalProtocolError."""
+    """The text of a script. Raises LocalProtocolError, also for what is no file: opening a FIFO
+    would wait for somebody to write it."""
     try:
-        with path.open("rb") as file:
-            found = file.read(LARGEST + 1)
+        with open(path, "rb", opener=_opened) as file:
+            found = file.read(SCRIPT_FILE + 1)
     except OSError as error:
         raise LocalProtocolError(f'"{path}" cannot be read: {error.strerror}') from error
-    if len(found) > LARGEST:
-        raise LocalProtocolError(f'"{path}" is too large for a script: over {LARGEST} bytes')
+    if len(found) > SCRIPT_FILE:
+        raise LocalProtocolError(f'"{path}" is too large for a script: over {SCRIPT_FILE} bytes')
     return found
 
 
+def _opened(path: str, flags: int) -> int:
+    # Without O_NONBLOCK, opening a FIFO waits for its writer. Windows has neither.
+    file = os.open(path, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0))
+    if not stat.S_ISREG(os.fstat(file).st_mode):
+        os.close(file)
+        raise OSError(errno.EINVAL, "it is no regular file")
+    return file
+
+
 class Watch:
-    """Whether a file has changed since the last call; limits how often the disk is read."""
+    """A check whether a file has changed since the last call; it limits how often the disk is
+    read."""
 
     def __init__(self, path: Path, clock: Callable[[], float] = time.monotonic) -> None:
         self._path = path
         self._clock = clock
         self._state = self._look()
-        self._again = clock() + PATIENCE
+        self._again = clock() + INTERVAL
 
     def changed(self) -> bool:
-        """Whether it has changed. A file that is missing counts as unchanged."""
+        """Return whether the file has changed. A file that is missing counts as unchanged."""
         now = self._clock()
         if now < self._again:
             return False
-        self._again = now + PATIENCE
+        self._again = now + INTERVAL
         state = self._look()
         if state is None or state == self._state:
             return False

@@ -20,9 +20,9 @@ from collections.abc import Callable
 from math import inf, log
 from typing import Any, Final
 
-from yarpy.data import jpeg
 from yarpy.data.bottle import Property
-from yarpy.data.image import Image
+from yarpy.data.sig import jpeg
+from yarpy.data.sig.image import Image
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError, LocalProtocolError
 from yarpy.monitors.base import Place, Taken
@@ -103,7 +103,8 @@ class Adaptive:
         return passes
 
     def _has_room(self, now: float) -> bool:
-        """Whether nothing is under way, or a single message that should arrive any moment."""
+        """Return whether nothing is under way, or a single message that should arrive any
+        moment."""
         count = self._under_way()
         if count == 0:
             return True

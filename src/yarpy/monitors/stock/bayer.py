@@ -19,7 +19,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from yarpy.data.image import Image
+from yarpy.data.sig.image import Image
 from yarpy.errors import DecodeError, LocalProtocolError
 from yarpy.monitors.base import Place
 from yarpy.monitors.extra import needed

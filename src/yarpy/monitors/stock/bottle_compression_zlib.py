@@ -13,8 +13,8 @@ import logging
 import zlib
 
 from yarpy.data.bottle import Bottle
-from yarpy.data.limit import limits
 from yarpy.errors import DecodeError
+from yarpy.limit import limits
 from yarpy.log import logger
 from yarpy.monitors.base import Place
 from yarpy.monitors.stock.zlib_limit import unpacked

@@ -13,9 +13,9 @@ import zlib
 from typing import TYPE_CHECKING
 
 from yarpy.data.bottle import Bottle
-from yarpy.data.image import QUANTUM, Image
-from yarpy.data.limit import limits
+from yarpy.data.sig.image import QUANTUM, Image
 from yarpy.errors import DecodeError
+from yarpy.limit import limits
 from yarpy.monitors.base import Place
 from yarpy.monitors.stock.picture import picture
 from yarpy.monitors.stock.zlib_limit import unpacked

@@ -6,7 +6,7 @@ not a number are 0. Either end.
 
 from __future__ import annotations
 
-from yarpy.data.image import Image
+from yarpy.data.sig.image import Image
 from yarpy.monitors.base import Place
 from yarpy.monitors.stock.picture import picture
 from yarpy.wire.message import Message

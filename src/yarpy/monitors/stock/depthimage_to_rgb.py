@@ -6,7 +6,7 @@ The colours of C++ YARP: v / 9.8 runs through blue, green, yellow, red and black
 
 from __future__ import annotations
 
-from yarpy.data.image import Image
+from yarpy.data.sig.image import Image
 from yarpy.monitors.base import Place
 from yarpy.monitors.stock.depthimage_to_mono import FARTHEST, NEAREST
 from yarpy.monitors.stock.picture import picture

@@ -5,7 +5,7 @@ As in C++ YARP, but without the row padding that C++ treats as pixels. Either en
 
 from __future__ import annotations
 
-from yarpy.data.vector import Vector
+from yarpy.data.sig.vector import Vector
 from yarpy.monitors.base import Place
 from yarpy.monitors.stock.picture import picture
 from yarpy.wire.message import Message

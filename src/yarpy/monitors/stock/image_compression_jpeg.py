@@ -9,9 +9,9 @@ depth or Bayer patterns.
 
 from __future__ import annotations
 
-from yarpy.data import jpeg
 from yarpy.data.bottle import Bottle
-from yarpy.data.image import Image
+from yarpy.data.sig import jpeg
+from yarpy.data.sig.image import Image
 from yarpy.data.value import Vocab
 from yarpy.errors import DecodeError
 from yarpy.monitors.base import Place

@@ -10,7 +10,7 @@ break.
 
 from __future__ import annotations
 
-from yarpy.data.image import Image
+from yarpy.data.sig.image import Image
 from yarpy.errors import LocalProtocolError
 from yarpy.monitors.base import Place
 from yarpy.monitors.stock.picture import picture

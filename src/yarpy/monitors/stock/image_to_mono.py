@@ -5,7 +5,7 @@ Grey is (r + g + b) / 3, as C++ YARP converts images; see `Image.converted`.
 
 from __future__ import annotations
 
-from yarpy.data.image import Image
+from yarpy.data.sig.image import Image
 from yarpy.errors import DecodeError
 from yarpy.monitors.base import Place
 from yarpy.wire.message import Message

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from yarpy.data.image import Image
+from yarpy.data.sig.image import Image
 from yarpy.errors import DecodeError
 from yarpy.wire.message import Message
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 import zlib
 from typing import Any, Final
 
-from yarpy.data.image import Image
-from yarpy.data.limit import limits
+from yarpy.data.sig.image import Image
 from yarpy.errors import DecodeError
+from yarpy.limit import limits
 
 #: pixel codes that a PNG can hold; Bayer patterns as the grey images they are
 CODES: Final = (

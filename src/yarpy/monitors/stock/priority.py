@@ -73,7 +73,7 @@ class Priority:
         return known[1]
 
     def accept(self, message: Message) -> bool:
-        """Whether this connection is the one that may deliver now."""
+        """Return whether this connection is the one that may deliver now."""
         with self._group.lock:
             try:
                 return self._contest().decide(self.competitor, self._clock())

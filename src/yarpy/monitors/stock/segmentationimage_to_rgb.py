@@ -5,7 +5,7 @@ The colours of C++ YARP, by the label modulo 64. Either end.
 
 from __future__ import annotations
 
-from yarpy.data.image import Image
+from yarpy.data.sig.image import Image
 from yarpy.monitors.base import Place
 from yarpy.monitors.stock.picture import picture
 from yarpy.wire.message import Message

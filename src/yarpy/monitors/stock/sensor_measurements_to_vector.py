@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from yarpy.data.bottle import Bottle
-from yarpy.data.vector import Vector
+from yarpy.data.sig.vector import Vector
 from yarpy.errors import DecodeError
 from yarpy.monitors.base import Place
 from yarpy.wire.message import Message

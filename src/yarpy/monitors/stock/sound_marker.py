@@ -6,7 +6,7 @@ YARP 4 puts markers into a form of Sound that earlier versions cannot read.) Eit
 
 from __future__ import annotations
 
-from yarpy.data.sound import Sound
+from yarpy.data.sig.sound import Sound
 from yarpy.monitors.base import Place
 from yarpy.wire.message import Message
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from yarpy.data.limit import limits
-from yarpy.data.sound import Sound
+from yarpy.data.sig.sound import Sound
 from yarpy.errors import DecodeError
+from yarpy.limit import limits
 from yarpy.monitors.base import Place
 from yarpy.monitors.extra import needed
 from yarpy.wire.message import Message

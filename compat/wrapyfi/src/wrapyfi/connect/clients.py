@@ -1,4 +1,4 @@
-"""What clients of all middlewares have in common."""
+"""The part that clients of all middlewares share."""
 
 from __future__ import annotations
 

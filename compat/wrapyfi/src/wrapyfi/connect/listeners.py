@@ -1,4 +1,4 @@
-"""What listeners of all middlewares have in common."""
+"""The part that listeners of all middlewares share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What publishers of all middlewares have in common."""
+"""The part that publishers of all middlewares share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What servers of all middlewares have in common."""
+"""The part that servers of all middlewares share."""
 
 from __future__ import annotations
 

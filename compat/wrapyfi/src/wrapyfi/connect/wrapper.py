@@ -25,6 +25,7 @@ from wrapyfi.connect.clients import Clients
 from wrapyfi.connect.listeners import Listeners
 from wrapyfi.connect.publishers import Publishers
 from wrapyfi.connect.servers import Servers
+from yarpy import fork
 
 DEFAULT_COMMUNICATOR = os.environ.get(
     "WRAPYFI_DEFAULT_MWARE", os.environ.get("WRAPYFI_DEFAULT_COMMUNICATOR", "zeromq")
@@ -145,7 +146,7 @@ class Record:
     # -- calls ------------------------------------------------------------------------------------
 
     def call(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
-        """What the decorated function does."""
+        """Do what the decorated function does."""
         self._take_defaults()
         instance = self.find(args[0]) if args and self.instances else None
         if instance is None or instance.mode is None:
@@ -239,7 +240,7 @@ class Record:
             return found
 
     def _values(self, args: Any, kwargs: Any) -> dict[str, Any]:
-        """What the parameters are in this call. Listeners and clients may be given others."""
+        """Return the parameters of this call. Listeners and clients may be given others."""
         known = {name: value for name, value in kwargs.items() if name in self.signature.parameters}
         try:
             bound = self.signature.bind_partial(*args, **known)
@@ -409,5 +410,4 @@ def _start_over() -> None:
             found.opened.clear()
 
 
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_start_over)
+fork.after_in_child(_start_over)

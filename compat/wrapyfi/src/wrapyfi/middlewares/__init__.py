@@ -1,1 +1,1 @@
-"""What each middleware sends and takes, in the forms of Wrapyfi 0.4 and 0.5."""
+"""Middlewares: each sends and takes in the forms of Wrapyfi 0.4 and 0.5."""

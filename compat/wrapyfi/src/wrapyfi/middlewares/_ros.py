@@ -1,4 +1,4 @@
-"""What ROS 1 and ROS 2 have in common: the messages that values become, and the services.
+"""The part that ROS 1 and ROS 2 share: the messages that values become, and the services.
 
     NativeObject   std_msgs/String with JSON
     Image          sensor_msgs/Image, or CompressedImage for JPEG files; it says bgr8, and so it is
@@ -22,8 +22,8 @@ import numpy as np
 
 import yarpy
 from wrapyfi.middlewares._form import Native, Picture, Sound
-from yarpy.idl.rosmsg.message import Message
-from yarpy.idl.rosmsg.picture import decompressed, image_of
+from yarpy.peers.ros.message.message import Message
+from yarpy.peers.ros.message.picture import decompressed, image_of
 
 _AUDIO = """\
 std_msgs/Header header

@@ -32,8 +32,8 @@ from wrapyfi.connect.publishers import Publisher, Publishers
 from wrapyfi.connect.servers import Server, Servers
 from wrapyfi.middlewares._form import patience
 from wrapyfi.utils.core_utils import SingletonOptimized
-from yarpy.wrap.inbox import Inbox
-from yarpy.wrap.middleware import Failure, Received, question_of
+from yarpy.kits.wrap.inbox import Inbox
+from yarpy.kits.wrap.middleware import Failure, Received, question_of
 
 #: what `Form.value` gives for a message that listeners are not told of
 SKIP = object()
@@ -50,7 +50,7 @@ class Form(Protocol):
     def __init__(self, options: dict[str, Any]) -> None: ...
 
     def spelled(self, obj: Any) -> Any:
-        """What is sent; None for nothing. Raises TypeError, ValueError."""
+        """Return what is sent; None for nothing. Raises TypeError, ValueError."""
 
     def value(self, came: Any) -> Any:
         """The value, or SKIP. Raises ValueError."""
@@ -72,7 +72,7 @@ class Medium:
 
 
 class Nothing(metaclass=SingletonOptimized):
-    """What programs call to start and stop a middleware by hand. There is nothing to do."""
+    """The calls that start and stop a middleware by hand. There is nothing to do."""
 
     @classmethod
     def activate(cls, **kwargs: Any) -> Any:
@@ -317,8 +317,8 @@ def offer(medium: Medium) -> None:
 
 
 class Arrivals:
-    """What came to a listener by the threads of a library: `queue_size` values are kept, without
-    it `usual` or `KEPT`, and the oldest go."""
+    """Values that came to a listener by the threads of a library: `queue_size` of them are kept,
+    without it `usual` or `KEPT`, and the oldest go."""
 
     def __init__(self, side: Any, usual: int | str = 0) -> None:
         self._came_to = side.in_topic
@@ -356,7 +356,7 @@ class Desk:
         self._closed = False
 
     def ask(self, came: Any) -> Any:
-        """What the program answers: spelled, or a Failure."""
+        """Return the program's answer: spelled, or a Failure."""
         answered: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._asked.put((came, answered.put))
         if self._closed:

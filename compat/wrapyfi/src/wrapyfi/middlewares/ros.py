@@ -15,7 +15,7 @@ from functools import partial
 from typing import Any
 
 import yarpy
-import yarpy.ros
+import yarpy.peers.ros
 from wrapyfi.middlewares._ros import (
     FieldedService,
     Interfaces,
@@ -25,9 +25,9 @@ from wrapyfi.middlewares._ros import (
     ros_forms,
 )
 from wrapyfi.middlewares._side import Arrivals, Desk, Medium, Nothing, offer
-from yarpy.idl.rosmsg.library import default_library
-from yarpy.names.ros_master import DEFAULT_URI
-from yarpy.wrap.middleware import Failure
+from yarpy.kits.wrap.middleware import Failure
+from yarpy.peers.ros.master import DEFAULT_URI
+from yarpy.peers.ros.message.library import default_library
 
 _AUDIO = "wrapyfi_ros_interfaces/ROSAudio"
 _PAUSE = 0.05  # seconds between two looks at a parameter

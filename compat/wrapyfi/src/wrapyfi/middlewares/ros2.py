@@ -25,12 +25,12 @@ from wrapyfi.middlewares._ros import (
     ros_forms,
 )
 from wrapyfi.middlewares._side import Arrivals, Desk, Medium, Nothing, offer
-from yarpy.idl.ros2msg.library import default_library
-from yarpy.ros2.key import domain
-from yarpy.ros2.participant import take_part
-from yarpy.ros2.token import SERVER, SUBSCRIBER
-from yarpy.wrap.middleware import Failure
-from yarpy.wrap.spelling import failure, failure_of
+from yarpy.kits.wrap.middleware import Failure
+from yarpy.kits.wrap.spelling import failure, failure_of
+from yarpy.peers.ros2.key import domain
+from yarpy.peers.ros2.message.library import default_library
+from yarpy.peers.ros2.token import SERVER, SUBSCRIBER
+from yarpy.peers.ros2.zenoh.participant import take_part
 
 if not (find_spec("zenoh") and find_spec("xxhash")):
     raise ImportError("it needs eclipse-zenoh and xxhash: pip install 'yarpy-wrapyfi[ros2]'")
@@ -60,7 +60,7 @@ def _target(side: Any, topic: str, type_: str | None, kind: str = "msg") -> str:
 
 
 class _Watch:
-    """What waits for somebody else at a topic or service."""
+    """Waits for somebody else at a topic or service."""
 
     def __init__(self, topic: str, kind: str) -> None:
         self._topic = f"/{topic.strip('/')}"

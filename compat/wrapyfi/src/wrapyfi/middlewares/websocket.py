@@ -40,6 +40,8 @@ class _Client:
     def __init__(self, url: str, namespace: str, options: dict[str, Any]) -> None:
         import socketio  # takes as long as all the rest
 
+        from wrapyfi.middlewares._socketio import Client
+
         self.errors = socketio.exceptions.SocketIOError, ValueError, OSError
         self.users: list[object] = []
         self.namespace = namespace
@@ -47,7 +49,7 @@ class _Client:
         self._options = options
         self._takers: dict[str, list[_In]] = {}
         self._closed = threading.Event()
-        self.socket = socketio.Client(reconnection_delay=_PAUSE, reconnection_delay_max=1)
+        self.socket = Client(reconnection_delay=_PAUSE, reconnection_delay_max=1)
         threading.Thread(target=self._dial, name=f"wrapyfi {url}", daemon=True).start()
 
     def _dial(self) -> None:

@@ -20,11 +20,11 @@ import numpy as np
 import yarpy
 from wrapyfi.middlewares._form import Native, Picture, Sound
 from wrapyfi.middlewares._side import SKIP, Desk, Medium, Nothing, offer
+from yarpy.kits.wrap.follower import Follower
+from yarpy.kits.wrap.middleware import Failure
+from yarpy.kits.wrap.npy import from_npy, to_npy
+from yarpy.kits.wrap.spelling import failure, failure_of, frame_of
 from yarpy.network.connection import ask_server
-from yarpy.wrap.follower import Follower
-from yarpy.wrap.middleware import Failure
-from yarpy.wrap.npy import from_npy, to_npy
-from yarpy.wrap.spelling import failure, failure_of, frame_of
 
 _CODES = {(True, False): "rgb", (False, False): "mono", (True, True): "rgb.", (False, True): "dec"}
 
@@ -142,7 +142,7 @@ class _In:
         self._follower = Follower(self._port, side.in_topic, side.carrier or "tcp")
 
     def wait(self, seconds: float) -> bool:
-        return self._follower.wait(seconds) and self._follower.connected
+        return self._follower.wait(seconds)
 
     def receive(self, timeout: float | None) -> yarpy.Message:
         if timeout != 0:

@@ -46,7 +46,7 @@ def _places(name: str) -> list[str]:
 
 
 def _settings(options: dict[str, Any]) -> dict[str, Any]:
-    """What is said of the session, by the keys of Zenoh's configuration."""
+    """Return the settings of a session, by the keys of Zenoh's configuration."""
     host = options.get("ip") or _variable("IP", "127.0.0.1")
     port = options.get("port") or _variable("PORT", "7447")
     found: dict[str, Any] = {

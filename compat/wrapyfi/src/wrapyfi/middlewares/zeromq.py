@@ -22,10 +22,11 @@ import zmq
 import yarpy
 from wrapyfi.middlewares._form import Native, Picture, Sound
 from wrapyfi.middlewares._side import Medium, Nothing, offer
-from yarpy.wrap import payload
-from yarpy.wrap.middleware import Failure
-from yarpy.wrap.zmq_broker import keep_ready
-from yarpy.wrap.zmq_link import LIMIT, In, Out, context
+from yarpy.kits.wrap import payload
+from yarpy.kits.wrap.middleware import Failure
+from yarpy.limit import ZMQ_MESSAGE
+from yarpy.peers.zmq.broker import keep_ready
+from yarpy.peers.zmq.link import In, Out, context
 
 _PAUSE = 0.1  # seconds between two looks whether a socket was closed
 
@@ -222,7 +223,7 @@ class _Socket:
             self._socket.setsockopt(zmq.REQ_RELAXED, 1)
             self._socket.setsockopt(zmq.REQ_CORRELATE, 1)
         self._socket.setsockopt(zmq.LINGER, 500)
-        self._socket.setsockopt(zmq.MAXMSGSIZE, LIMIT)
+        self._socket.setsockopt(zmq.MAXMSGSIZE, ZMQ_MESSAGE)
         self._socket.connect(address)
         self._closed = False
         self._lock = threading.Lock()  # of the socket

@@ -1,4 +1,4 @@
-"""What plug-ins take from here; up to 0.4 it was in this module itself."""
+"""Names that plug-ins take from here; up to 0.4 they were in this module itself."""
 
 from __future__ import annotations
 

@@ -16,9 +16,10 @@ import sys
 from base64 import b64decode, b64encode
 from typing import Any
 
-from yarpy.wrap.npy import to_npy
-from yarpy.wrap.tensor import read
-from yarpy.wrap.tree import array_of, untag
+from yarpy.data.python.array import array_of
+from yarpy.kits.wrap.npy import to_npy
+from yarpy.kits.wrap.tensor import read
+from yarpy.kits.wrap.tree import untag
 
 #: the package that a class is of, its tag, the option that names the device of listeners
 _TAGS = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import yarpy
-from yarpy.data import jpeg
+from yarpy.data.sig import jpeg
 
 
 class JpegEncoder:

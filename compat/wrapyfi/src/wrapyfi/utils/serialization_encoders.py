@@ -1,6 +1,6 @@
 """NativeObject: JSON with tags, both ways, and the plug-ins of users.
 
-Rules: the tags and texts are those of `yarpy.wrap.tree`. A pickle is never read, whoever sends it.
+Rules: the tags and texts are those of `wrap.tree`. A pickle is never read, whoever sends it.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 
 from wrapyfi.utils._tensors import gathered, planted
 from wrapyfi.utils.core_utils import PluginRegistrar
-from yarpy.wrap.tree import PLAIN, TAG, Planter, untag
+from yarpy.kits.wrap.tree import PLAIN, TAG, Planter, untag
 
 
 class JsonEncoder(json.JSONEncoder):

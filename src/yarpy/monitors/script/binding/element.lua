@@ -5,7 +5,7 @@
 -- `host` holds Python functions, which return an error message or nil, then their results. `fail`
 -- raises an error at the line of the script.
 
-local host, fail = ...
+local host, fail, charge = ...
 
 -- Scripts may redefine globals.
 local pack, unpack, concat = string.pack, string.unpack, table.concat
@@ -124,7 +124,14 @@ local function bytes_of(bottle)
 end
 
 local function text_of(bottle)
-    return checked(host.text_of(bytes_of(bottle)))
+    local data = bytes_of(bottle)
+    charge(8 * #data) -- Python reads it, and nobody counts there
+    return checked(host.text_of(data))
+end
+
+local function data_of(text)
+    charge(8 * #text)
+    return checked(host.bytes_of(text))
 end
 
 local function copied(bottle, root, depth)
@@ -217,7 +224,7 @@ return {
     bottle_meta = bottle_meta, property_meta = property_meta, value_meta = value_meta,
     INT32 = INT32, STRING = STRING, VOCAB = VOCAB, FLOAT64 = FLOAT64, BLOB = BLOB, INT64 = INT64,
     INT8 = INT8, INT16 = INT16, FLOAT32 = FLOAT32, LIST = LIST, DICT = DICT,
-    new_bottle = new_bottle, read_bottle = read_bottle, bytes_of = bytes_of, text_of = text_of,
+    new_bottle = new_bottle, read_bottle = read_bottle, bytes_of = bytes_of, text_of = text_of, data_of = data_of,
     copied = copied, add = add, element = element, whole = whole, within = within, real = real,
     vocab_code = vocab_code, vocab_text = vocab_text,
 }

@@ -12,7 +12,7 @@ local Bottle, Property, property_meta = kit.Bottle, kit.Property, kit.property_m
 local host, checked, element, add = kit.host, kit.checked, kit.element, kit.add
 local whole, within, real, vocab_code = kit.whole, kit.within, kit.real, kit.vocab_code
 local new_bottle, read_bottle, copied = kit.new_bottle, kit.read_bottle, kit.copied
-local text_of, new_value = kit.text_of, kit.new_value
+local text_of, data_of, new_value = kit.text_of, kit.data_of, kit.new_value
 
 -- -- Bottle -------------------------------------------------------------------------------------
 
@@ -109,7 +109,7 @@ function Bottle:toString()
 end
 
 function Bottle:fromString(text)
-    self:copy(read_bottle(checked(host.bytes_of(tostring(text)))))
+    self:copy(read_bottle(data_of(tostring(text))))
 end
 
 local function word_at(bottle, index)
@@ -222,7 +222,7 @@ function Property:toString()
 end
 
 function Property:fromString(text, keep)
-    local given = read_bottle(checked(host.bytes_of(tostring(text))))
+    local given = read_bottle(data_of(tostring(text)))
     if keep ~= true then
         self._b:clear()
     end

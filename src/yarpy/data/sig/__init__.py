@@ -1,0 +1,1 @@
+"""The types of yarp::sig: images, sounds, point clouds, vectors, matrices."""

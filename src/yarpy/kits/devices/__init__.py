@@ -1,0 +1,204 @@
+"""Robot devices over ports: control boards, cameras, sensors - serve your own, use others'.
+
+    control_board       motors and encoders of joints
+    frame_grabber       cameras
+    multi_sensor        sensors, such as inertial units
+    battery             batteries
+    laser               laser scanners
+    transforms          frames, and where they are
+
+    interfaces          all others: bases, navigation, maps ...
+    simulated           devices without hardware
+
+Each of the first has `interface` (what your class may have), `server` (serves it on ports) and
+`client` (uses a remote one). An interface of the others is one class, whose server and client are
+made from it (`network`). Next to the folders is what they share. The names below can be imported
+from here; each module is loaded when its name is first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+_WHERE = {
+    "Area": "interfaces.place",
+    "BATTERY": "battery.interface",
+    "Battery": "battery.client",
+    "BatteryServer": "battery.server",
+    "ChatBot": "interfaces.talk",
+    "Colour": "interfaces.world",
+    "ControlBoard": "control_board.client",
+    "ControlBoardServer": "control_board.server",
+    "ControlMode": "control_board.interface",
+    "Description": "interfaces.world",
+    "DescriptionStorage": "simulated.world",
+    "Descriptions": "interfaces.world",
+    "FEATURES": "frame_grabber.interface",
+    "FrameGrabber": "frame_grabber.client",
+    "FrameGrabberServer": "frame_grabber.server",
+    "Gains": "control_board.interface",
+    "Grid": "interfaces.grid",
+    "InteractionMode": "control_board.interface",
+    "Interface": "network.model",
+    "LanguageModel": "interfaces.talk",
+    "Laser": "laser.client",
+    "LaserServer": "laser.server",
+    "Line": "interfaces.talk",
+    "Localization2D": "interfaces.localization",
+    "Map2D": "interfaces.map2d",
+    "MapStorage": "simulated.map_storage",
+    "MobileBase": "interfaces.mobile_base",
+    "MotorTorqueParameters": "control_board.interface",
+    "MultiSensor": "multi_sensor.client",
+    "MultiSensorServer": "multi_sensor.server",
+    "Navigation2D": "interfaces.navigation",
+    "Odometry": "interfaces.place",
+    "Odometry2D": "interfaces.mobile_base",
+    "Path": "interfaces.place",
+    "Place": "interfaces.place",
+    "Pose": "interfaces.world",
+    "Refused": "refusal",
+    "Scan": "laser.interface",
+    "SerialPort": "interfaces.serial",
+    "SimulatedBase": "simulated.base",
+    "SimulatedBattery": "simulated.battery",
+    "SimulatedCamera": "simulated.camera",
+    "SimulatedChatBot": "simulated.talk",
+    "SimulatedJoints": "simulated.joints",
+    "SimulatedLanguageModel": "simulated.talk",
+    "SimulatedSerialPort": "simulated.serial",
+    "SimulatedWorld": "simulated.world",
+    "Thing": "interfaces.place",
+    "TransformClient": "transforms.client",
+    "TransformServer": "transforms.server",
+    "World": "interfaces.world",
+    "remap": "control_board.remap",
+    "remap_remote": "control_board.remap",
+}
+
+__all__ = [
+    "BATTERY",
+    "FEATURES",
+    "Area",
+    "Battery",
+    "BatteryServer",
+    "ChatBot",
+    "Colour",
+    "ControlBoard",
+    "ControlBoardServer",
+    "ControlMode",
+    "Description",
+    "DescriptionStorage",
+    "Descriptions",
+    "FrameGrabber",
+    "FrameGrabberServer",
+    "Gains",
+    "Grid",
+    "InteractionMode",
+    "Interface",
+    "LanguageModel",
+    "Laser",
+    "LaserServer",
+    "Line",
+    "Localization2D",
+    "Map2D",
+    "MapStorage",
+    "MobileBase",
+    "MotorTorqueParameters",
+    "MultiSensor",
+    "MultiSensorServer",
+    "Navigation2D",
+    "Odometry",
+    "Odometry2D",
+    "Path",
+    "Place",
+    "Pose",
+    "Refused",
+    "Scan",
+    "SerialPort",
+    "SimulatedBase",
+    "SimulatedBattery",
+    "SimulatedCamera",
+    "SimulatedChatBot",
+    "SimulatedJoints",
+    "SimulatedLanguageModel",
+    "SimulatedSerialPort",
+    "SimulatedWorld",
+    "Thing",
+    "TransformClient",
+    "TransformServer",
+    "World",
+    "remap",
+    "remap_remote",
+]
+
+if TYPE_CHECKING:
+    from yarpy.kits.devices.battery.client import Battery as Battery
+    from yarpy.kits.devices.battery.interface import BATTERY as BATTERY
+    from yarpy.kits.devices.battery.server import BatteryServer as BatteryServer
+    from yarpy.kits.devices.control_board.client import ControlBoard as ControlBoard
+    from yarpy.kits.devices.control_board.interface import ControlMode as ControlMode
+    from yarpy.kits.devices.control_board.interface import Gains as Gains
+    from yarpy.kits.devices.control_board.interface import InteractionMode as InteractionMode
+    from yarpy.kits.devices.control_board.interface import (
+        MotorTorqueParameters as MotorTorqueParameters,
+    )
+    from yarpy.kits.devices.control_board.remap import remap as remap
+    from yarpy.kits.devices.control_board.remap import remap_remote as remap_remote
+    from yarpy.kits.devices.control_board.server import ControlBoardServer as ControlBoardServer
+    from yarpy.kits.devices.frame_grabber.client import FrameGrabber as FrameGrabber
+    from yarpy.kits.devices.frame_grabber.interface import FEATURES as FEATURES
+    from yarpy.kits.devices.frame_grabber.server import FrameGrabberServer as FrameGrabberServer
+    from yarpy.kits.devices.interfaces.grid import Grid as Grid
+    from yarpy.kits.devices.interfaces.localization import Localization2D as Localization2D
+    from yarpy.kits.devices.interfaces.map2d import Map2D as Map2D
+    from yarpy.kits.devices.interfaces.mobile_base import MobileBase as MobileBase
+    from yarpy.kits.devices.interfaces.mobile_base import Odometry2D as Odometry2D
+    from yarpy.kits.devices.interfaces.navigation import Navigation2D as Navigation2D
+    from yarpy.kits.devices.interfaces.place import Area as Area
+    from yarpy.kits.devices.interfaces.place import Odometry as Odometry
+    from yarpy.kits.devices.interfaces.place import Path as Path
+    from yarpy.kits.devices.interfaces.place import Place as Place
+    from yarpy.kits.devices.interfaces.place import Thing as Thing
+    from yarpy.kits.devices.interfaces.serial import SerialPort as SerialPort
+    from yarpy.kits.devices.interfaces.talk import ChatBot as ChatBot
+    from yarpy.kits.devices.interfaces.talk import LanguageModel as LanguageModel
+    from yarpy.kits.devices.interfaces.talk import Line as Line
+    from yarpy.kits.devices.interfaces.world import Colour as Colour
+    from yarpy.kits.devices.interfaces.world import Description as Description
+    from yarpy.kits.devices.interfaces.world import Descriptions as Descriptions
+    from yarpy.kits.devices.interfaces.world import Pose as Pose
+    from yarpy.kits.devices.interfaces.world import World as World
+    from yarpy.kits.devices.laser.client import Laser as Laser
+    from yarpy.kits.devices.laser.interface import Scan as Scan
+    from yarpy.kits.devices.laser.server import LaserServer as LaserServer
+    from yarpy.kits.devices.multi_sensor.client import MultiSensor as MultiSensor
+    from yarpy.kits.devices.multi_sensor.server import MultiSensorServer as MultiSensorServer
+    from yarpy.kits.devices.network.model import Interface as Interface
+    from yarpy.kits.devices.refusal import Refused as Refused
+    from yarpy.kits.devices.simulated.base import SimulatedBase as SimulatedBase
+    from yarpy.kits.devices.simulated.battery import SimulatedBattery as SimulatedBattery
+    from yarpy.kits.devices.simulated.camera import SimulatedCamera as SimulatedCamera
+    from yarpy.kits.devices.simulated.joints import SimulatedJoints as SimulatedJoints
+    from yarpy.kits.devices.simulated.map_storage import MapStorage as MapStorage
+    from yarpy.kits.devices.simulated.serial import SimulatedSerialPort as SimulatedSerialPort
+    from yarpy.kits.devices.simulated.talk import SimulatedChatBot as SimulatedChatBot
+    from yarpy.kits.devices.simulated.talk import SimulatedLanguageModel as SimulatedLanguageModel
+    from yarpy.kits.devices.simulated.world import DescriptionStorage as DescriptionStorage
+    from yarpy.kits.devices.simulated.world import SimulatedWorld as SimulatedWorld
+    from yarpy.kits.devices.transforms.client import TransformClient as TransformClient
+    from yarpy.kits.devices.transforms.server import TransformServer as TransformServer
+else:
+
+    def __getattr__(name):  # type checkers do not see it: with it every name would be right
+        module = _WHERE.get(name)
+        if module is None:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        value = getattr(import_module(f"yarpy.kits.devices.{module}"), name)
+        globals()[name] = value
+        return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

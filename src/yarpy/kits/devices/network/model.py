@@ -1,0 +1,181 @@
+"""Interface: what a kind of device can do, written once as a class; server and client follow.
+
+    class Lamp(Interface):
+        NWS, NWC, RPC = "lamp_nws_yarp", "lamp_nwc_yarp", "rpc"
+
+        @call("set_level_RPC", cpp="setLevel")          a function of the port <name>/rpc
+        def dim(self, level: float) -> None: ...
+
+        @published("level:o")                           sent by <name>/level:o, every period
+        @call("get_level_RPC", cpp="getLevel")
+        def level(self) -> float: ...
+
+        @taken("flash:i", Flash)                        <name>/flash:i reads Flash(es) for it
+        def flash(self, seconds: float) -> None: ...
+
+    with Lamp.serve("/lamp", MyLamp()), Lamp.connect("/lamp") as lamp:
+        lamp.dim(0.5)
+
+Rules: annotations are those of Thrift (`yarpy.kits.thrift`); a tuple is several results, None is
+none. In front of the results travels the status of the call, as each version of YARP spells it. A
+struct that C++ writes by itself is `Nested`. `cpp` is the name of the method in C++, for `compat`.
+What is published but no call is read from that port by clients; what is taken but no call is
+written there.
+
+Source: the interfaces of YARP's devices, and how Thrift spells them.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, ClassVar, Final, Self, TypeVar, get_args, get_origin
+
+from yarpy.errors import LocalProtocolError
+from yarpy.kits.devices.closeable import Closeable
+from yarpy.names.base import NameClient
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_FACTS: Final = "_device_facts"
+
+
+def call(
+    function: str, *, cpp: str = "", status: bool = True, boxed: bool = False
+) -> Callable[[F], F]:
+    """Mark a member that is called by this function of the network.
+
+    status: False where no status stands in front of the results. boxed: YARP 4 has the status in a
+    list of its own where there are no results.
+    """
+    return _mark(function=function, cpp=cpp, status=status, boxed=boxed)
+
+
+def published(port: str, cpp: str = "") -> Callable[[F], F]:
+    """Mark a member whose result is sent by a port."""
+    return _mark(source=port, **({"cpp": cpp} if cpp else {}))
+
+
+def taken(port: str, kind: type[Any], cpp: str = "") -> Callable[[F], F]:
+    """Mark a member that is called with what a port reads: a struct's fields, or the message."""
+    return _mark(sink=port, sink_kind=kind, **({"cpp": cpp} if cpp else {}))
+
+
+def _mark(**facts: Any) -> Callable[[F], F]:
+    def mark(found: F) -> F:
+        setattr(found, _FACTS, {**getattr(found, _FACTS, {}), **facts})
+        return found
+
+    return mark
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A method of an interface. `results`: their annotations; the other fields as above."""
+
+    name: str
+    doc: str
+    signature: inspect.Signature
+    results: tuple[Any, ...]
+    function: str = ""
+    cpp: str = ""
+    status: bool = True
+    boxed: bool = False
+    source: str = ""
+    sink: str = ""
+    sink_kind: type[Any] | None = None
+
+    def arguments(self, given: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
+        """All arguments in their order. TypeError as a call of a function raises it."""
+        bound = self.signature.bind(None, *given, **named)
+        bound.apply_defaults()
+        return bound.args[1:]
+
+
+class Interface:
+    """The base of all interfaces, and of the clients that `connect` returns."""
+
+    #: the names in C++ of its server, its client and a simulated device
+    NWS: ClassVar[str] = ""
+    NWC: ClassVar[str] = ""
+    FAKE: ClassVar[str] = ""
+    #: the view in C++, and its port for calls, behind the prefix: "" is the prefix itself
+    VIEW: ClassVar[str] = ""
+    RPC: ClassVar[str] = "rpc"
+    #: the members, by name
+    members: ClassVar[dict[str, Member]] = {}
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        own = {
+            name: _member(name, value)
+            for name, value in vars(cls).items()
+            if hasattr(value, _FACTS)
+        }
+        cls.members = {**cls.members, **own}
+
+    @classmethod
+    def serve(
+        cls,
+        name: str,
+        device: object,
+        period: float = 0.1,
+        *,
+        newer: bool = False,
+        names: NameClient | None = None,
+    ) -> Closeable:
+        """Serve `device`, an object with some of these methods, to C++ and Python clients.
+
+        name: prefix of the ports. period: seconds between messages of what is published.
+        newer: answer programs of YARP 3 as those of 3.12 want it; those of 4.0 are recognised.
+        names: a name client, None for the default.
+        Raises AddressError (a name is in use), NoNameServer; ValueError if the device has none of
+        these methods.
+        """
+        module = import_module("yarpy.kits.devices.network.server")
+        found: Closeable = module.Server(cls, name, device, period, newer=newer, names=names)
+        return found
+
+    @classmethod
+    def connect(
+        cls,
+        remote: str,
+        local: str = "",
+        *,
+        carrier: str = "tcp",
+        timeout: float = 5.0,
+        names: NameClient | None = None,
+    ) -> Self:
+        """A client of the server whose ports begin with `remote`, C++ or Python.
+
+        local: prefix of the client's own ports; generated if empty.
+        timeout: seconds after which published values no longer count.
+        names: a name client, None for the default.
+        Raises UnknownName, LinkClosed; later Timeout, LocalProtocolError (it refuses).
+        """
+        module = import_module("yarpy.kits.devices.network.client")
+        found: Self = module.client_of(cls)(remote, local, carrier, timeout, names)
+        return found
+
+    def close(self) -> None:
+        """End the connections of a client."""
+        raise LocalProtocolError(f"{type(self).__name__} is no client: nothing to close")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *details: object) -> None:
+        self.close()
+
+
+def _member(name: str, function: Any) -> Member:
+    signature = inspect.signature(function, eval_str=True)
+    result = signature.return_annotation
+    if result is None or result is inspect.Signature.empty:
+        results: tuple[Any, ...] = ()
+    else:
+        results = get_args(result) if get_origin(result) is tuple else (result,)
+    doc = inspect.cleandoc(function.__doc__ or "")
+    return Member(name, doc, signature, results, **getattr(function, _FACTS))

@@ -1,0 +1,150 @@
+"""Server: any interface of devices on ports, as its class says.
+
+Rules: the device is used by one thread at a time. What it lacks, and what it raises, is told by the
+status of the answer; the log says why. Nothing is read while nobody listens. Readers of YARP 4 get
+floats as it spells them.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from functools import partial
+from typing import Any
+
+from yarpy.data.stamp import Stamp
+from yarpy.data.yarp4 import to_yarp4
+from yarpy.errors import DecodeError
+from yarpy.kits.devices.access import Access
+from yarpy.kits.devices.closeable import Closeable, prefix
+from yarpy.kits.devices.network.functions import Status, functions_of
+from yarpy.kits.devices.network.model import Interface, Member
+from yarpy.kits.devices.publisher import Publisher
+from yarpy.kits.devices.refusal import Complaints, Refused
+from yarpy.kits.devices.status import FAILED, MISSING, OK, older, oldest
+from yarpy.kits.thrift.structure import Struct
+from yarpy.log import logger
+from yarpy.names.base import NameClient
+from yarpy.port.dialects import Dialects
+from yarpy.port.port import BufferedPort
+from yarpy.port.rpc import RpcServer
+from yarpy.wire.message import Encoded, Message
+
+log = logger("yarpy.devices")
+
+
+class Server(Closeable):
+    """Serves a device; see `Interface.serve`."""
+
+    def __init__(
+        self,
+        interface: type[Interface],
+        name: str,
+        device: object,
+        period: float,
+        *,
+        newer: bool,
+        names: NameClient | None,
+    ) -> None:
+        self.interface = interface
+        self.name = name = prefix(name)
+        self.device = device
+        self._complain = Complaints(name)
+        self._access = Access(device, 0, self._complain, threading.Lock())
+        if not self._access.offers(interface.members):
+            there = ", ".join(interface.members)
+            raise ValueError(f"{name}: the device has none of {there}")
+        members = [each for each in interface.members.values() if self._access.has(each.name)]
+        self._stamp = Stamp()
+        with ExitStack() as resources:
+            if any(each.function for each in interface.members.values()):
+                functions = functions_of(interface)(self._perform)
+                functions.before = older if newer else oldest
+                functions._yarp = (3, 12, 0) if newer else (3, 10, 0)  # type: ignore[misc]
+                rpc = f"{name}/{interface.RPC}".rstrip("/")
+                resources.enter_context(RpcServer(rpc, functions, names=names))
+            self._sources: list[tuple[Member, Dialects]] = []
+            for each in members:
+                if each.sink:
+                    take = partial(self._take, each)
+                    resources.enter_context(
+                        BufferedPort(f"{name}/{each.sink}", callback=take, names=names)
+                    )
+                if each.source:
+                    port = BufferedPort(f"{name}/{each.source}", names=names)
+                    resources.enter_context(port)
+                    self._sources.append((each, Dialects(port)))
+            if self._sources:
+                publisher = Publisher(name, period, self._publish)
+                resources.callback(publisher.close)
+            self._resources = resources.pop_all()
+
+    def __repr__(self) -> str:
+        return f"<server of {self.interface.__name__} {self.name}>"
+
+    def _perform(self, each: Member, answer: type[Any] | None, arguments: tuple[Any, ...]) -> Any:
+        """Do what is asked: the results behind a status, or the only result."""
+        if answer is None:
+            return self._access.ask(each.name, *arguments)
+        if not self._access.has(each.name):
+            log.info("%s: the device has no %s", self.name, each.name)
+            return _status(answer, MISSING)
+        try:
+            found = self._results(each, arguments)
+        except Refused as refusal:
+            log.info("%s: %s", self.name, refusal)
+            return _status(answer, FAILED)
+        return answer(OK) if answer is Status else answer(Status(OK), *found)
+
+    def _results(self, each: Member, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+        found = self._access.ask(each.name, *arguments)
+        if not each.results:
+            return ()
+        if len(each.results) == 1:
+            return (found,)
+        values = tuple(found)
+        if len(values) != len(each.results):
+            raise Refused(f"{each.name} gives {len(values)} values, not {len(each.results)}")
+        return values
+
+    def _take(self, each: Member, message: Message) -> None:
+        kind: Any = each.sink_kind
+        try:
+            found = message.as_(kind)
+            fields = isinstance(found, Struct)
+            values = [getattr(found, name) for name in kind._attributes] if fields else [found]
+            self._access.ask(each.name, *each.arguments(tuple(values), {}))
+        except (DecodeError, Refused) as error:
+            self._complain(each.sink, error)
+
+    def _publish(self) -> None:
+        stamp: Stamp | None = None
+        for each, readers in self._sources:
+            if not readers:
+                continue
+            try:
+                found = self._access.ask(each.name)
+            except Refused as refusal:
+                self._complain(each.source, refusal)
+                continue
+            stamp = stamp or self._next_stamp()
+            _send(readers, found, stamp)
+
+    def _next_stamp(self) -> Stamp:
+        self._stamp = self._stamp.next(time.time())
+        return self._stamp
+
+
+def _status(answer: type[Any], code: str) -> Any:
+    return answer(code) if answer is Status else answer(Status(code))
+
+
+def _send(readers: Dialects, found: Any, stamp: Stamp) -> None:
+    older_form: Callable[[], object] = lambda: found  # noqa: E731
+    newer_form = older_form
+    if isinstance(found, Struct):
+        data = found.to_wire()[0]
+        older_form, newer_form = lambda: Encoded(data), lambda: Encoded(to_yarp4(data))
+    readers.write(older_form, newer_form, stamp)

@@ -1,0 +1,62 @@
+"""SimulatedJoints: a control board without hardware, fakeMotionControl in C++.
+
+Rules: it has the members that `control_board.interface` describes, and does at once what it is
+told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+class SimulatedJoints:
+    """Joints that are at once where they are sent."""
+
+    def __init__(self, axis_names: Sequence[str]) -> None:
+        self.axis_names = [*axis_names]
+        count = len(self.axis_names)
+        self.axis_types = ["revolute"] * count
+        self.reference_speeds = [10.0] * count
+        self.reference_accelerations = [10.0] * count
+        self.position_limits = [(-180.0, 180.0)] * count
+        self.velocity_limits = [(0.0, 100.0)] * count
+        self._at = [0.0] * count
+        self._modes = ["pos"] * count
+        self._stiff = ["stif"] * count
+
+    def encoders(self) -> list[float]:
+        return [*self._at]
+
+    def encoder_speeds(self) -> list[float]:
+        return [0.0] * len(self._at)
+
+    def control_modes(self) -> list[str]:
+        return [*self._modes]
+
+    def interaction_modes(self) -> list[str]:
+        return [*self._stiff]
+
+    def motion_done(self) -> list[bool]:
+        return [True] * len(self._at)
+
+    def position_move(self, joints: Sequence[int], positions: Sequence[float]) -> None:
+        """Be there; not beyond the limits."""
+        for joint, position in zip(joints, positions, strict=True):
+            lowest, highest = self.position_limits[joint]
+            self._at[joint] = min(max(position, lowest), highest)
+
+    position_direct = position_move
+
+    def velocity_move(self, joints: Sequence[int], speeds: Sequence[float]) -> None:
+        """Stay: nothing moves by itself here."""
+
+    def stop(self, joints: Sequence[int]) -> None:
+        """Nothing moves."""
+
+    def switch_control_modes(self, joints: Sequence[int], modes: Sequence[str]) -> None:
+        for joint, mode in zip(joints, modes, strict=True):
+            self._modes[joint] = "idl" if mode == "fidl" else mode
+
+    def switch_interaction_modes(self, joints: Sequence[int], modes: Sequence[str]) -> None:
+        for joint, mode in zip(joints, modes, strict=True):
+            self._stiff[joint] = mode

@@ -1,0 +1,128 @@
+"""MapStorage: keeps maps and what has a name in them, in memory; map2DStorage in C++.
+
+Rules: anybody can store something, so there is a limit for each. Files of C++'s map server are not
+read or written: those members are missing, which a client is told.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any, Final, Generic, TypeVar
+
+from yarpy.kits.devices.interfaces.grid import CELLS, Grid
+from yarpy.kits.devices.refusal import Refused
+from yarpy.limit import MAP_GRIDS, MAP_NAMES
+
+T = TypeVar("T")
+
+#: What `clear_obstacles` forgets.
+_TEMPORARY: Final = (CELLS.index("temporary obstacle"), CELLS.index("enlarged obstacle"))
+
+
+class _Shelf(Generic[T]):
+    """What has a name, of one kind."""
+
+    def __init__(self, what: str, most: int) -> None:
+        self._what, self._most = what, most
+        self._lock = threading.Lock()  # renaming looks and then changes
+        self._kept: dict[str, T] = {}
+
+    def store(self, name: str, value: T) -> None:
+        with self._lock:
+            if name not in self._kept and len(self._kept) >= self._most:
+                raise Refused(f"{self._most} of {self._what} are kept, no more")
+            self._kept[name] = value
+
+    def get(self, name: str) -> T:
+        found = self._kept.get(name)
+        if found is None:
+            raise Refused(f"no {self._what} is called {name[:60]!r}")
+        return found
+
+    def names(self) -> list[str]:
+        return [*self._kept]
+
+    def all(self) -> list[T]:
+        return [*self._kept.values()]
+
+    def rename(self, name: str, new_name: str) -> None:
+        with self._lock:
+            value = self.get(name)
+            if new_name in self._kept:
+                raise Refused(f"there is a {self._what} called {new_name[:60]!r}")
+            self._kept = {new_name if each == name else each: v for each, v in self._kept.items()}
+            assert value is self._kept[new_name]
+
+    def delete(self, name: str) -> None:
+        self.get(name)
+        self._kept.pop(name, None)
+
+    def clear(self) -> None:
+        self._kept.clear()
+
+
+class MapStorage:
+    """Every member of `interfaces.map2d.Map2D` but those of files."""
+
+    def __init__(self) -> None:
+        self._maps: _Shelf[Grid] = _Shelf("map", MAP_GRIDS)
+        self._compress = False
+        self.map_names, self.remove_map = self._maps.names, self._maps.delete
+        self.clear_maps = self._maps.clear
+        for one, many in _KINDS:
+            shelf: _Shelf[Any] = _Shelf(one, MAP_NAMES)
+            members: dict[str, Callable[..., Any]] = {
+                f"store_{one}": shelf.store,
+                one: shelf.get,
+                f"{one}_names": shelf.names,
+                many: shelf.all,
+                f"rename_{one}": shelf.rename,
+                f"delete_{one}": shelf.delete,
+                f"clear_{many}": shelf.clear,
+            }
+            self.__dict__.update(members)
+
+    def store_map(self, grid: Grid) -> None:
+        """Keep a map under its name. Raises DecodeError: its cells are no map."""
+        plain = Grid.of(
+            grid.name,
+            grid.occupied(),
+            grid.resolution,
+            (grid.x, grid.y, grid.theta),
+            grid.cells(),
+        )
+        self._maps.store(grid.name, plain)
+
+    def map(self, name: str) -> Grid:
+        """Return a map."""
+        found = self._maps.get(name)
+        return found.squeezed() if self._compress else found
+
+    def compress_maps(self, enable: bool) -> None:
+        """Hand them out compressed, or not."""
+        self._compress = enable
+
+    def clear_obstacles(self, name: str) -> None:
+        """Forget the temporary obstacles in a map."""
+        import numpy as np
+
+        grid = self._maps.get(name)
+        cells = grid.cells()
+        free = np.where(np.isin(cells, _TEMPORARY), 0, cells)
+        origin = (grid.x, grid.y, grid.theta)
+        self._maps.store(name, Grid.of(name, grid.occupied(), grid.resolution, origin, free))
+
+    def clear_all_obstacles(self) -> None:
+        """Forget the temporary obstacles in all maps."""
+        for name in self._maps.names():
+            self.clear_obstacles(name)
+
+
+#: What has a name, one and many.
+_KINDS: Final = (
+    ("location", "locations"),
+    ("area", "areas"),
+    ("path", "paths"),
+    ("object", "objects"),
+)

@@ -1,0 +1,1 @@
+"""Launch and keep running: applications (`yarpy up`), programs on other computers, one log."""

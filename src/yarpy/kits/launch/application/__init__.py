@@ -1,0 +1,1 @@
+"""Applications as values, and the files that they are read from."""

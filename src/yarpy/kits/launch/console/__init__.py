@@ -1,0 +1,1 @@
+"""The screen of a running application, and the socket by which other commands reach it."""

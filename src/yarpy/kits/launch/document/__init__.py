@@ -1,0 +1,1 @@
+"""Files that people write in XML: elements with their places, and what is odd about them."""

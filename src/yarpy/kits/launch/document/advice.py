@@ -1,0 +1,16 @@
+"""Advice about words that are not known.
+
+Rules: pure; the answer ends a sentence.
+"""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+
+
+def advice(word: str, known: tuple[str, ...] | list[str]) -> str:
+    """Return what a word may have meant, as the end of a sentence; "" for no idea."""
+    if (lower := word.lower()) in known and word != lower:
+        return f': write it in lower case, "{lower}"'
+    near = get_close_matches(word.lower(), known, n=1, cutoff=0.6)
+    return f': did you mean "{near[0]}"?' if near else ""

@@ -1,0 +1,1 @@
+"""Log: takes what all programs of the network log, filters it, shows it and keeps it."""

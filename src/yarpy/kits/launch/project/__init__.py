@@ -1,0 +1,1 @@
+"""New projects: files that run, and are tested, before anything is written."""

@@ -1,0 +1,1 @@
+"""Programs and connections of an application, kept running until they are stopped."""

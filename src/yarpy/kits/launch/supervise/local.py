@@ -1,0 +1,209 @@
+"""Programs on this computer, each in a session of its own.
+
+Rules: what a program leaves behind ends with it: once its first process has ended, the others get
+SIGTERM, and after `grace` seconds SIGKILL. A program that does not end when it is asked to gets
+SIGKILL after the same time. Its output is read to the end, however much it is. Two threads serve
+one program and sleep while nothing happens: one for its output, one for its end.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Callable
+from typing import Final
+
+from yarpy.kits.launch.supervise import process
+from yarpy.kits.launch.supervise.line import Lines
+from yarpy.kits.launch.supervise.runner import Program
+
+GRACE: Final = 5.0  # seconds from SIGTERM to SIGKILL
+_LAST_WORDS: Final = 1.0  # seconds for output that was written before the end
+_UNKILLABLE: Final = 2.0  # seconds after SIGKILL until a process is given up
+_POLL: Final = 0.02  # seconds between looks at what is left of a program
+_CHUNK: Final = 1 << 16  # bytes
+_SIGKILL: Final = getattr(signal, "SIGKILL", signal.SIGTERM)
+
+
+class LocalRunner:
+    """Starts programs here. `run` tells the programs of this runner from those of another one,
+    `grace` is how long one may take to end."""
+
+    def __init__(self, run: str = "", grace: float = GRACE) -> None:
+        self.run = run or f"{os.getpid()}-{time.monotonic_ns()}"
+        self.grace = grace
+        self._scanner = process.Scanner()
+
+    def mark(self, name: str) -> str:
+        """Return what the processes of the program `name` have in their environment."""
+        return f"{self.run}/{name}"
+
+    def start(
+        self, program: Program, on_line: Callable[[str], None], on_end: Callable[[int], None]
+    ) -> LocalHandle:
+        """Start a program. Raises OSError."""
+        mark = self.mark(program.name)
+        child = subprocess.Popen(
+            [*program.command],
+            cwd=program.workdir or None,
+            env={
+                **os.environ,
+                "PYTHONUNBUFFERED": "1",  # lines are seen when they are written
+                **program.environment,
+                process.MARK: mark,
+            },
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            bufsize=0,
+            start_new_session=True,
+        )
+        return LocalHandle(child, mark, self.grace, self._scanner, on_line, on_end)
+
+
+class LocalHandle:
+    """A program that runs here."""
+
+    def __init__(
+        self,
+        child: subprocess.Popen[bytes],
+        mark: str,
+        grace: float,
+        scanner: process.Scanner,
+        on_line: Callable[[str], None],
+        on_end: Callable[[int], None],
+    ) -> None:
+        self._child = child
+        self._mark = mark
+        self._grace = grace
+        self._scanner = scanner
+        self._on_line = on_line
+        self._on_end = on_end
+        self._code: int | None = None
+        self._ended = threading.Event()
+        self._told = threading.Lock()  # no line comes after the end
+        self._over = False
+        self.detail = ""
+        self.left_behind = 0
+        """The number of its processes that were there when the first one had ended."""
+        self.remaining: list[int] = []
+        """Those that not even SIGKILL has ended."""
+        self._timer: threading.Timer | None = None
+        reader = threading.Thread(target=self._read, name=f"yarpy output {mark}", daemon=True)
+        reader.start()
+        threading.Thread(
+            target=self._follow, args=(reader,), name=f"yarpy end {mark}", daemon=True
+        ).start()
+
+    @property
+    def pid(self) -> int:
+        """The number of its first process, which is that of its session, too."""
+        return self._child.pid
+
+    @property
+    def state(self) -> str:
+        """`running` or `ended`."""
+        return "ended" if self._ended.is_set() else "running"
+
+    @property
+    def returncode(self) -> int | None:
+        """The exit code, or minus the number of a signal; None until all of it has ended."""
+        return self._code if self._ended.is_set() else None
+
+    def terminate(self, number: int = signal.SIGTERM) -> None:
+        """Send a signal to all that belongs to the program, and after a while SIGKILL if it asks
+        to end; nothing if it has ended."""
+        if self._ended.is_set():
+            return
+        _send(self.pid, number)
+        if number in (signal.SIGTERM, signal.SIGINT) and self._timer is None:
+            timer = threading.Timer(self._grace, _send, (self.pid, _SIGKILL))
+            timer.daemon = True
+            timer.name = f"yarpy grace {self._mark}"
+            self._timer = timer
+            timer.start()
+
+    def wait(self, timeout: float | None = None) -> int | None:
+        """Return what it ended with, None if some of it still runs after `timeout` seconds."""
+        self._ended.wait(timeout)
+        return self.returncode
+
+    def _read(self) -> None:
+        out = self._child.stdout
+        assert out is not None
+        lines = Lines()
+        with out:
+            while True:
+                try:
+                    data = out.read(_CHUNK)
+                except OSError:
+                    break
+                if not data:
+                    break
+                for line in lines.feed(data):
+                    self._tell(line)
+        for line in lines.rest():
+            self._tell(line)
+
+    def _tell(self, line: str) -> None:
+        with self._told:
+            if not self._over:
+                self._on_line(line)
+
+    def _follow(self, reader: threading.Thread) -> None:
+        self._code = self._child.wait()
+        if self._timer is not None:
+            self._timer.cancel()
+        self._sweep()
+        reader.join(_LAST_WORDS)
+        with self._told:
+            self._over = True
+        self._ended.set()
+        self._on_end(self._code)
+
+    def _sweep(self) -> None:
+        """End what the first process has left behind."""
+        left = self._others()
+        self.left_behind = len(left)
+        until = time.monotonic() + self._grace
+        number = int(signal.SIGTERM)
+        while left:
+            for pid in left:
+                _send_one(pid, number)
+            passed = time.monotonic() - until
+            if passed > _UNKILLABLE:
+                break  # another user's by now, or asleep in the system
+            number = _SIGKILL if passed > 0 else 0
+            time.sleep(_POLL)
+            left = self._others()
+        self.remaining = left
+
+    def _others(self) -> list[int]:
+        if process.known():
+            sessions = {self.pid: self._mark}
+            return [*process.members(sessions, {self._mark}, self._scanner.scan)]
+        return [-self.pid] if _send(self.pid, 0) else []  # all of the group
+
+
+def _send(group: int, number: int) -> bool:
+    """Send a signal to a whole group of processes; return whether there is one."""
+    try:
+        if hasattr(os, "killpg"):
+            os.killpg(group, number)
+        elif number:
+            os.kill(group, number)
+        else:
+            return False
+    except (ProcessLookupError, PermissionError):
+        return False  # it has ended, or has become another user's
+    return True
+
+
+def _send_one(pid: int, number: int) -> None:
+    try:
+        os.kill(pid, number)
+    except (ProcessLookupError, PermissionError):
+        pass

@@ -1,0 +1,192 @@
+"""Processes as the system knows them: who belongs to a program, processor time, memory.
+
+Rules: read from /proc, where there is one; elsewhere nothing is known but the process itself. What
+belongs to a program is the session that it began and whatever has its mark in the environment, so
+that neither a fork, nor another name, nor a session of its own hides a process. A process is told
+from a later one with the same number by the moment of its start.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Collection, Mapping, Set
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+MARK: Final = "YARPY_UP_PROGRAM"  # the variable that says which program a process is of
+_PROC: Final = Path("/proc")
+_LOOKS: Final = 6  # at all processes, while some of them end
+_ENVIRON: Final = 1 << 18  # bytes that are looked at
+_TICKS: Final = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 100
+_PAGE: Final = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
+
+
+@dataclass(frozen=True, slots=True)
+class Process:
+    """A process: `start` in ticks since the system began, `seconds` of processors, `memory` in
+    bytes."""
+
+    pid: int
+    parent: int
+    session: int
+    start: int
+    state: str
+    seconds: float
+    memory: int
+
+    @property
+    def alive(self) -> bool:
+        """Return whether it runs: a zombie does not."""
+        return self.state not in "ZX"
+
+
+def known() -> bool:
+    """Return whether this system tells of all its processes."""
+    return (_PROC / "self" / "stat").exists()
+
+
+def look(pid: int) -> Process | None:
+    """Return what the system knows of a process, None if there is none or it does not tell."""
+    try:
+        text = (_PROC / str(pid) / "stat").read_bytes()
+    except OSError:
+        return None
+    return parse(pid, text)
+
+
+def parse(pid: int, text: bytes) -> Process | None:
+    """Return what a line of /proc/PID/stat says; the name in it may have blanks and brackets."""
+    words = text[text.rfind(b")") + 1 :].split()
+    if len(words) < 22:
+        return None
+    return Process(
+        pid=pid,
+        parent=int(words[1]),
+        session=int(words[3]),
+        start=int(words[19]),
+        state=words[0].decode(),
+        seconds=(int(words[11]) + int(words[12])) / _TICKS,
+        memory=int(words[21]) * _PAGE,
+    )
+
+
+def mark_of(pid: int) -> str | None:
+    """Return the mark in the environment of a process, "" for none or that of another user, None
+    while it has no environment: between two programs, or given none."""
+    try:
+        with open(_PROC / str(pid) / "environ", "rb") as file:
+            text = file.read(_ENVIRON)
+    except PermissionError:
+        return ""
+    except OSError:
+        return None
+    start = f"{MARK}=".encode()
+    for entry in text.split(b"\0"):
+        if entry.startswith(start):
+            return entry[len(start) :].decode("utf-8", "replace")
+    return "" if text else None
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """All processes at one moment: `found` has the session and the mark of each, `unclear` are
+    those that ended meanwhile or had no environment."""
+
+    found: Mapping[int, tuple[int, str]]
+    unclear: Set[int]
+
+    def members(self, sessions: Mapping[int, str], marks: Collection[str]) -> dict[int, str]:
+        """Return the processes of programs, as `members` does."""
+        named = (
+            (pid, sessions.get(session) or mark) for pid, (session, mark) in self.found.items()
+        )
+        return {pid: mark for pid, mark in named if mark in marks}
+
+
+def scan() -> Scan:
+    """Look at all processes but this one; at none where there is no /proc."""
+    found: dict[int, tuple[int, str]] = {}
+    unclear: set[int] = set()
+    own = os.getpid()
+    for pid in _pids():
+        process = look(pid)
+        if pid == own:
+            continue
+        mark = mark_of(pid) if process is not None and process.alive else None
+        if process is not None and process.alive:
+            found[pid] = process.session, mark or ""
+        if mark is None:
+            unclear.add(pid)
+    return Scan(found, unclear)
+
+
+def members(
+    sessions: Mapping[int, str], marks: Collection[str], scan: Callable[[], Scan] = scan
+) -> dict[int, str]:
+    """Return the processes of programs, each with the mark of its program: those in `sessions`
+    (by the number of the session), and those that have one of the `marks`. Not this process."""
+    before: Set[int] = set()
+    for _ in range(_LOOKS):
+        now = scan()
+        found = now.members(sessions, marks)
+        # One that ended between the list of all and the look at it may have begun another one.
+        if found or now.unclear <= before:
+            return found
+        before = now.unclear
+    return {}
+
+
+class Scanner:
+    """Scans for many who ask at once: each gets one that began after it had asked."""
+
+    def __init__(self) -> None:
+        self._turn = threading.Condition()
+        self._begun = 0
+        self._done = 0
+        self._busy = False
+        self._last = Scan({}, frozenset())
+
+    def scan(self) -> Scan:
+        """Return a look at all processes that is no older than the question."""
+        with self._turn:
+            wanted = self._begun + 1
+            while self._busy and self._done < wanted:
+                self._turn.wait()
+            if self._done >= wanted:
+                return self._last
+            self._busy = True
+            self._begun += 1
+            mine = self._begun
+        try:
+            found = scan()
+        except BaseException:
+            with self._turn:
+                self._busy = False
+                self._turn.notify_all()
+            raise
+        with self._turn:
+            self._busy, self._done, self._last = False, mine, found
+            self._turn.notify_all()
+        return found
+
+
+def _pids() -> list[int]:
+    try:
+        return [int(name) for name in os.listdir(_PROC) if name.isdigit()]
+    except OSError:
+        return []
+
+
+def usage(sessions: Mapping[int, str]) -> dict[str, tuple[float, int]]:
+    """Return the seconds of processors and the bytes of memory of all processes of each session,
+    by the names in `sessions`."""
+    found: dict[str, tuple[float, int]] = {}
+    for pid in _pids():
+        process = look(pid)
+        if process is not None and process.session in sessions and process.alive:
+            name = sessions[process.session]
+            seconds, memory = found.get(name, (0.0, 0))
+            found[name] = seconds + process.seconds, memory + process.memory
+    return found

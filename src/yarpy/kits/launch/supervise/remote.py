@@ -1,0 +1,272 @@
+"""Programs on other computers, through the server there: `yarpy run --server`, or C++ yarprun.
+
+Rules: one thread for each server asks what runs there, four times a second; a server that does not
+answer makes its programs `unknown`, not ended. Output comes to a port of each program, as logs of
+yarprun do. A program runs there under a tag made of the names of the application and its own, so
+one that an `up` that was killed has left is found, and not started twice. C++ yarprun never says
+how a program has ended: that counts as a failure.
+"""
+
+from __future__ import annotations
+
+import re
+import signal
+import threading
+import time
+from collections.abc import Callable
+from typing import Final
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.errors import LocalProtocolError, YarpError
+from yarpy.kits.launch.run.client import RunClient
+from yarpy.kits.launch.supervise.runner import Program
+from yarpy.limit import OUTPUT_LINE
+from yarpy.names.base import NameClient
+from yarpy.port.port import Port
+from yarpy.wire.message import Message
+
+PERIOD: Final = 0.25  # seconds between looks at what runs there
+AGAIN: Final = 1.0  # ... while the server does not answer
+ANSWER: Final = 3.0  # seconds that an answer may take
+STARTING: Final = 10.0  # ... that of a start
+_LAST_WORDS: Final = 1.0  # seconds for output that was written before the end
+_ABANDONED: Final = 300.0  # seconds in which a program that may have been started is looked for
+_SIGKILL: Final = getattr(signal, "SIGKILL", signal.SIGTERM)
+
+Line = Callable[[str], None]
+End = Callable[[int | None], None]
+
+
+class RemoteRunner:
+    """Starts programs of the application `application` at the server called `server`.
+
+    `grace` is how long one may take to end; `replace` ends what an earlier `up` has left there.
+    """
+
+    def __init__(
+        self,
+        server: str,
+        application: str,
+        *,
+        grace: float,
+        replace: bool = False,
+        names: NameClient | None = None,
+    ) -> None:
+        self.server = server
+        self.grace = grace
+        self._application = application
+        self._replace = replace
+        self._names = names
+        self._lock = threading.Lock()  # of the table of handles
+        self._handles: dict[str, RemoteHandle] = {}
+        self._wake = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def tag(self, name: str) -> str:
+        """Return what a program is called there."""
+        return re.sub(r"[\s/]", "_", f"{self._application}:{name}")
+
+    def start(self, program: Program, on_line: Line, on_end: End) -> RemoteHandle:
+        """Start a program. Raises a YarpError that says why it is not."""
+        tag = self.tag(program.name)
+        handle = RemoteHandle(self, tag, on_line, on_end, self._names)
+        try:
+            with self.client(STARTING) as node:
+                self._clear(node, tag)
+                try:
+                    started = node.start(
+                        tag,
+                        program.command,
+                        workdir=program.workdir,
+                        environment=program.environment,
+                        log=handle.port.name,
+                        stdio=program.stdio,
+                    )
+                except (TimeoutError, ConnectionError):
+                    self._abandon(tag)
+                    raise
+        except BaseException:
+            handle.port.close(0.0)
+            raise
+        handle.pid = started.pid
+        with self._lock:
+            self._handles[tag] = handle
+            if self._thread is None:
+                self._thread = threading.Thread(
+                    target=self._watch, name=f"yarpy programs at {self.server}", daemon=True
+                )
+                self._thread.start()
+        self._wake.set()
+        return handle
+
+    def client(self, timeout: float = ANSWER) -> RunClient:
+        """Return a client of the server."""
+        return RunClient(self.server, timeout=timeout, names=self._names)
+
+    def _clear(self, node: RunClient, tag: str) -> None:
+        """See that nothing runs under a tag. Raises LocalProtocolError if something does."""
+        if not node.is_running(tag):
+            return
+        if self._replace:
+            until = time.monotonic() + self.grace
+            node.signal(tag, signal.SIGTERM)
+            while node.is_running(tag):
+                if time.monotonic() > until:
+                    node.signal(tag, _SIGKILL)
+                time.sleep(PERIOD)
+            return
+        raise LocalProtocolError(
+            f"{tag} runs at {self.server} already: --replace ends it, and so does "
+            f"`yarpy run --on {self.server} --sigterm {tag}`"
+        )
+
+    def _abandon(self, tag: str) -> None:
+        """End a program whose start was never answered, as soon as its server answers again."""
+
+        def follow() -> None:
+            until = time.monotonic() + _ABANDONED
+            while time.monotonic() < until:
+                try:
+                    with self.client() as node:
+                        if node.is_running(tag):
+                            node.signal(tag, _SIGKILL)
+                        return
+                except YarpError:
+                    time.sleep(AGAIN)
+
+        threading.Thread(target=follow, name=f"yarpy abandons {tag}", daemon=True).start()
+
+    def _watch(self) -> None:
+        """Look at the programs until none is left, and again when there are new ones."""
+        while True:
+            with self._lock:
+                handles = dict(self._handles)
+            if not handles:
+                self._wake.wait()
+                self._wake.clear()
+                continue
+            try:
+                with self.client() as node:
+                    while handles:
+                        self._look(node, handles)
+                        time.sleep(PERIOD)
+                        with self._lock:
+                            handles = dict(self._handles)
+            except YarpError as error:
+                for handle in handles.values():
+                    handle.lose(str(error))
+                time.sleep(AGAIN)
+
+    def _look(self, node: RunClient, handles: dict[str, RemoteHandle]) -> None:
+        there = {one.tag for one in node.running()}
+        for tag, handle in handles.items():
+            if tag in there:
+                handle.found()
+                continue
+            runs, code = node.ending(tag)
+            if not runs:
+                with self._lock:
+                    self._handles.pop(tag, None)
+                handle.finish(code)
+
+
+class RemoteHandle:
+    """A program that runs at a server."""
+
+    def __init__(
+        self,
+        runner: RemoteRunner,
+        tag: str,
+        on_line: Line,
+        on_end: End,
+        names: NameClient | None,
+    ) -> None:
+        self.pid = 0
+        self.detail = ""
+        """The reason why its server does not answer, "" if it does."""
+        self._runner = runner
+        self._tag = tag
+        self._on_line = on_line
+        self._on_end = on_end
+        self._code: int | None = None
+        self._asked = False
+        self._ended = threading.Event()
+        self._told = threading.Lock()  # no line comes after the end
+        self._over = False
+        name = f"/up{runner.server}/{tag}/{time.monotonic_ns()}"
+        self.port: Port = Port(name, callback=self._hear, names=names)
+
+    @property
+    def state(self) -> str:
+        """`running`, `ended`, or `unknown` while its server does not answer."""
+        return "ended" if self._ended.is_set() else "unknown" if self.detail else "running"
+
+    @property
+    def returncode(self) -> int | None:
+        """The exit code, or minus the number of a signal; None while it runs, or if nobody says."""
+        return self._code if self._ended.is_set() else None
+
+    def terminate(self, number: int = signal.SIGTERM) -> None:
+        """Have the server send a signal, and after a while SIGKILL if the program is to end."""
+        if not self._ended.is_set():
+            threading.Thread(
+                target=self._terminate, args=(number,), name=f"yarpy ends {self._tag}", daemon=True
+            ).start()
+
+    def wait(self, timeout: float | None = None) -> int | None:
+        """Return what it ended with, None if it still runs after `timeout` seconds."""
+        self._ended.wait(timeout)
+        return self.returncode
+
+    def found(self) -> None:
+        """Note that it runs, and its server answers."""
+        self.detail = ""
+
+    def lose(self, why: str) -> None:
+        """Note that its server does not answer."""
+        self.detail = f"{self._runner.server} does not answer: {why}"
+
+    def finish(self, code: int | None) -> None:
+        """Note that it has ended, once its last lines are here."""
+        threading.Thread(
+            target=self._finish, args=(code,), name=f"yarpy end {self._tag}", daemon=True
+        ).start()
+
+    def _finish(self, code: int | None) -> None:
+        until = time.monotonic() + _LAST_WORDS
+        while self.port.inputs and time.monotonic() < until:
+            time.sleep(0.02)  # the port of its output is closed by its server
+        self.port.close(0.0)
+        with self._told:
+            self._over = True
+        self._code = -int(signal.SIGTERM) if code is None and self._asked else code
+        self._ended.set()
+        self._on_end(self._code)
+
+    def _terminate(self, number: int) -> None:
+        ends = number in (signal.SIGTERM, signal.SIGINT)
+        self._asked = self._asked or ends or number == _SIGKILL
+        self._send(number)
+        if ends and not self._ended.wait(self._runner.grace):
+            self._send(_SIGKILL)
+
+    def _send(self, number: int) -> None:
+        """Send a signal, as soon as the server answers."""
+        while not self._ended.is_set():
+            try:
+                with self._runner.client() as node:
+                    node.signal(self._tag, number)
+                return
+            except YarpError as error:
+                self.lose(str(error))
+                self._ended.wait(AGAIN)
+
+    def _hear(self, message: Message) -> None:
+        words = message.as_(Bottle)
+        if len(words) != 2:
+            return
+        for line in plain_text(words[1]).removesuffix("\n").split("\n"):
+            with self._told:
+                if not self._over:
+                    self._on_line(line[:OUTPUT_LINE])

@@ -1,0 +1,244 @@
+"""One program of an application, from its first wait to its last end.
+
+Rules: a thread of its own takes it through its states: waiting (for others, for ports), running,
+pausing (until it is started again), and one of ended, failed, stopped. It sleeps while nothing
+happens. What a program does is the only thing that changes a unit, besides `restart` and `stop`.
+"""
+
+from __future__ import annotations
+
+import itertools
+import signal
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Final, Protocol
+
+from yarpy.errors import YarpError
+from yarpy.kits.launch.application.application import Module
+from yarpy.kits.launch.supervise.runner import Handle, Program, Runner
+from yarpy.limit import OUTPUT_LINES
+
+FIRST_PAUSE: Final = 0.1  # seconds before a program is started again; twice that the next time
+LONGEST_PAUSE: Final = 30.0
+WELL: Final = 10.0  # seconds after which a program is said to run well
+TRIES: Final = 10  # starts in a row that did not run so long, until it is given up
+FINAL: Final = ("ended", "failed", "stopped")
+_COUNT: Final = itertools.count(1)  # the lines of units that are told of no other count
+_LAST: Final = 1.0  # seconds for a thread that has nothing to do any more
+
+
+class Waiter(Protocol):
+    """Knows when others and ports are there."""
+
+    def wait(self, unit: Unit, stop: threading.Event) -> str:
+        """Return as soon as all is there that a unit needs, with "", or why it will not be."""
+
+
+class Unit:
+    """A program, its state, and the last lines of its output.
+
+    `usual` is the policy of restarts where the module says none; `changed` is called after each
+    change with the unit, `said` with each line; `number` counts the lines of all.
+    """
+
+    def __init__(
+        self,
+        module: Module,
+        runner: Runner,
+        waiter: Waiter,
+        *,
+        usual: str = "on-failure",
+        number: Callable[[], int] = _COUNT.__next__,
+        changed: Callable[[Unit], None] = lambda unit: None,
+        said: Callable[[Unit, str], None] = lambda unit, line: None,
+    ) -> None:
+        self.module = module
+        self.policy = module.restart or usual
+        self.state = "waiting"
+        self.detail = ""
+        """The reason of its state, or the name of the one that it waits for."""
+        self.handle: Handle | None = None
+        self.code: int | None = None
+        self.restarts = 0
+        self.started = 0.0  # by the clock of `time.monotonic`
+        self.order = 0
+        """The number of its first start among all, which are stopped in reverse."""
+        self.lines: deque[tuple[int, str]] = deque(maxlen=OUTPUT_LINES)
+        """The last ones of its output, each with its number among those of all units."""
+        self._number = number
+        self._runner = runner
+        self._waiter = waiter
+        self._changed = changed
+        self._said = said
+        self._stop = threading.Event()
+        self._again = False
+        self._ended = threading.Event()
+        self._lock = threading.Lock()  # of the thread, which `restart` may start again
+        self._thread: threading.Thread | None = None
+
+    @property
+    def label(self) -> str:
+        """Its name in the application."""
+        return self.module.label
+
+    @property
+    def running(self) -> bool:
+        """Return whether its process is there."""
+        return self.state in ("running", "stopping")
+
+    def start(self) -> None:
+        """Begin. Nothing if it has begun."""
+        with self._lock:
+            if self._thread is None or not self._thread.is_alive():
+                self._stop.clear()
+                self._again = False
+                self._thread = threading.Thread(
+                    target=self._live, name=f"yarpy unit {self.label}", daemon=True
+                )
+                self._thread.start()
+
+    def restart(self) -> None:
+        """End it, if it runs, and start it at once, whatever its policy is."""
+        self._again = True
+        self._stop.set()  # cuts short what it waits for
+        if self.state == "running" and self.handle is not None:
+            self.handle.terminate()
+        with self._lock:
+            thread = self._thread
+        if self.state in FINAL and thread is not None:
+            thread.join(_LAST)
+        self.start()
+
+    def stop(self) -> None:
+        """Ask it to end, without waiting for it."""
+        self._again = False
+        self._stop.set()
+        if self.state in ("running", "stopping") and self.handle is not None:
+            self._enter("stopping")
+            self.handle.terminate()
+
+    def kill(self) -> None:
+        """End it at once: it had its time."""
+        self._stop.set()
+        if self.running and self.handle is not None:
+            self.handle.terminate(getattr(signal, "SIGKILL", signal.SIGTERM))
+
+    def join(self, timeout: float) -> bool:
+        """Wait until it has ended; return whether it has."""
+        with self._lock:
+            thread = self._thread
+        if thread is not None:
+            thread.join(timeout)
+        return thread is None or not thread.is_alive()
+
+    def _live(self) -> None:
+        quick, pause = 0, FIRST_PAUSE
+        while True:
+            if not self._begin():
+                if self._take_again():
+                    continue
+                return
+            self._ended.wait()
+            ran = time.monotonic() - self.started
+            if self._take_again():
+                self.restarts += 1
+                continue
+            if self._stop.is_set():
+                self._rest()
+                self._enter("stopped")
+                return
+            wrong = self.code != 0
+            quick = 0 if ran > WELL else quick + 1
+            pause = FIRST_PAUSE if ran > WELL else pause
+            if self.policy == "no" or (self.policy == "on-failure" and not wrong):
+                self._enter("failed" if wrong else "ended", ending(self.code))
+                return
+            if quick >= TRIES:
+                text = f"given up after {TRIES} starts: {ending(self.code)}"
+                self._enter("failed", text)
+                return
+            self._enter("pausing", f"{ending(self.code)}; again in {pause:g} s")
+            if self._stop.wait(pause) and not self._take_again():
+                self._enter("stopped")
+                return
+            pause = min(2 * pause, LONGEST_PAUSE)
+            self.restarts += 1
+
+    def _take_again(self) -> bool:
+        if not self._again:
+            return False
+        self._again = False
+        self._stop.clear()
+        return True
+
+    def _begin(self) -> bool:
+        """Wait, and start; return whether it runs."""
+        self._enter("waiting")
+        why = self._waiter.wait(self, self._stop)
+        if not why and self.module.delay:
+            self.detail = f"for {self.module.delay:g} s"
+            self._stop.wait(self.module.delay)
+        if self._stop.is_set():
+            self._enter("stopped")
+            return False
+        if why:
+            self._enter("failed", why)
+            return False
+        self._ended.clear()
+        self.code = None
+        module = self.module
+        program = Program(
+            name=self.label,
+            command=module.command,
+            workdir=module.workdir,
+            environment=module.environment,
+            stdio=module.stdio,
+            host=module.node,
+        )
+        self.started = time.monotonic()
+        try:
+            handle = self._runner.start(program, self._line, self._end)
+        except (OSError, YarpError) as error:
+            self._enter("failed", f"it cannot be started: {error}")
+            return False
+        self.handle = handle
+        self._enter("running")
+        if self._stop.is_set() and self.state == "running":  # while it was being started
+            if not self._again:
+                self._enter("stopping")
+            handle.terminate()
+        return True
+
+    def _rest(self) -> None:
+        if self.module.rest:
+            time.sleep(min(self.module.rest, 60.0))
+
+    def _line(self, line: str) -> None:
+        self.lines.append((self._number(), line))
+        self._said(self, line)
+
+    def _end(self, code: int | None) -> None:
+        self.code = code
+        self._ended.set()
+
+    def _enter(self, state: str, detail: str = "") -> None:
+        self.state, self.detail = state, detail
+        self._changed(self)
+
+
+def ending(code: int | None) -> str:
+    """Return how a program has ended, in words.
+
+    >>> ending(-9)
+    'killed by SIGKILL'
+    """
+    if code is None:
+        return "ended, and nobody knows how"
+    if code >= 0:
+        return f"ended with {code}"
+    try:
+        return f"killed by {signal.Signals(-code).name}"
+    except ValueError:
+        return f"killed by signal {-code}"

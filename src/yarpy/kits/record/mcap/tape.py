@@ -1,0 +1,127 @@
+"""The ports of an MCAP file, and their messages as they were.
+
+Rules: a channel that `yarpy record` has written says its port and the form of its envelopes; one of
+another program is listed, and not read.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Container, Iterator
+from pathlib import Path
+from typing import Any
+
+from yarpy.errors import DecodeError
+from yarpy.kits.record.envelope import envelope_of
+from yarpy.kits.record.mcap.layout import Channel, Damaged
+from yarpy.kits.record.mcap.reader import McapFile
+from yarpy.kits.record.mcap.writer import ENCODING, NOTES
+from yarpy.kits.record.recorded import PortFacts, Recorded
+from yarpy.limit import RECORDED_NOTES
+
+FOREVER = (1 << 64) - 1
+
+
+class McapTape:
+    """A file at `path`. Raises MissingFile; DecodeError if it is no MCAP file."""
+
+    def __init__(self, path: str | Path) -> None:
+        self._file = McapFile(path)
+        self.path = self._file.path
+
+    @property
+    def size(self) -> int:
+        """Return its size in bytes."""
+        return self._file.size
+
+    @property
+    def begin(self) -> int:
+        """Return when the first message was received, in nanoseconds; 0 if there is none."""
+        return self._file.index.begin
+
+    @property
+    def end(self) -> int:
+        """Return when the last message was received, in nanoseconds; 0 if there is none."""
+        return self._file.index.end
+
+    @property
+    def complete(self) -> bool:
+        """Return whether it was finished: a recorder that was killed leaves one that is not."""
+        return self._file.index.complete
+
+    @property
+    def damages(self) -> list[Damaged]:
+        """Return what is wrong with it, as far as it was read."""
+        return self._file.damages
+
+    @property
+    def facts(self) -> dict[str, str]:
+        """Return what was known when it was begun."""
+        return self._file.index.metadata.get("yarpy", {})
+
+    @property
+    def ports(self) -> dict[str, PortFacts]:
+        """Return its ports by their names, in the order in which they came."""
+        found: dict[str, PortFacts] = {}
+        index = self._file.index
+        for number, channel in sorted(index.channels.items()):
+            if channel.topic == NOTES:
+                continue
+            facts = found.setdefault(channel.topic, PortFacts(channel.topic))
+            facts.messages += index.counts.get(number, 0)
+            kind = channel.kind or channel.encoding
+            if kind not in facts.kinds:
+                facts.kinds.append(kind)
+            facts.playable = facts.playable and channel.encoding == ENCODING
+        return found
+
+    def messages(
+        self, ports: Container[str] | None = None, begin: int = 0, end: int = FOREVER
+    ) -> Iterator[Recorded]:
+        """Yield the messages of these ports (None: all) that came from `begin` until before `end`,
+        in the order in which they came. Raises UnknownPlugin where a library is missing."""
+        channels = self._file.channels
+        # A channel is perhaps described in a chunk that is read later.
+        wanted = None if ports is None else _Wanted(channels, ports)
+        for number, sequence, received, sent, data in self._file.records(wanted, begin, end):
+            channel = channels.get(number)
+            if channel is None or channel.encoding != ENCODING:
+                continue
+            try:
+                form = channel.metadata.get("envelope", "none")
+                envelope, payload = envelope_of(form, sequence, sent, data)
+            except DecodeError as error:
+                self.damages.append(Damaged(0, f"a message of {channel.topic}: {error}"))
+                continue
+            yield Recorded(channel.topic, received, sent, envelope, payload)
+
+    def notes(self) -> list[dict[str, Any]]:
+        """Return what was noted while it was recorded, each with `time_ns`."""
+        numbers = {n for n, one in self._file.channels.items() if one.topic == NOTES}
+        found: list[dict[str, Any]] = []
+        if not numbers:
+            return found
+        for record in self._file.records(numbers):
+            try:
+                note = json.loads(bytes(record.data))
+            except (ValueError, RecursionError):
+                continue
+            if isinstance(note, dict) and len(found) < RECORDED_NOTES:
+                found.append({**note, "time_ns": record.log_time})
+        return found
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+class _Wanted:
+    """The numbers of the channels of some ports."""
+
+    def __init__(self, channels: dict[int, Channel], ports: Container[str]) -> None:
+        self._channels = channels
+        self._ports = ports
+
+    def __contains__(self, number: object) -> bool:
+        channel = self._channels.get(number)  # type: ignore[call-overload]
+        return channel is not None and channel.topic in self._ports

@@ -1,0 +1,256 @@
+"""The files of a recording: the next one begins when one is full, and the oldest may go.
+
+Rules: for one thread, but for `sync`. A file is never replaced. What goes is only what this
+recording has made. If the folder is taken away while it is written, the recording goes on in a new
+file in a new folder.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Final, Literal, Protocol, TypeAlias
+
+from yarpy.errors import LocalProtocolError
+from yarpy.kits.record.dumper.writer import DumperWriter
+from yarpy.kits.record.intake import Taken
+from yarpy.kits.record.mcap.writer import McapWriter
+from yarpy.kits.record.room import Split
+
+ENDING: Final = ".mcap"
+
+Format: TypeAlias = Literal["mcap", "dumper", "both"]
+Opener: TypeAlias = "Callable[[Path], Sink]"
+
+
+class Sink(Protocol):
+    """A file or folder that is being written."""
+
+    path: Path
+
+    @property
+    def size(self) -> int:
+        """Return how many bytes were written."""
+
+    @property
+    def pending(self) -> int:
+        """Return how much waits to be written; 0 for nothing."""
+
+    def add(self, port: str, envelope: str, received: int, payload: bytes | memoryview) -> None:
+        """Take a message."""
+
+    def note(self, what: Mapping[str, Any], received: int) -> None:
+        """Take a note about the recording."""
+
+    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Take what is known at the end."""
+
+    def flush(self) -> None:
+        """Hand everything to the system."""
+
+    def sync(self) -> None:
+        """Wait for the disk."""
+
+    def close(self) -> None:
+        """Finish it."""
+
+
+class Both:
+    """An MCAP file, and the folders of C++ beside it."""
+
+    def __init__(self, file: McapWriter, folder: DumperWriter) -> None:
+        self._file = file
+        self._folder = folder
+        self.path = file.path
+
+    @property
+    def size(self) -> int:
+        """Return how many bytes were written."""
+        return self._file.size + self._folder.size
+
+    @property
+    def pending(self) -> int:
+        """Return how much waits to be written; 0 for nothing."""
+        return self._file.pending + self._folder.pending
+
+    def add(self, port: str, envelope: str, received: int, payload: bytes | memoryview) -> None:
+        """Take a message; what C++ cannot keep is in the file alone."""
+        self._file.add(port, envelope, received, payload)
+        with suppress(LocalProtocolError):
+            self._folder.add(port, envelope, received, payload)
+
+    def note(self, what: Mapping[str, Any], received: int) -> None:
+        """Take a note about the recording."""
+        self._file.note(what, received)
+        self._folder.note(what, received)
+
+    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Take what is known at the end."""
+        self._file.add_metadata(name, values)
+
+    def flush(self) -> None:
+        """Hand everything to the system."""
+        self._file.flush()
+        self._folder.flush()
+
+    def sync(self) -> None:
+        """Wait for the disk."""
+        self._file.sync()
+
+    def close(self) -> None:
+        """Finish both."""
+        try:
+            self._folder.close()
+        finally:
+            self._file.close()
+
+
+class Output:
+    """The files of a recording, under the name `name` (a path without ending).
+
+    format: an MCAP file, the folders of C++, or both; or a function that begins a file or folder of
+    another kind at a path.
+    split: when a new file begins. most: how many files are kept, 0 for all.
+    facts: what is known of the recording, for each file.
+    ended: called before a file is finished; what it returns is kept with the file.
+    Raises FileExistsError, OSError.
+    """
+
+    def __init__(
+        self,
+        name: Path,
+        compression: str = "none",
+        split: Split | None = None,
+        most: int = 0,
+        facts: Callable[[], Mapping[str, str]] = dict,
+        ended: Callable[[], Mapping[str, str]] = dict,
+        format: Format | Opener = "mcap",
+    ) -> None:
+        self._name = name
+        self._compression = compression
+        self._split = split or Split()
+        self._most = most
+        self._facts = facts
+        self._ended = ended
+        self._format: Format | Opener = format
+        self.files: list[Path] = []  # that are there
+        self.removed = 0
+        self._number = 0
+        self._numbered = split is not None
+        self._done = 0  # bytes of finished files
+        self._began = 0.0
+        self._sink = self._open()
+
+    def _open_next(self) -> Sink:
+        """Return the next file whose name is free: an older recording does not end this one."""
+        while True:
+            try:
+                return self._open()
+            except FileExistsError:
+                continue
+
+    def _open(self) -> Sink:
+        self._number += 1
+        tail = f"-{self._number:04}" if self._numbered or self._number > 1 else ""
+        folder = self._name.with_name(f"{self._name.name}{tail}")
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        sink: Sink
+        if callable(self._format):
+            sink = self._format(folder)
+        elif self._format == "dumper":
+            sink = DumperWriter(folder)
+        else:
+            if self._format == "both" and folder.exists():
+                raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(folder))
+            path = folder.with_name(f"{folder.name}{ENDING}")
+            sink = McapWriter(path, self._compression, self._facts())
+            if self._format == "both":
+                sink = Both(sink, DumperWriter(folder))
+        self.files.append(sink.path)
+        self._began = time.monotonic()
+        return sink
+
+    @property
+    def path(self) -> Path:
+        """Return the file that is being written."""
+        return self._sink.path
+
+    @property
+    def size(self) -> int:
+        """Return how many bytes were written, in all files."""
+        return self._done + self._sink.size
+
+    @property
+    def pending(self) -> int:
+        """Return how many bytes wait to be written."""
+        return self._sink.pending
+
+    @property
+    def gone(self) -> bool:
+        """Return whether the file was taken away."""
+        return not os.path.exists(self._sink.path)
+
+    def add(self, taken: Taken) -> None:
+        """Take a message. Raises OSError; LocalProtocolError for what no file takes."""
+        split, sink = self._split, self._sink
+        if (split.bytes and sink.size + sink.pending + len(taken.payload) > split.bytes) or (
+            split.seconds and time.monotonic() - self._began >= split.seconds
+        ):
+            self.split()
+        self._sink.add(taken.port, taken.envelope, taken.received_ns, taken.payload)
+
+    def note(self, what: Mapping[str, Any], received: int) -> None:
+        """Take a note about the recording. Raises OSError."""
+        with suppress(LocalProtocolError):  # the file has as many channels as it takes
+            self._sink.note(what, received)
+
+    def split(self) -> None:
+        """Go on in a new file. Raises OSError."""
+        self._finish()
+        self._done += self._sink.size
+        self._sink = self._open_next()
+        while self._most and len(self.files) > self._most:
+            self._remove(self.files.pop(0))
+
+    def _remove(self, oldest: Path) -> None:
+        with suppress(OSError):
+            if self._format == "both":
+                shutil.rmtree(oldest.with_suffix(""))
+            if oldest.is_dir():
+                shutil.rmtree(oldest)
+            else:
+                oldest.unlink()
+            self.removed += 1
+
+    def _finish(self) -> None:
+        sink = self._sink
+        try:
+            if not self.gone:
+                sink.add_metadata("yarpy", self._ended())
+        finally:
+            sink.close()
+
+    def leave(self) -> None:
+        """The file was taken away: go on in a new one. Raises OSError."""
+        lost, self._done = self._sink, self._done + self._sink.size
+        with suppress(OSError):
+            lost.close()
+        self.files.remove(lost.path)
+        self._sink = self._open_next()
+
+    def flush(self) -> None:
+        """Hand everything to the system. Raises OSError."""
+        self._sink.flush()
+
+    def sync(self) -> None:
+        """Wait until the disk has what the system has. Any thread may call it. Raises OSError."""
+        self._sink.sync()
+
+    def close(self) -> None:
+        """Finish the last file. Raises OSError."""
+        self._finish()

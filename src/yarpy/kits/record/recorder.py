@@ -1,0 +1,376 @@
+"""Recorder: a port that takes what others send, and a thread that writes it into files.
+
+    with record.Recorder("/icub/cam/left", "/icub/head/state:o", path="walk") as recorder:
+        time.sleep(60)
+    print(recorder.files, recorder.lost)
+
+Rules: nothing that a disk does reaches the ports: what does not fit into the memory is lost and
+counted. What came is in the system's hands half a second later, and on the disk after another one,
+so a kill or a power cut costs no more than a second or so. Whatever is odd is noted in the file.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Final, Self
+
+from yarpy import __version__
+from yarpy.errors import AddressError
+from yarpy.kits.record.batch import Batch
+from yarpy.kits.record.following import Following, Wanted
+from yarpy.kits.record.intake import MEMORY, Count, Intake
+from yarpy.kits.record.output import ENDING, Format, Opener, Output
+from yarpy.kits.record.room import Room, Split, size_text
+from yarpy.log import logger
+from yarpy.names.base import NameClient
+from yarpy.port.connection import ConnectionEvent
+from yarpy.port.port import BufferedPort
+
+log = logger("yarpy.record")
+
+PERIOD: Final = 0.05  # seconds between looks at what has come
+SYNC: Final = 0.5  # seconds between the ends of waiting for the disk
+SECOND: Final = 1_000_000_000  # nanoseconds
+CLOCK_STEP: Final = SECOND // 2  # nanoseconds by which a clock that is set is told
+_NOTES: Final = 1000  # that wait to be written
+
+
+class Recorder:
+    """Records from the moment it is made until it is closed.
+
+    ports: names, recorded as soon as they are there.
+    every, pattern, exclude: which other ports are recorded; regular expressions that are searched
+    for in names. Ports of rpc are left out, but for those that are named.
+    path: where to, without an ending; by default the date. The file is `path`.mcap.
+    format: "mcap", "dumper" for the folders of C++ yarpdatadumper in `path`, "both"; or a function
+    that begins a file or folder of another kind at a path, see `SingleFolder`.
+    compression: "none", "lz4", "zstd".
+    split, most: when a new file begins (`Split(bytes=10**9)`), and how many are kept, 0 for all.
+    memory: bytes of messages that may wait for the disk.
+    rates: the largest number of messages a second, by patterns of names: `{"/cam/*": 10}`.
+    paused: take nothing before `resume`.
+    carrier: how the ports are connected, else as `yarpy.connect` does.
+    name: of its own port. names: a name client, None for the default.
+    tell: called with a line for people when something is to be known.
+    room: the disk, for tests. now: the clock of all times in the files, in nanoseconds.
+    Raises FileExistsError, OSError; UnknownPlugin without the library `mcap`; LocalProtocolError,
+    AddressError, NoNameServer.
+    """
+
+    def __init__(
+        self,
+        *ports: str,
+        every: bool = False,
+        pattern: str = "",
+        exclude: str = "",
+        path: str | Path | None = None,
+        format: Format | Opener = "mcap",
+        compression: str = "none",
+        split: Split | None = None,
+        most: int = 0,
+        memory: int = MEMORY,
+        rates: Mapping[str, float] | None = None,
+        paused: bool = False,
+        carrier: str = "",
+        name: str = "",
+        names: NameClient | None = None,
+        tell: Callable[[str], object] = log.warning,
+        room: Room | None = None,
+        now: Callable[[], int] = time.time_ns,
+    ) -> None:
+        wanted = Wanted(tuple(ports), every, pattern, exclude)
+        self._now = now
+        self._intake = Intake(memory, rates, now)
+        self._intake.paused = paused
+        self._tell = tell
+        self._begun = time.time_ns()
+        self._facts = {
+            "host": platform.node(),
+            "system": platform.platform(),
+            "yarpy": __version__,
+            "clock": "system" if now is time.time_ns else "network",
+            "wanted": json.dumps({"ports": ports, "every": every, "pattern": pattern}),
+        }
+        self._notes: deque[tuple[dict[str, Any], int]] = deque(maxlen=_NOTES)
+        self._told: dict[str, tuple[int, int, int]] = {}  # losses that were noted
+        self._kept: dict[str, tuple[int, int, int]] = {}  # losses of finished files
+        self._wishes: deque[Callable[[], None]] = deque()
+        self._closing = threading.Event()
+        self.ended = threading.Event()
+        self.failure = ""
+        where = _path(path)
+        self._room = room or Room(where.parent)
+        self._port = open_port(name, self._take, self._connection, names)
+        try:
+            self._output = Output(
+                where, compression, split, most, lambda: self._facts, self._losses, format
+            )
+        except BaseException:
+            self._port.close()
+            raise
+        self._writing = threading.Thread(target=self._write, name="yarpy record", daemon=True)
+        self._syncing = threading.Thread(target=self._sync, name="yarpy sync", daemon=True)
+        self._writing.start()
+        self._syncing.start()
+        self._following = Following(self._port, wanted, carrier, names, tell)
+
+    # -- what people want to know ------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """Return the name of its port: what is connected to it is recorded."""
+        return self._port.name
+
+    @property
+    def files(self) -> list[Path]:
+        """Return the files that were written and are kept."""
+        return [*self._output.files]
+
+    @property
+    def size(self) -> int:
+        """Return how many bytes were written."""
+        return self._output.size
+
+    @property
+    def held(self) -> int:
+        """Return how many bytes wait for the disk."""
+        return self._intake.held
+
+    @property
+    def memory(self) -> int:
+        """Return how many bytes may wait for the disk."""
+        return self._intake.memory
+
+    @property
+    def free(self) -> int:
+        """Return how many bytes are free on the disk, as of the last second."""
+        return self._room.free
+
+    @property
+    def counts(self) -> dict[str, Count]:
+        """Return what came from each port, and what did not."""
+        return dict(self._intake.counts)
+
+    @property
+    def messages(self) -> int:
+        """Return how many messages were taken."""
+        return sum(count.messages for count in self.counts.values())
+
+    @property
+    def lost(self) -> int:
+        """Return how many messages came and could not be kept."""
+        return sum(count.lost for count in self.counts.values())
+
+    @property
+    def connected(self) -> set[str]:
+        """Return the ports that are connected."""
+        return {link.source for link in self._port.inputs}
+
+    @property
+    def waiting(self) -> list[str]:
+        """Return the named ports that are not connected."""
+        return self._following.waiting
+
+    @property
+    def paused(self) -> bool:
+        """Return whether messages are ignored."""
+        return self._intake.paused
+
+    # -- what people want --------------------------------------------------------------------------
+
+    def pause(self) -> None:
+        """Ignore what comes, until `resume`."""
+        if not self.paused:
+            self._intake.paused = True
+            self._note("pause")
+
+    def resume(self) -> None:
+        """Take messages again."""
+        if self.paused:
+            self._note("resume")
+            self._intake.paused = False
+
+    def mark(self, text: str = "") -> None:
+        """Note something about this moment."""
+        self._note("mark", text=text[:10_000])
+
+    def split(self) -> None:
+        """Go on in a new file."""
+        self._wishes.append(self._output.split)
+        self._intake.wake()
+
+    # -- what comes --------------------------------------------------------------------------------
+
+    def _take(self, message: Any) -> None:
+        self._intake.put(message)
+
+    def _connection(self, event: ConnectionEvent) -> None:
+        if event.incoming and event.created:
+            self._intake.forget(event.source)
+        if event.incoming and not self._closing.is_set():
+            self._note(
+                "connected" if event.created else "disconnected",
+                port=event.source,
+                carrier=event.carrier,
+                **({"reason": event.reason} if event.reason else {}),
+            )
+
+    def _note(self, what: str, **facts: Any) -> None:
+        self._notes.append(({"what": what, **facts}, self._now()))
+
+    # -- the thread that writes --------------------------------------------------------------------
+
+    def _write(self) -> None:
+        try:
+            self._write_on()
+        except OSError as error:
+            self._end(f"{self._output.path} cannot be written: {error.strerror or error}")
+        except Exception as error:
+            log.exception("the recorder fails on a defect")
+            self._end(f"{type(error).__name__}: {error}")
+        finally:
+            try:
+                self._output.close()
+            except OSError as error:
+                self._end(f"{self._output.path} cannot be finished: {error.strerror or error}")
+            self.ended.set()
+
+    def _end(self, why: str) -> None:
+        """Stop by ourselves."""
+        if not self.failure:
+            self.failure = why
+            self._intake.paused = True
+            self._tell(why)
+
+    def _write_on(self) -> None:
+        intake, batch = self._intake, Batch(self._intake, self._output)
+        looked, step = 0.0, time.time_ns() - time.monotonic_ns()
+        self._room.look()
+        try:
+            while not self.failure:
+                intake.wait(PERIOD)
+                last = self._closing.is_set()
+                for taken in intake.take():
+                    batch.add(taken)
+                while self._notes:
+                    self._output.note(*self._notes.popleft())
+                    batch.begin()
+                if last or batch.due:
+                    batch.flush()
+                while self._wishes:
+                    batch.flush()
+                    self._wishes.popleft()()
+                now = time.monotonic()
+                if now - looked >= 1.0:
+                    looked = now
+                    step = self._look_around(step, batch)
+                if last:
+                    self._note_losses()
+                    return
+        finally:
+            batch.lose()
+            for taken in intake.take():
+                intake.lose(taken)
+                intake.free(taken.size)
+
+    def _look_around(self, step: int, batch: Batch) -> int:
+        """Once a second: the disk, the folder, the clock, what was lost."""
+        self._note_losses()
+        before, state = self._room.state, self._room.look()
+        if state == "full":
+            self._end(f"the disk is full but for {size_text(self._room.free)}: recording stops")
+        elif state and state != before:
+            self._note("disk low", free=self._room.free)
+            self._tell(f"{size_text(self._room.free)} are left on the disk")
+        if self._output.gone:
+            gone = self._output.path
+            batch.lose()
+            self._output.leave()
+            self._note("file gone", file=str(gone))
+            self._tell(f"{gone} was taken away: what follows goes into {self._output.path}")
+        now = time.time_ns() - time.monotonic_ns()
+        if abs(now - step) > CLOCK_STEP:
+            self._note("clock set", seconds=(now - step) / SECOND)
+            self._tell(f"the clock was set by {(now - step) / SECOND:+.1f} s")
+        return now
+
+    def _note_losses(self) -> None:
+        for port, count in self.counts.items():
+            now = count.lost, count.missed, count.left_out
+            before = self._told.get(port, (0, 0, 0))
+            if now[:2] != before[:2]:
+                self._told[port] = now
+                lost, missed = now[0] - before[0], now[1] - before[1]
+                self._output.note(
+                    {"what": "lost", "port": port, "count": lost, "missed": missed}, self._now()
+                )
+                if lost:
+                    self._tell(f"{lost} messages of {port} were lost: the disk is too slow")
+
+    def _losses(self) -> dict[str, str]:
+        """Return what was lost since the last file was finished."""
+        found: dict[str, dict[str, int]] = {"lost": {}, "missed": {}, "left out": {}}
+        for port, count in self.counts.items():
+            now = count.lost, count.missed, count.left_out
+            before = self._kept.get(port, (0, 0, 0))
+            self._kept[port] = now
+            for key, new, old in zip(found, now, before, strict=True):
+                if new > old:
+                    found[key][port] = new - old
+        return {key: json.dumps(value) for key, value in found.items()}
+
+    def _sync(self) -> None:
+        while not self.ended.wait(SYNC):
+            with suppress(OSError):  # the thread that writes meets it, too
+                self._output.sync()
+
+    # -- the end -----------------------------------------------------------------------------------
+
+    def close(self) -> None:
+        """Write what has come, and finish the file. What could not be written is in `failure`."""
+        if not self._closing.is_set():
+            self._following.close()
+            self._port.close()
+            self._closing.set()
+            self._intake.wake()
+        self._writing.join()
+        self._syncing.join()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *details: object) -> None:
+        self.close()
+
+
+def _path(path: str | Path | None) -> Path:
+    if path is None:
+        return Path(time.strftime("record-%Y-%m-%d-%H-%M-%S"))
+    found = Path(path)
+    return found.with_suffix("") if found.suffix == ENDING else found
+
+
+def open_port(
+    name: str,
+    take: Callable[[Any], None],
+    connection: Callable[[ConnectionEvent], None],
+    names: NameClient | None,
+    usual: str = "/record",
+) -> BufferedPort:
+    """Return the port, by that name, or by one that is free. Raises AddressError, NoNameServer."""
+    tries: Sequence[str] = [name] if name else [usual, f"{usual}/{os.getpid()}", "..."]
+    for number, one in enumerate(tries):
+        try:
+            return BufferedPort(one, callback=take, on_connection=connection, names=names)
+        except AddressError:
+            if number == len(tries) - 1:
+                raise
+    raise AssertionError

@@ -1,0 +1,242 @@
+"""`yarpy record PORT... | -a | -e REGEX`: keep what ports send in a file.
+
+    yarpy record /icub/head/state:o /icub/cam/left -o walk
+    yarpy record -a --exclude /log/ --split 1GB --max-files 10
+
+Ports may come later, and come back: they are recorded as soon as they are there. On a terminal a
+table shows how each is doing, and keys pause (space), begin a new file (s), mark a moment (m) and
+stop (q); elsewhere only what is odd is told. So do the words pause, resume, split, mark TEXT,
+status and stop at the port /record/rpc:i (`yarpy rpc`). ^C and SIGTERM finish the file; what was
+written can be read even after a kill.
+
+Exit codes: 0 recorded, also when ^C or SIGTERM ends it; 1 nothing could be, or it had to stop.
+"""
+
+from __future__ import annotations
+
+import queue
+import shutil
+import sys
+import time
+from typing import TYPE_CHECKING, Final, Literal
+
+import click
+
+from yarpy.cli import log
+from yarpy.cli.output import print_json, print_line
+from yarpy.cli.signals import Interrupted
+from yarpy.cli.stderr import complain, warn
+from yarpy.errors import LocalProtocolError
+from yarpy.port.rpc import RpcServer
+
+if TYPE_CHECKING:
+    from yarpy.kits.record.recorder import Recorder
+    from yarpy.kits.record.screen import Look, Rates
+
+PERIOD: Final = 0.5  # seconds between looks
+
+
+@click.command()
+@click.argument("ports", nargs=-1, metavar="[PORT]...")
+@click.option("-a", "--all", "every", is_flag=True, help="Record all ports, but for those of rpc.")
+@click.option("-e", "--regex", "pattern", default="", show_default=False, metavar="REGEX",
+              help="Record ports whose names contain a match.")  # fmt: skip
+@click.option("--exclude", default="", show_default=False, metavar="REGEX",
+              help="... but not those.")  # fmt: skip
+@click.option(
+    "-o", "--output", "path", metavar="NAME", help="Write NAME.mcap (by default the date)."
+)
+@click.option("--format", "format_", default="mcap", metavar="NAME",
+              type=click.Choice(["mcap", "dumper", "both"]),
+              help="mcap, dumper (the folders of C++ yarpdatadumper) or both.")  # fmt: skip
+@click.option("--split", metavar="SIZE|TIME", help="Begin a new file after 1GB, 10min ...")
+@click.option("--max-files", "most", type=click.IntRange(2), metavar="N",
+              help="Keep the newest N files.")  # fmt: skip
+@click.option("--compress", "compression", default="none", metavar="NAME",
+              type=click.Choice(["none", "lz4", "zstd"]), help="none, lz4 or zstd.")  # fmt: skip
+@click.option("--max-rate", "rates", multiple=True, metavar="PORT=N",
+              help="Take N messages a second of a port (/cam/*=10) at most.")  # fmt: skip
+@click.option(
+    "--memory", default="256MB", metavar="SIZE", help="For messages that wait for the disk."
+)
+@click.option("--start-paused", "paused", is_flag=True, help="Record nothing before the space bar.")
+@click.option("--duration", type=click.FloatRange(0, min_open=True), metavar="S",
+              help="Stop after so many seconds.")  # fmt: skip
+@click.option("--carrier", default="", show_default=False, metavar="C",
+              help="How ports are connected.")  # fmt: skip
+@click.option("--name", default="", show_default=False, metavar="PORT",
+              help="The recorder's own port (/record).")  # fmt: skip
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object at the end.")
+def command(
+    ports: tuple[str, ...],
+    every: bool,
+    pattern: str,
+    exclude: str,
+    path: str | None,
+    format_: Literal["mcap", "dumper", "both"],
+    split: str | None,
+    most: int | None,
+    compression: str,
+    rates: tuple[str, ...],
+    memory: str,
+    paused: bool,
+    duration: float | None,
+    carrier: str,
+    name: str,
+    as_json: bool,
+) -> int:
+    """Keep what PORTs send in a file, which yarpy play plays and Foxglove reads."""
+    from yarpy.kits.record.recorder import Recorder
+    from yarpy.kits.record.room import parse_size, parse_split
+    from yarpy.kits.record.screen import Rates, summary
+    from yarpy.kits.record.words import recorder_words
+
+    if not (ports or every or pattern):
+        raise click.UsageError("say which ports: names, -a for all, or -e REGEX")
+    if most is not None and split is None:
+        raise click.UsageError("--max-files needs --split, which says when a file is full")
+    live = sys.stdout.isatty() and not as_json
+    if not live:
+        log.show()
+    news: list[str] = []
+    try:
+        recorder = Recorder(
+            *ports,
+            every=every,
+            pattern=pattern,
+            exclude=exclude,
+            path=path,
+            format=format_,
+            compression=compression,
+            split=None if split is None else parse_split(split),
+            most=most or 0,
+            memory=parse_size(memory),
+            rates=dict(map(parse_rate, rates)),
+            paused=paused,
+            carrier=carrier,
+            name=name,
+            tell=news.append if live else warn,
+        )
+    except FileExistsError as error:
+        complain(f"{error.filename} is there already: choose another name with -o")
+        return 1
+    began = time.monotonic()
+    seen, stop = Rates(), recorder.ended
+    try:
+        with RpcServer(f"{recorder.name}/rpc:i", recorder_words(recorder, stop.set)):
+            if live:
+                _live(recorder, began, duration, news)
+            else:
+                warn(f"recording into {recorder.files[0]} through the port {recorder.name}")
+                stop.wait(duration)
+    except Interrupted:
+        pass  # how it ends
+    finally:
+        recorder.close()
+    look = look_at(recorder, began, seen, news)
+    if as_json:
+        print_json(facts(recorder, look))
+    else:
+        for line in summary(look):
+            print_line(line)
+    if recorder.failure:
+        complain(recorder.failure)
+        return 1
+    return 0
+
+
+def parse_rate(text: str) -> tuple[str, float]:
+    """Return the pattern and the rate of `/cam/*=10`. Raises LocalProtocolError."""
+    name, equals, number = text.rpartition("=")
+    try:
+        rate = float(number)
+    except ValueError:
+        rate = 0.0
+    if not (name and equals and 0 < rate < 1e9):
+        raise LocalProtocolError(f'"{text}" is no rate of a port: /cam/*=10')
+    return name, rate
+
+
+def look_at(recorder: Recorder, began: float, seen: Rates, news: list[str]) -> Look:
+    """Return how a recorder is doing now."""
+    from yarpy.kits.record.screen import Look
+
+    counts = recorder.counts
+    files = recorder.files
+    return Look(
+        file=", ".join(map(str, files)) if len(files) < 4 else f"{files[0]} ... {files[-1]}",
+        seconds=time.monotonic() - began,
+        size=recorder.size,
+        held=recorder.held,
+        memory=recorder.memory,
+        free=recorder.free,
+        paused=recorder.paused,
+        counts=counts,
+        rates=seen.take(counts, time.monotonic()),
+        connected=recorder.connected,
+        waiting=recorder.waiting,
+        news=news[-1] if news else "",
+    )
+
+
+def facts(recorder: Recorder, look: Look) -> dict[str, object]:
+    """Return what is printed as JSON at the end."""
+    return {
+        "files": [*map(str, recorder.files)],
+        "seconds": round(look.seconds, 3),
+        "bytes": look.size,
+        "failure": recorder.failure,
+        "ports": {
+            name: {
+                "messages": count.messages,
+                "bytes": count.bytes,
+                "lost": count.lost,
+                "missed": count.missed,
+                "left out": count.left_out,
+            }
+            for name, count in sorted(look.counts.items())
+        },
+    }
+
+
+def _live(recorder: Recorder, began: float, duration: float | None, news: list[str]) -> None:
+    """On a terminal, until `q`."""
+    from rich.console import Console
+    from rich.live import Live
+
+    from yarpy.cli.verbs.top import keys
+    from yarpy.kits.record.screen import Rates, text
+
+    seen, console = Rates(), Console(highlight=False)
+    until = None if duration is None else began + duration
+    with keys() as pressed, Live(console=console, auto_refresh=False, screen=True) as live:
+        while not recorder.ended.is_set() and (until is None or time.monotonic() < until):
+            size = shutil.get_terminal_size((80, 24))
+            look = look_at(recorder, began, seen, news)
+            live.update(text(look, size.columns, size.lines), refresh=True)
+            end = time.monotonic() + PERIOD
+            while (left := end - time.monotonic()) > 0:
+                try:
+                    key = pressed.get(timeout=left)
+                except queue.Empty:
+                    break
+                if not press(recorder, key, news):
+                    return
+
+
+def press(recorder: Recorder, key: str, news: list[str]) -> bool:
+    """Do what a key stands for; return whether to go on."""
+    if key in ("q", "\x03", "\x04"):
+        return False
+    if key == " ":
+        if recorder.paused:
+            recorder.resume()
+        else:
+            recorder.pause()
+    elif key == "s":
+        recorder.split()
+        news.append("a new file")
+    elif key == "m":
+        recorder.mark()
+        news.append(f"marked at {time.strftime('%H:%M:%S')}")
+    return True

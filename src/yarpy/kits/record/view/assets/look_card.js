@@ -1,0 +1,102 @@
+// What a port said at the cursor: its picture, its numbers as curves, the message as text.
+
+import {ask, copyOf, fileName, part, save, say} from "/*/common.js";
+import {Plot} from "/*/plot.js";
+import {pictureOf} from "/look_link.js";
+
+const WAIT = 120; // ms until curves are asked for again
+
+// A card of `port` {name, kind}; `close` is called when it is to go.
+export class Card {
+  constructor(port, close) {
+    this.port = port;
+    this.figure = copyOf("card");
+    this.canvas = part(this.figure, "curves");
+    this.image = part(this.figure, "picture");
+    this.plot = new Plot(this.canvas);
+    this.curves = [];
+    this.asked = ""; // the question that was answered
+    this.timer = null;
+    say(part(this.figure, "name"), port.name);
+    part(this.figure, "close").onclick = close;
+    part(this.figure, "save").onclick = () => this.jpeg && save(this.jpeg, `${fileName(port.name)}.jpg`);
+    this.image.alt = `The picture of ${port.name}`;
+    this.clear();
+  }
+
+  get pictured() {
+    return this.port.kind === "yarp/image";
+  }
+
+  // A message of the port, as it came over the connection; `time` in seconds.
+  take(bytes, time) {
+    this.stale = false;
+    if (this.pictured) {
+      const found = pictureOf(bytes);
+      say(part(this.figure, "facts"), found?.length ? `${time.toFixed(3)} s` : "a picture that cannot be shown");
+      if (!found?.length) return;
+      this.jpeg = new Blob([found], {type: "image/jpeg"});
+      const before = this.image.src;
+      this.image.src = URL.createObjectURL(this.jpeg);
+      if (before) URL.revokeObjectURL(before);
+      this.image.hidden = part(this.figure, "save").hidden = false;
+      return;
+    }
+    const said = JSON.parse(new TextDecoder().decode(bytes));
+    const number = said.envelope ? `number ${said.envelope.split(" ")[0]}, ` : "";
+    say(part(this.figure, "facts"), `${number}${time.toFixed(3)} s`);
+    say(part(this.figure, "text"), said.text);
+  }
+
+  // Nothing came before the cursor.
+  clear() {
+    this.stale = false;
+    this.jpeg = null;
+    this.image.hidden = part(this.figure, "save").hidden = true;
+    say(part(this.figure, "facts"), "nothing came until here");
+    say(part(this.figure, "text"), "");
+  }
+
+  // Draw the curves of what the time line shows; ask for them if that has changed.
+  show(view, cursor, origin) {
+    if (this.pictured) return;
+    const question = `/curve?${new URLSearchParams({
+      port: this.port.name,
+      origin: String(origin),
+      begin: view.start.toFixed(6),
+      end: (view.start + view.length + 2e-6).toFixed(6), // with the last message
+      points: String(Math.round(Math.max(this.canvas.clientWidth, 300))),
+    })}`;
+    if (question !== this.wanted) {
+      this.wanted = question;
+      clearTimeout(this.timer);
+      this.timer = setTimeout(() => this.ask(question), this.asked ? WAIT : 0);
+      const file = part(this.figure, "file");
+      file.href = question.replace("/curve?", "/data.csv?");
+      file.download = `${fileName(this.port.name)}.csv`;
+      say(file, "CSV");
+    }
+    if (!this.curves.length) return;
+    const within = cursor >= view.start && cursor <= view.start + view.length;
+    this.plot.draw(this.curves, {
+      end: view.start + view.length,
+      window: view.length,
+      origin: 0,
+      low: null,
+      high: null,
+      hover: within ? cursor : null,
+    });
+  }
+
+  async ask(question) {
+    const found = await ask(question);
+    if (!found || question !== this.wanted) return;
+    this.asked = question;
+    this.curves = found.columns.map((values, number) => ({times: found.times, values, number}));
+    this.canvas.hidden = !this.curves.length;
+    const thin = found.every > 1 ? `every ${found.every}th of ${found.of} messages is drawn` : "";
+    this.canvas.title = thin;
+    this.plot.low = this.plot.high = null;
+    this.drawn?.();
+  }
+}

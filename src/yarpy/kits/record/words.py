@@ -1,0 +1,141 @@
+"""The words that a recorder and a player are told over a port, and what belongs to each.
+
+    record   pause  resume  split  mark [TEXT]  status  stop  help
+    play     play  pause  resume  step  seek SECONDS  mark TEXT  rate N  stop  status  help
+
+and, of C++ yarpdataplayer, `getStatus`, `getProgress`, `getSpeed`, `setSpeed N`, `quit`.
+
+Rules: the answer is `[ok]` and what was asked for, or `[fail]` and why. Nobody can name a file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from inspect import signature
+from typing import Any, TypeAlias
+
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
+from yarpy.data.value import Vocab
+from yarpy.errors import YarpError
+from yarpy.kits.record.player import Player
+from yarpy.kits.record.recorder import Recorder
+from yarpy.wire.message import Message
+
+Act: TypeAlias = Callable[..., object]
+
+
+class Words:
+    """Answers messages by a table of words: what a function returns follows `[ok]`."""
+
+    def __init__(self, table: Mapping[str, Act]) -> None:
+        self._table: dict[str, Act] = {**table, "help": self._help}
+
+    def _help(self) -> list[str]:
+        return sorted(self._table)
+
+    def __call__(self, message: Message) -> Bottle:
+        try:
+            said = message.as_(Bottle)
+        except YarpError as error:
+            return _failed(str(error))
+        word = plain_text(said[0]) if said else ""
+        act = self._table.get(word)
+        if act is None:
+            return _failed(f"no word {word[:100]!r}: there are {' '.join(sorted(self._table))}")
+        wanted = signature(act).parameters.values()
+        least = sum(one.default is one.empty for one in wanted)
+        if not least <= len(said) - 1 <= len(wanted):
+            return _failed(" ".join([word, *(one.name.upper() for one in wanted)]))
+        try:
+            found = act(*said[1:])
+        except (YarpError, ValueError, TypeError, OverflowError) as error:
+            return _failed(str(error))
+        if found is None:
+            return Bottle([Vocab("ok")])
+        return Bottle([Vocab("ok"), *(found if isinstance(found, list) else [found])])
+
+
+def _failed(why: str) -> Bottle:
+    return Bottle([Vocab("fail"), why])
+
+
+def recorder_words(recorder: Recorder, stop: Callable[[], object]) -> Words:
+    """Return what a recorder is told; `stop` ends it."""
+
+    def mark(text: object = "") -> None:
+        recorder.mark(plain_text(text))
+
+    def end() -> None:
+        stop()
+
+    def status() -> list[Any]:
+        counts = sorted(recorder.counts.items())
+        return [
+            ["state", "paused" if recorder.paused else "recording"],
+            ["messages", recorder.messages],
+            ["bytes", recorder.size],
+            ["lost", recorder.lost],
+            ["files", [*map(str, recorder.files)]],
+            ["ports", [[name, count.messages, count.lost] for name, count in counts]],
+            ["waiting", recorder.waiting],
+        ]
+
+    return Words(
+        {
+            "pause": recorder.pause,
+            "resume": recorder.resume,
+            "split": recorder.split,
+            "mark": mark,
+            "status": status,
+            "stop": end,
+            "quit": end,
+        }
+    )
+
+
+def player_words(player: Player) -> Words:
+    """Return what a player is told."""
+
+    def rate(n: float) -> None:
+        player.rate = float(n)
+
+    def seek(seconds: float) -> None:
+        player.seek(float(seconds))
+
+    def mark(text: object) -> None:
+        player.seek_mark(plain_text(text))
+
+    def state() -> str:
+        return "paused" if player.paused else "playing"
+
+    def status() -> list[Any]:
+        return [
+            ["state", state()],
+            ["position", player.position],
+            ["length", player.length],
+            ["rate", player.rate],
+            ["played", player.played],
+            ["dropped", player.dropped],
+        ]
+
+    return Words(
+        {
+            "play": player.resume,
+            "resume": player.resume,
+            "pause": player.pause,
+            "step": player.step,
+            "seek": seek,
+            "mark": mark,
+            "rate": rate,
+            "setSpeed": rate,
+            "getSpeed": lambda: player.rate,
+            "getStatus": state,
+            "getProgress": lambda: (
+                100 * player.position / player.length if player.length else 100.0
+            ),
+            "status": status,
+            "stop": player.stop,
+            "quit": player.stop,
+        }
+    )

@@ -1,0 +1,56 @@
+"""The parts of a robot from a MuJoCo model, named like those of the simulated head.
+
+joints            hinges and slides with actuators: a control board
+cam/NAME          its cameras; `cam/free` if it has none
+inertial          gyroscopes, accelerometers, magnetometers, orientations and positions of frames
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from yarpy.errors import UnknownPlugin
+from yarpy.kits.sim.board import Board
+from yarpy.kits.sim.body import Clock
+from yarpy.kits.sim.mujoco_camera import FREE, Camera, Painter
+from yarpy.kits.sim.mujoco_model import load
+from yarpy.kits.sim.mujoco_sensor import Sensors
+from yarpy.kits.sim.robot import SIZE, Parts
+
+
+def mujoco_robot(
+    path: str | Path,
+    size: tuple[int, int] = SIZE,
+    clock: Clock = time.time,
+    warn: Callable[[str], object] = lambda line: None,
+) -> tuple[str, Parts]:
+    """A name for the robot and its parts.
+
+    size: width and height of pictures. warn: called if pictures cannot be drawn. Raises
+    UnknownPlugin (no MuJoCo), ValueError (not a model, or nothing to serve in it), OSError.
+    """
+    model = load(path, clock)
+    board, sensors, cameras = Board(model), Sensors(model), {}
+    names = [model.name_of("camera", number) for number in range(model.model.ncam)]
+    try:
+        painter = Painter(model, *size)
+        numbers = {_plain(name): number for number, name in enumerate(names)} or {"free": FREE}
+        cameras = {
+            f"cam/{name}": Camera(painter, model.model, number) for name, number in numbers.items()
+        }
+    except UnknownPlugin as error:
+        warn(f"no cameras: {error}")
+    boards = {"joints": board} if board.axis_names else {}
+    if not (boards or cameras or sensors.count):
+        raise ValueError(f"{path}: no joint with an actuator, no camera, no inertial sensor")
+    return _plain(model.name), Parts(
+        boards, cameras, {"inertial": sensors} if sensors.count else {}
+    )
+
+
+def _plain(name: str) -> str:
+    """A name made suitable for port names."""
+    return re.sub(r"[^A-Za-z0-9_.\-/]+", "_", name).strip("/") or "_"

@@ -1,0 +1,89 @@
+"""Robot: devices under their names, served on YARP ports.
+
+    with Robot("/icubSim", icub_head()):             # /icubSim/head/rpc:i, /icubSim/cam/left ...
+        ...
+
+Rules: a robot is just its devices: control boards, cameras, sensors. How their ports talk to
+browsers, C++ programs or people is up to the ports.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from yarpy.kits.devices.closeable import Closeable, prefix
+from yarpy.kits.devices.control_board.interface import Joints
+from yarpy.kits.devices.frame_grabber.interface import Camera
+from yarpy.kits.sim.axis import ICUB_HEAD
+from yarpy.kits.sim.board import Board
+from yarpy.kits.sim.body import Body, Clock
+from yarpy.kits.sim.head import SIDES
+from yarpy.kits.sim.joint import Joint
+
+if TYPE_CHECKING:
+    from yarpy.names.base import NameClient
+    from yarpy.port.base import BasePort
+
+NAME: Final = "/icubSim"
+FPS: Final = 30.0
+SIZE: Final = (320, 240)
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The devices of a robot, by the names of their ports without the robot's."""
+
+    boards: Mapping[str, Joints] = field(default_factory=dict)
+    cameras: Mapping[str, Camera] = field(default_factory=dict)
+    sensors: Mapping[str, object] = field(default_factory=dict)
+
+
+def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
+    """A head like an iCub's in a room: six joints, two eyes, an inertial unit.
+
+    size: width and height of the pictures. clock: returns the time in seconds.
+    """
+    from yarpy.kits.sim.eye import Eye, Shutter
+    from yarpy.kits.sim.inertial import Inertial
+    from yarpy.kits.sim.scene import room
+
+    body = Body([Joint(axis) for axis in ICUB_HEAD], clock)
+    shutter, scene = Shutter(body), room()
+    left, right = (Eye(shutter, scene, side, *size) for side in SIDES)
+    return Parts(
+        {"head": Board(body)}, {"cam/left": left, "cam/right": right}, {"inertial": Inertial(body)}
+    )
+
+
+class Robot(Closeable):
+    """Serves `parts` while it is open; a context manager.
+
+    name: prefix of all ports. fps: pictures per second. names: a name client, None for the default.
+    Raises AddressError (a name is in use), NoNameServer.
+    """
+
+    def __init__(
+        self, name: str, parts: Parts, fps: float = FPS, *, names: NameClient | None = None
+    ) -> None:
+        from yarpy.kits.devices import ControlBoardServer, FrameGrabberServer, MultiSensorServer
+
+        self.name = name = prefix(name)
+        self.parts = parts
+        self.ports: list[str] = []  # prefixes
+        self.images: dict[str, BasePort] = {}  # the ports of the cameras, by their parts' names
+        with ExitStack() as resources:
+            for part, board in parts.boards.items():
+                server = ControlBoardServer(f"{name}/{part}", board, names=names)
+                self.ports.append(resources.enter_context(server).name)
+            for part, camera in parts.cameras.items():
+                grabber = FrameGrabberServer(f"{name}/{part}", camera, 1 / fps, names=names)
+                self.ports.append(resources.enter_context(grabber).name)
+                self.images[part] = grabber.images
+            for part, sensors in parts.sensors.items():
+                measures = MultiSensorServer(f"{name}/{part}", sensors, names=names)
+                self.ports.append(resources.enter_context(measures).name)
+            self._resources = resources.pop_all()

@@ -1,0 +1,169 @@
+"""`yarpy demo`: a name server, a simulated robot, and a page that shows and moves it.
+
+    --seconds N    end by itself
+    --no-browser   open no browser
+    --lan          let the other computers of this network see and move the robot too
+
+It prints what to try, with curl, with netcat, with yarpy, with C++ YARP, and with ROS where a
+master answers on this computer (with --lan: anywhere). The numbers of its ports are 10000 (or
+YARP_PORT_RANGE) and those behind it, or any free ones if somebody has those. Nothing is written to
+the configuration.
+Exit code: 0.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Final
+
+import click
+
+import yarpy
+from yarpy.cli import log, signals
+from yarpy.cli.browser import open_page, url_of
+from yarpy.cli.output import print_line
+from yarpy.config.configuration import default_port
+
+if TYPE_CHECKING:
+    from yarpy.kits.sim.guest import Guest
+    from yarpy.kits.sim.robot import Robot
+
+TRY: Final = """
+{robot} is a simulated robot: a head, two cameras, an inertial unit.
+
+  {page}    <- open this: see what it sees, drag its joints{phone}
+
+Its ports speak many protocols, all at the same address. In another terminal, without any YARP:
+
+  curl 'http://{server}/?req=query+$port&port={robot}/head/rpc:i'
+  curl 'http://{rpc}/?req=set+pos+$axis+$angle&axis=1&angle=45'
+  curl 'http://{rpc}/?req=get+encs'
+  {{ echo CONNECT me; echo d; echo set pos 1 0; sleep 1; echo d; echo get encs; echo q; }} | nc {nc}
+  echo hello there | nc {nc}      # no protocol: see what strangers are told
+
+With yarpy:
+
+  export YARPY_SERVER={server}
+  {yarpy} name list
+  echo get encs | {yarpy} rpc {robot}/head/rpc:i
+  {yarpy} read ... {robot}/inertial/measures:o once
+  {yarpy} view --connect {robot}/cam/left
+  {yarpy} scope {robot}/head/state:o
+
+With C++ YARP, after `yarp conf {where}`:
+
+  yarp rpc {robot}/head/rpc:i
+  yarp connect {robot}/cam/left /view        (to a yarpview)
+  yarpmotorgui --robot {bare} --parts "(head)"
+
+In a C++ program: device remote_controlboard, remote {robot}/head, local /client.
+{elsewhere}Ctrl-C ends it all.
+"""
+
+
+@click.command()
+@click.option("--seconds", type=click.FloatRange(min=0.0), metavar="N", help="End by itself.")
+@click.option("--no-browser", is_flag=True, help="Open no browser.")
+@click.option("--lan", is_flag=True, help="Let other computers see and move the robot too.")
+def command(seconds: float | None, no_browser: bool, lan: bool) -> int:
+    """Show what yarpy does: a simulated robot, in a browser and everywhere else."""
+    from yarpy.kits.sim.robot import NAME, Robot, icub_head
+    from yarpy.kits.views.panel import Panel
+    from yarpy.transports.bind import SETTING
+
+    log.show(logging.WARNING)
+    if not lan:
+        os.environ.setdefault(SETTING, "local")
+    try:
+        with (
+            _name_server() as server,
+            Robot(NAME, icub_head(), names=server.client) as robot,
+            ExitStack() as guests,
+            _page(server) as page,
+        ):
+            Panel(page, robot.name, server.client)
+            elsewhere = "".join(_shown(robot, lan, guests))
+            print_line(_advice(server, robot, page, elsewhere))
+            if not no_browser:
+                open_page(url_of(page.address))
+            threading.Event().wait(seconds)
+    except signals.Interrupted:
+        pass
+    print_line("The demo ends.")
+    return 0
+
+
+def _name_server() -> yarpy.NameServer:
+    with signals.held():
+        try:
+            return yarpy.NameServer(default_port(os.environ))
+        except yarpy.AddressError:
+            return yarpy.NameServer()
+
+
+def _page(server: yarpy.NameServer) -> yarpy.Port:
+    """The port that serves the page; messages to it are taken and forgotten."""
+
+    def forget(message: yarpy.Message) -> None:
+        pass
+
+    for number in (server.port + 1, 0):
+        try:
+            return yarpy.Port("/demo", callback=forget, names=server.client, tcp_port=number)
+        except yarpy.AddressError:
+            if not number:
+                raise
+    raise AssertionError("unreachable")
+
+
+def _shown(robot: Robot, everywhere: bool, guests: ExitStack) -> Iterator[str]:
+    """Show the robot in every other graph that is there, and yield what to try in it."""
+    from yarpy import registry
+
+    for system in registry.robots.names():
+        guest: Guest = registry.robots.load(system)()
+        where = guest.find(everywhere)
+        if where:
+            guests.enter_context(guest.show(robot, where))
+            yield guest.advice(robot.name, where)
+
+
+def _advice(server: yarpy.NameServer, robot: Robot, page: yarpy.Port, elsewhere: str) -> str:
+    from yarpy.names.address import is_loopback, outward_address
+    from yarpy.transports.bind import listening_host
+
+    rpc = server.client.query(f"{robot.name}/head/rpc:i")
+    assert rpc is not None
+    outward = outward_address()
+    phone = f"\n  {url_of(f'{outward}:{page.contact.port}')}    <- from a phone in the same network"
+    return TRY.format(
+        robot=robot.name,
+        bare=robot.name.strip("/"),
+        page=url_of(page.address),
+        phone="" if is_loopback(outward) or listening_host() else phone,
+        server=server.address,
+        where=server.address.replace(":", " "),
+        rpc=rpc.address,
+        nc=rpc.address.replace(":", " "),
+        yarpy=_own_name(),
+        elsewhere=elsewhere,
+    )
+
+
+def _own_name() -> str:
+    """How to call this program from where one is."""
+    import shutil
+
+    beside = os.path.join(os.path.dirname(sys.executable), "yarpy")
+    found = shutil.which("yarpy")
+    if found is not None and os.path.realpath(found) == os.path.realpath(beside):
+        return "yarpy"
+    if not os.path.exists(beside):
+        return "python -m yarpy"
+    near = os.path.relpath(beside)
+    return beside if near.startswith(os.pardir) else near

@@ -1,0 +1,94 @@
+"""`yarpy sim`: a simulated robot on YARP ports, the head of an iCub or a MuJoCo model.
+
+    --robot NAME      the beginning of its ports' names (icubSim, or what the model is called)
+    --fps HZ          pictures per second of its cameras (30)
+    --size WxH        of its pictures, in pixels (320x240)
+    --mujoco FILE     this model instead of the head: joints, cameras, inertial sensors
+    --ros             as a node of ROS 1 too: pictures, joint states, a service that moves joints
+
+Exit codes: 0 ended by a signal; 1 the names are in use, the file is no model, MuJoCo is missing.
+"""
+
+from __future__ import annotations
+
+import threading
+
+import click
+
+from yarpy.cli import log, signals
+from yarpy.cli.output import print_line
+from yarpy.cli.stderr import warn
+from yarpy.registry import robots
+
+
+class Size(click.ParamType[tuple[int, int]]):
+    """`320x240`: width and height in pixels."""
+
+    name = "size"
+
+    def convert(
+        self, value: object, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, int]:
+        width, _, height = str(value).partition("x")
+        if not (width.isdecimal() and height.isdecimal()):
+            self.fail(f"{value!r} is no size; say 640x480", param, ctx)
+        size = int(width), int(height)
+        if not all(16 <= length <= 2048 for length in size):
+            self.fail(f"{value}: from 16 to 2048 pixels, either way", param, ctx)
+        return size
+
+
+@click.command()
+@click.option("--robot", "--name", metavar="NAME", help="Prefix of the ports (icubSim).")
+@click.option(
+    "--fps",
+    type=click.FloatRange(0.1, 1000.0),
+    default=30.0,
+    metavar="HZ",
+    help="Pictures per second.",
+)
+@click.option(
+    "--size", type=Size(), default="320x240", metavar="WxH", help="Of the pictures, in pixels."
+)
+@click.option(
+    "--mujoco",
+    "model",
+    type=click.Path(exists=True, dir_okay=False),
+    metavar="FILE",
+    help="Simulate this MuJoCo model (XML) instead.",
+)
+def command(
+    robot: str | None, fps: float, size: tuple[int, int], model: str | None, **others: bool
+) -> int:
+    """Simulate a robot: joints, cameras and sensors on YARP ports."""
+    from yarpy.kits.sim.robot import NAME, Robot, icub_head
+
+    log.show()
+    if model is None:
+        name, parts = NAME, icub_head(size)
+    else:
+        from yarpy.kits.sim.mujoco_robot import mujoco_robot
+
+        try:
+            name, parts = mujoco_robot(model, size, warn=warn)
+        except ValueError as error:
+            raise click.ClickException(str(error)) from error
+    with signals.held():
+        opened = Robot(robot or name, parts, fps)
+        click.get_current_context().call_on_close(opened.close)
+        for system in others:
+            if others[system]:
+                shown = robots.load(system)().show(opened)
+                click.get_current_context().with_resource(shown)
+    print_line(f"{opened.name} is ready: {' '.join(opened.ports)}")
+    try:
+        threading.Event().wait()
+    except signals.Interrupted:
+        pass
+    return 0
+
+
+for _system in robots.names():
+    command.params.append(
+        click.Option([f"--{_system}"], is_flag=True, help=f"Show the robot in {_system}, too.")
+    )

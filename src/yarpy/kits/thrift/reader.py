@@ -1,0 +1,429 @@
+"""Bytes to values, one after the other: all that a peer may send, and the error for the rest.
+
+    bool           vocab or int32: false are 0 and [fail]     i64, float     any integer; any number
+    i8 i16 i32     any integer that fits; i32 a vocab too     enum           number, or exact name
+    string         string or vocab                            binary         blob or string
+    list           plain or specialised, whatever its elements are
+
+Rules: this accepts what C++ accepts and more: plain lists, integers beside fractions, names of
+enums. Numbers that do not fit are refused, where C++ cuts them. Sets come as C++ writes them, with
+a tag too many at each element, if they are wrong otherwise. A message of YARP 4.0 has other tags
+for floats (`yarpy.data.yarp4`), which a Cursor translates. Counts are checked against the bytes
+that are there before memory is taken; only DecodeError and Truncated come out, which name the
+field.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from struct import Struct as Packing
+from struct import error as struct_error
+from typing import Any, Final
+
+from yarpy.data import codec
+from yarpy.data.value import (
+    BLOB,
+    FIXED,
+    FLOAT32,
+    FLOAT64,
+    GROUP_MASK,
+    INT8,
+    INT16,
+    INT32,
+    INT64,
+    LIST,
+    STRING,
+    UNIT_MASK,
+    VOCAB32,
+    Buffer,
+    Float32,
+    Vocab,
+)
+from yarpy.data.yarp4 import FLOAT32_4, FLOAT64_4, to_yarp3
+from yarpy.errors import DecodeError, Truncated
+from yarpy.kits.thrift.kind import (
+    BINARY,
+    BOOL,
+    FLOAT,
+    SIZE,
+    TEXT,
+    VOCAB,
+    External,
+    Kind,
+    ListOf,
+    MapOf,
+    Scalar,
+    SetOf,
+    flat,
+    is_enum,
+    name_of,
+)
+from yarpy.kits.thrift.writer import FAIL
+from yarpy.limit import THRIFT_LISTS, limits
+
+_I32: Final = Packing("<i").unpack_from
+_PAIR: Final = Packing("<ii").unpack_from
+_PACK: Final = Packing("<i").pack
+_PACK_PAIR: Final = Packing("<ii").pack
+_UNPACK: Final = {tag: Packing("<" + letter).unpack_from for tag, (letter, _) in FIXED.items()}
+
+#: tags of YARP 4.0 to those of 3.x; one that it has no more to one that nobody has
+_NAMES: Final = {FLOAT64_4: FLOAT64, FLOAT32_4: FLOAT32, FLOAT32: 0xFF}
+
+_INTEGERS: Final = frozenset((INT8, INT16, INT32, INT64))
+_WHAT: Final = {
+    INT32: "an int32", STRING: "a string", VOCAB32: "a vocab", FLOAT64: "a float64",
+    BLOB: "a blob", INT64: "an int64", INT8: "an int8", INT16: "an int16", FLOAT32: "a float32",
+}  # fmt: skip
+
+
+class Cursor:
+    """A place in a message. `tagged_sets`: sets are as C++ writes them. `yarp4`: it comes from
+    YARP 4.0."""
+
+    __slots__ = ("at", "data", "depth", "end", "room", "tagged_sets", "yarp4")
+
+    def __init__(
+        self, data: Buffer, at: int = 0, tagged_sets: bool = False, yarp4: bool = False
+    ) -> None:
+        self.data = data
+        self.at = at
+        self.end = len(data)
+        self.room = limits().elements
+        self.depth = 0
+        self.tagged_sets = tagged_sets
+        self.yarp4 = yarp4
+
+    def tag(self, path: str) -> int:
+        """The tag of an element, or the header of a list, as YARP 3.x has it."""
+        found = self.number(path)
+        if not self.yarp4:
+            return found
+        kind = found & UNIT_MASK
+        return found - kind + _NAMES.get(kind, kind)
+
+    def number(self, path: str) -> int:
+        if self.at + 4 > self.end:
+            raise Truncated(f"{path} is missing", self.at + 4)
+        found: int = _I32(self.data, self.at)[0]
+        self.at += 4
+        return found
+
+    def count(self, path: str, least: int) -> int:
+        """How many follow, of at least so many bytes each."""
+        count = self.number(path)
+        if count < 0 or self.at + count * least > self.end:
+            raise Truncated(
+                f"{path}: {count} elements are announced, there are {self.end - self.at} bytes"
+            )
+        self.room -= count
+        if self.room < 0:
+            raise DecodeError(
+                f"{path}: more than {limits().elements} elements (YARPY_MAX_ELEMENTS)"
+            )
+        return count
+
+    def take(self, count: int, path: str) -> Buffer:
+        start, self.at = self.at, self.at + count
+        if count < 0 or self.at > self.end:
+            raise Truncated(f"{path} takes {count} bytes, there are {self.end - start}")
+        return self.data[start : self.at]
+
+    def enter(self, path: str) -> None:
+        self.depth += 1
+        if self.depth > THRIFT_LISTS:
+            raise DecodeError(f"{path}: more than {THRIFT_LISTS} lists within each other")
+
+
+def get(kind: Kind, cursor: Cursor, path: str, nested: bool = False) -> Any:
+    """The value of a kind that begins at the cursor. DecodeError, Truncated."""
+    if nested and isinstance(kind, type) and not is_enum(kind):
+        return _nested(kind, cursor, path, None)
+    return _value(kind, cursor, path, None)
+
+
+def _value(kind: Kind, cursor: Cursor, path: str, code: int | None) -> Any:
+    """`code`: the tag, where it stands in the header of the list."""
+    if isinstance(kind, type) and not is_enum(kind):
+        return _struct(kind, cursor, path, code)
+    if isinstance(kind, External):
+        return _external(kind, cursor, path, code)
+    tag = cursor.tag(path) if code is None else code
+    if isinstance(kind, Scalar):
+        return scalar(kind, tag, cursor, path)
+    if isinstance(kind, (ListOf, SetOf)):
+        return _list(kind, tag, cursor, path)
+    if isinstance(kind, MapOf):
+        return _map(kind, tag, cursor, path)
+    return _enum(kind, tag, cursor, path)
+
+
+def _struct(kind: Any, cursor: Cursor, path: str, code: int | None) -> Any:
+    made = kind.__new__(kind)
+    for field in kind._specs():
+        inner = f"{path}.{field.name}"
+        if field.nested:
+            value = _nested(field.kind, cursor, inner, code)
+        else:
+            value = _value(field.kind, cursor, inner, code)
+        setattr(made, field.attribute, value)
+    return made
+
+
+def _nested(kind: Any, cursor: Cursor, path: str, code: int | None) -> Any:
+    """A struct that is a list of its own; anything else as it is."""
+    if not isinstance(kind, type) or is_enum(kind):
+        return _value(kind, cursor, path, code)
+    tag = cursor.tag(path) if code is None else code
+    if not tag & LIST:
+        raise _other(f"a list for {name_of(kind)}", tag, cursor, path)
+    cursor.enter(path)
+    count = cursor.count(path, 1)
+    wanted = flat(kind)
+    if count != wanted:
+        raise DecodeError(f"{path}: {kind.__name__} has {wanted} elements, here are {count}")
+    found = _struct(kind, cursor, path, tag & UNIT_MASK or None)
+    cursor.depth -= 1
+    return found
+
+
+def _list(kind: ListOf | SetOf, tag: int, cursor: Cursor, path: str) -> Any:
+    if not tag & LIST:
+        raise _other("a list", tag, cursor, path)
+    element, code = kind.element, tag & UNIT_MASK
+    is_numbers = isinstance(element, Scalar) and element.is_number and code == element.code
+    if isinstance(element, Scalar) and is_numbers and isinstance(kind, ListOf):
+        return _array(element, cursor, path)
+    cursor.enter(path)
+    tagged = cursor.tagged_sets and isinstance(kind, SetOf)
+    fixed = None if not code or tagged or isinstance(element, (ListOf, SetOf)) else code
+    least = FIXED[code][1] if fixed in FIXED else 4
+    count = cursor.count(path, max(least, 1))
+    items = [_nested(element, cursor, f"{path}[{at}]", fixed) for at in range(count)]
+    cursor.depth -= 1
+    if isinstance(kind, SetOf):
+        try:
+            return set(items)
+        except TypeError:
+            return items  # structs, which have no hash
+    if isinstance(element, Scalar) and (element.is_number or element is BOOL):
+        import numpy as np
+
+        return np.array(items, "?" if element is BOOL else "<" + element.letter)
+    return items
+
+
+def _array(element: Scalar, cursor: Cursor, path: str) -> Any:
+    import numpy as np
+
+    size = Packing("<" + element.letter).size
+    count = cursor.number(path)
+    data = cursor.take(count * size, path)
+    return np.frombuffer(data, "<" + element.letter, count)
+
+
+def _map(kind: MapOf, tag: int, cursor: Cursor, path: str) -> dict[Any, Any]:
+    if not tag & LIST:
+        raise _other("a list of pairs", tag, cursor, path)
+    cursor.enter(path)
+    found: dict[Any, Any] = {}
+    outer = tag & UNIT_MASK
+    for at in range(cursor.count(path, FIXED[outer][1] if outer in FIXED else 4)):
+        pair = outer or cursor.tag(path)
+        if not pair & LIST:
+            raise _other("a pair of key and value", pair, cursor, f"{path}[{at}]")
+        cursor.number(path)  # two, and not checked by C++ either
+        code = pair & UNIT_MASK or None
+        key = _value(kind.key, cursor, f"{path}, key {at}", code)
+        try:
+            hash(key)
+        except TypeError:
+            raise DecodeError(f"{path}: {name_of(kind.key)} cannot be a key in Python") from None
+        found[key] = _nested(kind.value, cursor, f"{path}[{key!r:.40}]", code)
+    cursor.depth -= 1
+    return found
+
+
+# ---------------------------------------------------------------------------------- single values
+
+
+def scalar(kind: Scalar, tag: int, cursor: Cursor, path: str) -> Any:
+    """A number, word, string or blob behind its tag."""
+    if kind is TEXT:
+        if tag == STRING:
+            return str(_bytes(cursor, path), "utf-8", "surrogateescape")
+        if tag == VOCAB32:
+            return str.__str__(Vocab.from_code(cursor.number(path)))
+        raise _other("a string", tag, cursor, path)
+    if kind is BINARY:
+        if tag in (BLOB, STRING):
+            return bytes(_bytes(cursor, path))
+        raise _other("a blob", tag, cursor, path)
+    if kind is BOOL:
+        if tag in (INT32, VOCAB32):
+            return cursor.number(path) not in (0, FAIL)
+        raise _other("true or false", tag, cursor, path)
+    if kind is VOCAB:
+        if tag == VOCAB32:
+            return Vocab.from_code(cursor.number(path))
+        if tag == STRING:
+            text = bytes(_bytes(cursor, path))
+            if len(text) <= 4:
+                return Vocab(text.decode("utf-8", "surrogateescape"))
+            raise DecodeError(f"{path}: expected a word of four bytes at most, got {text[:40]!r}")
+        raise _other("a word", tag, cursor, path)
+    if kind.letter in "fd":
+        if tag in _INTEGERS or tag in (FLOAT32, FLOAT64):
+            number = float(_fixed(tag, cursor, path))
+            return float(Float32(number)) if kind is FLOAT and tag != FLOAT32 else number
+        raise _other("a number", tag, cursor, path)
+    if tag in _INTEGERS or (tag == VOCAB32 and kind.code == INT32 and kind is not SIZE):
+        return _fitting(kind, _fixed(tag, cursor, path), path)
+    raise _other(f"an integer ({kind})", tag, cursor, path)
+
+
+def _fitting(kind: Scalar, number: int, path: str) -> int:
+    bits = 8 * Packing("<" + kind.letter).size
+    if kind.letter.isupper():
+        if -(1 << (bits - 1)) <= number < 1 << bits:
+            return number % (1 << bits)
+    elif (0 if kind is SIZE else -(1 << (bits - 1))) <= number < 1 << (bits - 1):
+        return number
+    raise DecodeError(f"{path}: {number} does not fit in {kind}")
+
+
+def _enum(kind: Any, tag: int, cursor: Cursor, path: str) -> Any:
+    if tag == STRING:
+        name = str(_bytes(cursor, path), "utf-8", "replace")
+        try:
+            return kind[name]
+        except KeyError:
+            names = ", ".join(kind.__members__)
+            raise DecodeError(f"{path}: {kind.__name__} is one of {names}, not {name!r}") from None
+    if tag not in _INTEGERS and tag != VOCAB32:
+        raise _other(f"a {kind.__name__}", tag, cursor, path)
+    number = _fixed(tag, cursor, path)
+    return kind._value2member_map_.get(number, number)
+
+
+def _fixed(tag: int, cursor: Cursor, path: str) -> Any:
+    size = FIXED[tag][1]
+    try:
+        found = _UNPACK[tag](cursor.data, cursor.at)[0]
+    except struct_error:
+        raise Truncated(f"{path} is cut off", cursor.at + size) from None
+    cursor.at += size
+    return found
+
+
+def _bytes(cursor: Cursor, path: str) -> Buffer:
+    return cursor.take(cursor.number(path), path)
+
+
+def _external(kind: External, cursor: Cursor, path: str, code: int | None) -> Any:
+    """The elements of a type that reads itself."""
+    start = cursor.at
+    if code is not None or (kind.python and not reads_list(cursor, path)):
+        raise _other(kind.name, cursor.tag(path) if code is None else code, cursor, path)
+    for _ in range(kind.size):
+        skip(cursor, path)
+    data = cursor.data[start : cursor.at]
+    if cursor.yarp4:
+        data = to_yarp3(_PACK_PAIR(LIST, kind.size) + data)[8:]
+    if kind.size != 1:
+        data = _PACK_PAIR(LIST, kind.size) + data
+    elif not _I32(data)[0] & GROUP_MASK:
+        data = _PACK_PAIR(LIST, 1) + data
+    try:
+        return codec.decode_as(data, class_of(kind))
+    except DecodeError as error:
+        raise DecodeError(f"{path}: {error}") from None
+
+
+def reads_list(cursor: Cursor, path: str) -> bool:
+    """Return whether a list begins at the cursor."""
+    tag = cursor.tag(path)
+    cursor.at -= 4
+    return bool(tag & GROUP_MASK)
+
+
+def class_of(kind: External) -> Any:
+    """The class of a type that yarpy has; of another, what its bytes are."""
+    module, _, name = kind.python.rpartition(".")
+    return getattr(import_module(module), name) if module else object
+
+
+def skip(cursor: Cursor, path: str, code: int | None = None) -> None:
+    """Go behind one element of a Bottle, whatever it is."""
+    waiting: list[tuple[int, int]] = [(1, code or 0)]  # how many, and their tag unless it is theirs
+    while waiting:
+        count, fixed = waiting.pop()
+        if not count:
+            continue
+        if fixed in FIXED:
+            cursor.take(count * FIXED[fixed][1], path)
+            continue
+        waiting.append((count - 1, fixed))
+        tag = fixed or cursor.tag(path)
+        if tag in FIXED:
+            cursor.take(FIXED[tag][1], path)
+        elif tag in (STRING, BLOB):
+            _bytes(cursor, path)
+        elif tag & GROUP_MASK:
+            inner = tag & UNIT_MASK
+            least = FIXED[inner][1] if inner in FIXED else 4
+            waiting.append((cursor.count(path, least), inner))
+            if len(waiting) > 2 * THRIFT_LISTS:
+                raise DecodeError(f"{path}: more than {THRIFT_LISTS} lists within each other")
+        else:
+            raise DecodeError(f"{path}: {tag} is no tag of a Bottle")
+
+
+def _other(wanted: str, tag: int, cursor: Cursor, path: str) -> DecodeError:
+    """The error for a value of another kind."""
+    if tag & GROUP_MASK:
+        return DecodeError(f"{path}: expected {wanted}, got a list")
+    if tag == STRING:
+        try:
+            text = str(_bytes(cursor, path), "utf-8", "replace")
+        except DecodeError as error:
+            return error
+        return DecodeError(f"{path}: expected {wanted}, got {text[:40]!r}")
+    if tag in FIXED:
+        try:
+            number = _fixed(tag, cursor, path)
+        except DecodeError as error:
+            return error
+        value = f"[{Vocab.from_code(number)}]" if tag == VOCAB32 else repr(number)
+        return DecodeError(f"{path}: expected {wanted}, got {value}")
+    return DecodeError(f"{path}: expected {wanted}, got {_WHAT.get(tag, f'the tag {tag}')}")
+
+
+def pair(data: Buffer, at: int) -> tuple[int, int]:
+    """Two integers. Truncated if they are not there."""
+    try:
+        found: tuple[int, int] = _PAIR(data, at)
+    except struct_error:
+        raise Truncated("the message ends in the middle", at + 8) from None
+    return found
+
+
+def spread(view: Buffer) -> Buffer:
+    """A list whose elements all have their own tags; the bytes themselves if they have.
+    DecodeError if it is none."""
+    code, count = pair(view, 0)
+    if code == LIST:
+        return view
+    tag = code & UNIT_MASK
+    if not code & GROUP_MASK or (tag and tag not in _WHAT):
+        raise DecodeError(f"a message begins with 256 for a list, not with {code}")
+    cursor = Cursor(bytes(view), 4)
+    count = cursor.count("the message", FIXED[tag][1] if tag in FIXED else 4)
+    pieces = [_PACK_PAIR(LIST, count)]
+    head = _PACK(tag)
+    for _ in range(count):
+        start = cursor.at
+        skip(cursor, "the message", tag)
+        pieces += (head, bytes(cursor.data[start : cursor.at]))
+    pieces.append(bytes(cursor.data[cursor.at :]))
+    return b"".join(pieces)

@@ -1,0 +1,131 @@
+"""`yarpy view [PORT...] [--connect SOURCE]...`: look at images, in a browser.
+`yarpy view FILE...`: look back, at what was recorded. `yarpy view --keep 5min PORT...`: at what is.
+
+Opens ports that take images and shows them side by side in a page that the ports serve themselves,
+whose address is printed. With a display a browser opens. A recording, or the last minutes of ports,
+has a page of its own, for this computer; Foxglove and Lichtblick read from the same address.
+
+Differs from C++ yarpview: the window is a web page, so its place, size and title are the browser's;
+pictures of 16 bits and of floating point numbers are stretched to what can be seen.
+Exit codes: 1 a port cannot be opened, or a source cannot be one; otherwise it runs until a signal.
+"""
+
+from __future__ import annotations
+
+import threading
+from contextlib import ExitStack, suppress
+from pathlib import Path
+
+import click
+
+import yarpy
+from yarpy.cli.browser import open_page, show_page
+from yarpy.cli.output import print_line
+from yarpy.cli.ports import open_port
+from yarpy.cli.source import Source, also_said
+from yarpy.cli.stderr import warn
+from yarpy.errors import LocalProtocolError
+
+NAME = "/view"
+
+
+@click.command()
+@click.argument("ports", nargs=-1, metavar="[PORT...|FILE...]")
+@click.option(
+    "--connect", "sources", multiple=True, metavar="SOURCE",
+    help="Ask SOURCE for its images; again for the next port.",
+)  # fmt: skip
+@click.option("--carrier", metavar="C", help="How the sources are connected (tcp).")
+@click.option(
+    "--quality", type=click.IntRange(1, 100), default=75, show_default=True, metavar="N",
+    help="Quality of the JPEG files that browsers get, 1 to 100.",
+)  # fmt: skip
+@click.option(
+    "--rate", type=click.FloatRange(0.01, 1000), default=30.0, show_default=True, metavar="HZ",
+    help="Pictures per second that a browser gets at most.",
+)  # fmt: skip
+@click.option(
+    "--out", "outs", multiple=True, metavar="PORT",
+    help="Open PORT, which sends where people click: x y, or x0 y0 x1 y1 for a drag; again for the "
+    "next picture.",
+)  # fmt: skip
+@click.option("--no-browser", is_flag=True, help="Open no browser.")
+@click.option(
+    "--keep", metavar="TIME",
+    help="Keep the last TIME (30s, 5min) of PORTS, all by default, to look back.",
+)  # fmt: skip
+@click.option("--lan", is_flag=True, help="Let other computers see a recording, or what is kept.")
+def command(
+    ports: tuple[str, ...],
+    sources: tuple[str, ...],
+    carrier: str | None,
+    quality: int,
+    rate: float,
+    outs: tuple[str, ...],
+    no_browser: bool,
+    keep: str | None,
+    lan: bool,
+) -> int:
+    """Show the images that arrive at PORTS (/view), or recordings, in a browser."""
+    if keep is not None or any(map(is_recording, ports)):
+        look_back(ports, keep, carrier, lan, not no_browser)
+        return 0
+    from yarpy.kits.views.picture import Picture
+    from yarpy.kits.views.viewer import Viewer
+
+    names = names_of(ports, max(len(sources), len(outs)))
+    with ExitStack() as stack:
+        opened = [stack.enter_context(open_port(yarpy.BufferedPort, name, "-")) for name in names]
+        clicks = [stack.enter_context(open_port(yarpy.BufferedPort, out)) for out in outs]
+        pictures = [Picture(port) for port in opened]
+        Viewer(pictures, quality, rate, clicks)
+        for picture, source in zip(pictures, sources, strict=False):
+            Source(picture.port, source, carrier, also_said(picture.wait_for))
+        show_page(opened[0], not no_browser)
+        threading.Event().wait()
+    return 0
+
+
+def names_of(ports: tuple[str, ...], count: int) -> list[str]:
+    """The ports to open: those that are named, and for `count` pictures more of their kind.
+
+    >>> names_of((), 0)
+    ['/view']
+    >>> names_of(("/left",), 3)
+    ['/left', '/view/2', '/view/3']
+    """
+    named = ports or (NAME,)
+    return [*named, *(f"{NAME}/{number}" for number in range(len(named) + 1, count + 1))]
+
+
+def is_recording(word: str) -> bool:
+    """Return whether an argument names a file or folder, and no port."""
+    return word.endswith(".mcap") or Path(word).exists()
+
+
+def look_back(
+    words: tuple[str, ...], keep: str | None, carrier: str | None, lan: bool, browser: bool
+) -> None:
+    """Show files, or the last minutes of ports, until a signal."""
+    from yarpy.kits.record.following import Wanted
+    from yarpy.kits.record.room import parse_split
+    from yarpy.kits.record.view.ring import LiveSource
+    from yarpy.kits.record.view.server import View
+    from yarpy.kits.record.view.source import FileSource
+
+    source: FileSource | LiveSource
+    if keep is None:
+        source = FileSource(words)
+    else:
+        seconds = 0.0
+        with suppress(LocalProtocolError):
+            seconds = parse_split(keep).seconds
+        if not seconds:
+            raise LocalProtocolError(f'"{keep}" is no time that is kept: 30s, 5min')
+        wanted = Wanted(words, every=not words)
+        source = LiveSource(wanted, seconds, carrier=carrier or "", tell=warn)
+    with source, View(source, "" if lan else "127.0.0.1") as view:
+        print_line(f"{source.title} is shown at {view.url}")
+        if browser:
+            open_page(view.url)
+        threading.Event().wait()

@@ -1,0 +1,203 @@
+"""YARP: a publisher is a port with the topic's name, and a server is one that answers.
+
+Rules: any program of YARP takes part, in C++ too: what it can understand is sent in its types
+(`spelling.py`), and its questions are Bottles, `look 1.0`. A listener waits for a topic that is not
+there yet, and finds one again that was restarted.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+from yarpy.errors import DecodeError, LinkClosed, UnknownName, YarpError
+from yarpy.kits.wrap.follower import Follower
+from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.kits.wrap.port_end import PortEnd
+from yarpy.kits.wrap.shape import Shape
+from yarpy.kits.wrap.spelling import (
+    FORMS,
+    failure,
+    failure_of,
+    form_of,
+    frame_of,
+    question,
+    received,
+    text_of,
+)
+from yarpy.kits.wrap.tree import from_text
+from yarpy.link.begin.handshake import find_carrier
+from yarpy.port.connection import ConnectionEvent
+from yarpy.port.port import BufferedPort
+from yarpy.port.rpc import RpcClient, RpcServer
+from yarpy.qos import Qos
+from yarpy.route import parse_carrier
+from yarpy.wire.message import Message
+
+
+class Yarp:
+    """The middleware `yarp`: names by the name server, connections between ports."""
+
+    name = "yarp"
+    carrier = "tcp"
+
+    def check(self, way: Way) -> None:
+        way.refuse(place="names lead to ports; the name server is configured, see docs/names.md")
+        way.refuse_numbers()
+        if not way.topic.startswith("/"):
+            raise ValueError(f'"{way.topic}" is no name of a port: it begins with a slash')
+        if way.carrier:
+            find_carrier(parse_carrier(way.carrier))
+
+    def publisher(self, way: Way, shape: Shape) -> PortPublisher:
+        port = BufferedPort(way.topic, strict=way.keep == "all")
+        if way.qos is not None:
+            _give(port, way.qos)
+        return PortPublisher(port, way, shape)
+
+    def listener(self, way: Way, shape: Shape) -> PortListener:
+        port = BufferedPort("", strict=way.keep == "all")
+        try:
+            follower = Follower(port, way.topic, way.carrier or self.carrier, way.qos)
+        except YarpError:
+            port.close()
+            raise
+        return PortListener(port, way, shape, follower)
+
+    def server(self, way: Way, name: str, answer: Answer) -> RpcServer:
+        return RpcServer(way.topic, PortServer(name, answer, way))
+
+    def client(self, way: Way, shape: Shape) -> PortClient:
+        return PortClient(way, shape, way.carrier or self.carrier)
+
+
+def _give(port: BufferedPort, qos: Qos) -> None:
+    """Let every connection out of `port` have this priority."""
+
+    def on_connection(event: ConnectionEvent) -> None:
+        if event.created and not event.incoming:
+            for connection in port.outputs:
+                if connection.target == event.target:
+                    connection.qos = qos
+
+    port.on_connection(on_connection)
+
+
+class PortPublisher(PortEnd):
+    """Writes to a port of its own."""
+
+    def __init__(self, port: BufferedPort, way: Way, shape: Shape) -> None:
+        super().__init__(port, way)
+        self._name = way.encoding
+        self._form = form_of(way.encoding, shape)
+        self._write = port.write
+
+    def publish(self, item: Item) -> int:
+        make = self._form
+        value = make(item) if item.forms is None else item.form(self._name, make)
+        return self._write(value, f"{item.count} {item.time:.6f}")
+
+
+class PortListener(PortEnd):
+    """Reads a port of its own, which follows the topic."""
+
+    def __init__(
+        self, port: BufferedPort, way: Way, shape: Shape, follower: Follower | None = None
+    ) -> None:
+        super().__init__(port, way)
+        self._shape = shape
+        self._follower = follower
+
+    def listen(self, timeout: float | None) -> Received:
+        found = received(self.read(timeout), self._shape)
+        found.middleware = self.way.middleware
+        return found
+
+    def close(self) -> None:
+        if self._follower is not None:
+            self._follower.close()
+        super().close()
+
+
+class PortServer:
+    """A handler for an RpcServer: decodes a message to arguments, and encodes the result."""
+
+    def __init__(self, name: str, answer: Answer, way: Way) -> None:
+        self._name = name
+        self._answer = answer
+        self._form = FORMS[way.encoding]
+
+    def __call__(self, message: Message) -> Any:
+        found = self._answer(*self._arguments(message))
+        return failure(found) if isinstance(found, Failure) else self._form(found)
+
+    def _arguments(self, message: Message) -> tuple[list[Any], dict[str, Any]]:
+        found = frame_of(message)
+        if found is not None:
+            return question_of(found.value)
+        text = text_of(message)
+        if text is not None and text.startswith("["):
+            return question_of(from_text(text))
+        value = message.value
+        words = value if isinstance(value, list) else [value]
+        if not words or words[0] != self._name:
+            raise DecodeError(f'ask "{self._name}", and behind it the arguments')
+        return list(words[1:]), {}
+
+
+class PortClient:
+    """Asks a server; several questions at a time take several connections."""
+
+    def __init__(self, way: Way, shape: Shape, carrier: str) -> None:
+        self._way = way
+        self._shape = shape
+        self._carrier = carrier
+        self._idle: list[RpcClient] = []
+        self._lock = threading.Lock()  # of the list of idle connections
+        self._closed = False
+
+    def call(
+        self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
+    ) -> Any:
+        deadline = None if timeout is None else time.monotonic() + timeout
+        client = self._client(deadline)
+        try:
+            left = None if deadline is None else max(deadline - time.monotonic(), 0.0)
+            message = client.ask(question(name, args, kwargs), left)
+        except BaseException:
+            client.close()
+            raise
+        with self._lock:
+            if not self._closed:
+                self._idle.append(client)
+        if self._closed:
+            client.close()
+        if message is None:
+            raise LinkClosed(f'"{self._way.topic}" gave no answer')
+        failed = failure_of(message)
+        if failed is not None:
+            raise failed.error()
+        return received(message, self._shape).value
+
+    def _client(self, deadline: float | None) -> RpcClient:
+        """A connection to the server; with time left, one that is not there yet is waited for."""
+        with self._lock:
+            if self._idle:
+                return self._idle.pop()
+        pause = 0.02
+        while True:
+            try:
+                return RpcClient(self._way.topic, carrier=self._carrier)
+            except (UnknownName, LinkClosed):
+                if deadline is None or time.monotonic() + pause > deadline:
+                    raise
+            time.sleep(pause)
+            pause = min(2 * pause, 0.5)
+
+    def close(self) -> None:
+        with self._lock:
+            self._closed = True
+            idle, self._idle = self._idle, []
+        for client in idle:
+            client.close()

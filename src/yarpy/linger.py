@@ -1,0 +1,154 @@
+"""Linger: what is still open when the program ends is closed.
+
+Rules: a program ends normally, by an exception, by sys.exit, or by SIGTERM or SIGHUP; then all that
+is open has `seconds()` together to send what was written and to give names back. After os._exit,
+and after SIGKILL, nobody can do anything. The two signals are heard only where nobody else hears
+them and the system would end the process: a handler of ours is set when the first thing opens in
+the main thread, and taken back when the last one closes there. It closes what is open, in a thread
+of its own, since the frame beneath may hold any lock; then the signal ends the process as it would
+have without us. The main thread hears of a signal; code outside Python that does not return keeps
+it waiting.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+from types import FrameType
+from typing import Final
+
+from yarpy import fork
+from yarpy.log import logger
+
+SETTING: Final = "YARPY_LINGER"
+LINGER: Final = 1.0  # seconds
+MORE: Final = 0.5  # seconds beyond that for the thread that closes after a signal
+
+Close = Callable[[float], object]  # gets the seconds that it may take
+
+log = logger("yarpy.linger")
+
+_open: dict[object, Close] = {}
+_last: list[Callable[[], object]] = []
+_begun: set[int] = set()  # the process in which the interpreter calls us at its end
+_signals: Final = tuple(
+    getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)
+)
+
+
+def seconds() -> float:
+    """Return the seconds that closing may take where the program does not say: 1, or YARPY_LINGER
+    of its environment."""
+    text = os.environ.get(SETTING, "")
+    if not text:
+        return LINGER
+    with contextlib.suppress(ValueError):
+        found = float(text)
+        if 0.0 <= found < 1e6:
+            return found
+    log.warning("%s=%.40r is no number of seconds and is ignored", SETTING, text)
+    return LINGER
+
+
+def add(thing: object, close: Close) -> None:
+    """Call `close` when the program ends, unless `thing` is taken away before."""
+    process = os.getpid()
+    if process not in _begun:
+        _begin(process)
+    _open[thing] = close
+    _hear()
+
+
+def remove(thing: object) -> None:
+    """It was closed."""
+    _open.pop(thing, None)
+    if not _open:
+        _hear_no_more()
+
+
+def at_last(action: Callable[[], object]) -> None:
+    """Call `action` when the program ends and everything else is closed, also what other rooms
+    close by `atexit`; where several say so, the last one first."""
+    process = os.getpid()
+    if process not in _begun:
+        _begin(process)
+    _last.append(action)
+
+
+def end() -> None:
+    """Close all that is open, the last first, in `seconds()` seconds."""
+    left = seconds()
+    limit = time.monotonic() + left
+    while _open:
+        thing, close = _open.popitem()
+        left = max(0.0, limit - time.monotonic())
+        try:
+            close(left if not _open else left / 2)
+        except Exception:
+            log.exception("%s could not be closed at the end of the program", thing)
+
+
+@atexit.register  # before anything that imports this can register, so it is called behind that
+def _end_rest() -> None:
+    while _last:
+        action = _last.pop()
+        try:
+            action()
+        except Exception:
+            log.exception("%s failed at the end of the program", action)
+
+
+def _end_all() -> None:
+    end()
+    _end_rest()
+
+
+def _begin(process: int) -> None:
+    if not _begun:
+        atexit.register(end)
+        fork.after_in_child(_open.clear)
+    _begun.add(process)
+    multiprocessing = sys.modules.get("multiprocessing.process")
+    if multiprocessing is not None and multiprocessing.parent_process() is not None:
+        from multiprocessing.util import Finalize  # such a child ends without `atexit`
+
+        Finalize(None, end, exitpriority=0)
+        Finalize(None, _end_rest, exitpriority=-1)
+
+
+# -- signals --------------------------------------------------------------------------------------
+
+
+def _hear() -> None:
+    if threading.current_thread() is not threading.main_thread():
+        return
+    for number in _signals:
+        if signal.getsignal(number) is signal.SIG_DFL:
+            with contextlib.suppress(ValueError):  # of a second interpreter in this process
+                signal.signal(number, _end_by)
+
+
+def _hear_no_more() -> None:
+    if threading.current_thread() is not threading.main_thread():
+        return
+    for number in _signals:
+        if signal.getsignal(number) is _end_by:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _end_by(number: int, frame: FrameType | None) -> None:
+    for each in _signals:
+        if signal.getsignal(each) is _end_by:
+            signal.signal(each, signal.SIG_DFL)  # a second one does not wait
+    if _open or _last:
+        thread = threading.Thread(target=_end_all, name="yarpy linger", daemon=True)
+        with contextlib.suppress(RuntimeError):  # there can be no more threads
+            thread.start()
+            thread.join(seconds() + MORE)
+    os.kill(os.getpid(), number)

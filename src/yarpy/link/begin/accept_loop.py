@@ -1,0 +1,166 @@
+"""The accept loop: one thread that waits for new connections, for all ports of the process.
+
+Rules: what it calls returns soon and waits for nobody; what fails there is logged, and the other
+ports go on. The thread lives while there are ports. A forked process has none of its parent's:
+`start_over`.
+"""
+
+from __future__ import annotations
+
+import selectors
+import socket
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from typing import Final, Protocol
+
+from yarpy.log import logger
+
+log = logger("yarpy.link")
+
+BRAKE: Final = 0.1  # seconds of rest after a failure, which might come again and again
+
+# Whether a thread that waits already sees a socket that another one adds; if not, it is woken.
+_SEES_MORE: Final = selectors.DefaultSelector.__name__ in ("EpollSelector", "KqueueSelector")
+
+
+class Entrance(Protocol):
+    """The listening socket of one port, and what to do with its connections. It is called in the
+    loop's thread only."""
+
+    @property
+    def name(self) -> str:
+        """For people: whose it is."""
+
+    def ready(self, sock: socket.socket, /) -> None:
+        """One of its sockets has something to read."""
+
+    def left(self) -> float | None:
+        """Seconds until `look` is to be called; None: not at all."""
+
+    def look(self) -> None:
+        """The time is over."""
+
+
+class AcceptLoop:
+    """Watches the sockets of entrances. `enter` may be called by any thread, the rest by those that
+    the loop calls."""
+
+    def __init__(self) -> None:
+        self._selector: selectors.BaseSelector | None = None
+        self._waker: tuple[socket.socket, socket.socket] | None = None
+        self.thread: threading.Thread | None = None
+        self.start_over()
+
+    def start_over(self) -> None:
+        """Forget everything, in a process whose threads are gone: a forked one."""
+        self._stop()
+        self._lock = threading.RLock()  # of who is here, and whether there is a thread
+        self._entrances: set[Entrance] = set()
+        self._due: dict[Entrance, float] = {}  # when `look` is to be called
+        self._newcomers: deque[tuple[socket.socket, Entrance]] = deque()
+
+    @property
+    def entrances(self) -> list[Entrance]:
+        """All that are watched."""
+        with self._lock:
+            return list(self._entrances)
+
+    def enter(self, sock: socket.socket, entrance: Entrance) -> None:
+        """Watch the listening socket of a new entrance."""
+        with self._lock:
+            if self.thread is None:
+                self._start()
+            self._entrances.add(entrance)
+            if self._waker is None:
+                self.watch(sock, entrance)
+            else:
+                self._newcomers.append((sock, entrance))
+                self._waker[1].send(b"\0")
+
+    def watch(self, sock: socket.socket, entrance: Entrance) -> None:
+        """From now on `entrance.ready` is called when there is something to read."""
+        assert self._selector is not None
+        self._selector.register(sock, selectors.EVENT_READ, entrance)
+
+    def forget(self, sock: socket.socket) -> None:
+        """Watch it no longer; it must still be open."""
+        assert self._selector is not None
+        self._selector.unregister(sock)
+
+    def leave(self, entrance: Entrance) -> None:
+        """It has no sockets any more."""
+        with self._lock:
+            self._entrances.discard(entrance)
+
+    # -- the thread -------------------------------------------------------------------------------
+
+    def _start(self) -> None:
+        self._selector = selectors.DefaultSelector()
+        if not _SEES_MORE:
+            self._waker = socket.socketpair()
+            self._selector.register(self._waker[0], selectors.EVENT_READ, None)
+        self.thread = threading.Thread(target=self._run, name="yarpy accept", daemon=True)
+        try:
+            self.thread.start()
+        except BaseException:
+            self._stop()
+            raise
+
+    def _stop(self) -> None:
+        if self._selector is not None:
+            self._selector.close()
+        for sock in self._waker or ():
+            sock.close()
+        self._selector = self._waker = self.thread = None
+
+    def _run(self) -> None:
+        selector = self._selector
+        assert selector is not None
+        while not self._is_over():
+            for key, _ in selector.select(self._patience()):
+                if key.data is None:
+                    self._let_in()
+                else:
+                    assert isinstance(key.fileobj, socket.socket)
+                    self._call(key.data, key.data.ready, key.fileobj)
+            now = time.monotonic()
+            for entrance in [one for one, due in self._due.items() if due <= now]:
+                self._call(entrance, entrance.look)
+
+    def _is_over(self) -> bool:
+        """Return whether no port is left; then this is no longer the accepting thread."""
+        if self._entrances:
+            return False
+        with self._lock:
+            if not self._entrances:
+                self._stop()
+            return not self._entrances
+
+    def _patience(self) -> float | None:
+        if not self._due:
+            return None
+        return max(0.0, min(self._due.values()) - time.monotonic())
+
+    def _let_in(self) -> None:
+        """Watch those that came while we waited."""
+        assert self._waker is not None
+        self._waker[0].recv(1)
+        self.watch(*self._newcomers.popleft())
+
+    def _call(self, entrance: Entrance, act: Callable[..., None], *arguments: object) -> None:
+        try:
+            act(*arguments)
+            left = entrance.left()
+        except Exception:
+            log.exception("%s: a connection could not be accepted", entrance.name)
+            time.sleep(BRAKE)
+            left = BRAKE
+        if left is None:
+            self._due.pop(entrance, None)
+        else:
+            self._due[entrance] = time.monotonic() + left
+
+
+LOOP: Final = AcceptLoop()

@@ -1,0 +1,237 @@
+"""ByteDriver: moves bytes between a stream and a transport that carries bytes.
+
+Rules: one call into the system where one is enough. Waking a sleeping thread takes some 30 us: when
+the last wait was about that short, the driver polls for the next bytes for a while before it
+sleeps; each time in vain makes it poll less often.
+
+What a call into the system returns is taken from a `map` by a `for` into an attribute: that is one
+step for Python, which looks for signals only behind calls. (Compiled, other ways of unpacking hide
+what the call raises.) So an exception out of a signal handler finds
+bytes either not moved or noted.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Final
+
+from yarpy.link.cores import cores
+from yarpy.link.driver import Driver, is_foreign, link_error
+from yarpy.link.ending import NOW
+from yarpy.transports.base import MSG_DONTWAIT, SocketTransport, Transport
+from yarpy.wire.aside_stream import AsideStream
+from yarpy.wire.stream import Buffer, ByteStream
+
+SOON: Final = 200e-6
+LOOKING: Final = 120e-6
+FIRST_PENALTY: Final = 32
+LAST_PENALTY: Final = 512
+# Of so many pieces, with so many bytes together, one is made before they are sent.
+FEW: Final = 8
+LITTLE: Final = 1 << 11
+NONE: Final = -1
+_WHOLE: Final = (0,)  # arguments of the system's calls
+_NO_WAITING: Final = (MSG_DONTWAIT,)
+
+
+class ByteDriver(Driver):
+    """A transport of bytes and the stream in front of it."""
+
+    def __init__(self, transport: Transport, stream: ByteStream) -> None:
+        super().__init__(transport, stream)
+        self._beside = stream if isinstance(stream, AsideStream) else None
+        self._plain = type(stream) is ByteStream  # its calls may be spelled out
+        system = transport if isinstance(transport, SocketTransport) else None
+        self._recv = None if system is None else system.recv_call
+        self._send = system.send_call if system is not None and MSG_DONTWAIT else None
+        # Whether polling may beat sleeping.
+        self.eager = cores() > 1 and transport.eager
+        self._looks = False  # poll for the next bytes instead of sleeping
+        self._skip = 0  # waits to pass before polling is tried again
+        self._penalty = FIRST_PENALTY
+        self._came = NONE  # bytes that the system has put into the stream's buffer; 0: the end
+        self._taken = 0  # bytes of the output that the system has taken
+
+    # -- sending ----------------------------------------------------------------------------------
+
+    def push(self) -> bool:
+        if self._taken:
+            self._account()
+        output = self.stream.output
+        if not output:
+            return True
+        if self._send is None:
+            return False
+        if self._beside is not None and self._beside.aside:
+            return False  # what lies aside is counted by `send`
+        if len(output) > 1:
+            if len(output) > FEW or sum(map(len, output)) > LITTLE:
+                return False
+            output[:] = (b"".join(output),)
+        size = len(output[0])
+        send = self._send
+        try:
+            for self._taken in map(send, output, _NO_WAITING):
+                pass
+        except BlockingIOError:
+            return False
+        except OSError as error:
+            if is_foreign(error):
+                raise
+            self.transport.failed(error)
+            raise link_error(error) from error
+        if self._taken == size:  # as `_account`, spelled out
+            self.bytes_out += size
+            del output[0]
+            self._taken = 0
+        else:
+            self._account()
+        return not self.stream.output
+
+    def _account(self) -> None:
+        """Take what `push` has sent from the stream. From the first assignment to the end, Python
+        looks for no signals."""
+        output, sent = self.stream.output, self._taken
+        rest = [memoryview(output[0])[sent:]] if sent < len(output[0]) else []
+        output[:1] = rest
+        self.bytes_out += sent
+        self._taken = 0
+
+    def send(self, until: float | None = None) -> bool:
+        stream = self.stream
+        output = stream.output
+        if not output:
+            return True
+        stream.output = []
+        try:
+            left = self.transport.try_send(output)
+            if left and until != NOW:
+                left = self._send_rest(left, until)
+        except OSError as error:
+            if is_foreign(error):
+                raise
+            self.transport.failed(error)
+            raise link_error(error) from error
+        for piece in output:
+            self.bytes_out += len(piece)
+        for piece in left:
+            self.bytes_out -= len(piece)
+        if self._beside is not None:
+            self.bytes_out += self._beside.aside
+            self.aside += self._beside.aside
+            self._beside.aside = 0
+        if left:
+            stream.put_back(left)
+            return False
+        return True
+
+    def _send_rest(self, left: list[Buffer], until: float | None) -> list[Buffer]:
+        """Send buffers as the peer takes them; return what could not be sent by then."""
+        transport = self.transport
+        while left and (wait := self.ending.slice(until)):
+            if transport.wait_writable(wait):
+                left = transport.try_send(left)
+        return left
+
+    # -- receiving --------------------------------------------------------------------------------
+
+    def fill(self, deadline: float | None = None) -> None:
+        stream, plain = self.stream, self._plain
+        try:
+            if self._came >= 0:
+                pass
+            elif deadline is not None and not self._limit(deadline):
+                raise BlockingIOError
+            else:
+                # `get_buffer` for nearly every message, spelled out, as is `buffer_updated` below.
+                if plain and stream.head == stream.tail and stream.mark < 0 and stream.big is None:
+                    stream.head = stream.tail = 0
+                    buffer = stream.view
+                else:
+                    buffer = stream.get_buffer()
+                if not (self._looks and (self._try(buffer) or self._look(buffer))):
+                    receive = self._recv or self.transport.recv_into
+                    if self._skip:
+                        self._skip -= 1
+                        for self._came in map(receive, (buffer,)):  # the kernel wakes us
+                            pass
+                    else:
+                        started = time.perf_counter()
+                        for self._came in map(receive, (buffer,)):
+                            pass
+                        # If the wait was short, polling would have been faster.
+                        if self.eager and time.perf_counter() - started < SOON:
+                            self._looks = True
+        except OSError as error:
+            if self._waits_on(error, deadline):
+                self.fill(deadline)
+                return
+            self._came = 0  # the stream reports a message that was cut off
+        count = self._came
+        if count < 0:
+            return  # a signal handler that closed the port has landed it
+        # From here, or inside of `buffer_updated`, to the end Python looks for no signals.
+        if count and plain and stream.big is None:
+            stream.tail += count
+            self.bytes_in += count
+        elif count:
+            stream.buffer_updated(count)
+            self.bytes_in += count
+        else:
+            stream.feed_eof()
+        self._came = NONE
+
+    def try_fill(self) -> bool:
+        try:
+            if self._came < 0 and not self._try(self.stream.get_buffer()):
+                return False
+        except OSError as error:
+            if is_foreign(error):
+                raise
+            self.transport.failed(error)
+            self._came = 0
+        self._land()
+        return True
+
+    def _land(self) -> None:
+        """Count what has come into the stream's buffer, as `fill` does."""
+        count = self._came
+        if count < 0:
+            return
+        if count:
+            self.stream.buffer_updated(count)
+            self.bytes_in += count
+        else:
+            self.stream.feed_eof()
+        self._came = NONE
+
+    def _try(self, buffer: memoryview) -> bool:
+        """Take bytes that are there already, or the end; return whether there was either."""
+        receive = self._recv
+        if receive is not None and MSG_DONTWAIT:
+            try:
+                for self._came in map(receive, (buffer,), _WHOLE, _NO_WAITING):
+                    pass
+            except BlockingIOError:
+                return False
+            return True
+        receive = self.transport.try_recv_into
+        for self._came in map(receive, (buffer,)):
+            pass
+        return self._came >= 0
+
+    def _look(self, buffer: memoryview) -> bool:
+        """Poll until bytes come; return False when that takes longer than going to sleep would."""
+        until = time.perf_counter() + LOOKING
+        while True:
+            for _ in range(8):
+                if self._try(buffer):
+                    if self._penalty > FIRST_PENALTY:
+                        self._penalty -= 1
+                    return True
+            if time.perf_counter() > until:
+                break
+        self._looks = False
+        self._skip = self._penalty
+        self._penalty = min(2 * self._penalty, LAST_PENALTY)
+        return False

@@ -1,0 +1,59 @@
+"""Sweeper: a thread that sends what a burst left behind, if its writer does not come back.
+
+Rules: it does not know the connection; it is handed a callable, which takes the connection's lock
+for moments. The thread begins when there is something to do for the first time, so that whoever
+makes a sweeper can stop it whatever a signal handler does meanwhile. It sleeps while nothing is
+left.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Final
+
+GATHER_SECONDS: Final = 200e-6  # how long a burst's message may wait for others
+
+
+class Sweeper:
+    """`sweep` sends what is there, and says whether the burst may still go on."""
+
+    def __init__(self, name: str, sweep: Callable[[], bool]) -> None:
+        self._sweep = sweep
+        self._wake = threading.Lock()  # free: there is something to do; a handler may free it
+        self._wake.acquire()
+        self._asleep = True
+        self._stopped = False
+        self.thread = threading.Thread(target=self._run, name=name, daemon=True)
+
+    def watch(self) -> None:
+        """Something was gathered."""
+        if self.thread.ident is None and not self._stopped:
+            self.thread.start()
+        if self._asleep:
+            self._asleep = False
+            self._rouse()
+
+    def stop(self) -> None:
+        """Let the thread end."""
+        self._stopped = True
+        self._rouse()
+
+    def _rouse(self) -> None:
+        try:
+            self._wake.release()
+        except RuntimeError:
+            pass  # it is awake
+
+    def _run(self) -> None:
+        while True:
+            self._wake.acquire()
+            if self._stopped:
+                return
+            while True:
+                time.sleep(GATHER_SECONDS)
+                if not self._sweep():
+                    break
+            self._asleep = True
+            self._sweep()

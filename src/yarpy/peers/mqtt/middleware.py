@@ -1,0 +1,142 @@
+"""MQTT: the topics of a broker, "mqtt://broker:1883". No library is needed.
+
+Rules: payloads are those of `payload.py`, topics stand at the broker as they are written. A broker
+that goes away is dialled again until it is back. `reliable` is QoS 1; what else the carrier takes
+(`retain`, `user.NAME+password.WORD`, `tls`) is said by `carrier=`. Questions need MQTT 5.
+"""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+from typing import Any, TypeVar
+
+from yarpy.contact import parse_contact
+from yarpy.errors import LinkClosed, UnknownName, YarpError
+from yarpy.kits.wrap import payload, spelling
+from yarpy.kits.wrap.middleware import Answer, Failure, Item, Received, Way, question_of
+from yarpy.kits.wrap.port_end import PortEnd
+from yarpy.kits.wrap.shape import Shape
+from yarpy.link.begin.handshake import find_carrier
+from yarpy.port.base import BasePort
+from yarpy.port.port import BufferedPort
+from yarpy.port.rpc import RpcClient, RpcServer
+from yarpy.route import parse_carrier
+from yarpy.wire.message import Message
+
+_PAUSE = 0.1  # seconds between two tries to ask who has not subscribed yet
+
+
+class Mqtt:
+    """The middleware `mqtt`."""
+
+    name = "mqtt"
+
+    def check(self, way: Way) -> None:
+        if not way.place or "/" in way.place:
+            raise ValueError('mqtt needs a broker: "mqtt://HOST", or "mqtt://HOST:PORT"')
+        find_carrier(parse_carrier(parse_contact(_target(way)).carrier))
+        way.refuse_numbers()
+        way.refuse(qos="what leads to a broker has no thread and no priority of its own")
+
+    def publisher(self, way: Way, shape: Shape) -> MqttPublisher:
+        return MqttPublisher(way)
+
+    def listener(self, way: Way, shape: Shape) -> MqttListener:
+        return MqttListener(way, shape)
+
+    def server(self, way: Way, name: str, answer: Answer) -> RpcServer:
+        server = RpcServer("", MqttServer(answer, way), register=False)
+        return _connected(server, _target(way, "sub", "rpc"))
+
+    def client(self, way: Way, shape: Shape) -> MqttClient:
+        return MqttClient(way, shape)
+
+
+def _target(way: Way, *words: str) -> str:
+    """The topic as something to connect to."""
+    added = [*words, *filter(None, way.carrier.split("+"))]
+    if way.reliable and "rpc" not in words:
+        added.append("qos.1")
+    return f"{'+'.join(('mqtt', *added))}://{way.place}/{way.topic}"
+
+
+P = TypeVar("P", bound=BasePort)
+
+
+def _connected(port: P, target: str) -> P:
+    try:
+        port.connect(target)
+    except YarpError:
+        port.close()
+        raise
+    return port
+
+
+class MqttPublisher(PortEnd):
+    def __init__(self, way: Way) -> None:
+        port = BufferedPort("", strict=way.keep == "all")
+        super().__init__(_connected(port, _target(way)), way)
+        self._form = partial(payload.joined, encoding=way.encoding)
+
+    def publish(self, item: Item) -> int:
+        return self.port.write(item.form(f"bytes {self.way.encoding}", self._form))
+
+
+class MqttListener(PortEnd):
+    def __init__(self, way: Way, shape: Shape) -> None:
+        port = BufferedPort("", strict=way.keep == "all")
+        super().__init__(_connected(port, _target(way, "sub")), way)
+        self._shape = shape
+
+    def listen(self, timeout: float | None) -> Received:
+        found = payload.unpack(self.read(timeout).as_(bytes), self._shape)
+        found.middleware = self.way.middleware
+        return found
+
+
+class MqttServer:
+    """A handler for an RpcServer: decodes a payload to arguments, and encodes the result."""
+
+    def __init__(self, answer: Answer, way: Way) -> None:
+        self._answer = answer
+        self._encoding = way.encoding
+
+    def __call__(self, message: Message) -> bytes:
+        found = self._answer(*question_of(payload.asked(message.as_(bytes))))
+        if isinstance(found, Failure):
+            return payload.failure(found)
+        return payload.joined(found, self._encoding)
+
+
+class MqttClient:
+    def __init__(self, way: Way, shape: Shape) -> None:
+        self._way = way
+        self._shape = shape
+        self._client = _connected(RpcClient(), _target(way, "rpc"))
+
+    def call(
+        self, name: str, args: list[Any], kwargs: dict[str, Any], timeout: float | None
+    ) -> Any:
+        question = payload.question(args, kwargs)
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while True:
+            left = None if deadline is None else max(deadline - time.monotonic(), 0.001)
+            message = self._client.ask(question, left)
+            if message is None:
+                raise LinkClosed(f'"{self._way.topic}" gave no answer')
+            refused = spelling.failure_of(message) if message.spelling == "binary" else None
+            if refused is None:
+                break
+            # By the broker: nobody has subscribed. As elsewhere, with a timeout that is waited for.
+            if deadline is None or time.monotonic() + _PAUSE >= deadline:
+                raise UnknownName(refused.text)
+            time.sleep(_PAUSE)
+        data = message.as_(bytes)
+        failed = payload.failure_of(data)
+        if failed is not None:
+            raise failed.error()
+        return payload.unpack(data, self._shape).value
+
+    def close(self) -> None:
+        self._client.close()

@@ -1,0 +1,440 @@
+"""A node of ROS 1 in a Python program: publishers, subscribers, services, parameters.
+
+    with yarpy.ros.Node("/adder") as node:
+        node.service("/add", "rospy_tutorials/AddTwoInts", lambda asked: [asked.a + asked.b])
+        image = node.subscriber("/camera/image", "sensor_msgs/Image").take(timeout=5)
+        rate = node.get_param("~rate", 10)
+
+Rules: types are names, found as a program of ROS would find them, or classes made by
+`yarpy.idl.load`. What is written may be an object of the type, a dict or list of its fields, or a
+value of YARP (`Image`, `Vector`, str ...); what is read is an object of the type. Everything is
+safe to call from any thread. Ports of the node are ports of YARP too.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Final, Self, TypeAlias, TypeVar
+
+from yarpy.data.stamp import Stamp
+from yarpy.errors import (
+    AddressError,
+    LocalProtocolError,
+    NoNameServer,
+    UnknownName,
+    YarpError,
+)
+from yarpy.link.send.outbound import Outbound
+from yarpy.names.base import NameClient
+from yarpy.names.node_name import (
+    PUBLISHER,
+    SERVER,
+    SUBSCRIBER,
+    Category,
+    NodeName,
+    check_graph_name,
+    master_type,
+)
+from yarpy.peers.ros.body import has_header
+from yarpy.peers.ros.calls import Calls
+from yarpy.peers.ros.carrier import TcpRos
+from yarpy.peers.ros.graph import GRAPH, GraphNode, join
+from yarpy.peers.ros.master import DEFAULT_URI, VARIABLE, RosMaster
+from yarpy.peers.ros.membership import QUEUE_SIZE, Membership
+from yarpy.peers.ros.message.library import Service, default_library
+from yarpy.peers.ros.message.message import Message as RosMessage
+from yarpy.peers.ros.message.message import Time
+from yarpy.peers.ros.role import RosRole, services, without_masters
+from yarpy.peers.ros.type_server import ask_type_server
+from yarpy.port.assembly import open_hub
+from yarpy.port.base import BasePort
+from yarpy.port.hub import Hub
+from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox
+from yarpy.port.port import MessagePort, envelope_of
+from yarpy.port.rpc import RpcServer
+from yarpy.route import Declared
+from yarpy.wire.message import Message, Packet
+
+P = TypeVar("P", bound=BasePort)
+
+#: package/Type, or a class of messages
+Type: TypeAlias = "str | type[RosMessage]"
+_MISSING: Final = object()
+
+
+def _complete(message: Any, now: Stamp) -> None:
+    """Write the number into the header of a message, and the time where it says none."""
+    header = message.header
+    header.seq = now.count
+    if not any(header.stamp):
+        header.stamp = Time.from_sec(now.time)
+
+
+class Publisher(MessagePort):
+    """Publishes a topic: `publisher.write(value)`."""
+
+    def __init__(self, node: Node, member: Membership, kind: type[RosMessage]) -> None:
+        self.type = kind
+        self._member = member
+        self._count = 0
+        self._headed = has_header(kind)
+        super().__init__(node._open(member, Callback(lambda message: None)))
+
+    def write(
+        self,
+        value: object,
+        stamp: Stamp | str | None = None,
+        *,
+        wait: bool = False,
+        timeout: float | None = None,
+    ) -> int:
+        """Send `value` to every subscriber; returns how many connections took it.
+
+        `stamp` goes into the header, if the type has one. Without it messages are counted there
+        from 1, as rospy does; dicts that say no time, images and other values of YARP get the
+        present one, and objects of the type keep their own. Raises PortClosed;
+        TypeError, ValueError or OverflowError for a value that does not fit the type.
+        """
+        if stamp is None:
+            self._count = (self._count + 1) & 0x7FFFFFFF
+            if self._headed and isinstance(value, RosMessage):
+                header: Any = value
+                header.header.seq = self._count
+        plain = stamp is None and timeout is None and not wait and not self._member.latched
+        if plain and type(value) is self.type:
+            return self._write_at_once(value)
+        if not isinstance(value, RosMessage):
+            from yarpy.peers.ros.message.native import to_message
+
+            now = Stamp(self._count, self._member.clock()) if stamp is None else None
+            value = to_message(value, self.type, now)
+            if self._headed and now is not None:
+                _complete(value, now)
+        elif type(value) is not self.type and _identity(type(value)) != _identity(self.type):
+            raise TypeError(f"{self.name} takes {self.type._type}, not {value._type}")
+        if self._member.latched:
+            envelope = envelope_of(stamp) if stamp is not None else b""
+            self._member.last = Packet(value, envelope)
+        return super().write(value, stamp, wait=wait, timeout=timeout)
+
+    def _write_at_once(self, value: object) -> int:
+        """As `write`, for an object of the type and nothing else: what is small is encoded once and
+        sent to all that can take it now. The usual way takes three times as long."""
+        hub, kind = self._hub, self.type
+        outputs = hub.outputs.links
+        if (
+            hub.life.closing
+            or hub.life.interrupted
+            or hub.monitoring.output is not None
+            or not outputs
+        ):
+            return super().write(value)
+        took, data = 0, None
+        rest: list[Outbound] = []
+        for link in outputs:
+            carrier = link.carrier
+            if type(carrier) is TcpRos and carrier.kind is kind:
+                data = carrier.whole(value) if data is None else data
+                if data is None:
+                    return super().write(value)  # to all: it is large, or not what its type says
+                try:
+                    if link.active and not link.log and link.send_whole(data):
+                        took += 1
+                        continue
+                except YarpError as error:
+                    self._lose(link, error)
+                    continue
+            rest.append(link)
+        return took + self._send_all(Packet(value), tuple(rest), False, None) if rest else took
+
+
+class Subscriber(MessagePort):
+    """Subscribes to a topic: `subscriber.read()`, or `for message in subscriber.messages()`."""
+
+    def __init__(
+        self, node: Node, member: Membership, kind: type[RosMessage] | None, mailbox: Mailbox
+    ) -> None:
+        self.type = kind
+        super().__init__(node._open(member, mailbox))
+
+    def take(self, timeout: float | None = None) -> Any:
+        """The next message, as an object of the type. Raises Timeout, PortClosed, DecodeError."""
+        return value_of(self.read(timeout))
+
+    def messages(self) -> Iterator[Any]:
+        """Messages as objects of the type, until the port is closed."""
+        for message in self:
+            yield value_of(message)
+
+
+def value_of(message: Message) -> Any:
+    """A received message as an object of its type; one that came without a type as its value."""
+    return getattr(message, "ros", None) or message.value
+
+
+class Node:
+    """A node. It is registered with the first of its topics and services.
+
+    master: as ROS_MASTER_URI; without it the master of the environment or of `yarpy detect --ros`.
+    names: a name client that learns of the ports too; None: the default one, if there is any.
+    Raises AddressError for a name that ROS does not allow, or that another living node has at the
+    name server.
+    """
+
+    def __init__(
+        self, name: str, *, master: str | None = None, names: NameClient | None = None
+    ) -> None:
+        self.name = check_graph_name(name if name.startswith("/") else f"/{name}")
+        self._names = names
+        if master is not None:
+            self.master = RosMaster(master)
+            ask_type_server(self.master)
+        else:
+            self._names, self.master = _found(names)
+        self._ports: list[Any] = []
+        self._attached: list[tuple[Hub, Declared]] = []  # with what they said of themselves before
+        self._calls = Calls(self.name, self.master)
+        plain = without_masters(self._names)
+        self._node: GraphNode = GRAPH.use(self.name, self.master, plain, open_hub)
+        self._closed = False
+        self._simulated: float | None = None  # seconds, where the time is simulated
+        if self._is_simulated():
+            self._simulated = 0.0
+            self.subscriber("/clock", "rosgraph_msgs/Clock", self._set_time)
+
+    # -- topics -----------------------------------------------------------------------------------
+
+    def publisher(
+        self, topic: str, type_: Type, *, latch: bool = False, queue_size: int = QUEUE_SIZE
+    ) -> Publisher:
+        """Publish a topic. `latch`: who subscribes late gets the last message. `queue_size`: so
+        many messages wait for a subscriber that is behind; the oldest gives way, and `write` waits
+        for nobody. 0: `write` waits for each.
+
+        Raises AddressError, UnknownType, ValueError.
+        """
+        if queue_size < 0:
+            raise ValueError(f"queue_size={queue_size}: it is 0 or more")
+        kind = _message_class(type_)
+        member = self._member(topic, PUBLISHER, kind._type, kind)
+        member.latched, member.queue_size = latch, queue_size
+        return self._keep(Publisher(self, member, kind))
+
+    def attach(self, port: BasePort, topic: str, type_: Type) -> None:
+        """Publish what an open port of YARP writes as a topic too, until either is closed.
+
+        Its messages become messages of the type (`docs/ros.md` says which do); what does not fit
+        is not sent, and the log says why. Raises AddressError for a port that belongs to a topic
+        already, UnknownType.
+        """
+        hub = port._hub
+        if hub.membership is not None:
+            raise AddressError(f"{port.name} is a topic or a service of a node already")
+        kind = _message_class(type_)
+        member = self._member(topic, PUBLISHER, kind._type, kind)
+        member.attached = True
+        before, hub.registration.declared = hub.registration.declared, member.declared
+        try:
+            join(member, hub, self.master, without_masters(self._names), open_hub)
+        except YarpError:
+            hub.registration.declared = before
+            raise
+        self._attached.append((hub, before))
+
+    def subscriber(
+        self,
+        topic: str,
+        type_: Type | None = None,
+        callback: Callable[[Any], object] | None = None,
+        *,
+        newest: bool = False,
+    ) -> Subscriber:
+        """Subscribe to a topic. Without a type it takes whatever is published.
+
+        `callback` gets each message, as an object of the type, in the thread of its connection;
+        without one they are read, every one in its order, or with `newest` the newest alone.
+        Raises AddressError, UnknownType.
+        """
+        kind = None if type_ is None else _message_class(type_)
+        name = "" if kind is None else kind._type
+        member = self._member(topic, SUBSCRIBER, name, kind)
+        mailbox: Mailbox = Latest() if newest else Fifo()
+        if callback is not None:
+            call = callback
+
+            def told(message: Message) -> None:
+                call(value_of(message))
+
+            mailbox = Callback(told)
+        return self._keep(Subscriber(self, member, kind, mailbox))
+
+    # -- services ---------------------------------------------------------------------------------
+
+    def service(
+        self, service: str, type_: str | Service, handler: Callable[[Any], object]
+    ) -> RpcServer:
+        """Serve a service: `handler(question)` gets an object of the request type and returns one
+        of the response type, or a list or dict of its fields. What it raises is told to the client.
+
+        Raises AddressError, UnknownType.
+        """
+        kind = _service(type_)
+        member = self._member(service, SERVER, kind.name, kind)
+
+        def answer(message: Message) -> object:
+            found = handler(value_of(message))
+            return kind.Response() if found is None else found
+
+        plain = without_masters(self._names)
+        role = RosRole(member, self.master, plain)
+        return self._keep(RpcServer(str(member.name), answer, role=role))
+
+    def call(
+        self, service: str, type_: str | Service, *arguments: Any, timeout: float | None = 10.0
+    ) -> Any:
+        """Call a service; the answer is an object of the response type.
+
+        `arguments` are an object of the request type, a dict of its fields, or the fields. Raises
+        UnknownName (nobody serves it), RemoteProtocolError (the server failed, and says why; or is
+        of another type), Timeout, LinkClosed, NoNameServer. Calls of a service take turns.
+        """
+        kind = _service(type_)
+        return self._calls.call(self.resolve(service), kind, _question(kind, arguments), timeout)
+
+    def wait_for_service(self, service: str, timeout: float | None = None) -> bool:
+        """Wait until somebody serves it; False if time is over. Raises NoNameServer."""
+        return self._calls.wait(self.resolve(service), timeout)
+
+    # -- parameters -------------------------------------------------------------------------------
+
+    def get_param(self, name: str, default: Any = _MISSING) -> Any:
+        """A parameter, or all below a name as a dict. Without a default, LookupError (UnknownName)
+        if there is none."""
+        try:
+            return self.master.call("getParam", self.name, self.resolve(name))
+        except LocalProtocolError as error:
+            if default is not _MISSING:
+                return default
+            raise UnknownName(str(error)) from error
+
+    def set_param(self, name: str, value: Any) -> None:
+        """Set a parameter: bool, int of 32 bits, float, str, list, or a dict of them."""
+        self.master.call("setParam", self.name, self.resolve(name), value)
+
+    def has_param(self, name: str) -> bool:
+        """Return whether there is such a parameter."""
+        return bool(self.master.call("hasParam", self.name, self.resolve(name)))
+
+    def delete_param(self, name: str) -> None:
+        """Delete a parameter. LookupError (UnknownName) if there is none."""
+        try:
+            self.master.call("deleteParam", self.name, self.resolve(name))
+        except LocalProtocolError as error:
+            raise UnknownName(str(error)) from error
+
+    # -- time -------------------------------------------------------------------------------------
+
+    def now(self) -> float:
+        """The time in seconds: the system's; or, where /use_sim_time was set when the node began,
+        the last one that /clock said, 0 before the first."""
+        return time.time() if self._simulated is None else self._simulated
+
+    def _is_simulated(self) -> bool:
+        try:
+            return self.get_param("/use_sim_time", False) is True
+        except YarpError:
+            return False  # the master is not there yet
+
+    def _set_time(self, message: Any) -> None:
+        self._simulated = message.clock.to_sec()
+
+    # -- names, and the end -----------------------------------------------------------------------
+
+    def resolve(self, name: str) -> str:
+        """The full name of a topic, service or parameter: `~rate` is below the node's own name,
+        `chatter` beside the node."""
+        if name.startswith("~"):
+            name = f"{self.name}/{name[1:]}"
+        elif not name.startswith("/"):
+            name = f"{self.name.rpartition('/')[0]}/{name}"
+        return check_graph_name(name)
+
+    @property
+    def uri(self) -> str:
+        """Where the node answers."""
+        return self._node.place.uri
+
+    def close(self) -> None:
+        """Close all ports of the node, and unregister. Idempotent."""
+        if self._closed:
+            return
+        self._closed = True
+        for port in self._ports:
+            port.close()
+        for hub, before in self._attached:
+            membership, hub.membership = hub.membership, None
+            hub.registration.declared = before
+            if membership is not None:
+                membership.leave()
+        self._calls.close()
+        GRAPH.leave(self._node)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *details: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<Node {self.name} at {self.uri}>"
+
+    def _member(self, name: str, category: Category, type_: str, kind: Any) -> Membership:
+        if self._closed:
+            raise LocalProtocolError(f"{self.name} is closed")
+        topic = self.resolve(name)
+        name_ = NodeName(self.name, topic, category)
+        return Membership(name_, master_type(type_), kind, clock=self.now)
+
+    def _open(self, member: Membership, mailbox: Mailbox) -> Any:
+        role = RosRole(member, self.master, without_masters(self._names))
+        return open_hub(str(member.name), mailbox, role=role)
+
+    def _keep(self, port: P) -> P:
+        self._ports.append(port)
+        return port
+
+
+def _found(names: NameClient | None) -> tuple[NameClient | None, RosMaster]:
+    """The name service, and the master of the environment."""
+    try:
+        names, master = services(names)
+    except NoNameServer:
+        master = None
+    return names, master or RosMaster(os.environ.get(VARIABLE) or DEFAULT_URI)
+
+
+def _identity(kind: type[RosMessage]) -> tuple[str, str]:
+    return kind._type, kind._md5sum
+
+
+def _message_class(type_: Type) -> type[RosMessage]:
+    return default_library().message(type_) if isinstance(type_, str) else type_
+
+
+def _service(type_: str | Service) -> Service:
+    return default_library().service(type_) if isinstance(type_, str) else type_
+
+
+def _question(kind: Service, arguments: Sequence[Any]) -> RosMessage:
+    """The request that arguments stand for."""
+    if len(arguments) == 1:
+        only = arguments[0]
+        if isinstance(only, RosMessage):
+            if not isinstance(only, kind.Request):
+                raise TypeError(f"{kind.name} is asked with a {kind.name}Request, not {only._type}")
+            return only
+        if isinstance(only, dict):
+            return kind.Request.from_bottle(only)
+    return kind.Request.from_bottle([*arguments])

@@ -1,0 +1,99 @@
+"""The bodies of messages of ROS 2: from values of YARP programs, and to them.
+
+Rules: a type is its class (`message`), and always known. Time in a message's header is
+its envelope, both ways; of a message without header the time goes beside it. ROS 2 does not number
+messages in their headers: the number of an envelope is that of the publisher.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from struct import Struct
+from typing import TYPE_CHECKING, Any, Final
+
+from yarpy.data import codec
+from yarpy.data.value import Buffer
+from yarpy.peers.ros.body import RosMessage, has_header, said_by
+from yarpy.wire.message import UNSENDABLE, Encoded, Packet
+
+if TYPE_CHECKING:
+    from yarpy.peers.ros.message.message import Message as Ros
+
+_HEAD: Final = 4  # bytes in front of the fields
+_STAMP: Final = Struct("<iI")
+_SECOND: Final = 1_000_000_000
+
+
+def value_of(packet: Packet) -> Any:
+    """Return the value of a packet that is to be sent."""
+    value = packet.value
+    return codec.decode(value.data) if isinstance(value, Encoded) else value
+
+
+def encode_body(
+    packet: Packet, kind: type[Ros], now: Callable[[], float] | None
+) -> tuple[Buffer, ...]:
+    """The body of what goes out, made once for all connections of a type.
+
+    Raises TypeError, ValueError or OverflowError for what is nothing of that type.
+    """
+    key = "ros2", kind
+    found = packet.forms.get(key)
+    if found is None:
+        found = packet.forms[key] = _encode(packet, kind, now)
+    return found
+
+
+def _encode(packet: Packet, kind: type[Ros], now: Callable[[], float] | None) -> tuple[Buffer, ...]:
+    value = value_of(packet)
+    if type(value) is kind and not packet.envelope:
+        blocks: tuple[Buffer, ...] = value.to_ros()
+        return blocks
+    from yarpy.peers.ros.message.message import Message as Ros
+    from yarpy.peers.ros.message.native import to_message, to_value
+
+    try:
+        if isinstance(value, Ros):
+            if (value._type, value._md5sum) == (kind._type, kind._md5sum):
+                return _stamped(value.to_ros(), kind, packet.envelope, None)
+            value = to_value(value)  # of ROS 1, or another version: perhaps there is an Image in it
+        made = to_message(value, kind)
+    except UNSENDABLE as error:
+        raise type(error)(f"{kind._type} is expected here: {error}") from None
+    return _stamped(made.to_ros(), kind, packet.envelope, now)
+
+
+def _stamped(
+    blocks: tuple[Buffer, ...], kind: type[Ros], envelope: bytes, now: Callable[[], float] | None
+) -> tuple[Buffer, ...]:
+    """The message with the time of its envelope, else, where it has none, with the time it is."""
+    if not has_header(kind):
+        return blocks
+    said = said_by(envelope)
+    first = bytearray(blocks[0])
+    if said is not None:
+        _STAMP.pack_into(first, _HEAD, said[1] & 0x7FFFFFFF, said[2])
+    elif now is not None and not any(first[_HEAD : _HEAD + _STAMP.size]):
+        seconds, nanoseconds = divmod(round(now() * 1e9), _SECOND)
+        _STAMP.pack_into(first, _HEAD, seconds & 0x7FFFFFFF, nanoseconds)
+    return (bytes(first), *blocks[1:])
+
+
+def time_of(packet: Packet) -> int:
+    """The time that its envelope says, in nanoseconds; 0 if it says none."""
+    said = said_by(packet.envelope)
+    return 0 if said is None else said[1] * _SECOND + said[2]
+
+
+def message_of(
+    key: str, body: Buffer, kind: type[Ros], headed: bool, number: int, time: int
+) -> RosMessage:
+    """Return the message for a body that was received. `headed`: it begins with a header; `number`,
+    `time`: those of the attachment."""
+    seconds, nanoseconds = divmod(time, _SECOND)
+    if headed and len(body) >= _HEAD + _STAMP.size:
+        said = _STAMP.unpack_from(body, _HEAD)
+        if said[0] >= 0 and said[1] < _SECOND and any(said):
+            seconds, nanoseconds = said
+    envelope = f"{number & 0x7FFFFFFF} {seconds}.{nanoseconds:09d}" if seconds >= 0 else ""
+    return RosMessage(key, body, kind, envelope)

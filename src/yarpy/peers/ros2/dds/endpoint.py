@@ -1,0 +1,365 @@
+"""Endpoints over DDS: a port's publisher or subscriber, as a transport of objects.
+
+Rules: whoever promises less than the other side asks for is not connected. Where no QoS is said, a
+subscriber asks for what all publishers promise, looked at again when one comes or goes, and a
+publisher promises what anybody asks for; where one is said, the log names whom it keeps out. What
+comes faster than it is read is counted, and so is what the network loses.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from collections import deque
+from typing import Any, Final
+
+from yarpy.errors import LocalProtocolError, UnknownName, UnknownType
+from yarpy.log import logger
+from yarpy.peers.ros2 import kind as kinds
+from yarpy.peers.ros2.carrier import Incoming, Outgoing
+from yarpy.peers.ros2.dds.library import delete, load
+from yarpy.peers.ros2.dds.participant import POOL
+from yarpy.peers.ros2.dds.qos import dds_qos
+from yarpy.peers.ros2.dds.status import events_of, mask_of
+from yarpy.peers.ros2.event import INCOMPATIBLE, MESSAGE, Events
+from yarpy.peers.ros2.message.library import hash_of
+from yarpy.peers.ros2.name import Node
+from yarpy.peers.ros2.qos import Qos, asked, promised
+from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token
+from yarpy.transports.inbox import Inbox
+
+log = logger("yarpy.ros2")
+
+TIMEOUT: Final = 2.0  # seconds for others to be found
+_LONG: Final = 10.0  # seconds of each wait that has no end
+ROOM: Final = 100  # messages that the library keeps until they are taken, and counted
+CHANGING: Final = 1.0  # seconds for others to hear of a new writer or reader
+REPEATED: Final = 10.0  # seconds in which a new reader may hear something once more
+MOST_PUBLISHERS: Final = 1000  # whose last message is known
+
+
+class DdsEndpoint(Inbox):
+    """A port's publisher or subscriber."""
+
+    def __init__(
+        self, domain: int, port: str, node: Node, name: str, qos: Qos | None, role: str
+    ) -> None:
+        super().__init__()
+        self.port_name, self.node, self.name, self.role = port, node, name, role
+        self.qos, self._given = qos or Qos(), qos is not None
+        self.kind: Any = None
+        self._peers = PUBLISHER if role == SUBSCRIBER else SUBSCRIBER
+        self._part = POOL.take(domain)
+        self._class: Any = None
+        self._topic: Any = None
+        self._entity: Any = None
+        self._shown: list[Any] = []  # readers or writers that are told of
+        self._owned: tuple[Any, ...] = ()
+        self.events = Events()
+        self._news = 0  # the statuses that tell who has come or gone
+        self._refusal = 0  # ... and that somebody cannot be heard
+        self._failure: Any = load().DDSException
+        self._closed = False
+        self._opening = threading.RLock()
+
+    def begin(self, type_: str) -> None:
+        """Find out about the type, and join. Raises UnknownName, UnknownType, DecodeError."""
+        deadline = time.monotonic() + (0.0 if type_ else TIMEOUT)
+        while not (seen := self._seen()) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        with self._opening:
+            if type_:
+                self._open(kinds.named(type_, kinds.MESSAGE, seen))
+                return
+            found = kinds.learned(seen, kinds.MESSAGE, _ask)
+            if found is not None:
+                self._open(found[0])
+            elif self.role == SUBSCRIBER:
+                raise UnknownName(
+                    f"nobody publishes {self.name} over DDS in domain {self._part.number}: name "
+                    f"its type to be there first: ros2+dds:/{self.name}~package/msg/Type"
+                )
+
+    def settle(self, value: object) -> Any:
+        """The class of its messages, chosen by the first value if nobody has said."""
+        with self._opening:
+            if self.kind is None:
+                self._open(kinds.chosen(value))
+            return self.kind
+
+    def _seen(self) -> list[Token]:
+        return self._part.seen(self.name, self._peers)
+
+    def _open(self, kind: Any) -> None:
+        from cyclonedds import topic
+
+        self._class = self._part.class_of(kind)
+        self._topic = topic.Topic(self._part.dds, f"rt{self.name}", self._class)
+        self._owned = (self._topic,)
+        self.kind = kind
+        self.qos = self._fitting()
+        self._entity = self._show(self._made())
+        self._owned = (self._entity, self._topic)
+
+    def _fitting(self) -> Qos:
+        """The QoS for those who are there, unless one is said."""
+        if self._given:
+            return self.qos
+        type_ = kinds.key_of(0, self.name, self.kind, False).type
+        theirs = [token.qos for token in self._seen() if token.key and token.key.type == type_]
+        return asked(theirs) if self.role == SUBSCRIBER else promised(theirs)
+
+    def _made(self) -> Any:
+        """A reader or writer of the library with the present QoS."""
+        raise NotImplementedError
+
+    def _show(self, made: Any) -> Any:
+        """Tell that a reader or writer is our node's."""
+        self._shown.append(made)
+        half = "readers" if self.role == SUBSCRIBER else "writers"
+        self._part.discovery.add(self.node, **{half: (made,)})
+        return made
+
+    def _delete(self, entity: Any) -> None:
+        """Delete a reader or writer."""
+        self._shown.remove(entity)
+        self._part.discovery.remove(self.node, entity)
+        delete(entity)
+
+    def _changed(self) -> int:
+        """Which of the statuses there are, since it was asked last."""
+        if self._entity is None or self._over:
+            return 0
+        try:
+            found: int = self._entity.take_status(self._news)
+        except self._failure:
+            if not self._over:  # another thread has closed it
+                raise
+            return 0
+        self._note(self._entity, found)
+        return found
+
+    def _note(self, entity: Any, found: int) -> None:
+        """Tell of what the statuses of a reader or writer say."""
+        for event in events_of(entity, found, self.role == PUBLISHER):
+            if event.kind == INCOMPATIBLE and not self._given:
+                continue  # we are about to do as they like
+            if event.kind == INCOMPATIBLE:
+                log.warning(
+                    "%s: somebody at %s promises less than we ask for, or asks for more than we "
+                    "promise (%s; ours is %s): leave the qos out of ros2+dds+qos.NAME://..., or "
+                    "name another",
+                    *(self.port_name, self.name, event.policy or "of something", self.qos),
+                )
+            elif event.kind == MESSAGE:
+                self.dropped += event.times
+            self.events.tell(event)
+
+    def close(self) -> None:
+        self.interrupt()
+        with self._opening:
+            if self._closed:  # an interrupted one is not
+                return
+            self._closed = True
+        self._part.discovery.remove(self.node, *self._shown)
+        for item in self._owned:
+            delete(item)
+        POOL.leave(self._part)
+
+
+class DdsPublisher(DdsEndpoint):
+    """Writes what a port writes."""
+
+    _next: Any = None  # the writer that takes over
+    _due = 0.0  # ... and when
+
+    def _made(self) -> Any:
+        from cyclonedds import pub
+
+        self._news, self._refusal = mask_of(True), load().DDSStatus.OfferedIncompatibleQos
+        made: Any = pub.DataWriter(
+            self._part.dds, self._topic, qos=dds_qos(self.qos, hash_of(self.kind), writes=True)
+        )
+        made.set_status_mask(self._news)
+        return made
+
+    def give(self, item: Outgoing) -> None:
+        sample = self._class.__new__(self._class)
+        sample.body = b"".join(item.body)
+        self.look()
+        if self._next is not None and time.monotonic() >= self._due:
+            self._take_over()
+        self._entity.write(sample, item.time or time.time_ns())
+
+    def look(self) -> None:
+        """Promise more if somebody asks for it: to those who are there the present writer goes on
+        until they can have heard of the new one, so that each message comes once."""
+        self._grow(self._changed())
+
+    def _grow(self, found: int) -> None:
+        if not found & self._refusal or self._given or self._next is not None:
+            return
+        with self._opening:
+            wanted = self._fitting()
+            if self._over or not wanted.latched or self.qos.latched:
+                return
+            self.qos = wanted
+            self._next = self._show(self._made())
+            self._owned = (self._next, *self._owned)
+            self._due = time.monotonic() + CHANGING
+
+    def _take_over(self) -> None:
+        with self._opening:
+            if self._over:
+                return
+            before, self._entity, self._next = self._entity, self._next, None
+            self._owned = tuple(item for item in self._owned if item is not before)
+        self._delete(before)  # once all has been confirmed, or a second later
+
+    def ended(self) -> bool:
+        if not self._over:
+            self.look()
+        return self._over
+
+
+class DdsSubscriber(DdsEndpoint):
+    """Reads for a port, in the thread of its connection."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._waiting: Any = None
+        self._bell: Any = None  # wakes who waits
+        self._come: deque[Incoming] = deque()
+        self._before: Any = None  # the reader that another has taken over from, for a moment
+        self._due = 0.0  # ... and until when
+        self._repeats = False  # whether the present one may hear what the other one had
+        self._last: dict[int, int] = {}  # when each publisher sent its last message, by its handle
+
+    def _open(self, kind: Any) -> None:
+        super()._open(kind)
+        self._waiting = load().WaitSet(self._part.dds)
+        self._bell = load().GuardCondition(self._part.dds)
+        self._waiting.attach(self._entity)
+        self._waiting.attach(self._bell)
+        self._owned = (self._waiting, self._bell, *self._owned)
+
+    def _made(self) -> Any:
+        from cyclonedds import sub
+
+        status = load().DDSStatus
+        self._refusal = status.RequestedIncompatibleQos
+        self._fits = self._refusal | status.SubscriptionMatched  # what may have us read anew
+        self._news = self._fits | mask_of(False)
+        made: Any = sub.DataReader(
+            self._part.dds,
+            self._topic,
+            qos=dds_qos(self.qos, hash_of(self.kind), ROOM, writes=False),
+        )
+        made.set_status_mask(status.DataAvailable | self._news)
+        return made
+
+    def receive(self, wait: bool = True) -> tuple[object] | None:
+        if not self._greeted:
+            return super().receive(wait)
+        try:
+            while not self._over:
+                if self._changed() & self._fits and not self._given:
+                    self._adapt()
+                self._take_all()
+                if self._come:
+                    return (self._come.popleft(),)
+                if not wait:
+                    raise BlockingIOError("nothing has come")
+                limit = _LONG if self._timeout is None else self._timeout
+                if self._before is not None:
+                    limit = min(limit, CHANGING)
+                found = self._waiting.wait(int(limit * 1e9))
+                if not found and self._timeout is not None and self._before is None:
+                    raise BlockingIOError("nothing has come")
+        except self._failure as error:
+            if not self._over:
+                raise BrokenPipeError(f"DDS says: {error}") from error
+        return None
+
+    def _adapt(self) -> None:
+        """Read as the present publishers let us. A reader cannot change, so another takes over;
+        both read until it knows them all, and what both have is taken once."""
+        with self._opening:
+            wanted = self._fitting()
+            if self._over or wanted == self.qos:
+                return
+            log.info("%s: %s is read as %s from now on", self.port_name, self.name, wanted)
+            self.qos = wanted
+            self._retire()
+            self._before, self._entity = self._entity, self._show(self._made())
+            self._waiting.attach(self._entity)
+            self._due, self._repeats = time.monotonic() + CHANGING, True
+            self._owned = (self._entity, *self._owned)
+
+    def _retire(self) -> None:
+        before, self._before = self._before, None
+        if before is not None:
+            self._waiting.detach(before)
+            self._owned = tuple(item for item in self._owned if item is not before)
+            self._delete(before)
+
+    def _take_all(self) -> None:
+        """Take what there is, and count what is too much."""
+        if self._before is not None:
+            self._take(self._before)
+        self._take(self._entity)
+        if self._before is not None and time.monotonic() >= self._due:
+            with self._opening:
+                if not self._over:
+                    self._retire()
+        most = self.qos.kept
+        while len(self._come) > most:
+            self._come.popleft()
+            self.dropped += 1
+
+    def _take(self, reader: Any) -> None:
+        for sample in reader.take(N=ROOM):
+            body = getattr(sample, "body", None)
+            if body is None:
+                continue
+            who = sample.sample_info.publication_handle
+            when = int(sample.sample_info.source_timestamp)
+            if self._repeats:
+                if when <= self._last.get(who, -1):
+                    continue  # the reader before had it
+                self._repeats = time.monotonic() < self._due + REPEATED
+            if who in self._last or len(self._last) < MOST_PUBLISHERS:
+                self._last[who] = when
+            self._come.append(Incoming(body, 0, when))
+
+    def interrupt(self) -> None:
+        super().interrupt()
+        if self._bell is not None:
+            with contextlib.suppress(self._failure):  # it has been closed
+                self._bell.set(True)
+
+    def ended(self) -> bool:
+        return self._over
+
+
+def _ask(token: Token, name: str, kind: str) -> Any:
+    raise UnknownType(f"{name} is not known here, and over DDS nobody describes it")
+
+
+def open_dds(
+    domain: int, port: str, node: Node, name: str, type_: str, qos: Qos | None, role: str
+) -> DdsEndpoint:
+    """The endpoint of a port at a topic; `role`: PUBLISHER or SUBSCRIBER. Raises UnknownPlugin (the
+    extra is not installed), UnknownName (nobody says the type), UnknownType, LocalProtocolError."""
+    failure = load().DDSException
+    made = DdsSubscriber if role == SUBSCRIBER else DdsPublisher
+    endpoint = made(domain, port, node, name, qos, role)
+    try:
+        endpoint.begin(type_)
+    except BaseException as error:
+        endpoint.close()
+        if isinstance(error, failure):
+            raise LocalProtocolError(f"DDS says of {name}: {error}") from error
+        raise
+    return endpoint

@@ -1,0 +1,217 @@
+"""The reader and the writer of a service over DDS, as rmw_cyclonedds_cpp has them.
+
+    rq/addRequest, rr/addReply          the topics of /add
+    uint64 who | int64 number | ...     what stands in front of each question, and of its answer
+
+Rules: a question names its writer, by a number that is the library's, and is numbered; its answer
+has the same. Both halves of a client, or of a server, say in their QoS that they belong together,
+so that who asks can wait until both know it. rmw_fastrtps_cpp says all this elsewhere, where the
+library does not let us read it: its services are not reached.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Callable
+from struct import Struct
+from typing import Any, Final, NamedTuple
+
+from yarpy.errors import UnknownName, UnknownType
+from yarpy.peers.ros2 import kind as kinds
+from yarpy.peers.ros2.dds.library import delete, load
+from yarpy.peers.ros2.dds.participant import Participant
+from yarpy.peers.ros2.dds.qos import dds_qos
+from yarpy.peers.ros2.key import Key
+from yarpy.peers.ros2.message.hash import ros_name
+from yarpy.peers.ros2.message.library import default_library, hash_of
+from yarpy.peers.ros2.name import Node
+from yarpy.peers.ros2.qos import Qos
+from yarpy.peers.ros2.token import SUBSCRIBER
+
+ROOM: Final = 100  # questions or answers that the library keeps until they are taken
+FAST_DDS: Final = b"\x01\x0f"  # so begin the identities of its endpoints
+
+_UNSIGNED: Final = (1 << 64) - 1
+_ENCAPSULATION: Final = 4
+_HEADER: Final = Struct("<Qq")
+_SERVER = re.compile(rb"serviceid=([0-9a-fA-F.]+);")
+_numbers = itertools.count(1)
+
+
+class Came(NamedTuple):
+    """A question or answer: whose, which, and its bytes, as those of a message."""
+
+    who: int
+    number: int
+    body: bytes
+    time: int
+
+
+def topics(name: str) -> tuple[str, str]:
+    """Return where questions to a service go, and where answers come.
+
+    >>> topics("/add")
+    ('rq/addRequest', 'rr/addReply')
+    """
+    return f"rq{name}Request", f"rr{name}Reply"
+
+
+def joined(who: int, number: int, body: bytes) -> bytes:
+    """Return the bytes of a question or answer."""
+    return body[:_ENCAPSULATION] + _HEADER.pack(who, number) + body[_ENCAPSULATION:]
+
+
+def parted(body: bytes, time: int) -> Came | None:
+    """Return what came; None for what is no question or answer."""
+    if len(body) < _ENCAPSULATION + _HEADER.size or body[:2] != b"\0\1":
+        return None
+    who, number = _HEADER.unpack_from(body, _ENCAPSULATION)
+    return Came(who, number, body[:_ENCAPSULATION] + body[_ENCAPSULATION + _HEADER.size :], time)
+
+
+def type_of(part: Participant, name: str, said: str) -> Any:
+    """Return the type of a service: the one that is said, else the one of who serves it. Raises
+    UnknownName, UnknownType, DecodeError."""
+    if said:
+        return kinds.named(said, kinds.SERVICE)
+    asked, _ = topics(name)
+    for item in part.endpoints(SUBSCRIBER):
+        if item.topic_name == asked:
+            found, kind = ros_name(item.type_name.removesuffix("_Request_") + "_")
+            if kind != kinds.SERVICE:
+                raise UnknownType(f"{name} is served as {item.type_name}, which is no service")
+            return default_library().service(found)
+    raise UnknownName(
+        f"nobody serves {name} over DDS in domain {part.number}: name its type to be there first: "
+        f"ros2+dds+srv:/{name}~package/srv/Type"
+    )
+
+
+class Pair:
+    """Both halves for `kind`, a service; `take(what came)` is called in a thread of DDS, `changed`
+    when somebody comes or goes."""
+
+    def __init__(
+        self,
+        part: Participant,
+        node: Node,
+        name: str,
+        kind: Any,
+        qos: Qos,
+        serves: bool,
+        hear: Callable[[Came], None],
+        changed: Callable[[], None] = lambda: None,
+    ) -> None:
+        from cyclonedds import pub, sub, topic
+
+        self.part, self.node, self.name, self.kind = part, node, name, kind
+        self._hear, self._changed, self._closed = hear, changed, False
+        self._key: Key = kinds.key_of(part.number, name, kind, False)
+        identity = part.dds.guid.bytes[:12] + next(_numbers).to_bytes(4, "big")
+        word = "serviceid" if serves else "clientid"
+        about = f"{word}={'.'.join(format(item, 'x') for item in identity)};"
+        asked, answered = topics(name)
+        halves = [(answered, kind.Response), (asked, kind.Request)]
+        (out, wrote), (into, read) = halves if serves else reversed(halves)
+        self._class = part.class_of(wrote, "srv")
+        self._topics = [
+            topic.Topic(part.dds, out, self._class),
+            topic.Topic(part.dds, into, part.class_of(read, "srv")),
+        ]
+        written = dds_qos(qos, hash_of(wrote), ROOM, writes=True, about=about)
+        self.writer: Any = pub.DataWriter(part.dds, self._topics[0], qos=written)
+        heard = dds_qos(qos, hash_of(read), ROOM, writes=False, about=about)
+        self.reader: Any = sub.DataReader(part.dds, self._topics[1], qos=heard)
+        status = load().DDSStatus
+        self.reader.set_status_mask(status.DataAvailable | status.SubscriptionMatched)
+        self._matched = status.SubscriptionMatched
+        self.who: int = self.writer.get_instance_handle() & _UNSIGNED
+        part.discovery.add(node, readers=(self.reader,), writers=(self.writer,))
+        part.pump.add(self.reader, self._take)
+
+    def write(self, who: int, number: int, body: bytes) -> None:
+        """Send a question or answer."""
+        sample = self._class.__new__(self._class)
+        sample.body = joined(who, number, body)
+        self.writer.write(sample)
+
+    def _take(self) -> Callable[[], None] | None:
+        news = self.reader.take_status(self._matched)
+        found = []
+        for sample in self.reader.take(N=ROOM):
+            body = getattr(sample, "body", None)
+            came = None if body is None else parted(body, int(sample.sample_info.source_timestamp))
+            if came is not None:
+                found.append(came)
+        if not found and not news:
+            return None
+
+        def act() -> None:
+            for each in found:
+                self._hear(each)
+            if news:
+                self._changed()
+
+        return act
+
+    def is_served(self) -> bool:
+        """Return whether a server knows both halves of ours, and we both of its."""
+        ids: set[bytes] = set()
+        plain = 0
+        for item in self._matching(self.writer, "subscription"):
+            if item.key.bytes[:2] == FAST_DDS:
+                continue
+            said = _SERVER.search(_userdata(item.qos))
+            plain += said is None
+            if said is not None:
+                ids.add(said[1])
+        answers = self._matching(self.reader, "publication")
+        if not ids:
+            return bool(plain and answers)
+        found = (_SERVER.search(_userdata(item.qos)) for item in answers)
+        return any(said is not None and said[1] in ids for said in found)
+
+    def why_not(self) -> str:
+        """Return why nobody is asked."""
+        asked, _ = topics(self.name)
+        for item in () if self._closed else self.part.endpoints(SUBSCRIBER):
+            if item.topic_name != asked:
+                continue
+            if item.key.bytes[:2] == FAST_DDS:
+                return (
+                    f"{self.name} is served with Fast DDS, whose services are not reached from "
+                    "here: start its node with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp"
+                )
+            if item.type_name != self._key.type[:-1] + "_Request_":
+                return f"{self.name} is served as {item.type_name}, not as {kinds.shown(self._key)}"
+        return f"nobody serves {self.name} as {kinds.shown(self._key)}"
+
+    def _matching(self, half: Any, what: str) -> list[Any]:
+        if self._closed:
+            return []
+        found = []
+        for handle in getattr(half, f"get_matched_{what}s")():
+            try:
+                found.append(getattr(half, f"get_matched_{what}_data")(handle))
+            except load().DDSException:
+                continue  # it has just gone
+        return [item for item in found if item is not None]
+
+    def close(self) -> None:
+        """Idempotent."""
+        if self._closed:
+            return
+        self._closed = True
+        self.part.pump.remove(self.reader)
+        self.part.discovery.remove(self.node, self.reader, self.writer)
+        for item in (self.reader, self.writer, *self._topics):
+            delete(item)
+
+
+def _userdata(qos: Any) -> bytes:
+    for policy in qos:
+        if type(policy).__name__ == "Userdata":
+            data: bytes = policy.data
+            return data
+    return b""

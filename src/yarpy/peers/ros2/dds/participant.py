@@ -1,0 +1,145 @@
+"""Our part in a domain of DDS, which nodes of ROS 2 use unless RMW_IMPLEMENTATION says otherwise.
+
+    yarpy connect /out ros2+dds://chatter        yarpy connect ros2+dds://camera/image /in
+
+Rules: the library is given bytes, and gives bytes: its own way of writing and reading messages
+takes many times as long. DDS opens sockets and looks for others by multicast, in the local network
+unless ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE or CYCLONEDDS_URI say otherwise.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from yarpy.peers.ros2.dds.discovery import Discovery
+from yarpy.peers.ros2.dds.library import delete
+from yarpy.peers.ros2.dds.pump import Pump
+from yarpy.peers.ros2.dds.qos import promises_of
+from yarpy.peers.ros2.dds.raw import raw_class
+from yarpy.peers.ros2.key import Key
+from yarpy.peers.ros2.message.library import hash_of
+from yarpy.peers.ros2.name import Node
+from yarpy.peers.ros2.token import PUBLISHER, SUBSCRIBER, Token
+
+WORD: Final = "dds"
+LOCAL: Final = """\
+<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>
+<AllowMulticast>false</AllowMulticast></General><Discovery>
+<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
+<Peers><Peer address="localhost"/></Peers></Discovery></Domain></CycloneDDS>"""
+
+
+def is_local(environment: Mapping[str, str]) -> bool:
+    """Return whether only programs of this computer are to be found."""
+    reach = environment.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").upper()
+    return environment.get("ROS_LOCALHOST_ONLY") == "1" or reach == "LOCALHOST"
+
+
+class Participant:
+    """Our part in a domain, for all topics of this process."""
+
+    def __init__(self, domain: int) -> None:
+        from cyclonedds import builtin, core
+        from cyclonedds import domain as domains
+
+        self.number = domain
+        self.users = 0
+        self._domain: Any = None
+        if is_local(os.environ) and not os.environ.get("CYCLONEDDS_URI"):
+            self._domain = domains.Domain(domain, LOCAL)
+        qos = core.Qos(core.Policy.Userdata(b"enclave=/;"))
+        self.dds: Any = domains.DomainParticipant(domain, qos=qos)
+        self._published: Any = builtin.BuiltinDataReader(
+            self.dds, builtin.BuiltinTopicDcpsPublication
+        )
+        self._subscribed: Any = builtin.BuiltinDataReader(
+            self.dds, builtin.BuiltinTopicDcpsSubscription
+        )
+        self._participants: Any = builtin.BuiltinDataReader(
+            self.dds, builtin.BuiltinTopicDcpsParticipant
+        )
+        self._kinds: dict[tuple[str, str], Any] = {}
+        self._alive: Any = core.InstanceState.Alive
+        gone = core.ViewState.Any | core.SampleState.Any | core.InstanceState.NotAliveDisposed
+        gone |= core.InstanceState.NotAliveNoWriters
+        self._gone: dict[str, Any] = {
+            kind: core.ReadCondition(reader, gone)
+            for kind, reader in ((PUBLISHER, self._published), (SUBSCRIBER, self._subscribed))
+        }
+
+        self.pump = Pump(self.dds)
+        self.discovery = Discovery(self.dds, self.pump)
+
+    def endpoints(self, kind: str) -> Iterator[Any]:
+        """Yield the writers of all programs, ours too, or with SUBSCRIBER their readers."""
+        reader = self._published if kind == PUBLISHER else self._subscribed
+        reader.take(N=10_000, condition=self._gone[kind])  # the library keeps who has left
+        for sample in reader.read(N=10_000):
+            if sample.sample_info.instance_state == self._alive and hasattr(sample, "topic_name"):
+                yield sample
+
+    def seen(self, name: str, kind: str) -> list[Token]:
+        """Return the publishers of a topic, or its subscribers, as tokens."""
+        found = []
+        for sample in self.endpoints(kind):
+            if sample.topic_name == f"rt{name}":
+                hash_, qos = promises_of(sample.qos)
+                key = Key(self.number, name, sample.type_name, hash_)
+                who = str(sample.participant_key)
+                node = self.discovery.node_of(sample.key) or Node("/", "_")
+                found.append(Token(self.number, who, 0, 0, kind, node, key, qos))
+        return found
+
+    def nodes(self) -> list[Node]:
+        """Return the nodes of all programs that are there, ours too."""
+        return self.discovery.nodes({item.key for item in self._present()})
+
+    def _present(self) -> Iterator[Any]:
+        for sample in self._participants.read(N=10_000):
+            if sample.sample_info.instance_state == self._alive:
+                yield sample
+
+    def close(self) -> None:
+        """End it; everything in it is deleted."""
+        self.discovery.close()
+        self.pump.close()
+        delete(self.dds)
+
+    def class_of(self, kind: Any, what: str = "msg") -> Any:
+        """The class of the library for a type, which carries finished bytes; `what`: `srv` for the
+        request or response of a service."""
+        key = (what, hash_of(kind))
+        found = self._kinds.get(key)
+        if found is None:
+            found = self._kinds[key] = raw_class(kind._definition.struct, what)
+        return found
+
+
+class _Pool:
+    """The participants of this process, by domain."""
+
+    def __init__(self) -> None:
+        self._held: dict[int, Participant] = {}
+        self._lock = threading.RLock()
+
+    def take(self, domain: int) -> Participant:
+        with self._lock:
+            found = self._held.get(domain)
+            if found is None:
+                found = self._held[domain] = Participant(domain)
+            found.users += 1
+            return found
+
+    def leave(self, participant: Participant) -> None:
+        with self._lock:
+            participant.users -= 1
+            if participant.users:
+                return
+            del self._held[participant.number]
+        participant.close()
+
+
+POOL: Final = _Pool()

@@ -1,0 +1,138 @@
+"""The bytes of ROS 2 to a message: CDR, by a function for each type that is compiled once.
+
+    00 01 00 00, then fields; a number of n bytes begins at a multiple of n, counted from behind
+    these four; a string is uint32 length with the zero behind it, and bytes; a list uint32 count
+    and elements; a message without fields is one byte
+
+Rules: as in `rosmsg/reader.py`: every count is checked against the bytes that are there, and
+against the limit of elements, before memory is taken. Only DecodeError and Truncated come out.
+Arrays of numbers look at the bytes. Where the compiler knows how a position is aligned, padding
+costs nothing. (OMG CDR, as rmw uses it: XCDR1 without options.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from struct import error as struct_error
+from typing import Any, Final
+
+from yarpy.data.value import Buffer
+from yarpy.errors import DecodeError, Truncated
+from yarpy.limit import limits
+from yarpy.peers.ros.message.message import Message
+from yarpy.peers.ros.message.model import Primitive, Struct
+from yarpy.peers.ros.message.reader import SMALL, Read, Reader
+
+HEAD: Final = b"\0\1\0\0"  # little-endian, plain
+_PADDING: Final = 3  # bytes that writers over DDS may leave behind a message
+
+
+class Alignment:
+    """The known alignment of a position: it is `at` beyond a multiple of `known`."""
+
+    def __init__(self) -> None:
+        self.known, self.at = 1, 0
+
+    def forget(self, known: int = 1, at: int = 0) -> None:
+        self.known, self.at = known, at % known
+
+    def padding(self, size: int) -> int | None:
+        """The bytes up to a multiple of `size`; None: that is not known."""
+        return -self.at % size if self.known >= size else None
+
+    def advance(self, by: int) -> None:
+        self.at = (self.at + by) % self.known
+
+
+def reader(struct: Struct, classes: Mapping[Struct, type[Message]]) -> Read:
+    """The function that reads a type. `classes` has its own, and those of all structs in it."""
+    return _Reader(classes).compiled(struct)
+
+
+def whole(name: str, read: Read) -> Callable[[Buffer], Any]:
+    """`from_ros` of a class: what `read` reads must be all of the bytes."""
+
+    def from_ros(view: Buffer) -> Any:
+        body = memoryview(view)[4:]
+        if bytes(view[:2]) != HEAD[:2] or len(view) < 4:
+            _refuse(name, bytes(view[:4]))
+        size = len(body)
+        try:
+            found, end = read(body, 0, size, None if size <= SMALL else [limits().elements])
+        except struct_error:
+            raise Truncated(
+                f"{name}: the message goes on beyond its {size} bytes", size + 5
+            ) from None
+        if end > size:
+            raise Truncated(f"{name}: the message goes on beyond its {size} bytes", end + 4)
+        if end + _PADDING < size:
+            raise DecodeError(
+                f"{name} takes {end} bytes, here are {size}: this is another type, or another "
+                "version of it"
+            )
+        return found
+
+    return from_ros
+
+
+def _refuse(name: str, head: bytes) -> None:
+    if len(head) < 4:
+        raise Truncated(f"{name}: {len(head)} bytes are no message of ROS 2", 4)
+    if head[:2] == b"\0\0":
+        raise DecodeError(f"{name}: a message of a big-endian computer, which is not read here")
+    raise DecodeError(f"{name}: bytes that begin with {head.hex(' ')} are no plain CDR")
+
+
+class _Reader(Reader):
+    def __init__(self, classes: Mapping[Struct, type[Message]]) -> None:
+        super().__init__(classes)
+        self.code.globals["_text"] = _text
+        self.alignment = Alignment()
+
+    def text(self, path: str) -> str:
+        return f"_text(_b[_p:_e], {self.code.name(path)})"
+
+    def displaced(self) -> None:
+        self.alignment.forget()
+
+    def align(self, size: int) -> None:
+        """Go on at a multiple of `size`, within the run if that can be."""
+        padding = self.alignment.padding(size)
+        if padding is None:
+            self.flush()
+            self.code.line(f"_p = _p + {size - 1} & -{size}")
+            self.alignment.forget(size)
+        elif padding:
+            self.code.number("x" * padding)
+            self.alignment.advance(padding)
+
+    def number(self, letter: str, size: int, target: str) -> None:
+        self.align(size)
+        super().number(letter, size, target)
+        self.alignment.advance(size)
+
+    def struct(self, struct: Struct, target: str, path: str) -> None:
+        super().struct(struct, target, path)
+        if not struct.fields:
+            self.number("B", 1, self.code.variable())
+
+    def array(
+        self, element: Primitive, length: int | None, count: str, target: str, path: str
+    ) -> None:
+        size = element.size
+        if length is not None:
+            self.align(size)
+        elif self.alignment.padding(size) != 0:  # 8 bytes: an empty list is not aligned
+            self.code.line(f"if {count}: _p = _p + {size - 1} & -{size}")
+        super().array(element, length, count, target, path)
+        if length is not None:
+            self.alignment.advance(length * size)
+        else:
+            self.alignment.forget(min(size, 4))
+
+
+def _text(view: memoryview, path: str) -> str:
+    """A string, whose last byte is a zero; some writers leave that out where it is empty."""
+    if view and view[-1]:
+        raise DecodeError(f"{path}: a string without its zero at the end")
+    return str(view[:-1], "utf-8", "surrogateescape")

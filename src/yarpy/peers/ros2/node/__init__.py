@@ -1,0 +1,1 @@
+"""Nodes of ROS 2 in a program of Python."""

@@ -1,0 +1,47 @@
+"""The attachment of every message, question and answer of ROS 2: 33 bytes.
+
+    int64 number | int64 nanoseconds since 1970 | 10 | 16 bytes that say who sent it (GID)
+
+Rules: little-endian; numbers count from 1, and a gap is a message that was lost. Nodes of the first
+versions of the RMW send something longer, which is refused.
+"""
+
+from __future__ import annotations
+
+from struct import Struct
+from typing import Final, NamedTuple
+
+from yarpy.errors import DecodeError
+
+GID_SIZE: Final = 16
+_LAYOUT: Final = Struct("<qqB16s")
+SIZE: Final = _LAYOUT.size
+
+
+class Attachment(NamedTuple):
+    """`time` is in nanoseconds."""
+
+    number: int
+    time: int
+    gid: bytes
+
+    def __bytes__(self) -> bytes:
+        return _LAYOUT.pack(self.number, self.time, GID_SIZE, self.gid)
+
+
+def parse_attachment(data: bytes) -> Attachment:
+    """Parse the bytes of an attachment. Raises DecodeError."""
+    if len(data) != SIZE:
+        why = (
+            "the sender's rmw_zenoh is older than 0.1.2 (Humble), 0.2.4 (Jazzy) or 0.6.0 (Kilted): "
+            "update it"
+            if len(data) > SIZE
+            else "it does not come from a node of ROS 2"
+        )
+        raise DecodeError(f"an attachment of {len(data)} bytes, where {SIZE} are expected: {why}")
+    number, time, size, gid = _LAYOUT.unpack(data)
+    if size != GID_SIZE:
+        raise DecodeError(
+            f"an attachment with a GID of {size} bytes, where {GID_SIZE} are expected"
+        )
+    return Attachment(number, time, gid)

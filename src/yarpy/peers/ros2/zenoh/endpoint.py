@@ -1,0 +1,417 @@
+"""Endpoints: a port's publisher, subscriber, client or server in Zenoh, as a transport of objects.
+
+    Publisher, Subscriber      messages; Client, Server      questions and answers
+
+Rules: what carriers write comes here as `Outgoing`, what they read leaves as `Incoming`. Zenoh's
+threads put what comes into the inbox. An endpoint
+whose type nobody knows yet joins the graph once somebody says it, or the first message does. The
+log names whoever has another type at the same topic: nothing else would say why nothing comes.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from functools import partial
+from typing import Any, ClassVar, Final
+
+from yarpy.errors import DecodeError, YarpError
+from yarpy.log import logger, readable
+from yarpy.peers.ros2 import kind as kinds
+from yarpy.peers.ros2.carrier import GONE, Incoming, Outgoing
+from yarpy.peers.ros2.event import MESSAGE, Event, Events
+from yarpy.peers.ros2.key import NO_HASH, Key
+from yarpy.peers.ros2.name import Node
+from yarpy.peers.ros2.qos import KEEP_ALL, PROFILES, Qos, promised
+from yarpy.peers.ros2.token import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Token, gid
+from yarpy.peers.ros2.zenoh.attachment import Attachment, parse_attachment
+from yarpy.peers.ros2.zenoh.description import describe
+from yarpy.peers.ros2.zenoh.participant import Declared, Participant
+from yarpy.peers.ros2.zenoh.querier import Querier
+from yarpy.transports.inbox import Inbox
+
+log = logger("yarpy.ros2")
+
+MOST_QUESTIONS: Final = 100  # that wait for a server of ours
+MOST_PUBLISHERS: Final = 1000  # whose numbers are followed
+MOST_TOLD: Final = 100  # peers of other types that the log names
+BACKENDS: Final = "backends:cpu:"  # what Lyrical wants to know of readers of bytes
+BESIDE: Final = "/_buf_cpu"  # ... and where it may send them then
+
+
+class Endpoint(Inbox):
+    """The base of publishers, subscriptions, clients and servers."""
+
+    role: ClassVar[str] = ""
+    peers: ClassVar[tuple[str, ...]] = ()
+    what: ClassVar[str] = kinds.MESSAGE
+
+    def __init__(
+        self, participant: Participant, port: str, node: Node, name: str, qos: Qos | None
+    ) -> None:
+        super().__init__()
+        self.participant = participant
+        self.port_name = port
+        self.node = node
+        self.name = name
+        self.qos = qos or Qos()
+        self.given_qos = qos is not None
+        self.kind: Any = None
+        self.key: Key | None = None
+        self._old = False  # Humble: no hashes
+        self._declared: Declared | None = None
+        self._handles: list[Any] = []
+        self._gid = b""
+        self._closed = False
+        self._told: set[tuple[Node, Key]] = set()
+        self._opening = threading.RLock()  # the type is settled once
+        self.events = Events()
+
+    # -- as the carrier sees it -------------------------------------------------------------------
+
+    def settle(self, value: object) -> Any:
+        """The class of its messages, chosen by the first value if nobody has said."""
+        with self._opening:
+            if self.kind is None and not self._learn():
+                self.open(kinds.chosen(value))
+            return self.kind
+
+    # -- joining ----------------------------------------------------------------------------------
+
+    def begin(self, type_: str, old: bool, timeout: float) -> None:
+        """Find out about the type and join, if that is possible now. Raises UnknownType,
+        DecodeError; what Zenoh raises."""
+        graph = self.participant.graph
+        kinds_ = (self.role, *self.peers)
+        seen = graph.wait(self.name, *kinds_, timeout=timeout)
+        with self._opening:
+            if type_:
+                self._fit(seen)
+                self.open(kinds.named(type_, self.what, seen, old), old)
+            else:
+                self._learn()
+        for token in graph.watch(self._watch):
+            self._watch(token, True)
+
+    def _learn(self) -> bool:
+        """Take the type from the graph, and how much is kept; whether there is one. Raises
+        UnknownType."""
+        graph = self.participant.graph
+        seen = graph.endpoints(self.name, *self.peers) or graph.endpoints(self.name, self.role)
+        found = kinds.learned(seen, self.what, partial(describe, self.participant))
+        if found is None:
+            return False
+        kind, key = found
+        self._fit(seen)
+        self.open(kind, key.hash == NO_HASH)
+        return True
+
+    def _fit(self, seen: list[Token]) -> None:
+        """Keep messages, or ask for those that were kept, if one of the peers does: over Zenoh that
+        keeps nobody out."""
+        theirs = [token.qos for token in seen if token.kind in self.peers]
+        if not self.given_qos:
+            self.qos = promised(theirs)
+
+    def open(self, kind: Any, old: bool = False) -> None:
+        """Join the graph with a type."""
+        domain = self.participant.graph.domain
+        self._old = old
+        key = kinds.key_of(domain, self.name, kind, old)
+        self._declared = self.participant.declare(
+            self.role, self.node, key, self.qos, self.extra(kind)
+        )
+        self._gid = gid(self._declared.text)
+        self.join(key, kind)
+        self._declared.show()
+        self.key, self.kind = key, kind
+
+    def extra(self, kind: Any) -> str:
+        """The fields at the end of its token."""
+        return ""
+
+    def join(self, key: Key, kind: Any) -> None:
+        """Publish, subscribe, or serve."""
+
+    def _watch(self, token: Token, come: bool) -> None:
+        """A token of anybody. In a thread of Zenoh."""
+        key = token.key
+        if not come or self._closed or key is None or key.name != self.name:
+            return
+        if token.kind not in self.peers:
+            return
+        if self.key is None:
+            threading.Thread(target=self._take_type, name=f"yarpy type of {self.name}").start()
+        elif key[2:] != self.key[2:]:
+            self._tell(token, key)
+        else:
+            self.joined(token)
+
+    def joined(self, token: Token) -> None:
+        """A peer with the same type has come. In a thread of Zenoh."""
+
+    def _take_type(self) -> None:
+        try:
+            with self._opening:
+                if self.kind is None and not self._closed:
+                    self._learn()
+        except YarpError as error:
+            log.warning("%s: %s", self.port_name, error)
+
+    def _tell(self, token: Token, key: Key) -> None:
+        """Somebody has another type."""
+        ours = self.key
+        if ours is None or (token.node, key) in self._told or len(self._told) >= MOST_TOLD:
+            return
+        self._told.add((token.node, key))
+        log.warning(
+            "%s and the node %s do not hear each other at %s: it is %s there and %s here",
+            self.port_name,
+            readable(str(token.node)),
+            self.name,
+            readable(kinds.shown(key)),
+            kinds.shown(ours),
+        )
+
+    # -- the end ----------------------------------------------------------------------------------
+
+    def ended(self) -> bool:
+        return self._closed or bool(self.participant.session.is_closed())
+
+    def close(self) -> None:
+        with self._opening:
+            if self._closed:
+                return
+            self._closed = True
+        self.interrupt()
+        self.participant.graph.unwatch(self._watch)
+        if not self.participant.session.is_closed():
+            if self._declared is not None:  # first: who sees it still makes use of it
+                self._declared.close()
+            for handle in self._handles:
+                handle.undeclare()
+        self._handles.clear()
+        self.participant.close()
+
+
+class Publisher(Endpoint):
+    """Puts messages on its key."""
+
+    role = PUBLISHER
+    peers = (SUBSCRIBER,)
+
+    _count = 0
+
+    def join(self, key: Key, kind: Any) -> None:
+        import zenoh
+
+        blocks = self.qos.reliable and self.qos.history == KEEP_ALL
+        options: dict[str, Any] = {
+            "congestion_control": (
+                zenoh.CongestionControl.BLOCK if blocks else zenoh.CongestionControl.DROP
+            ),
+            "reliability": (
+                zenoh.Reliability.RELIABLE if self.qos.reliable else zenoh.Reliability.BEST_EFFORT
+            ),
+        }
+        session = self.participant.session
+        if self.qos.latched:
+            from zenoh import ext
+
+            misses = ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=0.5)
+            self._publisher = ext.declare_advanced_publisher(
+                session,
+                str(key),
+                cache=ext.CacheConfig(max_samples=self.qos.kept),
+                publisher_detection=True,
+                sample_miss_detection=misses if self.qos.reliable else None,
+                **options,
+            )
+        else:
+            self._publisher = session.declare_publisher(str(key), **options)
+        self._handles.append(self._publisher)
+
+    def give(self, item: Outgoing) -> None:
+        self._count += 1
+        body = item.body
+        payload = body[0] if len(body) == 1 else b"".join(body)
+        when = item.time or time.time_ns()
+        self._publisher.put(payload, attachment=bytes(Attachment(self._count, when, self._gid)))
+
+
+class Subscriber(Endpoint):
+    """Takes messages from its key."""
+
+    role = SUBSCRIBER
+    peers = (PUBLISHER,)
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._numbers: dict[bytes, int] = {}  # the last of each publisher
+        self._repeats = False  # whether what was kept may come once more
+        self._refused = ""
+
+    def extra(self, kind: Any) -> str:
+        return BACKENDS if kinds.has_bytes(kind) and not self.qos.latched else ""
+
+    def join(self, key: Key, kind: Any) -> None:
+        from zenoh.handlers import Callback
+
+        hear = Callback(self._heard, indirect=False)
+        session = self.participant.session
+        if self.qos.latched:
+            from zenoh import ext
+
+            recovery = ext.RecoveryConfig(periodic_queries=None, heartbeat=True)
+            history = ext.HistoryConfig(detect_late_publishers=True, max_samples=self.qos.kept)
+            self._handles.append(
+                ext.declare_advanced_subscriber(
+                    session,
+                    str(key),
+                    hear,
+                    history=history,
+                    recovery=recovery if self.qos.reliable else None,
+                    subscriber_detection=True,
+                )
+            )
+            return
+        self._handles.append(session.declare_subscriber(str(key), hear))
+        if self.extra(kind):
+            self._handles.append(session.declare_subscriber(f"{key}{BESIDE}", hear))
+
+    def joined(self, token: Token) -> None:
+        if token.qos.latched and not self.qos.latched and not self.given_qos:
+            threading.Thread(target=self._catch_up, name=f"yarpy past of {self.name}").start()
+
+    def _catch_up(self) -> None:
+        """Subscribe to what is kept, too: a publisher has come that keeps something."""
+        with self._opening:
+            if self._closed or self.key is None or self.qos.latched:
+                return
+            self.qos, self._repeats = promised([PROFILES["latched"]]), True
+            before, self._handles = self._handles, []
+            shown, self._declared = self._declared, None
+            self.open(self.kind, self._old)
+            for handle in before:
+                handle.undeclare()
+            if shown is not None:
+                shown.close()
+
+    def _heard(self, sample: Any) -> None:
+        attached = sample.attachment
+        number, when = 0, 0
+        if attached is not None:
+            try:
+                number, when, sender = parse_attachment(bytes(attached))
+            except DecodeError as error:
+                self.dropped += 1
+                if str(error) != self._refused:
+                    self._refused = str(error)
+                    log.warning("%s: a message of %s is lost: %s", self.port_name, self.name, error)
+                return
+            before = self._numbers.get(sender, number - 1)
+            if number <= before and self._repeats:
+                return
+            if number > before + 1:
+                self.dropped += number - before - 1
+                self.events.tell(Event(MESSAGE, number - before - 1))
+            if len(self._numbers) < MOST_PUBLISHERS or sender in self._numbers:
+                self._numbers[sender] = number
+        self.put(Incoming(bytes(sample.payload), number, when), self.qos.kept)
+
+
+class Client(Endpoint):
+    """Asks a service."""
+
+    role = CLIENT
+    peers = (SERVER,)
+    what = kinds.SERVICE
+
+    _count = 0
+    _querier: Querier
+
+    def join(self, key: Key, kind: Any) -> None:
+        self._querier = Querier(self.participant.session, key)
+        self._handles.append(self._querier)
+
+    def give(self, item: Outgoing) -> None:
+        self._count += 1
+        number, key = self._count, self.key
+        assert key is not None
+        answered = False
+        servers = self.participant.graph.endpoints(self.name, SERVER)
+        served = any(server.key == key for server in servers)
+
+        def heard(reply: Any) -> None:
+            nonlocal answered
+            if answered or number != self._count:
+                return  # of two servers the first is taken
+            answered = True
+            self.put(answer_of(reply), MOST_QUESTIONS)
+
+        def over() -> None:
+            if not answered and number == self._count:
+                why = f"nobody serves {self.name} as {kinds.shown(key)}"
+                if served:
+                    why = f"{GONE} {self.name} went away during the call"
+                self.put(Incoming(b"", failure=why), MOST_QUESTIONS)
+
+        attachment = bytes(Attachment(number, item.time or time.time_ns(), self._gid))
+        self._querier.get(heard, over, b"".join(item.body), attachment, served)
+
+
+def answer_of(reply: Any) -> Incoming:
+    """Return what is received for a server's reply."""
+    good = reply.ok
+    if good is None:
+        why = readable(bytes(reply.err.payload)[:1000].decode("utf-8", "replace"))
+        return Incoming(b"", failure=why or "it failed")
+    number, when = 0, 0
+    if good.attachment is not None:
+        try:
+            number, when, _ = parse_attachment(bytes(good.attachment))
+        except DecodeError as error:
+            return Incoming(b"", failure=str(error))
+    return Incoming(bytes(good.payload), number, when)
+
+
+class Server(Endpoint):
+    """Serves a service."""
+
+    role = SERVER
+    peers = (CLIENT,)
+    what = kinds.SERVICE
+
+    def join(self, key: Key, kind: Any) -> None:
+        from zenoh.handlers import Callback
+
+        hear = Callback(self._heard, indirect=False)
+        self._handles.append(
+            self.participant.session.declare_queryable(str(key), hear, complete=True)
+        )
+
+    def _heard(self, query: Any) -> None:
+        attached, payload = query.attachment, query.payload
+        try:
+            said = parse_attachment(b"" if attached is None else bytes(attached))
+        except DecodeError as error:
+            self.dropped += 1
+            query.reply_err(str(error).encode())
+            return
+        if self.waiting >= MOST_QUESTIONS:
+            self.dropped += 1
+            query.reply_err(b"too many questions are waiting")
+            return
+        body = b"" if payload is None else bytes(payload)
+        self.put(Incoming(body, said.number, said.time, (query, said)), MOST_QUESTIONS)
+
+    def give(self, item: Outgoing) -> None:
+        if item.to is None:
+            return
+        query, said = item.to
+        if item.failure:
+            query.reply_err(item.failure.encode("utf-8", "replace"))
+        else:
+            attachment = bytes(Attachment(said.number, time.time_ns(), said.gid))
+            query.reply(str(self.key), b"".join(item.body), attachment=attachment)
+        query.drop()  # the asker waits for the end of it, not for the answer

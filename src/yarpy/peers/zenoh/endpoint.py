@@ -1,0 +1,150 @@
+"""Endpoints: what a port is at a key of Zenoh, as a transport of objects.
+
+    Publisher, Subscriber      messages: put, and a subscription
+    Asker, Server              questions and answers: get, and a queryable
+
+Rules: what carriers write comes here as `Outgoing`, what they read leaves as `Incoming`. Zenoh's
+threads put what comes into the inbox, and wait for nothing. A router that goes away is joined again
+by the session itself, and what was declared is back then.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from yarpy.log import logger, readable
+from yarpy.peers.zenoh.carrier import TEXT, Incoming, Outgoing
+from yarpy.peers.zenoh.exchange import undeclare
+from yarpy.peers.zenoh.library import CALLS, load
+from yarpy.peers.zenoh.transport import SharedSession
+from yarpy.transports.inbox import Inbox
+
+log = logger("yarpy.zenoh")
+
+KEPT: Final = 1000  # messages that wait to be read
+MOST_QUESTIONS: Final = 100  # that wait for a server of ours
+ANSWER: Final = 600.0  # seconds for an answer; who asks may wait less long
+
+
+class Endpoint(Inbox):
+    """The base of publishers, subscriptions, clients and servers. It closes the shared session."""
+
+    def __init__(self, shared: SharedSession, key: str) -> None:
+        super().__init__()
+        self.name = key
+        self._shared = shared
+        self._session: Any = shared.session
+        self._declared: list[Any] = []
+        self._closed = False
+        self.begin()
+
+    def begin(self) -> None:
+        """Declare what is needed."""
+
+    def ended(self) -> bool:
+        return self._closed or bool(self._session.is_closed())
+
+    def close(self) -> None:
+        if self._closed:
+            return
+        self._closed = True
+        self.interrupt()
+        for thing in self._declared:
+            undeclare(thing)
+        self._declared.clear()
+        self._shared.close()
+
+
+class Publisher(Endpoint):
+    """Puts messages on its key."""
+
+    def begin(self) -> None:
+        self._declared.append(self._session.declare_publisher(self.name))
+
+    def give(self, item: Outgoing) -> None:
+        with CALLS:
+            self._declared[0].put(bytes(item.payload), encoding=item.encoding)
+
+
+class Subscriber(Endpoint):
+    """Takes messages from its keys."""
+
+    def begin(self) -> None:
+        hear = load().handlers.Callback(self._heard, indirect=False)
+        self._declared.append(self._session.declare_subscriber(self.name, hear))
+
+    def _heard(self, sample: Any) -> None:
+        if sample.kind == load().SampleKind.PUT:
+            place = str(sample.key_expr)
+            self.put(Incoming(sample.payload.to_bytes(), place=place), KEPT)
+
+
+class Asker(Endpoint):
+    """Asks whoever answers on its key; the first answer counts."""
+
+    _count = 0
+
+    def give(self, item: Outgoing) -> None:
+        self._count += 1
+        number = self._count
+        answered = False
+
+        def heard(reply: Any) -> None:
+            nonlocal answered
+            if not answered and number == self._count:
+                answered = True
+                self.put(_answer(reply), MOST_QUESTIONS)
+
+        def over() -> None:
+            if not answered and number == self._count:
+                why = f"nobody answers at the key {self.name} of Zenoh"
+                self.put(Incoming(b"", failure=why), MOST_QUESTIONS)
+
+        zenoh = load()
+        with CALLS:
+            self._session.get(
+                self.name,
+                zenoh.handlers.Callback(heard, over, indirect=False),
+                target=zenoh.QueryTarget.ALL,
+                consolidation=zenoh.ConsolidationMode.NONE,
+                payload=bytes(item.payload),
+                encoding=item.encoding,
+                timeout=ANSWER,
+            )
+
+
+def _answer(reply: Any) -> Incoming:
+    good = reply.ok
+    if good is not None:
+        return Incoming(good.payload.to_bytes())
+    why = readable(reply.err.payload.to_bytes()[:1000].decode("utf-8", "replace"))
+    form, _, kind = str(reply.err.encoding).partition(";")
+    named = form == TEXT and kind.isidentifier() and why.startswith(f"{kind}: ")
+    return Incoming(b"", failure=why or "it failed", raised=kind if named else "")
+
+
+class Server(Endpoint):
+    """Answers questions on its key."""
+
+    def begin(self) -> None:
+        hear = load().handlers.Callback(self._heard, indirect=False)
+        self._declared.append(self._session.declare_queryable(self.name, hear, complete=True))
+
+    def _heard(self, query: Any) -> None:
+        if self.waiting >= MOST_QUESTIONS:
+            self.dropped += 1
+            query.reply_err(b"too many questions are waiting")
+            return
+        payload = query.payload
+        body = b"[]" if payload is None else payload.to_bytes()
+        self.put(Incoming(body, query), MOST_QUESTIONS)
+
+    def give(self, item: Outgoing) -> None:
+        query = item.to
+        if query is not None:
+            with CALLS:
+                if item.failed:
+                    query.reply_err(bytes(item.payload), encoding=item.encoding)
+                else:
+                    query.reply(self.name, bytes(item.payload), encoding=item.encoding)
+            query.drop()  # the asker waits for the end of it, not for the answer

@@ -1,0 +1,1 @@
+"""What systems do differently: one file for each thing, with what each system has for it."""

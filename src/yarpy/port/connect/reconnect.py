@@ -1,0 +1,382 @@
+"""Reconnecting: connections that failed come back.
+
+Rules: one daemon thread for the process, started with the first registered port, asleep most of the
+time. It only watches and decides: whatever may hang (dialling a lost connection, a question whether
+the other end of a datagram connection still lives, a name server) is done in short-lived threads,
+one for each target and a limited number of them. What somebody disconnected on purpose stays
+disconnected; what broke is tried again, ever more rarely, until it works or is given up. A lost
+output is dialled again by us, and so is a camera; any other lost input is asked for again from its
+sender, once that is back.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import threading
+import time
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Final
+
+from yarpy.contact import parse_contact
+from yarpy.data.value import Vocab
+from yarpy.errors import AccessRefused, RemoteProtocolError, WrongPort, YarpError
+from yarpy.link.begin.handshake import find_carrier
+from yarpy.link.send.outbound import Outbound
+from yarpy.log import logger
+from yarpy.port.answer.ping import Pings
+from yarpy.port.connect import connecting, disconnecting, identity, probe
+from yarpy.port.connect.choosing import MEMORY, choose
+from yarpy.port.connect.dialling import Attempts
+from yarpy.port.hub import Hub
+from yarpy.port.keep.keepalive import Keepalive, Link
+from yarpy.port.keep.server_watch import ServerWatch
+from yarpy.route import Route
+from yarpy.scope import Waiter
+
+log = logger("yarpy.port")
+
+TICK: Final = 0.1  # seconds between looks at what is broken
+CALM: Final = 0.5  # seconds between looks when nothing is
+LOCKED: Final = 60.0  # seconds between two logins: cameras lock those out who try too often
+LONGEST: Final = 30.0  # seconds between attempts at something that stays away
+SILENCE: Final = (
+    1.0  # seconds for a first answer; a dead host gives none, and its name may be elsewhere
+)
+SLOWER: Final = 1.3  # so much longer is each pause than the one before, and up to so much by chance
+INPUT_PATIENCE: Final = 60.0  # seconds for a sender that vanished to come back
+GOODBYE: Final = 1.0  # seconds between a goodbye and the end that it was for
+MOST_SENDERS: Final = 200  # of one port that are waited for
+
+
+@dataclass(slots=True, eq=False)
+class _Lost:
+    """A connection that failed."""
+
+    hub: Hub
+    route: Route
+    incoming: bool
+    since: float = field(default_factory=time.monotonic)
+    pause: float = TICK
+    due: float = 0.0
+    timeout: float = SILENCE  # twice as long after each one: a port that is alive may be slow
+    seen_gone: bool = False
+    told: str = ""  # what was logged last: each reason is told once, not at every attempt
+
+    def put_off(self, now: float) -> None:
+        """Another attempt later; each pause is longer than the one before."""
+        self.due = now + self.pause * random.uniform(1.0, SLOWER)
+        self.pause = min(self.pause * SLOWER, max(self.pause, LONGEST))
+
+    def tell(self, reason: YarpError, then: str) -> None:
+        """Log why it does not come back, and what happens `then`."""
+        if str(reason) != self.told:
+            self.told = str(reason)
+            way = "from" if self.incoming else "to"
+            log.warning(
+                "%s: no connection %s %s: %s; %s", self.hub.name, way, _peer(self), reason, then
+            )
+
+
+class Reconnector:
+    """The thread and its lists."""
+
+    def __init__(self) -> None:
+        self._begin()
+
+    def _begin(self) -> None:
+        self._hubs: list[Hub] = []
+        self._lost: list[_Lost] = []
+        self._attempts = Attempts("dial")
+        self._reports = Attempts("end outputs of")
+        self._keepalive = Keepalive(self._died)
+        self._pings = Pings()
+        self._servers = ServerWatch()
+        self._thread: threading.Thread | None = None
+        self._wake = Waiter()  # of the thread; a signal handler may raise in who wakes it
+        self._over: list[tuple[Hub, str, float]] = []  # goodbyes for inputs that had ended
+        # Ports come and go from any thread, and from signal handlers over frames that hold it.
+        self._lock = threading.RLock()
+
+    def start_over(self) -> list[Hub]:
+        """Begin anew in a forked process, which has no thread of ours; the ports of before."""
+        left = self._hubs
+        self._servers.forget()
+        self._keepalive.forget()
+        self._begin()
+        return left
+
+    # -- what ports say ---------------------------------------------------------------------------
+
+    def wake(self) -> None:
+        """There is a connection that gives no sign of its end: look at it soon."""
+        self._wake.wake()
+
+    def watch(self, hub: Hub) -> None:
+        """Look after a registered port."""
+        with self._lock:
+            self._hubs.append(hub)
+            if self._thread is None or not self._thread.is_alive():
+                self._thread = threading.Thread(
+                    target=self._run, name="yarpy reconnect", daemon=True
+                )
+                self._thread.start()
+
+    def forget(self, hub: Hub) -> None:
+        """The port closes."""
+        with self._lock:
+            self._hubs = [item for item in self._hubs if item is not hub and not item.life.closing]
+            self._lost = [item for item in self._lost if item.hub is not hub]
+            last = not self._hubs
+        if last:
+            self._wake.wake()
+
+    def add(self, hub: Hub, route: Route, incoming: bool, gone: bool = False) -> None:
+        """A connection failed; `gone`: the other end's program has ended, or lost it."""
+        with self._lock:
+            if hub.life.closing:
+                return  # `forget` may have been here already
+            if incoming and self._is_over(hub, route.source):
+                return
+            added = _Lost(hub, route, incoming, seen_gone=gone)
+            if incoming and not _is_pulled(route):
+                self._make_room(added)
+            self._lost.append(added)
+        self._wake.wake()
+
+    def _make_room(self, added: _Lost) -> None:
+        """Forget the same input from before, and the oldest where there are too many: whoever
+        connects under new names again and again must not keep us busy."""
+        inputs = [
+            item
+            for item in self._lost
+            if item.incoming and item.hub is added.hub and not _is_pulled(item.route)
+        ]
+        over = {item for item in inputs if _peer(item) == _peer(added)}
+        if not over and len(inputs) >= MOST_SENDERS:
+            over = {inputs[0]}
+        self._lost = [item for item in self._lost if item not in over]
+
+    def give_up(
+        self, hub: Hub, name: str, incoming: bool | None = None, before: float = math.inf
+    ) -> bool:
+        """Somebody takes the connection to or from `name` in hand, or the one of these that
+        `incoming` tells, if it was lost `before` that time (of time.monotonic); whether it was
+        being tried again."""
+
+        def meant(item: _Lost) -> bool:
+            this = item.hub is hub and _peer(item) == name and item.since < before
+            return this and incoming in (None, item.incoming)
+
+        with self._lock:
+            left = [item for item in self._lost if not meant(item)]
+            found = len(left) < len(self._lost)
+            self._lost = [item for item in left if not item.hub.life.closing]
+        return found
+
+    def over(self, hub: Hub, source: str) -> None:
+        """A sender has said goodbye for an input that has just ended: its thread may be about to
+        tell us that it was lost."""
+        with self._lock:
+            self._over = [*self._over[-MOST_SENDERS:], (hub, source, time.monotonic())]
+
+    def _is_over(self, hub: Hub, source: str) -> bool:
+        since = time.monotonic() - GOODBYE
+        self._over = [item for item in self._over if item[2] > since]
+        return any(item[0] is hub and item[1] == source for item in self._over)
+
+    def pending(self, hub: Hub) -> list[Route]:
+        """Outputs that are being tried again."""
+        return [item.route for item in self._lost if item.hub is hub and not item.incoming]
+
+    # -- the thread -------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        server_away = False
+        while True:
+            busy = self._lost or server_away or self._keepalive.watching
+            self._wake.wait(TICK if busy else CALM)
+            with self._lock:
+                hubs, lost = list(self._hubs), list(self._lost)
+                if not hubs:
+                    self._servers.forget()
+                    self._keepalive.forget()
+                    self._thread = None
+                    return
+            try:
+                self._look_at_outputs(hubs)
+                self._keepalive.look(hubs)
+                self._pings.look(hubs)
+                server_away = self._servers.look(hubs)
+                self._dial(lost)
+            except Exception:
+                log.exception("the watch over connections failed; it goes on")
+
+    def _look_at_outputs(self, hubs: list[Hub]) -> None:
+        for hub in hubs:
+            ended = [link for link in hub.outputs.links if link.watch()]
+            if ended:  # a callback of the program hears of it, and may take its time
+                self._reports.begin(hub.name, partial(self._drop, hub, ended))
+
+    def _drop(self, hub: Hub, ended: list[Outbound]) -> None:
+        for link in ended:
+            hub.outputs.drop(link, link.reason, lost=True)
+
+    def _died(self, hub: Hub, link: Link) -> None:
+        """A datagram connection has died without a sign."""
+        if isinstance(link, Outbound):
+            hub.outputs.drop(link, "the receiver is gone", lost=True)
+            link.close(quit_=False)
+            return
+        link.close()
+        if link.thread is not None:
+            link.thread.join(2.0)
+        input_lost(hub, link.route, gone=True)
+
+    # -- one connection ---------------------------------------------------------------------------
+
+    def _dial(self, lost: list[_Lost]) -> None:
+        """Begin what is due; of those that want the same port, one at a time."""
+        now = time.monotonic()
+        for item in lost:
+            if item.due <= now and not item.hub.life.closing:
+                self._attempts.begin(_peer(item), partial(self._attempt, item))
+
+    def _attempt(self, item: _Lost) -> None:
+        """Try once to have it back."""
+        done = False
+        try:
+            if item.incoming:
+                done = self._ask_sender(item)
+            else:
+                done = self._dial_again(item, item.route.target)
+        except AccessRefused as error:
+            item.pause = LOCKED
+            item.tell(error, f"it is asked again every {LOCKED:g} s")
+        except WrongPort as error:
+            item.tell(error, "it is dialled again now and then, until the right one answers")
+        except RemoteProtocolError as error:  # it says why not
+            item.tell(error, "it is dialled again now and then, ever more rarely")
+        except (YarpError, OSError):
+            pass  # not yet
+        finally:
+            now = time.monotonic()
+            waited = now - item.since > INPUT_PATIENCE
+            if done or (waited and item.incoming and not _is_pulled(item.route)):
+                with self._lock:
+                    self._lost = [other for other in self._lost if other is not item]
+            else:
+                item.put_off(now)
+
+    def _ask_sender(self, item: _Lost) -> bool:
+        """Ask the sender, once it lives again, to send to us as before."""
+        hub, route = item.hub, item.route
+        if _is_there(item):
+            return True
+        if _is_pulled(route):
+            return self._dial_again(item, route.source)
+        contact = hub.names.query(route.source) if hub.names is not None else None
+        if contact is None or not probe.is_alive(contact, hub.key):
+            item.seen_gone = True
+            return False
+        if not item.seen_gone and time.monotonic() - item.since < CALM:
+            return False  # it is still there: give it the time to dial us by itself
+        listed = probe.ask(contact, [Vocab("list"), Vocab("out")], secret_=hub.key)
+        if hub.name in listed:
+            return True
+        if route.spec.log is not None:
+            return True
+        # What a sender has chosen by itself, it chooses again.
+        way = "" if route.spec.base == MEMORY else f"{route.spec.whole}:/"
+        probe.ask(contact, [Vocab("add"), way + hub.name], secret_=hub.key)
+        return True
+
+    def _dial_again(self, item: _Lost, peer: str) -> bool:
+        """Dial a receiver, or a camera that we fetch from, once more; not if somebody else does."""
+        hub, route = item.hub, item.route
+        with hub.callbacks.later(), hub.dialling.alone(peer, wait=False) as alone:
+            if not alone:
+                return False
+            if item not in self._lost or _is_there(item):
+                return True
+            contact = hub.registration.locate(parse_contact(peer))
+            if contact is None:
+                return False
+            item.timeout, timeout = min(2 * item.timeout, identity.TIMEOUT), item.timeout
+            spec = route.spec
+            if spec.chosen:  # what was best need not be so with what is there now
+                spec = choose(contact, hub.service(), spec.own)
+            connecting.open_output(hub, contact, peer, spec, route, timeout)
+            if item in self._lost:
+                way = "from" if item.incoming else "to"
+                log.info("%s: the connection %s %s is back", hub.name, way, peer)
+            elif item.incoming:  # somebody disconnected it meanwhile
+                disconnecting.disconnect_input(hub, peer)
+            else:
+                disconnecting.disconnect_output(hub, peer)
+        return True
+
+
+def _peer(item: _Lost) -> str:
+    return item.route.source if item.incoming else item.route.target
+
+
+def _is_there(item: _Lost) -> bool:
+    """Return whether there is such a connection already."""
+    hub, route = item.hub, item.route
+    if item.incoming:
+        return any(link.route.source == route.source for link in hub.inputs.links)
+    return any(link.route.target == route.target for link in hub.outputs.links)
+
+
+def _is_pulled(route: Route) -> bool:
+    """Return whether the receiver of such a connection is the one that dials."""
+    return not find_carrier(route.spec).push
+
+
+RECONNECTOR: Final = Reconnector()
+watch = RECONNECTOR.watch
+wake = RECONNECTOR.wake
+forget = RECONNECTOR.forget
+give_up = RECONNECTOR.give_up
+over = RECONNECTOR.over
+pending = RECONNECTOR.pending
+
+
+def output_lost(hub: Hub, route: Route) -> None:
+    """An output broke without anybody asking for it."""
+    if route.spec.log is not None:
+        return
+    if not identity.has_proof(route):
+        _leave(hub, "to", route.target)
+        return
+    RECONNECTOR.add(hub, route, incoming=False)
+
+
+def input_lost(hub: Hub, route: Route, gone: bool = False) -> None:
+    """An input ended without a goodbye; `gone`: its sender knows nothing of it any more."""
+    if _is_pulled(route) and route.declared.topic:
+        return  # its node dials publishers again
+    if _is_pulled(route) and not identity.has_proof(route):
+        _leave(hub, "from", route.source)
+    elif _is_pulled(route) or (route.source.startswith("/") and not _is_address(route.source)):
+        RECONNECTOR.add(hub, route, incoming=True, gone=gone)
+
+
+def _leave(hub: Hub, way: str, peer: str) -> None:
+    log.warning(
+        "%s: the connection %s %s broke and is not dialled again by itself: what listened there "
+        "did not say its name, so nobody could tell whether it is the same again",
+        hub.name,
+        way,
+        peer,
+    )
+
+
+def _is_address(name: str) -> bool:
+    """Return whether a route's name is really an address, which nobody can be asked at."""
+    try:
+        return parse_contact(name).reachable
+    except YarpError:
+        return True

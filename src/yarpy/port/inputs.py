@@ -1,0 +1,316 @@
+"""Inputs: the connections into a port, each served in a thread of its own.
+
+Rules: the tuples of links are replaced under `lock`, never changed, so walking them needs no
+lock; none is held while user code runs or bytes move. Every end of a connection comes through
+`input_ended`, once.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from collections.abc import Callable
+from typing import Final, Protocol
+
+from yarpy import scope
+from yarpy.carriers.base import PAGE, Carrier
+from yarpy.data.bottle import Bottle
+from yarpy.errors import AccessRefused, NoNameServer, PortClosed, RemoteProtocolError, YarpError
+from yarpy.link.begin.admission import Peer
+from yarpy.link.counter import Past
+from yarpy.link.driver import Driver
+from yarpy.link.receive.budget import Budget
+from yarpy.link.receive.inbound import Inbound
+from yarpy.log import logger
+from yarpy.names.client import YarpNameClient
+from yarpy.port.answer import crowd, guard
+from yarpy.port.answer.callbacks import Callbacks
+from yarpy.port.answer.monitoring import Monitoring
+from yarpy.port.answer.rivals import Rivals
+from yarpy.port.connect import goodbye
+from yarpy.port.connect.saved import SavedQos
+from yarpy.port.graph import Membership
+from yarpy.port.keep.life import Life
+from yarpy.port.keep.registration import Registration
+from yarpy.port.mailbox import Mailbox
+from yarpy.port.outputs import Outputs
+from yarpy.route import Route
+from yarpy.wire.message import Message
+
+log = logger("yarpy.port")
+
+SETTLING: Final = 2.0  # seconds without progress of a connection that another takes the place of
+LOOK: Final = 0.05  # seconds between two looks at it
+
+
+class Hub(Protocol):
+    """The port, as far as its inputs need it."""
+
+    registration: Registration
+    callbacks: Callbacks
+    monitoring: Monitoring
+    saved_qos: SavedQos
+    membership: Membership | None
+    inputs: Inputs
+    outputs: Outputs
+    life: Life
+
+    @property
+    def name(self) -> str: ...
+
+    def answer(self, message: Message) -> Bottle:
+        """Answer an administrative message."""
+
+    def obey(self, link: Inbound, message: Message) -> list[str]:
+        """Carry out a port command."""
+
+    def changed(self) -> None:
+        """Wake whoever waits for connections."""
+
+    def watch(self) -> None:
+        """Look after a connection that gives no sign of its end."""
+
+    def input_lost(self, route: Route) -> None:
+        """Expect an input again that ended without a goodbye."""
+
+
+class Inputs:
+    """The connections into one port; `budget` is what their unfinished messages may hold."""
+
+    def __init__(self, hub: Hub, mailbox: Mailbox, budget: Budget) -> None:
+        self._hub = hub
+        self.mailbox = mailbox
+        self.receive: Callable[[Inbound, Message], None] = mailbox.put  # what links call
+        self.links: tuple[Inbound, ...] = ()  # one at most from each rooted name
+        self.leaving: tuple[Inbound, ...] = ()  # were inputs; their threads have not ended yet
+        self.past = Past()
+        self.on_change: Callable[[], None] = lambda: None  # the reader looks at them again
+        self.budget = budget
+        # Of the outputs, too, since closing ends both. A signal handler may close the port above a
+        # frame that has it.
+        self.lock = threading.RLock()
+        self._rivals = Rivals(lambda: hub.name)
+
+    @property
+    def name(self) -> str:
+        """The port's name."""
+        return self._hub.name
+
+    @property
+    def connections(self) -> tuple[Inbound, ...]:
+        """The links but those of administrators, who pass by and bring no messages."""
+        return tuple(link for link in self.links if link.route.source != "admin")
+
+    # -- coming -----------------------------------------------------------------------------------
+
+    def run(self, driver: Driver, carrier: Carrier) -> None:
+        """Serve a connection that we accepted, in this thread, until it ends.
+
+        With a pull carrier it is an output instead: the side that dialled receives.
+        """
+        if not carrier.push:
+            self._hub.outputs.serve(driver, carrier)
+            return
+        try:
+            link = guard.inbound(self, self._hub, driver, carrier)
+            link.thread = threading.current_thread()
+            self.take(link)
+        except (PortClosed, AccessRefused):
+            return
+        except YarpError as error:
+            log.warning("%s: connection %s refused: %s", self.name, carrier.route, error)
+            return
+        self.serve(link)
+
+    def take(self, link: Inbound) -> None:
+        """Make an open connection one of these, to be served next.
+
+        It replaces an earlier one of the same sender, and waits until that has ended.
+        Raises PortClosed, or what a monitor raises that cannot start; the connection is then
+        closed.
+        """
+        hub = self._hub
+        link.receiver.page = hub.callbacks.page
+        link.receiver.incoming.budget = self.budget
+        try:
+            hub.monitoring.incoming(link)
+        except YarpError:
+            link.driver.transport.close()
+            raise
+        source, idle = link.route.source, None
+        while True:
+            with self.lock:  # of connections that come at once each replaces the one before it
+                rooted = source.startswith("/")
+                older = tuple(item for item in self.links if rooted and item.route.source == source)
+                others = tuple(item for item in self.links if item not in older)
+                late = hub.life.closing
+                full = ""
+                if link.carrier.delivery.connectionless:
+                    # Who greeted at the same time may have taken the place that was found then.
+                    peer = link.driver.admission.peer
+                    full, idle = crowd.room((*others, *self.leaving), peer)
+                if not (late or full):
+                    self.links = (*others, link)
+                    self.leaving = (*self.leaving, *older)
+            if late or idle is None:
+                break
+            self._replace(idle)
+        if full:
+            self._turn_away(link)
+            raise RemoteProtocolError(full)
+        if late:
+            with contextlib.suppress(NoNameServer):
+                goodbye.ask_to_leave(hub.registration, link.route.source)
+            self._turn_away(link)
+            raise PortClosed(f'"{self.name}" is closed')
+        hub.changed()
+        hub.saved_qos.give(link)
+        if any(_lives(old) for old in older):
+            self._rivals.replaced(source)
+        for old in older:
+            old.close()
+            if old.thread is not threading.current_thread():
+                self._let_end(old)
+
+    def _let_end(self, old: Inbound) -> None:
+        """Wait until an earlier connection has ended: what it still brings comes before what the
+        new one brings. It has SETTLING after each message, and as long as it takes while the
+        program does not read. One that is at work on a question is not waited for: nobody waits
+        for the answer any more."""
+        came, limit = old.counter.messages, time.monotonic() + SETTLING
+        while old.receiver.question is None and not old.served.wait(LOOK):
+            if self._hub.life.closing:
+                return
+            if self.mailbox.behind or old.counter.messages != came:
+                came, limit = old.counter.messages, time.monotonic() + SETTLING
+            elif time.monotonic() > limit:
+                return
+
+    def rival(self, source: str) -> str:
+        """Return why another input of that name is not taken, "" if it is: it may be the same
+        program, whose connection broke."""
+        if not any(_lives(link) for link in self.links if link.route.source == source):
+            return ""
+        return self._rivals.refusal(source)
+
+    def find_room(self, peer: Peer) -> str:
+        """Return why another input over datagrams finds no place, "" if it does; one that nobody
+        needs may have to leave for it."""
+        while True:
+            why, idle = crowd.room((*self.links, *self.leaving), peer)
+            if idle is None:
+                return why
+            if self._replace(idle):
+                return ""
+
+    def _replace(self, idle: Inbound) -> bool:
+        """Let one leave that nobody needs; return False if it has left already."""
+        if not self._forget(idle):
+            return False
+        self._hub.callbacks.report(idle, created=False, reason=crowd.REPLACED)
+        idle.close()
+        return True
+
+    def _turn_away(self, link: Inbound) -> None:
+        if link.receiver.close():
+            with self.lock:
+                self.past.add(link.counter)
+        if link.own_chain is not None:
+            link.own_chain.close()
+
+    def serve(self, link: Inbound) -> None:
+        """Serve one of these, in this thread, until it ends."""
+        link.thread = threading.current_thread()
+        link.thread.name = f"yarpy {link.route}"
+        self.on_change()
+        self._hub.callbacks.report(link, created=True)
+        if link.carrier.delivery.connectionless:
+            self._hub.watch()
+        link.serve()
+        if link.own_chain is not None:
+            link.own_chain.close()
+        link.served.set()
+
+    # -- asked by its links -----------------------------------------------------------------------
+
+    def administer(self, link: Inbound, message: Message) -> Bottle:
+        """Answer an administrative message."""
+        return self._hub.answer(message)
+
+    def command(self, link: Inbound, message: Message) -> list[str]:
+        """Carry out a port command; lines for a person to read."""
+        lines = self._hub.obey(link, message)
+        if (message.key, message.text) == ("*", PAGE):
+            names = self._hub.registration.names
+            if isinstance(names, YarpNameClient):
+                lines.append(f"Name server at http://{names.host}:{names.port}/")
+            lines += self._hub.callbacks.lines_for_people()
+        return lines
+
+    def reverse(self, link: Inbound) -> None:
+        """Make an output of a connection whose other end wants to read."""
+        self._forget(link)
+        self._hub.outputs.serve(link.driver, link.successor)
+
+    def deadline_missed(self, link: Inbound, lateness: float, silent: bool) -> None:
+        """Tell the program that a message is that many seconds late."""
+        self._hub.callbacks.deadline(link, lateness, silent)
+
+    def exchange(self, mailbox: Mailbox) -> None:
+        """Hand what comes from now on to another mailbox."""
+        with self.lock:
+            if self._hub.life.over:
+                mailbox.why = self.mailbox.why
+                mailbox.interrupt()
+            self.mailbox, self.receive = mailbox, mailbox.put
+
+    # -- going ------------------------------------------------------------------------------------
+
+    def input_ended(self, link: Inbound, reason: str, quit_: bool) -> None:
+        """Forget a link that has ended; in good order if `quit_`."""
+        hub = self._hub
+        if not self._forget(link):
+            return
+        hub.callbacks.report(link, created=False, reason=reason)
+        if not (quit_ or link.closing or hub.life.closing):
+            hub.saved_qos.keep(link)
+            hub.input_lost(link.route)
+
+    def _forget(self, link: Inbound) -> bool:
+        with self.lock:
+            known = link in (*self.links, *self.leaving)
+            if known:
+                self.past.add(link.counter, link.lost)
+            self.links = tuple(item for item in self.links if item is not link)
+            self.leaving = tuple(item for item in self.leaving if item is not link)
+        self._hub.changed()
+        self.on_change()
+        if self._hub.membership is not None:
+            self._hub.membership.lost()
+        return known
+
+    def end_reading(self, state: str) -> None:
+        """Let nobody wait to read any more."""
+        self.mailbox.why = f'"{self._hub.name}" is {state}'
+        self.mailbox.interrupt()
+
+    def close(self) -> None:
+        """End them, with the answers that are on their way, and wait for their threads."""
+        goodbye.let_answers_leave(self.links, min(0.3, scope.remaining()))
+        for link in self.links:
+            link.close()
+        for link in (*self.links, *self.leaving):
+            if link.thread is not None and link.thread is not threading.current_thread():
+                link.thread.join(min(3.0, scope.remaining()))
+
+    def abandon(self) -> None:
+        """In a forked process: they are its parent's."""
+        self.links = self.leaving = ()
+
+
+def _lives(link: Inbound) -> bool:
+    """Return whether an input would show its end, and there is no sign of that. Datagrams do not:
+    there, what a sender leaves behind when it dials again looks like another one's."""
+    silent = link.carrier.delivery.connectionless
+    return not (silent or link.closing or link.driver.transport.ended())

@@ -1,0 +1,77 @@
+"""Descriptors that close with their object, whatever comes between; and work that no signal cuts.
+
+Rules: a signal handler may raise between any two steps of Python in the main thread, also where a
+call of the system has just returned, and within `__del__`. So a descriptor becomes an object in the
+same call into C in which it is made, and its end is one of C as well. What takes more than that is
+done in a thread, where no handler runs.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from _thread import allocate_lock
+from collections.abc import Callable, Iterable
+from io import FileIO
+from itertools import chain
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+
+class Descriptor(FileIO):
+    """A descriptor of this process, which is closed with it. Raises OSError for one of a
+    directory, or none; that stays open."""
+
+    __del__ = FileIO.close  # no function of Python, which a signal could cut at its first step
+
+
+def opened(make: Callable[..., int], *arguments: Any) -> Descriptor:
+    """Return the descriptor that make(*arguments) returns. Raises what that raises."""
+    (found,) = map(Descriptor, map(make, *((each,) for each in arguments)))
+    return found
+
+
+def opened_pair(make: Callable[..., tuple[int, int]], *arguments: Any) -> list[Descriptor]:
+    """Return the two descriptors that make(*arguments) returns. Raises what that raises."""
+    made = map(make, *((each,) for each in arguments))
+    return list(map(Descriptor, chain.from_iterable(made)))
+
+
+def owned(numbers: Iterable[int]) -> list[Descriptor]:
+    """Return these descriptors as objects. Raises OSError if one is none, or a directory; then all
+    are closed."""
+    rest, found = [*numbers], list[Descriptor]()
+    try:
+        found.extend(map(Descriptor, rest))
+    except OSError:
+        for number in rest[len(found) :]:
+            os.close(number)
+        raise
+    return found
+
+
+def undisturbed(function: Callable[[], T]) -> T:
+    """Return function(), which no signal handler cuts: from the main thread it is called in another
+    one, and comes to its end also where this one is cut. It must not wait for long. Raises what
+    it raises."""
+    if threading.current_thread() is not threading.main_thread():
+        return function()
+    found: list[T] = []
+    failed: list[BaseException] = []
+    done = allocate_lock()
+    done.acquire()
+
+    def run() -> None:
+        try:
+            found.append(function())
+        except BaseException as error:
+            failed.append(error)
+        finally:
+            done.release()
+
+    threading.Thread(target=run, name="yarpy undisturbed", daemon=True).start()
+    done.acquire()
+    if failed:
+        raise failed.pop()  # it would keep itself, and what its frames have, otherwise
+    return found[0]

@@ -1,0 +1,171 @@
+"""Lease: the array that every view of shared memory comes from, and how it is found again.
+
+Rules: it says in whose memory it lies, and where. It lives for as long as any view of it: then what
+was received is given back, and room that a program has filled itself is free again. Bytes that are
+to be sent are followed back through the arrays that they are a view of, so memory is not looked up
+by its address, and nothing has to be registered.
+"""
+
+from __future__ import annotations
+
+import mmap
+import sys
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, Final, Protocol, TypeAlias
+from weakref import WeakSet
+
+from yarpy import fork
+from yarpy.wire.stream import LARGE, Buffer
+
+HEADROOM: Final = 256  # bytes before an array that is filled in place: for a message's head
+
+
+class Source(Protocol):
+    """A file in memory that payloads lie in."""
+
+    @property
+    def address(self) -> int:
+        """Where it is mapped here."""
+
+    @property
+    def descriptors(self) -> tuple[int, ...]:
+        """The file; and a pipe, if somebody wants to know until when it is looked at."""
+
+
+class Room(Protocol):
+    """A piece of our own memory that a program fills."""
+
+    def begin(self, head: bytes) -> bool:
+        """Put that in front of the array; False if something else is there."""
+
+
+class Lender(Protocol):
+    """A record of the payloads in use, which a forked child leaves to its parent."""
+
+    def disown(self) -> None:
+        """From now on it is not."""
+
+
+LENDERS: Final[WeakSet[Lender]] = WeakSet()
+
+
+def _leave_to_parent() -> None:
+    """In a forked process, which has a copy of each view of its parent: what ends here does not end
+    there. It is registered before what closes the parent's ports here (`port/fork.py`)."""
+    for lender in tuple(LENDERS):
+        lender.disown()
+
+
+fork.after_in_child(_leave_to_parent)
+
+Place: TypeAlias = tuple[Source, int, object]
+"""Where a payload lies already: in what, at which offset; and what keeps it there."""
+
+
+@cache
+def lease_type() -> Any:
+    """The class: an array, since these can be over a part of a file."""
+    import numpy as np
+
+    class Lease(np.ndarray[Any, np.dtype[np.uint8]]):
+        """Bytes of shared memory; or, without a source, bytes in place of such."""
+
+        source: Source | None = None
+        offset: int = 0
+        room: Room | None = None
+        ended: Callable[[], object] | None = None  # called with its end
+
+        def __del__(self) -> None:
+            if self.ended is not None:
+                self.ended()
+
+    return Lease
+
+
+def place_of(blocks: Sequence[Buffer]) -> Place | None:
+    """Where the bytes of these blocks lie one after the other in memory that can be shown to
+    others; None if they do not.
+
+    The last block is what lies there; what is in front of it is small, and lies before it or can be
+    put there.
+    """
+    block = blocks[-1] if blocks else b""
+    if type(block) is not memoryview or len(block) < LARGE or "numpy" not in sys.modules:
+        return None
+    lease = _lease_of(block.obj)
+    if lease is None or lease.source is None:
+        return None
+    source: Source = lease.source
+    start = _address(block) - source.address
+    first: int = lease.offset
+    room: Room | None = lease.room
+    head = blocks[0] if len(blocks) == 2 else b"".join(blocks[:-1])
+    begin = start - len(head)
+    if begin < first or len(head) > HEADROOM:
+        return None
+    if not head:
+        pass
+    elif room is not None and start == first + HEADROOM:
+        if not room.begin(bytes(head)):
+            return None
+    elif memoryview(lease)[begin - first : start - first] != head:
+        return None
+    if room is None:
+        return source, begin, lease
+    _forbid(block.obj)
+    return source, begin, room
+
+
+def freeze(value: object, blocks: Sequence[Buffer]) -> None:
+    """Forbid a program to change what it has filled and written: its readers look at it. `blocks`
+    are its bytes."""
+    _forbid(value)  # an array, even if it was copied all the same
+    block = blocks[-1] if blocks else b""
+    if type(block) is memoryview and block.obj is not value:
+        _forbid(block.obj)
+
+
+def _lease_of(one: Any) -> Any:
+    """Return the lease that something is a view of, by way of the arrays between; None if it is a
+    view of something else."""
+    lease, array = lease_type(), sys.modules["numpy"].ndarray
+    while type(one) is not lease:
+        if isinstance(one, array):
+            one = one.base
+        elif type(one) is memoryview:
+            one = one.obj
+        else:
+            return None
+    return one
+
+
+def _forbid(one: Any) -> None:
+    """Let what is a view of a lease, and all arrays between, not be written to any more."""
+    lease = _lease_of(one)
+    if lease is None or not lease.flags.writeable:
+        return
+    lease.setflags(write=False)
+    while one is not lease:
+        if type(one) is memoryview:
+            one = one.obj
+        else:
+            one.setflags(write=False)
+            one = one.base
+
+
+def address_of(memory: mmap.mmap) -> int:
+    """Where a file is mapped."""
+    import numpy as np
+
+    address: int = np.frombuffer(memory, np.uint8).__array_interface__["data"][0]
+    return address
+
+
+def _address(block: memoryview) -> int:
+    numpy = sys.modules["numpy"]
+    whole: Any = block.obj
+    if not (isinstance(whole, numpy.ndarray) and whole.nbytes == len(block)):
+        whole = numpy.frombuffer(block, numpy.uint8)
+    address: int = whole.__array_interface__["data"][0]
+    return address

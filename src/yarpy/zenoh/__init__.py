@@ -1,1 +1,0 @@
-"""Keys of Zenoh as ends of connections, for programs that know nothing of YARP."""

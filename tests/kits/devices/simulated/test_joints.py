@@ -1,0 +1,16 @@
+"""Joints that are at once where they are sent."""
+
+from yarpy.kits.devices.simulated.joints import SimulatedJoints
+
+
+def test_members() -> None:
+    joints = SimulatedJoints(["yaw", "roll"])
+    joints.position_move([1], [5.0])
+    joints.position_direct([0], [500.0])
+    joints.velocity_move([0], [5.0])
+    joints.stop([0])
+    assert joints.encoders() == [180.0, 5.0] and joints.encoder_speeds() == [0.0, 0.0]
+    joints.switch_control_modes([0, 1], ["vel", "fidl"])
+    assert joints.control_modes() == ["vel", "idl"]
+    joints.switch_interaction_modes([0], ["comp"])
+    assert joints.interaction_modes() == ["comp", "stif"] and all(joints.motion_done())

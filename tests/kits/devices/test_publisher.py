@@ -1,0 +1,61 @@
+import logging
+import threading
+
+import pytest
+from support.wait import wait_until
+
+from yarpy.kits.devices.publisher import Publisher
+
+
+def test_it_goes_on_until_it_is_closed(caplog):
+    steps = []
+
+    def step():
+        steps.append(threading.current_thread().name)
+        if len(steps) == 2:
+            raise OSError("cable")
+
+    with caplog.at_level(logging.WARNING):
+        publisher = Publisher("/head", 0.001, step)
+        wait_until(lambda: len(steps) > 5, 20)
+        publisher.close()
+    count = len(steps)
+    assert set(steps) == {"yarpy device /head"}
+    assert "/head: publishing: OSError: cable" in caplog.text
+    assert "yarpy device /head" not in {thread.name for thread in threading.enumerate()}
+    assert len(steps) == count
+    publisher.close()
+
+
+def test_a_step_may_end_it():
+    ended = threading.Event()
+
+    def step():
+        ready.wait(20)
+        publisher.close()
+        ended.set()
+
+    ready = threading.Event()
+    publisher = Publisher("/head", 0.001, step)
+    ready.set()
+    assert ended.wait(20)
+
+
+@pytest.mark.parametrize("period", [0, -1.0, float("nan"), float("inf")])
+def test_periods_are_positive(period):
+    with pytest.raises(ValueError, match="period"):
+        Publisher("/head", period, lambda: None)
+
+
+def test_a_step_that_does_not_end_is_left_behind(monkeypatch):
+    monkeypatch.setattr("yarpy.kits.devices.publisher.TIMEOUT", 0.05)
+    stuck, leave = threading.Event(), threading.Event()
+
+    def step():
+        stuck.set()
+        leave.wait(20)
+
+    publisher = Publisher("/head", 0.001, step)
+    assert stuck.wait(20)
+    publisher.close()
+    leave.set()

@@ -1,0 +1,80 @@
+"""Servers as devices of a robot's file."""
+
+import pytest
+
+import yarpy
+from yarpy import Property
+from yarpy.kits.devices import wrapper
+
+
+class Joints:
+    axis_names = ("a",)
+
+    def encoders(self) -> list[float]:
+        return [1.5]
+
+
+class Laser:
+    def ranges(self) -> list[float]:
+        return [1.0]
+
+
+class Camera:
+    def image(self) -> yarpy.Image:
+        return yarpy.Image(2, 2)
+
+
+class Battery:
+    def charge(self) -> float:
+        return 50.0
+
+
+class Sensor:
+    def gyroscopes(self) -> dict[str, tuple[float, float, float]]:
+        return {"g": (0.0, 0.0, 0.0)}
+
+
+@pytest.mark.parametrize(
+    ("kind", "device", "port"),
+    [
+        (wrapper.ControlBoard, Joints(), "/x/state:o"),
+        (wrapper.FrameGrabber, Camera(), "/x"),
+        (wrapper.Laser, Laser(), "/x"),
+        (wrapper.MultiSensor, Sensor(), "/x/measures:o"),
+        (wrapper.Battery, Battery(), "/x/data:o"),
+    ],
+)
+def test_ports_are_open_while_a_device_is_attached(
+    kind: type[wrapper.Wrapper], device: object, port: str
+) -> None:
+    names = yarpy.LocalNames()
+    opened = kind(Property(name="/x", period=20), names=names)
+    assert names.query(port) is None
+    opened.attach({"...": device})
+    assert names.query(port) is not None
+    with pytest.raises(ValueError, match="already"):
+        opened.attach({"...": device})
+    opened.detach()
+    assert names.query(port) is None
+    opened.attach({"...": device})
+    opened.close()
+    assert names.query(port) is None
+
+
+def test_what_cannot_be_served_is_refused() -> None:
+    with pytest.raises(ValueError, match="needs a parameter name"):
+        wrapper.Laser(Property())
+    for period in (0, -1, "fast", True):
+        with pytest.raises(ValueError, match="is no time"):
+            wrapper.Laser(Property(name="/x", period=period))
+    opened = wrapper.Laser(Property(name="/x"), names=yarpy.LocalNames())
+    with pytest.raises(ValueError, match="one device, not 2"):
+        opened.attach({"a": Laser(), "b": Laser()})
+    with pytest.raises(ValueError, match="ranges"):
+        opened.attach({"a": object()})
+
+
+def test_only_that_of_sensors_counts_milliseconds() -> None:
+    assert wrapper.MultiSensor(Property(name="/x", period=20))._values == {"period": 0.02}
+    assert wrapper.Laser(Property(name="/x", period=20))._values == {"period": 20.0}
+    assert wrapper.Laser(Property(name="/x"))._values == {}

@@ -1,0 +1,98 @@
+"""The socket of a running application, and what is remembered for the next one."""
+
+import json
+import os
+import socket
+import subprocess
+
+import pytest
+from support.wait import wait_until
+
+from yarpy.errors import LocalProtocolError
+from yarpy.kits.launch.console import control
+from yarpy.kits.launch.supervise import process
+from yarpy.limit import CONTROL_LINE
+
+pytestmark = pytest.mark.skipif(
+    not hasattr(socket, "AF_UNIX"), reason="this system has no Unix sockets in Python"
+)
+
+
+@pytest.fixture
+def served(runtime):
+    def answer(asked):
+        if asked["do"] == "fail":
+            raise LocalProtocolError("no such thing")
+        return {"got": asked}
+
+    record = control.Record("my app")
+    serving = control.Control("my app", answer)
+    yield runtime
+    serving.close()
+    record.close()
+
+
+def test_questions_and_answers(served) -> None:
+    assert control.ask("my app", do="x", name="y") == {"got": {"do": "x", "name": "y"}}
+    with pytest.raises(LocalProtocolError, match="no such thing"):
+        control.ask("my app", do="fail")
+    assert control.running() == ["my_app"]
+
+
+def test_nobody_else_may(served) -> None:
+    assert served.stat().st_mode & 0o777 == 0o700
+    (path,) = served.glob("*.sock")
+    assert path.stat().st_mode & 0o777 == 0o600
+
+
+@pytest.mark.parametrize("line", [b"\n", b"[]\n", b"{" * 100_000, b"x" * (2 * CONTROL_LINE), b""])
+def test_what_is_no_question(served, line: bytes) -> None:
+    (path,) = served.glob("*.sock")
+    with socket.socket(socket.AF_UNIX) as link:
+        link.connect(str(path))
+        try:
+            link.sendall(line)
+            link.shutdown(socket.SHUT_WR)
+        except OSError:
+            pass  # it does not read on
+        with link.makefile("rb") as file:
+            try:
+                said = file.readline()
+            except ConnectionResetError:
+                said = b""
+    assert not said or "this is no request" in json.loads(said)["error"]
+    assert control.ask("my app", do="x") == {"got": {"do": "x"}}
+
+
+def test_only_one_of_a_name(served) -> None:
+    with pytest.raises(LocalProtocolError, match="`yarpy down my app` ends it"):
+        control.Record("my app")
+
+
+def test_who_is_not_there(served) -> None:
+    with pytest.raises(LocalProtocolError, match=r'no application called "other".*"my_app"'):
+        control.ask("other", do="status")
+
+
+def test_what_a_killed_one_left_is_found(runtime) -> None:
+    record = control.Record("a")
+    record.write("run-1", ["x", "y"])
+    record._file.close()  # as the system does when a process is killed
+    child = subprocess.Popen(["sleep", "600"], env={**os.environ, process.MARK: "run-1/y"})
+    try:
+        again = control.Record("a")
+        wait_until(lambda: again.left() == {child.pid: "y"})
+    finally:
+        child.kill()
+        child.wait()
+    assert again.left() == {}
+    again.close()
+    assert control.running() == []
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"run": 1}', '{"run": "x", "programs": 7}'])
+def test_a_damaged_record_is_none(runtime, text: str) -> None:
+    record = control.Record("a")
+    (runtime / "a.json").write_text(text)
+    assert record.left() == {}
+    record.close()

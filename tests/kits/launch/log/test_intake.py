@@ -1,0 +1,123 @@
+"""Taking the lines of all programs: whenever they come, each once, and what is lost is counted."""
+
+import threading
+from collections.abc import Iterator
+
+import pytest
+from support.wait import HANG, wait_until
+
+import yarpy
+from yarpy.kits.launch.log import intake as module
+from yarpy.kits.launch.log.intake import Intake
+from yarpy.nameserver.local import LocalNames
+
+ONE = "/log/vm/one/1"
+
+
+def line(text: str, time: float = 1795219554.5, port: str = ONE) -> yarpy.Bottle:
+    told = yarpy.Bottle([["level", "INFO"], ["systemtime", time], ["message", text]])
+    return yarpy.Bottle([f"[{port}]", told.to_text()])
+
+
+@pytest.fixture
+def names(monkeypatch: pytest.MonkeyPatch) -> LocalNames:
+    monkeypatch.setattr(module, "PERIOD", 0.01)
+    return LocalNames()
+
+
+@pytest.fixture
+def intake(names: LocalNames) -> Iterator[Intake]:
+    with yarpy.BufferedPort("/logger", strict=True, names=names) as port:
+        found = Intake(port, names=names)
+        yield found
+        found.close()
+
+
+def texts(intake: Intake, count: int) -> list[str]:
+    found: list[str] = []
+    while len(found) < count:
+        pairs = intake.read(HANG)
+        assert pairs, found
+        found += [one.text for one, _ in pairs]
+    return found
+
+
+def test_programs_that_were_there_and_that_come(names: LocalNames) -> None:
+    with (
+        yarpy.Port(ONE, names=names) as one,
+        yarpy.BufferedPort("/logger", strict=True, names=names) as port,
+        yarpy.Port("/not/logging", names=names) as other,
+    ):
+        intake = Intake(port, names=names)
+        assert one.wait_for_outputs(timeout=HANG)
+        one.write(line("here"))
+        assert texts(intake, 1) == ["here"]
+        with yarpy.Port("/yarprunlog/two", names=names) as two:
+            assert two.wait_for_outputs(timeout=HANG)
+            two.write(["[/yarprunlog/two]", "plain"])
+            assert texts(intake, 1) == ["plain"]
+        assert not other.outputs
+        intake.close()
+        assert intake.read() == []
+
+
+def test_what_comes_again_is_known_and_what_is_late_is_not(
+    names: LocalNames, intake: Intake
+) -> None:
+    with yarpy.Port(ONE, names=names) as one:
+        assert one.wait_for_outputs(timeout=HANG)
+        one.write(line("b", 2.0))
+        one.write(line("a", 1.0))  # of another thread of the program, a little later
+        one.write(line("b", 2.0))
+        one.write(line("a", 1.0))
+        one.write([1, 2])
+        one.write(["x", 3])
+        one.write(line("c", 3.0))
+        assert texts(intake, 3) == ["b", "a", "c"]
+
+
+def test_what_nobody_reads_is_counted(
+    names: LocalNames, intake: Intake, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "LOG_WAITING", 10)
+    with yarpy.Port(ONE, names=names) as one:
+        assert one.wait_for_outputs(timeout=HANG)
+        for number in range(25):
+            one.write(line(str(number), float(number + 1)))
+        wait_until(lambda: intake.taken == 25)
+    assert intake.lost == 15
+    assert texts(intake, 10) == [str(number) for number in range(15, 25)]
+    assert intake.read(0.0) == []
+
+
+def test_bytes_are_limited_as_well(
+    names: LocalNames, intake: Intake, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "LOG_WAITING_BYTES", 1000)
+    with yarpy.Port(ONE, names=names) as one:
+        assert one.wait_for_outputs(timeout=HANG)
+        for number in range(10):
+            one.write(line("x" * 300, float(number + 1)))
+        wait_until(lambda: intake.taken == 10)
+    assert intake.lost == 8 and len(texts(intake, 2)) == 2
+
+
+def test_strangers_that_make_up_names(
+    names: LocalNames, intake: Intake, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "LOG_ORIGINS", 5)
+    with yarpy.Port(ONE, names=names) as one:
+        assert one.wait_for_outputs(timeout=HANG)
+        for number in range(20):
+            one.write(line("x", port=f"/log/vm/x/{number}"))
+        assert len(texts(intake, 20)) == 20
+    assert len(intake._origins) == 5
+
+
+def test_who_waits_hears_of_the_end(intake: Intake) -> None:
+    done: list[object] = []
+    thread = threading.Thread(target=lambda: done.append(intake.read()))
+    thread.start()
+    intake.close()
+    thread.join(HANG)
+    assert done == [[]]

@@ -1,0 +1,48 @@
+"""Projects: their files, and names that are none."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from yarpy.errors import LocalProtocolError
+from yarpy.kits.launch.application.load import load
+from yarpy.kits.launch.project.create import create
+
+
+def test_files_are_whole(tmp_path: Path) -> None:
+    written = create("ball-tracker", tmp_path)
+    place = tmp_path / "ball-tracker"
+    assert {str(path.relative_to(place)) for path in written} == {
+        *("pyproject.toml", "README.md", "ball-tracker.ini", "ball-tracker.toml"),
+        *("ball_tracker/__init__.py", "ball_tracker/module.py", "tests/test_module.py"),
+    }
+    for path in written:
+        text = path.read_text()
+        assert "$" not in text, path
+        if path.suffix == ".py":
+            compile(text, path, "exec")
+    said = tomllib.loads((place / "pyproject.toml").read_text())
+    assert said["project"]["scripts"] == {"ball-tracker": "ball_tracker.module:main"}
+    application = load(place / "ball-tracker.toml")
+    assert application.problems == [] and len(application.modules) == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        *((name, "write small letters") for name in ("", "Ball", "../x", "a b", "1a", "a" * 51)),
+        *((name, "take another name") for name in ("json", "yarpy", "tests")),
+    ],
+)
+def test_names_that_are_none(tmp_path: Path, name: str, why: str) -> None:
+    with pytest.raises(LocalProtocolError, match=why):
+        create(name, tmp_path)
+    assert [*tmp_path.iterdir()] == []
+
+
+def test_what_is_there_is_not_touched(tmp_path: Path) -> None:
+    (tmp_path / "mine").mkdir()
+    with pytest.raises(LocalProtocolError, match="is there already"):
+        create("mine", tmp_path)
+    assert [*(tmp_path / "mine").iterdir()] == []

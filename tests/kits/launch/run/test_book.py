@@ -1,0 +1,55 @@
+"""The files in which a server keeps what it has started."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from yarpy.errors import AddressError
+from yarpy.kits.launch.run.book import Book, Entry, default_folder
+
+
+def test_entries_come_back(tmp_path: Path) -> None:
+    book = Book("/node", tmp_path)
+    assert book.folder.stat().st_mode & 0o777 == 0o700
+    entry = Entry(book.fresh(), "tag", "sleep 60", "A=b", "/tmp", 7, 99, "/log/x", "/l", "/u")
+    book.write(entry)
+    assert book.path(entry.id, "json").stat().st_mode & 0o777 == 0o600
+    book.set_place(entry.id, 12)
+    book.close()
+    book = Book("/node", tmp_path)
+    [found] = book.entries()
+    assert (found.tag, found.command, found.pid, found.uuid) == ("tag", "sleep 60", 7, "/u")
+    assert book.place(entry.id) == 12 and book.place("other") == 0
+    book.remove(entry.id)
+    assert [*book.entries()] == [] and [*book.folder.glob("*.*")] == []
+    book.close()
+
+
+def test_one_server_at_a_time(tmp_path: Path) -> None:
+    book = Book("/node", tmp_path)
+    with pytest.raises(AddressError, match="runs already"):
+        Book("/node", tmp_path)
+    Book("/other", tmp_path).close()
+    book.close()
+
+
+def test_what_is_no_entry_any_more_is_removed(tmp_path: Path) -> None:
+    book = Book("/node", tmp_path)
+    entry = Entry(book.fresh(), "tag", "sleep", pid=7)
+    for change in ({"boot": "another"}, {"pid": "7"}, {"id": "../x"}, {"tag": None}):
+        book.write(entry)
+        path = book.path(entry.id, "json")
+        path.write_text(json.dumps(json.loads(path.read_text()) | change))
+        assert [*book.entries()] == [] and not path.exists()
+    path.write_text("{")
+    assert [*book.entries()] == []
+    book.close()
+
+
+def test_a_folder_that_cannot_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(AddressError, match="cannot be used"):
+        Book("/node", tmp_path / "file")
+    monkeypatch.setenv("XDG_STATE_HOME", "/s")
+    assert default_folder() == Path("/s/yarpy/run")

@@ -1,0 +1,166 @@
+"""Programs on this computer: what they print, how they end, and that nothing is left of them."""
+
+import itertools
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+
+import pytest
+from support.wait import HANG, wait_until
+
+from yarpy.kits.launch.supervise import process
+from yarpy.kits.launch.supervise.local import LocalHandle, LocalRunner
+from yarpy.kits.launch.supervise.runner import Program, Runner
+from yarpy.limit import OUTPUT_LINE
+
+pytestmark = pytest.mark.skipif(not process.known(), reason="this system has no /proc to look at")
+
+
+NUMBERS = itertools.count()
+
+
+class Started:
+    """A program that is running, and what came from it."""
+
+    def __init__(self, runner: LocalRunner, *command: str, **more: object) -> None:
+        self.lines: list[str] = []
+        self.ends: list[int] = []
+        self.after: list[str] = []
+        self.over = threading.Event()
+        name = f"it {next(NUMBERS)}"  # what one leaves behind is told from the others by it
+        self.mark = runner.mark(name)
+        program = Program(name, command, **more)  # type: ignore[arg-type]
+        self.handle: LocalHandle = runner.start(program, self.take, self.end)
+
+    def take(self, line: str) -> None:
+        (self.after if self.ends else self.lines).append(line)
+
+    def end(self, code: int) -> None:
+        self.ends.append(code)
+        self.over.set()
+
+    def wait(self) -> int:
+        assert self.over.wait(HANG)
+        assert self.after == [] and len(self.ends) == 1
+        assert self.handle.returncode == self.ends[0] and self.handle.state == "ended"
+        return self.ends[0]
+
+    def left(self) -> dict[int, str]:
+        return process.members({self.handle.pid: self.mark}, {self.mark})
+
+
+@pytest.fixture
+def runner() -> Iterator[LocalRunner]:
+    yield LocalRunner(grace=0.3)
+
+
+def python(runner: LocalRunner, code: str, **more: object) -> Started:
+    return Started(runner, sys.executable, "-c", code, **more)
+
+
+def shell(runner: LocalRunner, code: str, **more: object) -> Started:
+    return Started(runner, "/bin/sh", "-c", code, **more)
+
+
+def test_it_is_a_runner(runner: LocalRunner) -> None:
+    checked: Runner = runner
+    assert checked is runner
+
+
+def test_output_and_code(runner: LocalRunner, tmp_path) -> None:
+    started = shell(
+        runner,
+        'pwd; echo "$A" >&2; cat; printf end; exit 3',
+        workdir=str(tmp_path),
+        environment={"A": "b c"},
+    )
+    assert started.wait() == 3
+    assert started.lines == [str(tmp_path), "b c", "end"]
+
+
+def test_one_that_dies_in_its_first_millisecond(runner: LocalRunner) -> None:
+    started = [Started(runner, "/bin/false") for _ in range(20)]
+    assert [one.wait() for one in started] == [1] * 20
+
+
+@pytest.mark.parametrize(
+    ("command", "workdir"), [("/no/such/program", ""), ("/etc/hostname", ""), ("true", "/no/such")]
+)
+def test_what_cannot_be_started(runner: LocalRunner, command: str, workdir: str) -> None:
+    with pytest.raises(OSError):
+        Started(runner, command, workdir=workdir)
+
+
+def test_the_number_of_a_signal_is_the_code(runner: LocalRunner) -> None:
+    started = Started(runner, "sleep", "600")
+    assert started.handle.returncode is None and started.handle.state == "running"
+    assert started.handle.wait(0.01) is None
+    os.kill(started.handle.pid, signal.SIGKILL)
+    assert started.wait() == -signal.SIGKILL
+    started.handle.terminate()  # it is over: nobody gets a signal
+
+
+def test_one_that_ignores_sigterm_is_killed(runner: LocalRunner) -> None:
+    started = shell(runner, "trap '' TERM INT; echo ready; while :; do sleep 0.05; done")
+    wait_until(lambda: started.lines == ["ready"])
+    started.handle.terminate()
+    assert started.wait() == -signal.SIGKILL
+    assert started.left() == {}
+
+
+def test_one_that_is_stopped_is_killed(runner: LocalRunner) -> None:
+    started = Started(runner, "sleep", "600")
+    started.handle.terminate(signal.SIGSTOP)
+    started.handle.terminate()
+    assert started.wait() in (-signal.SIGKILL, -signal.SIGTERM)
+
+
+def test_children_end_with_it(runner: LocalRunner) -> None:
+    started = shell(runner, "sleep 600 & sleep 600 & echo ready; wait")
+    wait_until(lambda: started.lines == ["ready"])
+    wait_until(lambda: len(started.left()) == 3)
+    started.handle.terminate()
+    assert started.wait() == -signal.SIGTERM
+    assert started.left() == {}
+
+
+DAEMON = """
+import os, signal, time
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+signal.signal(signal.SIGHUP, signal.SIG_IGN)
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0:
+        print("ready", flush=True)
+        time.sleep(600)
+os._exit(0)
+"""
+
+
+def test_what_it_leaves_behind_ends_too(runner: LocalRunner) -> None:
+    """A daemon: two forks, a session of its own, deaf to SIGTERM, and it holds the output open."""
+    started = python(runner, DAEMON)
+    assert started.wait() == 0
+    assert started.handle.left_behind > 0 and started.handle.remaining == []
+    assert started.left() == {}
+
+
+def test_another_name_and_no_environment_hide_nobody(runner: LocalRunner) -> None:
+    code = "exec env -i /bin/sh -c 'exec sleep 600' & exec sleep 600"
+    started = shell(runner, code)
+    wait_until(lambda: len(started.left()) == 2)
+    started.handle.terminate()
+    started.wait()
+    assert started.left() == {}
+
+
+def test_a_flood_without_a_newline(runner: LocalRunner) -> None:
+    """As many bytes as one likes: what is kept is a line of the longest that is allowed."""
+    size = 64 << 20
+    started = shell(runner, f"head -c {size} /dev/zero; echo; echo last")
+    assert started.wait() == 0
+    flood, last = started.lines
+    assert last == "last" and len(flood) < OUTPUT_LINE + 100
+    assert flood.endswith(f" ... and {size - OUTPUT_LINE} bytes more")

@@ -1,0 +1,126 @@
+"""`yarpy record`; tests/kits/record has what it writes."""
+
+import json
+import signal
+import time
+
+import pytest
+from support.wait import HANG, wait_until
+
+import yarpy
+from yarpy import record
+from yarpy.errors import LocalProtocolError
+from yarpy.kits.record.verbs.record import parse_rate, press
+
+
+@pytest.fixture
+def out(names):
+    with yarpy.Port("/out", names=names) as port:
+        yield port
+
+
+def values(path) -> list[object]:
+    with record.open(path) as found:
+        return [one.value for one in found]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_finishes_the_file(cli, out, tmp_path, number) -> None:
+    with cli.start("record", "/out", "-o", str(tmp_path / "x")) as process:
+        assert out.wait_for_outputs(timeout=HANG)
+        for n in range(10):
+            out.write([n, 1], wait=True)
+        process.signal(number)
+        assert process.wait() == 0
+        assert "x.mcap: 0:0" in process.stdout and "  /out: 10\n" in process.stdout
+    with record.open(tmp_path / "x.mcap") as found:
+        assert found.complete and len([*found]) == 10
+
+
+def test_a_kill_costs_no_more_than_a_second(cli, out, tmp_path) -> None:
+    path = tmp_path / "x.mcap"
+    with cli.start("record", "-e", "^/o", "-o", str(path)) as process:
+        assert out.wait_for_outputs(timeout=HANG)
+        until = time.monotonic() + 2.5
+        n = 0
+        sent = []
+        while time.monotonic() < until:
+            out.write([n, 1], wait=True)
+            sent.append(time.time())
+            n += 1
+            time.sleep(0.005)
+        process.kill()
+        killed = time.time()
+    with record.open(path) as found:
+        assert not found.complete
+        got = [one.value[0] for one in found]
+    assert got == [*range(len(got))]
+    early = sum(moment < killed - 1.0 for moment in sent)
+    # A busy machine may have kept the recorder from running: what it had had, it wrote in order.
+    assert got and (len(got) >= early or killed - sent[len(got)] < 5.0)
+
+
+def test_json_and_a_duration(cli, out, tmp_path) -> None:
+    words = ("-a", "--exclude", "root", "--duration", "1", "--json", "--split", "1h")
+    with cli.start("record", *words, "-o", "y", "--compress", "zstd") as process:
+        assert out.wait_for_outputs(timeout=HANG)
+        out.write([1, 2], wait=True)
+        assert process.wait() == 0
+        told = json.loads(process.stdout)
+    assert told["files"] == ["y-0001.mcap"] and told["failure"] == ""
+    assert told["ports"]["/out"]["messages"] == 1
+    assert values(cli.home / "y-0001.mcap") == [[1, 2]]
+
+
+def test_what_is_used_wrongly(here, tmp_path) -> None:
+    assert "say which ports" in here("record").err
+    assert here("record", "/x", "--max-files", "3").code == 1
+    assert "is no regular expression" in here("record", "-e", "(").err
+    assert "is no size" in here("record", "/x", "--memory", "lots").err
+    (tmp_path / "x.mcap").write_text("mine")
+    said = here("record", "/x", "-o", str(tmp_path / "x"))
+    assert said.code == 1 and "is there already: choose another name" in said.err
+
+
+def test_without_a_name_server(lone) -> None:
+    said = lone.run("record", "/x")
+    assert said.returncode == 1 and "no name server" in said.stderr.lower()
+    assert not [*lone.home.glob("*.mcap")]
+
+
+def test_rates() -> None:
+    assert parse_rate("/cam/*=10") == ("/cam/*", 10.0)
+    assert parse_rate("/a=b=0.5") == ("/a=b", 0.5)
+    for text in ("/cam", "=3", "/cam=", "/cam=0", "/cam=-1", "/cam=nan", "/cam=inf"):
+        with pytest.raises(LocalProtocolError, match="is no rate of a port"):
+            parse_rate(text)
+
+
+def test_keys(tmp_path, names, out) -> None:
+    news: list[str] = []
+    with record.Recorder("/out", path=tmp_path / "x", names=names) as recorder:
+        assert press(recorder, " ", news) and recorder.paused
+        assert press(recorder, " ", news) and not recorder.paused
+        assert (
+            press(recorder, "m", news) and press(recorder, "s", news) and press(recorder, "?", [])
+        )
+        wait_until(lambda: len(recorder.files) == 2)
+        assert not press(recorder, "q", news)
+    assert len(news) == 2
+    with record.open(*recorder.files) as found:
+        told = [one["what"] for one in found.notes()]
+        assert [one for one in told if "connected" not in one] == ["pause", "resume", "mark"]
+
+
+def test_it_is_told_what_to_do(cli, names, out, tmp_path) -> None:
+    words = ("record", "/out", "--start-paused", "-o", str(tmp_path / "x"))
+    with cli.start(*words) as process, yarpy.RpcClient(names=names) as client:
+        client.connect("/record/rpc:i", timeout=HANG)
+        assert out.wait_for_outputs(timeout=HANG)
+        out.write([1, 0], wait=True)
+        assert client.call(["resume"]) == ["ok"]
+        out.write([2, 0], wait=True)
+        assert ["messages", 1] in client.call(["status"])
+        assert client.call(["stop"]) == ["ok"]
+        assert process.wait() == 0
+    assert values(tmp_path / "x.mcap") == [[2, 0]]

@@ -1,0 +1,147 @@
+"""The page, in a browser: what is seen, dragged, played, saved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from support.browser import Browser
+from support.recordings import START, payload_of
+from support.wait import wait_until
+
+import yarpy
+from yarpy import record
+from yarpy.kits.record.following import Wanted
+from yarpy.kits.record.mcap.writer import McapWriter
+from yarpy.kits.record.view.ring import LiveSource
+from yarpy.kits.record.view.server import View
+from yarpy.kits.record.view.source import FileSource
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+SECOND = 1_000_000_000
+
+
+@pytest.fixture
+def walk(tmp_path: Path) -> Iterator[View]:
+    """20 s of joints with a silence, and of a camera that becomes lighter; two marks."""
+    with McapWriter(tmp_path / "walk.mcap") as writer:
+        for n in range(200):
+            time = START + n * SECOND // 10
+            if not 80 <= n < 120:
+                numbers = yarpy.Vector([n, -n])
+                writer.add("/head/state:o", f"{n} {n}.5", time, payload_of(numbers))
+            if n % 5 == 0:
+                image = yarpy.Image(np.full((48, 64, 3), n, "u1"))
+                writer.add("/cam", "", time, payload_of(image))
+        writer.note({"what": "mark", "text": "it fell"}, START + 5 * SECOND)
+    with FileSource([tmp_path / "walk.mcap"]) as source, View(source, port=0) as found:
+        wait_until(lambda: source.seen == 1)
+        yield found
+
+
+def card(page: Page, name: str) -> str:
+    found: str = page.locator("figure", has_text=name).inner_text()
+    return found
+
+
+def light(page: Page) -> int:
+    """The brightness of the picture, 0 while there is none."""
+    found: int = page.evaluate(
+        """() => {
+          const image = document.querySelector(".picture");
+          if (!image?.complete || !image.naturalWidth) return 0;
+          const canvas = document.createElement("canvas");
+          canvas.width = canvas.height = 1;
+          const context = canvas.getContext("2d");
+          context.drawImage(image, 0, 0, 1, 1);
+          return context.getImageData(0, 0, 1, 1).data[0];
+        }"""
+    )
+    return found
+
+
+def state(page: Page) -> str:
+    found: str = page.inner_text("#state")
+    return found
+
+
+def test_looking_back(browser: Browser, walk: View, tmp_path: Path) -> None:
+    page = browser.open(walk.url)
+    wait_until(lambda: "0.0 0.0" in card(page, "/head/state:o"), what="the first message")
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    wait_until(lambda: "30.0 -30.0" in card(page, "/head/state:o"), what="that of the cursor")
+    wait_until(lambda: abs(light(page) - 30) < 4, what="the picture of the cursor")
+    assert "number 30, 3.000 s" in card(page, "/head/state:o") and "3.000 of 19.9 s" in state(page)
+    # In the silence the last message stays.
+    page.keyboard.press("Shift+ArrowRight")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowLeft")
+    wait_until(lambda: "79.0 -79.0" in card(page, "/head/state:o"))
+    with page.expect_download() as saved:
+        page.locator("figure", has_text="/head/state:o").get_by_text("CSV").click()
+    lines = Path(saved.value.path()).read_text().splitlines()
+    assert len(lines) == 161 and saved.value.suggested_filename.startswith("head-state-o_")
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save").click()
+    assert Path(saved.value.path()).read_bytes()[:2] == b"\xff\xd8"
+    # A stretch is marked, and cut out.
+    box = page.locator("#time canvas").bounding_box()
+    assert box is not None
+    top = box["y"] + box["height"] - 8
+    page.keyboard.down("Shift")
+    page.mouse.move(box["x"] + 400, top)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 600, top, steps=3)
+    page.mouse.up()
+    page.keyboard.up("Shift")
+    assert page.inner_text("#command").startswith("yarpy convert walk.mcap --start")
+    with page.expect_download() as saved:
+        page.locator("#cut").click()
+    saved.value.save_as(tmp_path / "cut.mcap")
+    with record.open(tmp_path / "cut.mcap") as recording:
+        assert 1 < recording.end - recording.begin < 10
+    # A click on a name closes a port, and opens it again.
+    page.mouse.click(box["x"] + 40, box["y"] + 42 + 10)
+    wait_until(lambda: page.locator("figure").count() == 1)
+    page.mouse.click(box["x"] + 40, box["y"] + 42 + 10)
+    wait_until(lambda: page.locator("figure").count() == 2)
+    assert "port=%2Fhead" in page.url
+
+
+def test_playing(browser: Browser, walk: View) -> None:
+    page = browser.open(walk.url, phone=True, dark=True)
+    wait_until(lambda: "0.0 0.0" in card(page, "/head/state:o"))
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    page.select_option("#rate", "100")
+    page.get_by_role("button", name="Play").click()
+    wait_until(lambda: "199.0 -199.0" in card(page, "/head/state:o"), what="the end")
+    wait_until(lambda: page.get_by_role("button", name="Play").count() == 1)
+    wait_until(lambda: "19.900 of 19.9 s" in state(page))
+
+
+def test_live(browser: Browser) -> None:
+    with (
+        yarpy.NameServer() as server,
+        yarpy.Port("/a", names=server.client) as port,
+        LiveSource(Wanted(("/a",)), names=server.client) as source,
+        View(source, port=0) as view,
+    ):
+        port.wait_for_outputs()
+        page = browser.open(view.url)
+        wait_until(lambda: "Nothing came yet" in page.inner_text("#trouble"))
+        port.write([17])
+        wait_until(lambda: "17" in card(page, "/a") if page.locator("figure").count() else False)
+        page.get_by_role("button", name="Pause").click()
+        wait_until(lambda: "live" not in state(page))
+        port.write([18])
+        wait_until(lambda: source.told()["ports"][0]["messages"] == 2)
+        page.get_by_role("button", name="Live").click()
+        wait_until(lambda: "18" in card(page, "/a"))
+        port.write([19])
+        wait_until(lambda: "19" in card(page, "/a") and "live" in state(page))

@@ -1,0 +1,118 @@
+"""`yarpy sim`."""
+
+import signal
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from support.ros_graph import ros_graph
+from support.wait import HANG, wait_until
+
+import yarpy
+
+ARM = Path(__file__).parents[3] / "support" / "arm.xml"
+
+
+def test_robot_of_a_name(cli, names):
+    words = ("--robot", "robbie", "--size", "64x48", "--fps", "50")
+    with (
+        cli.start("sim", *words) as process,
+        yarpy.BufferedPort("/sim/eye", strict=True, names=names) as eye,
+    ):
+        ready = process.wait_line(r"^/robbie is ready: (.*)$", stream="out", timeout=HANG)[1]
+        assert ready == "/robbie/head /robbie/cam/left /robbie/cam/right /robbie/inertial"
+        with yarpy.RpcClient("/robbie/head/rpc:i", names=names) as head:
+            assert head.call("set", "pos", 1, 20) == ["ok"]
+            wait_until(lambda: abs(head.call("get", "enc", 1)[2] - 20) < 0.01)
+        eye.listen_to("/robbie/cam/left")
+        image = eye.read(timeout=HANG).as_(yarpy.Image)
+        assert (image.width, image.height) == (64, 48)
+        process.signal(signal.SIGINT)
+        assert process.wait() == 0, process.stderr
+        assert "Traceback" not in process.stderr
+    assert names.list("/robbie") == []
+
+
+@pytest.mark.peer("ros", "rosmaster")
+def test_a_node_of_ros(tmp_path):
+    with ros_graph(tmp_path) as graph:
+        assert graph.yarpy("namespace", "/ros").wait() == 0
+        assert graph.yarpy("detect", "--ros").wait() == 0
+        with graph.yarpy("sim", "--ros", "--size", "64x48", ROS_MASTER_URI="") as process:
+            process.wait_line(r"^/icubSim is ready", stream="out", timeout=HANG)
+            topics = graph.tool("rostopic", "list").split()
+            for topic in ("/icubSim/joint_states", "/icubSim/cam/left", "/icubSim/cam/right"):
+                assert topic in topics
+            assert "neck_yaw" in graph.tool("rostopic", "echo", "-n", "1", "/icubSim/joint_states")
+            process.signal(signal.SIGINT)
+            assert process.wait(HANG) == 0, process.stderr
+        assert "/icubSim" not in graph.tool("rosnode", "list").split()
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (("--size", "big"), "'big' is no size; say 640x480"),
+        (("--size", "5x5"), "from 16 to 2048 pixels"),
+        (("--fps", "0"), "is not from 0.1 to 1000"),
+        (("--mujoco", "/no/such/model.xml"), "does not exist"),
+    ],
+)
+def test_wrong_options(here, words, reason):
+    said = here("sim", *words)
+    assert said.code == 1
+    assert reason in said.err
+
+
+def test_name_that_is_taken(here, names):
+    with yarpy.Port("/taken/head/rpc:i", names=names):
+        said = here("sim", "--robot", "/taken")
+    assert said.code == 1
+    assert "is in use" in said.err
+    assert names.list("/taken") == []
+
+
+def needs_mujoco():
+    """Not by importing it: how it draws is decided when it is imported, and not here."""
+    if find_spec("mujoco") is None:
+        pytest.skip("no MuJoCo: pip install 'yarpy[sim]'")
+
+
+def test_mujoco_model(cli, names):
+    needs_mujoco()
+    with (
+        cli.start("sim", "--mujoco", str(ARM), "--size", "64x48") as process,
+        yarpy.BufferedPort("/sim/watching", strict=True, names=names) as watching,
+    ):
+        ready = process.wait_line(r"^/little_arm is ready: (.*)$", stream="out", timeout=HANG)
+        assert {"/little_arm/joints", "/little_arm/inertial"} <= {*ready[1].split()}
+        with yarpy.RpcClient("/little_arm/joints/rpc:i", names=names) as joints:
+            assert joints.call("get", "name", 0)[2] == "shoulder"
+            assert joints.call("set", "pos", 0, 30) == ["ok"]
+            wait_until(lambda: abs(joints.call("get", "enc", 0)[2] - 30) < 0.5)
+        if "no cameras" not in process.stderr:
+            watching.listen_to("/little_arm/cam/watching")
+            assert watching.read(timeout=HANG).as_(yarpy.Image).width == 64
+        process.signal(signal.SIGINT)
+        assert process.wait(HANG) == 0, process.stderr
+        assert "Traceback" not in process.stderr
+
+
+def test_file_that_is_no_model(here, tmp_path):
+    needs_mujoco()
+    file = tmp_path / "model.xml"
+    file.write_text("<mujoco><worldbody><nonsense/></worldbody></mujoco>")
+    said = here("sim", "--mujoco", str(file))
+    assert said.code == 1
+    assert "nonsense" in said.err
+    assert len(said.err.splitlines()) == 1
+
+
+def test_without_mujoco(here, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    file = tmp_path / "model.xml"
+    file.write_text("<mujoco/>")
+    said = here("sim", "--mujoco", str(file))
+    assert said.code == 1
+    assert "pip install 'yarpy[sim]'" in said.err

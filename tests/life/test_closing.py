@@ -1,0 +1,111 @@
+"""Closing a port whose readers take nothing: it ends in time; what did not leave is counted, and
+said in the log."""
+
+from __future__ import annotations
+
+import re
+import threading
+import time
+
+import pytest
+from support.wait import wait_until
+
+import yarpy
+
+LIMIT = 0.5  # seconds for closing
+SLACK = 2.0  # beyond that, on a loaded machine: what would be wrong is late by more
+HANG = 20.0
+LINE = re.compile(
+    r"/out: (\S+) did not take all that was written before the connection was closed: (\d+) "
+    r"messages are lost, (\d+) may have arrived or not"
+)
+
+
+def books(port: yarpy.Port | yarpy.BufferedPort) -> dict[str, int]:
+    stats = port.stats.past.outputs
+    return {
+        name: int(getattr(stats, name)) for name in ("messages", "drops", "replaced", "unconfirmed")
+    }
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "unix_stream", "memory"])
+@pytest.mark.parametrize("kind", [yarpy.Port, yarpy.BufferedPort])
+def test_a_reader_that_takes_nothing(
+    kind: type[yarpy.Port], carrier: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    names = yarpy.LocalNames()
+    with yarpy.Port("/in", names=names), kind("/out", names=names) as out:
+        out.connect("/in", carrier)
+        written = 0
+        for _ in range(50):  # until nothing more goes
+            written += 1
+            if not out.write(["x" * 300_000], timeout=0.05):
+                break
+        begun = time.monotonic()
+        out.close(timeout=LIMIT)
+        assert time.monotonic() - begun < LIMIT + SLACK
+        found = books(out)
+        assert sum(found.values()) == written
+        [(target, lost, unsure)] = LINE.findall(caplog.text)
+        assert target == "/in"
+        assert int(unsure) == found["unconfirmed"]
+        assert int(lost) <= found["drops"]
+        assert int(lost) + int(unsure) > 0
+
+
+@pytest.mark.parametrize("carrier", ["tcp", "fast_tcp"])
+def test_a_write_that_waits_for_such_a_reader_ends(carrier: str) -> None:
+    names = yarpy.LocalNames()
+    with yarpy.Port("/in", names=names), yarpy.Port("/out", names=names) as out:
+        out.connect("/in", carrier)
+        ended: list[str] = []
+
+        def write() -> None:
+            try:
+                while True:
+                    out.write(["x" * 1_000_000])
+            except yarpy.PortClosed as error:
+                ended.append(str(error))
+
+        thread = threading.Thread(target=write)
+        thread.start()
+        wait_until(lambda: out.stats.outputs[0].messages > 0)
+        begun = time.monotonic()
+        out.close(timeout=LIMIT)
+        assert time.monotonic() - begun < LIMIT + SLACK
+        thread.join(HANG)
+        assert ended == ['"/out" is closed']
+
+
+def test_others_get_what_was_written_though_one_takes_nothing() -> None:
+    """Each has its share of the time."""
+    names = yarpy.LocalNames()
+    with (
+        yarpy.Port("/stuck", names=names),
+        yarpy.BufferedPort("/in", names=names, strict=True) as in_,
+        yarpy.BufferedPort("/out", names=names) as out,
+    ):
+        out.connect("/stuck", "tcp")
+        out.connect("/in", "tcp")
+        for _ in range(20):
+            out.write(["x" * 300_000], wait=True, timeout=0.02)
+        out.close(timeout=LIMIT)
+        past = books(out)
+        came = in_._hub.inputs.past.as_dict
+        wait_until(lambda: came()["messages"] == 20)  # its thread may have the last ones in hand
+        assert sum(past.values()) == 40
+        assert past["unconfirmed"] <= 20
+
+
+def test_a_close_in_good_order_says_nothing(caplog: pytest.LogCaptureFixture) -> None:
+    names = yarpy.LocalNames()
+    with yarpy.BufferedPort("/in", names=names, strict=True) as in_:
+        for carrier in ("tcp", "fast_tcp", "unix_stream", "memory", "local"):
+            with yarpy.Port("/out", names=names) as out:
+                out.connect("/in", carrier)
+                for number in range(100):
+                    out.write([number])
+            assert books(out) == {"messages": 100, "drops": 0, "replaced": 0, "unconfirmed": 0}
+        for _ in range(500):
+            assert in_.read(timeout=HANG) is not None
+    assert not LINE.search(caplog.text)

@@ -1,0 +1,58 @@
+"""The driver of bytes: what left and came, whoever interrupts."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+
+import pytest
+from support.transport import ScriptTransport, scripted
+
+from yarpy.errors import Timeout
+from yarpy.link.begin.greeting import driver_of
+from yarpy.link.byte_driver import ByteDriver
+from yarpy.transports.base import SocketTransport
+from yarpy.wire.aside_stream import AsideStream
+
+
+def test_flush_by_a_deadline_leaves_the_rest_for_the_next() -> None:
+    near, far = socket.socketpair()
+    driver = driver_of(SocketTransport(near))
+    data = bytes(range(256)) * 20_000
+    driver.stream.write(data)
+    for deadline in (0.0, time.monotonic() + 0.05):
+        with pytest.raises(Timeout):
+            driver.flush(deadline)
+    assert 0 < driver.bytes_out < len(data)
+    assert driver.stream.pending
+    driver.stream.write(b"the end")
+    thread = threading.Thread(target=driver.flush, args=(time.monotonic() + 30,))
+    thread.start()
+    found = bytearray()
+    while len(found) < len(data) + 7:
+        found += far.recv(1 << 20)
+    thread.join(5)
+    assert bytes(found) == data + b"the end"
+    assert driver.bytes_out == len(found)
+    assert not driver.stream.pending
+    near.close()
+    far.close()
+
+
+def test_what_a_signal_handler_has_landed_is_not_landed_again() -> None:
+    """It closes the port, and looks for acknowledgements, over a frame that has just received."""
+    driver, _ = scripted(b"xy", open_ended=True)
+    assert driver.try_fill()
+    driver._land()  # the frame beneath goes on
+    assert (driver.bytes_in, driver.stream.waiting) == (2, 2)
+
+
+def test_what_goes_another_way_is_counted_when_its_reference_leaves() -> None:
+    stream = AsideStream()
+    driver = ByteDriver(ScriptTransport(), stream)
+    stream.write(b"look there")
+    stream.aside += 1000
+    assert not driver.push()
+    assert driver.send()
+    assert (driver.bytes_out, driver.aside, stream.aside) == (1010, 1000, 0)

@@ -1,0 +1,169 @@
+"""Topics over DDS, on this computer alone: between ports, and with a program of another kind."""
+
+import json
+import logging
+import os
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support import dds_peer, fast_dds
+from support.process import Process
+from support.wait import HANG, wait_until
+
+import yarpy
+from yarpy.errors import UnknownName
+from yarpy.names.default import DEFAULT
+from yarpy.peers.ros2.dds.participant import LOCAL, is_local
+
+
+@pytest.fixture(autouse=True)
+def _here(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Nothing leaves this computer."""
+    monkeypatch.setenv("CYCLONEDDS_URI", LOCAL)
+    monkeypatch.delenv("ROS_DOMAIN_ID", raising=False)
+    names = yarpy.LocalNames()
+    DEFAULT.push(names)
+    yield
+    DEFAULT.pop(names)
+
+
+class Peer(Process):
+    def __init__(self, *words: str) -> None:
+        super().__init__([sys.executable, "-P", str(Path(dds_peer.__file__)), *words])
+        wait_until(lambda: "ready" in self.said, HANG, "the peer is ready")
+
+    @property
+    def said(self) -> list[object]:
+        return [json.loads(line) for line in self.stdout.splitlines()]
+
+
+def test_where_others_are_looked_for() -> None:
+    assert is_local({"ROS_LOCALHOST_ONLY": "1"})
+    assert is_local({"ROS_AUTOMATIC_DISCOVERY_RANGE": "localhost"})
+    assert not is_local({"ROS_LOCALHOST_ONLY": "0", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"})
+
+
+def test_a_picture() -> None:
+    pixels = np.arange(12, dtype="u1").reshape(2, 2, 3)
+    with yarpy.Port("/out") as out, yarpy.BufferedPort("/in") as reader:
+        out.connect("ros2+dds://camera/image~sensor_msgs/msg/Image")
+        reader.listen_to("ros2+dds://camera/image")  # it learns the type
+        for _ in range(200):
+            out.write(yarpy.Image(pixels))
+            try:
+                found = reader.read(timeout=0.1)
+                break
+            except yarpy.Timeout:
+                continue
+        assert np.array_equal(found.as_(yarpy.Image).array, pixels)
+        assert found.stamp is not None
+        assert abs(found.stamp.time - time.time()) < 2 * HANG
+
+
+def test_with_a_program_of_another_kind() -> None:
+    with (
+        Peer("hear", "/chatter") as hears,
+        Peer("say", "/news") as says,
+        yarpy.Port("/out") as out,
+        yarpy.BufferedPort("/in", strict=True) as reader,
+    ):
+        out.connect("ros2+dds://chatter")
+        reader.listen_to("ros2+dds://news")
+        for _ in range(200):
+            out.write("grüße")
+            if "grüße" in hears.said:
+                break
+            time.sleep(0.05)
+        assert "grüße" in hears.said
+        says.write_line("hello from there")
+        assert reader.read(timeout=HANG).value == "hello from there"
+
+
+@pytest.mark.peer("fast_dds", "g++")
+def test_with_fast_dds(tmp_path: Path) -> None:
+    """The library that nodes of ROS 2 use by default."""
+    program = str(fast_dds.build(tmp_path))
+    with (
+        Process([program, "hear", f"/chatter{os.getpid()}"]) as hears,
+        Process([program, "say", f"/news{os.getpid()}"]) as says,
+        yarpy.Port("/out") as out,
+        yarpy.BufferedPort("/in", strict=True) as reader,
+    ):
+        for each in (hears, says):
+            each.wait_line("^ready$", stream="out")
+        out.connect(f"ros2+dds+qos.all://chatter{os.getpid()}", timeout=HANG)
+        for _ in range(200):  # the type was named, so nobody need have been found
+            out.write("grüße")
+            if "grüße" in hears.stdout:
+                break
+            time.sleep(0.05)
+        for number in range(300):
+            out.write(f"number {number}")
+        out.write("x" * 60_000, wait=True)
+        hears.wait_line("^x{60000}$", stream="out")
+        heard = sum("number" in line for line in hears.stdout.splitlines())
+        assert heard + out.stats.outputs[0].drops == 300
+        reader.connect(f"ros2+dds+qos.all+sub://news{os.getpid()}", timeout=HANG)
+        for _ in range(200):  # until the other side has found us, too
+            says.write_line("first")
+            try:
+                reader.read(timeout=0.05)
+                break
+            except yarpy.Timeout:
+                continue
+        for number in range(300):
+            says.write_line(f"ä {number}")
+        found = [reader.read(timeout=HANG).ros.data for _ in range(300)]
+        while found[0] == "first":
+            found = [*found[1:], reader.read(timeout=HANG).ros.data]
+        assert found == [f"ä {number}" for number in range(300)]
+
+
+def test_what_others_promise_is_taken() -> None:
+    with (
+        Peer("sensor", "/scan") as says,
+        yarpy.BufferedPort("/in", strict=True) as reader,
+    ):
+        reader.listen_to("ros2+dds://scan")
+        for _ in range(100):
+            says.write_line("seen")
+            try:
+                assert reader.read(timeout=0.1).value == "seen"
+                break
+            except yarpy.Timeout:
+                continue
+        else:
+            raise AssertionError("nothing came")
+
+
+def test_a_promise_that_is_not_enough_is_named(caplog: pytest.LogCaptureFixture) -> None:
+    with (
+        yarpy.Port("/out") as out,
+        yarpy.BufferedPort("/in") as reader,
+        caplog.at_level(logging.WARNING, logger="yarpy"),
+    ):
+        reader.listen_to("ros2+dds+qos.default://scan~std_msgs/msg/String")
+        out.connect("ros2+dds+qos.sensor://scan~std_msgs/msg/String")
+        wait_until(lambda: "promises less than we ask for" in caplog.text)
+
+
+def test_what_was_latched() -> None:
+    with yarpy.Port("/out") as out, yarpy.BufferedPort("/in", strict=True) as reader:
+        out.connect("ros2+dds+qos.latched://map~std_msgs/msg/String")
+        out.write("first")
+        out.write("last")
+        reader.listen_to("ros2+dds://map")
+        assert reader.read(timeout=HANG).value == "last"
+
+
+def test_what_is_wrong() -> None:
+    with yarpy.BufferedPort("/in") as reader:
+        with pytest.raises(UnknownName, match="nobody publishes /nobody over DDS"):
+            reader.listen_to("ros2+dds://nobody")
+        with pytest.raises(UnknownName, match="nobody serves /add over DDS"):
+            reader.connect("ros2+dds+srv://add")
+        assert reader.stats.inputs == []

@@ -1,0 +1,21 @@
+"""Classes that carry finished bytes."""
+
+from yarpy.peers.ros2.dds.raw import raw_class
+from yarpy.peers.ros2.message.library import default_library
+
+
+def test_bytes_go_and_come_as_they_are() -> None:
+    kind = raw_class(default_library().message("sensor_msgs/JointState")._definition.struct)
+    sample = kind.deserialize(bytearray(b"anything"))
+    assert (sample.body, sample.serialize()) == (b"anything", b"anything")
+    assert kind.__idl_typename__ == "sensor_msgs.msg.dds_.JointState_"
+
+
+def test_services_have_a_header() -> None:
+    service = default_library().service("std_srvs/Trigger")
+    made = raw_class(service.Request._definition.struct, "srv")
+    assert made.__idl_typename__ == "std_srvs.srv.dds_.Trigger_Request_"
+    assert [*made.__annotations__][:2] == ["guid", "seq"]
+    action = default_library().service("example_interfaces/action/Fibonacci_SendGoal")
+    made = raw_class(action.Response._definition.struct, "srv")
+    assert made.__idl_typename__ == "example_interfaces.action.dds_.Fibonacci_SendGoal_Response_"

@@ -1,0 +1,104 @@
+"""Services over DDS, for ports and nodes, with a program of another kind."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from support.wait import HANG, wait_until
+
+import yarpy
+from yarpy.errors import DecodeError, LinkClosed, UnknownName
+from yarpy.peers import ros2
+from yarpy.peers.ros2.dds.service import DdsCaller
+from yarpy.peers.ros2.exchange import Question
+from yarpy.peers.ros2.name import Node
+
+ADD = "example_interfaces/srv/AddTwoInts"
+
+
+def test_a_node_is_asked(node_peer: Any, own: str) -> None:
+    with ros2.Node(own, rmw="dds") as node:
+        node.service(f"{own}/add", ADD, lambda request: {"sum": request.a + request.b})
+        assert node_peer.do("ask", f"{own}/add", 5, 37) == 42
+        assert node_peer.do("ask", f"{own}/add", -1, -2) == -3
+
+
+def test_a_node_asks(node_peer: Any, own: str) -> None:
+    node_peer.do("serve", own)
+    with ros2.Node(f"{own}_asker", rmw="dds") as node:
+        client = node.client(own, ADD)
+        assert client.wait(HANG)
+        futures = [client.ask([number, 1]) for number in range(8)]  # fewer than ten, which are kept
+        assert [future.result(HANG).sum for future in futures] == [*range(1, 9)]
+        assert node.call(own, ADD, {"a": 2, "b": 3}, timeout=HANG).sum == 5
+        with pytest.raises((TypeError, ValueError, DecodeError)):
+            client.ask(["x", 2])
+
+
+def test_a_port_is_asked(node_peer: Any, own: str) -> None:
+    def add(message: yarpy.Message) -> list[int]:
+        asked = message.ros  # type: ignore[attr-defined]
+        return [asked.a + asked.b]
+
+    with yarpy.RpcServer(f"{own}/adder", add) as server:
+        server.listen_to(f"ros2+dds:/{own}~{ADD}")
+        assert node_peer.do("ask", own, 5, 37) == 42
+        with yarpy.RpcClient(f"ros2+dds:/{own}", name=f"{own}/asker") as client:
+            assert client.ask([1, 2]).ros.sum == 3  # type: ignore[union-attr, attr-defined]
+
+
+def test_a_port_asks(node_peer: Any, own: str) -> None:
+    node_peer.do("serve", own)
+    with yarpy.RpcClient(f"ros2+dds:/{own}~{ADD}", name=f"{own}/asker") as client:
+        assert client.ask([5, 37]).ros.sum == 42  # type: ignore[union-attr, attr-defined]
+        assert client.ask([1, 2]).ros.sum == 3  # type: ignore[union-attr, attr-defined]
+
+
+def test_nobody_serves(here: None, own: str) -> None:
+    with ros2.Node(own, rmw="dds") as node, pytest.raises(UnknownName, match="nobody serves"):
+        node.call(f"{own}/none", ADD, [1, 2])
+    with (
+        pytest.raises(UnknownName, match="name its type"),
+        yarpy.RpcClient(f"ros2+dds:/{own}/none", name=f"{own}/asker"),
+    ):
+        pass
+
+
+def test_another_type_is_named(here: None, own: str) -> None:
+    with ros2.Node(own, rmw="dds") as node:
+        node.service(f"{own}/x", "std_srvs/srv/Trigger", lambda request: [True, ""])
+        with pytest.raises(UnknownName, match="served as std_srvs::srv::dds_::Trigger_Request_"):
+            node.call(f"{own}/x", ADD, [1, 2])
+
+
+def test_who_goes_during_a_call(here: None, own: str) -> None:
+    held: list[Question] = []
+    server = ros2.Node(own, rmw="dds")
+    server._answer(f"{own}/later", ADD, held.append, server._worker, None)
+    caller = DdsCaller(Node("/", f"{own[1:]}_asker"), 0, f"{own}/later", ADD)
+    assert caller.wait(HANG)
+    first, second = caller.ask([1, 2]), caller.ask([3, 4])
+    wait_until(lambda: len(held) == 2)
+    held[1].answer([7])
+    assert second.result(HANG).sum == 7
+    with pytest.raises(yarpy.Timeout, match="did not answer within"):
+        caller.call([1, 2], timeout=0.01)
+    server.close()
+    with pytest.raises(LinkClosed, match="went away"):
+        first.result(HANG)
+    caller.close()
+    caller.close()
+    with pytest.raises(UnknownName):
+        caller.ask([1, 2]).result(HANG)
+
+
+def test_a_failure_is_logged(here: None, own: str, caplog: pytest.LogCaptureFixture) -> None:
+    def fail(request: Any) -> None:
+        raise ZeroDivisionError("of the test")
+
+    with ros2.Node(own, rmw="dds") as node:
+        node.service(f"{own}/x", ADD, fail)
+        with pytest.raises(yarpy.Timeout):
+            node.call(f"{own}/x", ADD, [1, 2], timeout=1.0)
+        assert "over DDS nobody is told why: ZeroDivisionError: of the test" in caplog.text

@@ -1,0 +1,30 @@
+"""Topics over DDS for a node of a program."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from support.wait import wait_until
+
+from yarpy.peers import ros2
+
+
+def test_topics(here: None, own: str) -> None:
+    heard: list[Any] = []
+
+    def hear(message: Any) -> None:
+        heard.append(message.data)
+        raise ValueError("of the test")
+
+    with ros2.Node(own, rmw="dds") as node:
+        topic = node.subscriber(f"{own}/x", "std_msgs/msg/String", hear)
+        writer = node.publisher(f"{own}/x", "std_msgs/msg/String", qos="latched")
+        writer.write("once")
+
+        def twice() -> bool:
+            writer.write("more")
+            return heard.count("more") > 1
+
+        wait_until(twice)
+        topic.close()
+        topic.close()

@@ -1,0 +1,49 @@
+"""Topics of a program."""
+
+from typing import Any
+
+import pytest
+from support.wait import HANG, wait_until
+
+import yarpy
+from yarpy.peers import ros2
+
+
+def test_what_is_written_is_heard(names: yarpy.LocalNames) -> None:
+    heard: list[Any] = []
+    with ros2.Node("/a") as a, ros2.Node("/b") as b:
+        b.subscriber("/joints", "sensor_msgs/msg/JointState", heard.append)
+        out = a.publisher("/joints", "sensor_msgs/msg/JointState")
+        wait_until(lambda: out.write({"name": ["elbow"], "position": [0.5]}) or heard)
+        assert heard[0].name == ["elbow"]
+        assert heard[0].header.stamp.sec > 0
+        with pytest.raises((TypeError, ValueError)):
+            out.write({"name": 5})
+
+
+def test_who_comes_late_gets_what_was_kept(names: yarpy.LocalNames) -> None:
+    heard: list[Any] = []
+    with ros2.Node("/a") as a, ros2.Node("/b") as b, yarpy.BufferedPort("/port") as port:
+        a.publisher("/map", "std_msgs/msg/String", qos="latched").write("the map")
+        b.subscriber("/map", "std_msgs/msg/String", heard.append, qos="latched")
+        wait_until(lambda: heard)
+        assert heard[0].data == "the map"
+        port.listen_to("ros2://map")  # ports of YARP hear it, too
+        assert port.read(timeout=HANG).value == "the map"
+
+
+def test_bytes_that_are_no_message(
+    names: yarpy.LocalNames, caplog: pytest.LogCaptureFixture
+) -> None:
+    heard: list[Any] = []
+    with ros2.Node("/a") as a, ros2.Node("/b") as b:
+        hearer = b.subscriber("/t", "std_msgs/msg/String", heard.append)
+        out = a.publisher("/t", "std_msgs/msg/String")
+        wait_until(lambda: out.write("first") or heard)
+        from yarpy.peers.ros2.carrier import Outgoing
+
+        out.give(Outgoing(out.kind, (b"\0\1\0\0\xff\xff\xff\x7f",)))
+        wait_until(lambda: hearer.dropped)
+        count = len(heard)
+        wait_until(lambda: out.write("next") or len(heard) > count)
+    assert "is lost" in caplog.text

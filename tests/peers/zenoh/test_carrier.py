@@ -1,0 +1,137 @@
+"""zenoh: what a port writes and reads there, without any medium."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import yarpy
+from yarpy.data import codec
+from yarpy.link.begin.handshake import find_carrier
+from yarpy.peers.zenoh.carrier import (
+    Asker,
+    Incoming,
+    Outgoing,
+    Server,
+    Subscriber,
+    Zenoh,
+    encoding_of,
+)
+from yarpy.route import Route, parse_carrier
+from yarpy.testing import End
+from yarpy.wire.message import CALL, DATA, Encoded, Packet
+from yarpy.wire.stream import ObjectStream
+
+
+def opened(spec: str) -> tuple[Any, End]:
+    """A carrier that was greeted, and its side of the medium."""
+    carrier = find_carrier(parse_carrier(spec))(Route("/port", "/zenoh://robot/arm", spec))
+    end = End()
+    end.stream = ObjectStream()
+    end.stream.feed_object("the endpoint")
+    end.begin(carrier.greet(end.stream))
+    assert end.done
+    return carrier, end
+
+
+def said(end: End) -> list[Outgoing]:
+    found: list[Any] = [*end.outbox, *end.stream.take_output()]
+    end.outbox.clear()
+    return found
+
+
+def test_what_a_carrier_string_makes() -> None:
+    kinds = {
+        "zenoh": Zenoh, "zenoh+sub": Subscriber, "zenoh+srv": Asker, "zenoh+sub+srv": Server
+    }  # fmt: skip
+    for spec, kind in kinds.items():
+        assert find_carrier(parse_carrier(spec)) is kind
+
+
+@pytest.mark.parametrize(
+    ("value", "payload", "encoding"),
+    [
+        ([1, 2.5, "hi"], b'[1, 2.5, "hi"]', "application/json"),
+        ({"a": 1}, b'{"a": 1}', "application/json"),
+        (b"raw", b"raw", "zenoh/bytes"),
+        ([b"raw"], b"raw", "zenoh/bytes"),
+        (Encoded(b"".join(codec.encode([b"raw"]))), b"raw", "zenoh/bytes"),
+    ],
+)
+def test_what_is_put(value: object, payload: bytes, encoding: str) -> None:
+    carrier, end = opened("zenoh")
+    packet = Packet(value)
+    assert carrier.prepare(packet)
+    carrier.encode(end.stream, packet)
+    assert said(end) == [Outgoing(payload, encoding)] and carrier.encode_quit(end.stream) is None
+
+
+def test_a_picture_is_a_jpeg_file() -> None:
+    carrier, end = opened("zenoh")
+    carrier.encode(end.stream, Packet(np.zeros((4, 6, 3), np.uint8)))
+    (item,) = said(end)
+    assert item.encoding == "image/jpeg" and bytes(item.payload[:2]) == b"\xff\xd8"
+    assert item.size == len(item.payload)
+
+
+def test_what_cannot_be_sent_is_the_writers_error() -> None:
+    carrier, _ = opened("zenoh")
+    with pytest.raises(TypeError):
+        carrier.prepare(Packet([object()]))
+
+
+def test_raw_is_yarps_own_spelling() -> None:
+    carrier, end = opened("zenoh+raw")
+    packet = Packet([1, "x"])
+    assert carrier.prepare(packet)
+    carrier.encode(end.stream, packet)
+    data = b"".join(codec.encode([1, "x"]))
+    assert said(end) == [Outgoing(data)]
+    carrier, end = opened("zenoh+sub+raw")
+    end.begin(carrier.decode(end.stream))
+    end.feed(Incoming(data))
+    assert end.result.value == yarpy.Bottle([1, "x"])
+
+
+def test_what_comes() -> None:
+    carrier, end = opened("zenoh+sub")
+    assert not carrier.push
+    for payload, value in ((b"[1]", [1]), (b"free", "free"), (b"\xff", b"\xff"), (b"", "")):
+        end.begin(carrier.decode(end.stream))
+        end.feed(Incoming(payload))
+        assert (end.result.key, end.result.value) == (DATA, value)
+
+
+def test_asking() -> None:
+    carrier, end = opened("zenoh+srv")
+    carrier.encode(end.stream, Packet(["get", 1]))
+    assert said(end) == [Outgoing(b'["get", 1]', "application/json")]
+    for came, value in (
+        (Incoming(b'["ok"]'), ["ok"]),
+        (Incoming(b"", failure="nobody"), [yarpy.Vocab("fail"), "nobody"]),
+    ):
+        end.begin(carrier.expect_reply(end.stream))
+        end.feed(came)
+        assert end.result.value == value
+
+
+@pytest.mark.parametrize(
+    ("spec", "payload"), [("zenoh+sub+srv", b"[2]"), ("zenoh+sub+srv+raw", None)]
+)
+def test_answering(spec: str, payload: bytes | None) -> None:
+    carrier, end = opened(spec)
+    end.begin(carrier.decode(end.stream))
+    data = b"".join(codec.encode([1]))
+    end.feed(Incoming(data if payload is None else b"[1]", "the question"))
+    assert (end.result.key, end.result.value) == (CALL, [1])
+    carrier.encode_reply(end.stream, [2])
+    (item,) = said(end)
+    assert item.to == "the question"
+    assert item.payload == (b"".join(codec.encode([2])) if payload is None else payload)
+
+
+def test_encodings() -> None:
+    assert encoding_of(b"[1, 2]", [1, 2]) == "application/json"
+    assert encoding_of(b"\xff\xd8\xff\xe0", None) == "image/jpeg"

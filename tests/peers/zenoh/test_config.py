@@ -1,0 +1,36 @@
+"""Configurations of Zenoh: files, and what the environment says last."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from support.port import free_port
+
+from yarpy.errors import (
+    AddressError,
+    MissingFile,
+)
+from yarpy.peers.zenoh.transport import share
+
+pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
+
+
+pytestmark = pytest.mark.usefixtures("unconfigured")
+
+
+def test_an_override_comes_last(lone_router: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", f'connect/endpoints=["{lone_router}"]')
+    with share(f"tcp/127.0.0.1:{free_port()}") as shared:
+        assert not shared.session.is_closed()
+    monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", "no/such=1")
+    with pytest.raises(AddressError, match="ZENOH_CONFIG_OVERRIDE"):
+        share(lone_router)
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    with pytest.raises(MissingFile, match="no configuration file"):
+        share(str(tmp_path / "none.json5"))
+    (tmp_path / "bad.json5").write_text("{mode: ")
+    with pytest.raises(AddressError, match="no configuration of Zenoh"):
+        share(str(tmp_path / "bad.json5"))

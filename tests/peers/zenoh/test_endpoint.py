@@ -1,0 +1,156 @@
+"""Ports and plain programs of Zenoh: messages, questions, and what goes wrong."""
+
+from __future__ import annotations
+
+import logging
+from queue import Queue
+from typing import Any
+
+import pytest
+from support.wait import HANG, wait_until
+
+import yarpy
+from yarpy.peers.zenoh import endpoint
+from yarpy.peers.zenoh.endpoint import Publisher, Server, Subscriber
+from yarpy.peers.zenoh.transport import share
+
+pytestmark = pytest.mark.usefixtures("names")
+
+
+def taken(queue: Queue[Any], count: int) -> list[tuple[str, bytes]]:
+    samples = [queue.get(timeout=HANG) for _ in range(count)]
+    return [(str(sample.key_expr), sample.payload.to_bytes()) for sample in samples]
+
+
+def test_a_plain_subscriber_gets_what_a_port_writes(client: Any) -> None:
+    heard = Queue[Any]()
+    client.declare_subscriber("robot/**", heard.put)
+    with yarpy.Port("/out") as out:
+        out.connect("zenoh://robot/arm")
+        wait_until(lambda: out.write("?") == 1 and not heard.empty())  # once it is known
+        wait_until(lambda: heard.empty() or not heard.get())
+        out.write([1, 2.5])
+        out.write(b"raw")
+        found = []
+        while len(found) < 2:
+            found += [one for one in taken(heard, 1) if one[1] != b'"?"']
+        assert found == [("robot/arm", b"[1, 2.5]"), ("robot/arm", b"raw")]
+        assert out.disconnect("zenoh://robot/arm") and out.stats.outputs == []
+
+
+def test_a_port_reads_what_a_plain_program_puts(client: Any) -> None:
+    with yarpy.BufferedPort("/in", strict=True) as reader:
+        assert yarpy.connect("zenoh://robot/*/goal", "/in").carrier == "zenoh+sub"
+        publisher = client.declare_publisher("robot/arm/goal")
+        wait_until(lambda: publisher.matching_status.matching)
+        publisher.put("[1, 2]")
+        publisher.delete()
+        publisher.put("free text")
+        assert [reader.read(timeout=HANG).value for _ in range(2)] == [[1, 2], "free text"]
+        assert yarpy.disconnect("zenoh://robot/*/goal", "/in")
+
+
+def test_a_subscription_to_many_keys_tells_them_apart(client: Any) -> None:
+    with yarpy.BufferedPort("/in", strict=True) as reader:
+        reader.connect("zenoh+sub://robot/*/goal")
+        for name in ("r1", "r2"):
+            publisher = client.declare_publisher(f"robot/{name}/goal")
+            wait_until(lambda publisher=publisher: publisher.matching_status.matching)  # type: ignore[misc]
+            publisher.put(f'"{name}"')
+            message = reader.read(timeout=HANG)
+            assert (message.value, message.source) == (name, f"/zenoh://robot/{name}/goal")
+
+
+def test_a_server_that_raises_replies_with_an_error(client: Any) -> None:
+    def answer(message: yarpy.Message) -> object:
+        if message.value == ["chosen"]:
+            return [yarpy.Vocab("fail"), "not today"]
+        raise ZeroDivisionError("division by zero")
+
+    with yarpy.RpcServer("/server", answer) as server:
+        server.listen_to("zenoh+srv://robot/raises")
+
+        def ask() -> list[Any]:
+            return [*client.get("robot/raises", payload="[1]")]
+
+        wait_until(lambda: ask())
+        (reply,) = ask()
+        assert reply.ok is None
+        assert reply.err.payload.to_string() == "ZeroDivisionError: division by zero"
+        with yarpy.RpcClient("zenoh://robot/raises") as asker:
+            with pytest.raises(yarpy.RemoteError, match="division by zero") as raised:
+                asker.call(1)
+            assert raised.value.type == "ZeroDivisionError"
+            assert asker.call("chosen") == [yarpy.Vocab("fail"), "not today"]
+
+
+def test_a_port_answers_a_plain_get(client: Any) -> None:
+    with yarpy.RpcServer("/server", lambda message: ["ok", *message.value]):
+        assert yarpy.connect("zenoh+srv://robot/ask", "/server").carrier == "zenoh+srv+sub"
+
+        def ask(**said: Any) -> list[str]:
+            return [reply.ok.payload.to_string() for reply in client.get("robot/ask", **said)]
+
+        wait_until(lambda: ask(payload="[1]") == ['["ok", 1]'])
+        assert ask() == ['["ok"]']
+
+
+def test_a_port_asks_a_plain_queryable(client: Any) -> None:
+    def answer(query: Any) -> None:
+        if query.payload.to_bytes() == b'["bad"]':
+            query.reply_err(b"no\x1b such")
+        else:
+            query.reply("robot/add", b"[3]")
+
+    queryable = client.declare_queryable("robot/add", answer)
+    with yarpy.RpcClient("zenoh://robot/add") as asker:
+        nobody = [yarpy.Vocab("fail"), "nobody answers at the key robot/add of Zenoh"]
+        wait_until(lambda: asker.call(1, 2) != nobody)  # until it is known
+        assert asker.call(1, 2) == [3]
+        assert asker.call("bad") == [yarpy.Vocab("fail"), r"no\x1b such"]
+        queryable.undeclare()
+        wait_until(lambda: asker.call(1, 2) == nobody)
+
+
+def test_too_many_questions_are_refused(
+    client: Any, router: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(endpoint, "MOST_QUESTIONS", 2)
+    server = Server(share(router), "robot/busy")
+    wait_until(lambda: server.waiting == 2 or client.get("robot/busy", timeout=0.1) is None)
+    (refused,) = client.get("robot/busy")
+    assert refused.err.payload.to_string() == "too many questions are waiting"
+    server.close()
+    server.close()
+    assert server.ended()
+
+
+def test_more_than_is_read_is_dropped_and_counted(
+    router: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(endpoint, "KEPT", 3)
+    subscriber, publisher = (kind(share(router), "robot/x") for kind in (Subscriber, Publisher))
+    assert isinstance(publisher, Publisher)
+    for number in range(10):
+        publisher.send([endpoint.Outgoing(bytes([number]))])
+    wait_until(lambda: subscriber.dropped == 7)
+    assert subscriber.receive() == (subscriber,)
+    found = [subscriber.receive() for _ in range(3)]
+    assert [item[0].payload for item in found if item] == [b"\7", b"\x08", b"\x09"]  # type: ignore[attr-defined]
+    publisher.close()
+    subscriber.close()
+    with pytest.raises(BrokenPipeError):
+        publisher.send([endpoint.Outgoing(b"")])
+
+
+def test_strange_payloads_are_messages(client: Any, caplog: pytest.LogCaptureFixture) -> None:
+    with yarpy.BufferedPort("/in", strict=True) as reader, caplog.at_level(logging.WARNING):
+        reader.connect("zenoh+sub://robot/strange")
+        publisher = client.declare_publisher("robot/strange")
+        wait_until(lambda: publisher.matching_status.matching)
+        strange = (b"", b"[[[[", b"\xff\xd8\xff", b'{"a": ', b"\0" * 100)
+        for data in strange:
+            publisher.put(data)
+        for data in strange:
+            assert reader.read(timeout=HANG).value in (data, data.decode("latin-1"))
+        assert not caplog.text

@@ -1,0 +1,175 @@
+"""The table of YARP's device interfaces in docs/devices.md, made from the code.
+
+    python tests/support/device_table.py      writes it; tests/test_device_table.py compares
+
+Rules: each interface of YARP 3.9.1 and 4.0.0 has a row. Which classes, views and tests there are is
+looked up; `WHY` says why there are none.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from yarpy.kits.devices.interfaces import interfaces
+
+ROOT: Final = Path(__file__).parents[2]
+PAGE: Final = ROOT / "docs" / "devices.md"
+BEGIN: Final = "<!-- generated: interfaces -->\n"
+END: Final = "<!-- end -->\n"
+
+#: The headers of YARP's library of devices, 3.9.1 and 4.0.0, and those within others.
+_NAMES: Final = """
+IAmplifierControl IAnalogSensor IAudioGrabberSound IAudioRender IAudioVisualGrabber
+IAudioVisualStream IAxisInfo IBattery ICalibrator ICartesianControl IChatBot IControlCalibration
+IControlDebug IControlLimits IControlMode ICurrentControl IDepthVisualParams IDeviceDriverParams
+IEncoders IEncodersTimed IFrameGrabber IFrameGrabberControls IFrameGrabberControlsDC1394
+IFrameGrabberImage IFrameGrabberRgb IFrameTransform IFrameTransformClientControl
+IFrameTransformStorage IFrameWriterAudioVisual IFrameWriterImage IGazeControl IGenericSensor
+IHapticDevice IImpedanceControl IInteractionMode IJacobianCoupling IJointBrake IJointCoupling
+IJointFault IJoypadController ILLM ILocalization2D IMap2D IMotor IMotorEncoders IMultipleWrapper
+INavigation2D INavigation2DVelocityActions IOdometry2D IPWMControl IPidControl IPositionControl
+IPositionDirect IPreciselyTimed IRGBDSensor IRangefinder2D IRemoteCalibrator IRemoteVariables
+IRgbVisualParams IRobotDescription ISerialDevice ISimulatedWorld ISpeechSynthesizer
+ISpeechTranscription ITorqueControl IVelocityControl IVelocityDirect IVirtualAnalogSensor
+IVisualParams IVisualServoing IWrapper IContactLoadCellArrays IEncoderArrays IOrientationSensors
+IPositionSensors ISixAxisForceTorqueSensors ISkinPatches ITemperatureSensors
+IThreeAxisGyroscopes IThreeAxisLinearAccelerometers IThreeAxisMagnetometers
+ILinearVelocitySensors IThreeAxisAngularAccelerometers
+"""
+NAMES: Final = _NAMES.split()
+
+#: Devices with code of their own: class here, server and client and simulated device of C++, and
+#: the interfaces that they have.
+OWN: Final = (
+    (
+        "ControlBoard",
+        "controlBoard_nws_yarp",
+        "controlBoard_nwc_yarp",
+        "fakeMotionControl",
+        "IAmplifierControl IAxisInfo IControlCalibration IControlLimits IControlMode "
+        "ICurrentControl IEncoders IEncodersTimed IImpedanceControl IInteractionMode IJointFault "
+        "IMotor IMotorEncoders IPWMControl IPidControl IPositionControl IPositionDirect "
+        "IPreciselyTimed IRemoteCalibrator IRemoteVariables ITorqueControl IVelocityControl",
+    ),
+    (
+        "FrameGrabber",
+        "frameGrabber_nws_yarp",
+        "frameGrabber_nwc_yarp",
+        "fakeFrameGrabber",
+        "IFrameGrabberControls IFrameGrabberImage IRgbVisualParams",
+    ),
+    (
+        "MultiSensor",
+        "multipleanalogsensorsserver",
+        "multipleanalogsensorsclient",
+        "",
+        "IContactLoadCellArrays IEncoderArrays IOrientationSensors IPositionSensors "
+        "ISixAxisForceTorqueSensors ISkinPatches ITemperatureSensors IThreeAxisGyroscopes "
+        "IThreeAxisLinearAccelerometers IThreeAxisMagnetometers ILinearVelocitySensors "
+        "IThreeAxisAngularAccelerometers",
+    ),
+    ("Battery", "battery_nws_yarp", "battery_nwc_yarp", "fakeBattery", "IBattery"),
+    ("Laser", "rangefinder2D_nws_yarp", "rangefinder2D_nwc_yarp", "", "IRangefinder2D"),
+    (
+        "TransformClient",
+        "frameTransformServer",
+        "frameTransformClient",
+        "",
+        "IFrameTransform IFrameTransformStorage",
+    ),
+)
+
+#: What C++ 4.0 was recorded to say, in tests/golden.
+RECORDED: Final = {
+    "ControlBoard": "yarp4_board",
+    "FrameGrabber": "yarp4_camera",
+    "MultiSensor": "yarp4_sensors",
+    "Battery": "yarp4_battery",
+    "Laser": "yarp4_laser",
+}
+
+#: Sensors that no C++ here has.
+_SINCE_3_11: Final = ("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers")
+
+_ALONE: Final = "C++ has no server or client of it: it stays within a program"
+_SOUND: Final = "not yet: its answers hold sounds, which are no Bottles"
+_OLD: Final = "C++ has none of it any more"
+
+#: Why there is no class.
+WHY: Final = {
+    "IAnalogSensor": "not yet: `analogServer` of 3.9, which 4.0 has no more",
+    "IAudioGrabberSound": _SOUND,
+    "IAudioRender": "not yet: `AudioPlayerWrapper` is not served",
+    "IAudioVisualGrabber": _ALONE,
+    "IAudioVisualStream": _ALONE,
+    "ICalibrator": _ALONE,
+    "ICartesianControl": "asks a solver of the iCub in C++, whose protocol yarpy does not speak",
+    "IControlDebug": _ALONE,
+    "IDepthVisualParams": "not yet: part of RGBD",
+    "IDeviceDriverParams": "options of devices of C++: here they are arguments of classes",
+    "IFrameGrabber": _OLD,
+    "IFrameGrabberControlsDC1394": "not yet: of cameras at FireWire",
+    "IFrameGrabberRgb": _OLD,
+    "IFrameTransformClientControl": "starts what C++ connects later; here it is connected at once",
+    "IFrameWriterAudioVisual": _ALONE,
+    "IFrameWriterImage": "not yet: `frameWriter_nws_yarp` is not served; a port of images does it",
+    "IGazeControl": "asks iKinGazeCtrl of the iCub in C++, whose protocol yarpy does not speak",
+    "IGenericSensor": _ALONE,
+    "IHapticDevice": _ALONE,
+    "IJacobianCoupling": _ALONE,
+    "IJointBrake": "not yet: brakes of 4.0",
+    "IJointCoupling": _ALONE,
+    "IJoypadController": "not yet",
+    "IMultipleWrapper": "how devices are attached in C++: here they are arguments of servers",
+    "IRGBDSensor": "not yet",
+    "ISpeechSynthesizer": _SOUND,
+    "ISpeechTranscription": _SOUND,
+    "IVelocityDirect": "not yet: velocities of 4.0 without a trajectory",
+    "IVirtualAnalogSensor": "not yet",
+    "IVisualParams": _OLD,
+    "IVisualServoing": _ALONE,
+    "IWrapper": "how devices are attached in C++: here they are arguments of servers",
+}
+
+
+def table() -> str:
+    """The rows, with their head."""
+    views = "".join(path.read_text() for path in (ROOT / "compat/src/yarp").glob("_*.py"))
+    tests = "".join(path.read_text() for path in (ROOT / "tests/interop").glob("test_*.py"))
+    recorded = {path.stem for path in (ROOT / "tests/golden").glob("yarp4_*.json")}
+    rows: dict[str, tuple[str, str, str, str]] = {}
+    for name, server, client, fake, has in OWN:
+        for each in has.split():
+            rows[each] = (name, server, client, fake)
+    for name, interface in interfaces().items():
+        view = interface.VIEW or "INavigation2DVelocityActions"
+        rows[view] = (name, interface.NWS, interface.NWC, interface.FAKE)
+    lines = [
+        "| interface | here | server (nws), client (nwc), simulated | view | tried with |",
+        "|---|---|---|---|---|",
+    ]
+    for each in sorted(NAMES):
+        if each not in rows:
+            lines.append(f"| `{each}` | {WHY[each]} | | | |")
+            continue
+        name, *devices = rows[each]
+        there = ", ".join(f"`{device}`" for device in devices if device)
+        view = "✔" if f"def view{each}(" in views else ""
+        tried = ["C++ 3.5"] if devices[0] in tests else []
+        tried += ["4.0 as recorded"] if RECORDED.get(name) in recorded else []
+        tried = [] if each in _SINCE_3_11 else tried
+        lines.append(f"| `{each}` | `{name}` ✔ | {there} | {view} | {', '.join(tried)} |")
+    return "\n".join(lines) + "\n"
+
+
+def page() -> str:
+    """The whole page with the table of today."""
+    text = PAGE.read_text()
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    return f"{before}{BEGIN}{table()}{END}{after}"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page())

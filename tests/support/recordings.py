@@ -1,0 +1,34 @@
+"""Recordings made by hand: for tests of what reads them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from yarpy.data import codec
+from yarpy.kits.record.mcap.writer import McapWriter
+
+START = 1_795_000_000_000_000_000  # nanoseconds since 1970
+STEP = 10_000_000  # nanoseconds between messages
+
+
+def payload_of(value: object) -> bytes:
+    """The bytes of YARP for a value."""
+    return b"".join(map(bytes, codec.encode(value)))
+
+
+def fill(writer: McapWriter, count: int = 10, ports: tuple[str, ...] = ("/a", "/b")) -> None:
+    """Message n is the list of n, stamped `n N.5`, 10 ms behind the one before it."""
+    for n in range(count):
+        port = ports[n % len(ports)]
+        writer.add(port, f"{n} {n}.5", START + n * STEP, payload_of([n]))
+
+
+def recorded(path: Path, count: int = 10, compression: str = "none") -> Path:
+    """A finished file with `fill` in chunks of five messages."""
+    with McapWriter(path, compression) as writer:
+        for n in range(count):
+            port = "/a" if n % 2 == 0 else "/b"
+            writer.add(port, f"{n} {n}.5", START + n * STEP, payload_of([n]))
+            if n % 5 == 4:
+                writer.flush()
+    return path

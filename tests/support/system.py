@@ -1,0 +1,16 @@
+"""What the system lacks that a test stands on: a reason to skip, "" where it is there."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+from typing import Final
+
+NO_UNIX_SOCKETS: Final = "" if hasattr(socket, "AF_UNIX") else "Windows' Python has no Unix sockets"
+NO_MEMFD: Final = "" if hasattr(os, "memfd_create") else "only Linux has memory with a descriptor"
+NO_GROUPS: Final = (
+    ""
+    if sys.platform != "win32"
+    else "under wine a member of a multicast group is told after a while that its host is gone"
+)

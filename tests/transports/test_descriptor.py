@@ -1,0 +1,100 @@
+"""Descriptors end with their objects, and what must not be cut goes on where signals come."""
+
+from __future__ import annotations
+
+import _thread
+import operator
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import pytest
+from support.wait import HANG
+
+from yarpy.transports.descriptor import opened, opened_pair, owned, undisturbed
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "pipe2"), reason="this system has no pipe2")
+
+
+class Alarm(Exception):
+    """What the signal raises."""
+
+
+@pytest.fixture(autouse=True)
+def alarm() -> Iterator[None]:
+    def ring(*_: object) -> None:
+        raise Alarm
+
+    before = signal.signal(signal.SIGUSR1, ring)
+    yield
+    signal.signal(signal.SIGUSR1, before)
+
+
+def is_open(number: int) -> bool:
+    try:
+        os.fstat(number)
+    except OSError:
+        return False
+    return True
+
+
+def test_it_ends_with_its_object() -> None:
+    one, other = opened_pair(os.pipe2, os.O_CLOEXEC)
+    numbers = one.fileno(), other.fileno()
+    assert all(map(is_open, numbers))
+    assert not any(map(os.get_inheritable, numbers))
+    one.close()
+    one.close()
+    del other
+    assert not any(map(is_open, numbers))
+
+
+def test_so_it_does_where_a_signal_comes_at_that_moment() -> None:
+    """`__del__` of Python would be cut at its first step, and the descriptor be left."""
+    held = [opened(os.dup, 0)]
+    number = held[0].fileno()
+    with pytest.raises(Alarm):
+        # All in C, so that the interpreter sees the signal once the object is about to end.
+        list(map(operator.call, (partial(_thread.interrupt_main, signal.SIGUSR1), held.clear)))
+    assert not is_open(number)
+
+
+@pytest.mark.parametrize("place", [0, 1])
+def test_where_one_is_none_all_are_closed(place: int, tmp_path: Path) -> None:
+    numbers = [os.dup(0), os.dup(0)]
+    os.close(numbers[place])
+    numbers[place] = os.open(tmp_path, os.O_RDONLY)
+    with pytest.raises(OSError):
+        owned(numbers)
+    assert not any(map(is_open, numbers))
+
+
+def test_what_must_not_be_cut_goes_on_in_another_thread() -> None:
+    main, cut, over = threading.get_ident(), threading.Event(), threading.Event()
+
+    def work() -> None:
+        signal.pthread_kill(main, signal.SIGUSR1)
+        assert cut.wait(HANG)
+        over.set()
+
+    with pytest.raises(Alarm):
+        undisturbed(work)
+    assert not over.is_set()
+    cut.set()
+    assert over.wait(HANG)
+
+
+def test_what_it_returns_and_raises() -> None:
+    assert undisturbed(threading.current_thread) is not threading.main_thread()
+    with pytest.raises(ZeroDivisionError):
+        undisturbed(lambda: 1 // 0)
+    found: list[bool] = []
+    thread = threading.Thread(
+        target=lambda: found.append(undisturbed(threading.current_thread) is thread)
+    )
+    thread.start()
+    thread.join()
+    assert found == [True]
