@@ -40,7 +40,9 @@ class String_(IdlStruct, typename="std_msgs.msg.dds_.String_"):  # noqa: N801
 
 
 def say(*words: object) -> None:
-    print(json.dumps(words if len(words) > 1 else words[0]), flush=True)
+    # Two threads say something: print would write a line and its end apart.
+    sys.stdout.write(json.dumps(words if len(words) > 1 else words[0]) + "\n")
+    sys.stdout.flush()
 
 
 def qos_of(

@@ -32,7 +32,7 @@ def test_from_the_command_line(cli, names, tmp_path) -> None:
 def test_an_interrupt_ends_it(cli, names, tmp_path) -> None:
     path = recorded(tmp_path / "x.mcap")
     with cli.start("play", str(path), "-l") as process:
-        wait_until(lambda: yarpy.exists("/b", names=names))
+        wait_until(lambda: yarpy.exists("/play/rpc:i", names=names))
         process.signal(signal.SIGINT)
         assert process.wait(HANG) == 0
         assert "stopped at 0." in process.stdout

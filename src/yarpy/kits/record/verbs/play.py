@@ -82,25 +82,26 @@ def command(
     if not live:
         log.show()
     with realtime(switch_interval=SWITCH), open_recording(*files) as recording:
-        player = Player(
-            recording,
-            None if ports is None else [name for name in ports.split(",") if name],
-            rate=rate,
-            loop=loop,
-            start=start if mark is None else start + recording.mark(mark),
-            duration=duration,
-            rename=dict(map(parse_rename, renamed)),
-            prefix=prefix,
-            clock=clock,
-        )
+        player: Player | None = None
         ended = False
         try:
+            player = Player(
+                recording,
+                None if ports is None else [name for name in ports.split(",") if name],
+                rate=rate,
+                loop=loop,
+                start=start if mark is None else start + recording.mark(mark),
+                duration=duration,
+                rename=dict(map(parse_rename, renamed)),
+                prefix=prefix,
+                clock=clock,
+            )
             with player, open_rpc(name, player_words(player)):
                 if not wait or player.wait_for_readers():
                     ended = _steered(player, paused) if live else player.play(paused)
         except Interrupted:
             pass  # how a loop ends
-        print_line(summary(player, ended))
+        print_line("stopped before the start" if player is None else summary(player, ended))
         for damage in recording.damages:
             warn(damage)
     return 0
