@@ -46,6 +46,13 @@ def test_what_cpp_says() -> None:
     assert plain == LogLine("/log/here", "WARNING", "|a| hot")
 
 
+@pytest.mark.parametrize("time", ["999999999999.0", "17179869184.0", "1e300", "-1.0"])
+def test_a_time_beyond_all_calendars_is_none(time: str) -> None:
+    text = f"(level INFO) (systemtime {time}) (message hello)"
+    found = read_line(yarpy.Bottle(["[/log/a]", text]))
+    assert found is not None and found.time == 0.0 and found.text == "hello"
+
+
 @pytest.mark.parametrize(
     "value",
     [None, "text", [], ["one"], ["a", 1], ["a", "b", "c"], {"a": 1}, [["a"], "b"]],

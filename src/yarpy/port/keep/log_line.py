@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 LEVELS: Final = ("TRACE", "DEBUG", "INFO", "WARNING", "ERROR", "FATAL")
 LONGEST: Final = 16_384  # characters of a message that is sent, or of a line that is read
+LATEST: Final = float(1 << 34)  # seconds since 1970: recordings count nanoseconds in 64 bits
 
 _UNFIT: Final = re.compile(r"[^\w.+\-]")
 # What most lines look like, so that reading them takes little; others are read as what they are.
@@ -153,7 +154,7 @@ def _line(header: str, text: str, source: str) -> LogLine:
         if id_ is not None:
             more["id"] = id_
         said = word if quoted is None else quoted
-        return LogLine(origin, level, said, float(moment), component or "", more)
+        return LogLine(origin, level, said, _time(float(moment)), component or "", more)
     found = _fields(text) if text.startswith("(") else {}
     if "level" not in found:
         match = _LEVEL.match(text)
@@ -167,10 +168,15 @@ def _line(header: str, text: str, source: str) -> LogLine:
         origin,
         level if level in LEVELS else "",
         said,
-        float(time) if isinstance(time, int | float) and 0 <= time < 1e12 else 0.0,
+        _time(time) if isinstance(time, int | float) else 0.0,
         component,
         found,
     )
+
+
+def _time(seconds: float) -> float:
+    """A time that calendars and recordings can hold; 0 for what is none."""
+    return float(seconds) if 0 <= seconds < LATEST else 0.0
 
 
 def _fields(text: str) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Curves: how few points, which ones, and all as CSV."""
 
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -57,3 +58,21 @@ def test_csv(recording) -> None:
     assert lines[2] == "1795000000.010000000,1.500000000,1.0,7.0" and len(lines) == 3
     (_, line) = as_csv(recording, "/b", START, START + STEP)
     assert line == b'1795000000.000000001,1795000000.000000001,"""it, fell"""\n'
+
+
+def test_memory_is_that_of_a_curve(tmp_path: Path) -> None:
+    """Not that of all that was read: of pictures and long messages nothing else is kept, and of
+    short ones not the megabytes that were read together with them."""
+    long = payload_of(yarpy.Vector([1.0] * 50_000))
+    with McapWriter(tmp_path / "x.mcap", "zstd") as writer:
+        for n in range(200):
+            writer.add("/long", "", START + 2 * n * STEP, long)
+            writer.add("/short", "", START + (2 * n + 1) * STEP, payload_of([n]))
+    with record.open(tmp_path / "x.mcap") as found:
+        for port, columns in (("/long", 64), ("/short", 1)):
+            tracemalloc.start()
+            told = curves(found, port, START, START, START + 400 * STEP, 4000)
+            _, peak = tracemalloc.get_traced_memory()
+            tracemalloc.stop()
+            assert told["of"] == 200 and len(told["columns"]) == columns
+            assert peak < 40 * len(long)

@@ -41,6 +41,16 @@ def test_what_is_kept() -> None:
     assert [*Recording([ring]).between(begin=found[3].received_ns)][-1].value == [99]
 
 
+@pytest.mark.parametrize("envelope", ["1 inf", "1 nan", "1 1e300", "-3 5", "1 -7", "x"])
+def test_times_that_strangers_make_up(envelope: str) -> None:
+    ring = Ring()
+    found = message(1)
+    found.envelope = envelope
+    ring.put(found)
+    (kept,) = ring.messages()
+    assert kept.sent_ns == kept.received_ns and kept.envelope == envelope
+
+
 def test_what_is_old_goes(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 1_000_000_000_000
     monkeypatch.setattr(module, "_SLACK", 5)

@@ -14,6 +14,7 @@ from support.recordings import START, STEP
 from support.wait import HANG, wait_until
 
 from yarpy import record
+from yarpy.kits.record.view import server
 from yarpy.kits.record.view.server import View
 
 
@@ -91,3 +92,21 @@ def test_the_server_outlives_its_clients(view: View) -> None:
         client.line.close()
     wait_until(lambda: not view.sessions, what="all have gone")
     assert get(view.url)[0] == 200
+
+
+def test_a_text_in_many_small_pieces(view: View, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ends however little is in each of them, and is counted without looking back."""
+    monkeypatch.setattr(server, "VIEW_ORDER", 2000)
+    with Client(view.url) as client, pytest.raises((OSError, EOFError)):
+        client.line.sendall(b"\x01\x80" + bytes(4) + (b"\x00\x80" + bytes(4)) * 2000)
+        while True:
+            client.next()
+    assert get(view.url + "timeline")[0] == 200
+
+
+def test_one_stretch_is_cut_out_at_a_time(view: View, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "VIEW_SECONDS", 0.01)
+    with view._cutting:
+        code, _, body = get(view.url + "cut.mcap?begin=0.1&end=0.2")
+    assert code == 503 and b"another stretch" in body
+    assert get(view.url + "cut.mcap?begin=0.1&end=0.2")[0] == 200

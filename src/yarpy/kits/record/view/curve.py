@@ -21,6 +21,7 @@ from yarpy.kits.record.view.source import rows_of
 from yarpy.kits.record.view.spelling import NUMBERS, numbers_of, text_of
 
 DECODED: Final = 20_000  # messages of one question
+SMALL: Final = 1024  # bytes of a message that is kept as it is
 POINTS: Final = 4000  # of a curve
 DAY: Final = 86_400.0  # seconds within which a number is the time of its message
 
@@ -31,28 +32,35 @@ def curves(
     """Return the `times` in seconds from `origin`, and `columns` of values; begin, end, origin in
     nanoseconds."""
     points = min(max(points, 10), POINTS)
-    taken: list[Recorded] = []
+    taken: list[tuple[int, Recorded | list[float]]] = []
     every, number = 1, -1
     for number, recorded in enumerate(rows_of(recording, port, begin, end)):
         if number % every == 0:
-            # Only the bytes are kept until it is known which ones are decoded.
-            taken.append(recorded)
+            taken.append((recorded.received_ns, _kept(recorded)))
             if len(taken) >= DECODED:
                 taken, every = taken[::2], every * 2
-    times = [(one.received_ns - origin) / SECOND for one in taken]
-    rows = [numbers_of(one) for one in taken]
+    times = [(time - origin) / SECOND for time, _ in taken]
+    rows = [numbers_of(one) if isinstance(one, Recorded) else one for _, one in taken]
     width = max(map(len, rows), default=0)
     table = np.full((len(rows), width), np.nan)
     for at, row in enumerate(rows):
         table[at, : len(row)] = row
     if taken:  # clocks among the numbers would make a line of all others
-        table[abs(table - taken[0].received) < DAY] = np.nan
+        table[abs(table - taken[0][0] / SECOND) < DAY] = np.nan
     found_times, table = _thinned(np.array(times), table, points)
     columns = [
         [None if value != value or abs(value) == np.inf else value for value in column]
         for column in table.T.tolist()
     ]
     return {"times": found_times.tolist(), "columns": columns, "every": every, "of": number + 1}
+
+
+def _kept(recorded: Recorded) -> Recorded | list[float]:
+    """Return what is kept of a message until it is known which ones are decoded: a few bytes, apart
+    from those that were read together with them; of long messages the numbers."""
+    if len(recorded.payload) > SMALL:
+        return numbers_of(recorded)
+    return Recorded(recorded.port, recorded.received_ns, 0, "", bytes(recorded.payload))
 
 
 def _thinned(times: Any, table: Any, points: int) -> tuple[Any, Any]:

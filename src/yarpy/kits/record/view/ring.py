@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from yarpy.errors import YarpError
+from yarpy.kits.record.envelope import fields_of
 from yarpy.kits.record.following import Following, Wanted
 from yarpy.kits.record.intake import MEMORY, OVERHEAD, own
 from yarpy.kits.record.kind import kind_of
@@ -65,10 +66,9 @@ class Ring:
         except (YarpError, *UNSENDABLE):
             self.lost += 1
             return
-        stamp = message.stamp
         with self._lock:
             now = max(time.time_ns(), self._times[-1] if self._times else 0)
-            sent = now if stamp is None or not stamp.valid else round(stamp.time * SECOND)
+            _, _, sent = fields_of(message.envelope, now, 0)
             self._times.append(now)
             self._held.append(Recorded(message.source, now, sent, message.envelope, payload))
             self.size += len(payload) + OVERHEAD

@@ -9,8 +9,8 @@
 Rules: begin and end are seconds from `origin`, in nanoseconds: the beginning of the recording
 unless another one is given, since that of what is live goes on. It is the page of this computer
 unless it is told otherwise, and the origin rule is that of all pages of programs
-(`YARPY_WEB_ORIGINS`). Requests have a size and a time, connections a number. Nothing that is asked
-here changes anything.
+(`YARPY_WEB_ORIGINS`). Requests have a size and a time, connections a number (`doorkeeper`). Nothing
+that is asked here changes anything.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final, Self
@@ -32,14 +32,15 @@ from urllib.parse import parse_qs, urlsplit
 
 from yarpy.carriers.web.http import asset
 from yarpy.carriers.web.http.origin import may_not_act, not_ours, origins_of
-from yarpy.errors import DecodeError, YarpError
+from yarpy.errors import DecodeError, Timeout, YarpError
 from yarpy.kits.record.convert import convert
 from yarpy.kits.record.view.curve import as_csv, curves
+from yarpy.kits.record.view.doorkeeper import Doorkeeper
 from yarpy.kits.record.view.foxglove import PORT, PROTOCOLS, status
 from yarpy.kits.record.view.overview import SECOND
 from yarpy.kits.record.view.session import Session
 from yarpy.kits.record.view.source import Source
-from yarpy.limit import VIEW_CLIENTS, VIEW_ORDER, VIEW_SECONDS
+from yarpy.limit import VIEW_ORDER, VIEW_SECONDS
 from yarpy.log import logger
 
 log = logger("yarpy.view")
@@ -49,6 +50,7 @@ _FILES: Final = frozenset(
     ("look.html", "look.css", "look.js", "look_card.js", "look_link.js", "look_time.js")
 )
 _SENDING: Final = struct.pack("ll", int(VIEW_SECONDS), 0)
+_PIECE: Final = 1 << 20  # bytes of a file that are taken within VIEW_SECONDS
 
 
 class View:
@@ -61,11 +63,11 @@ class View:
         self._cutting = threading.Lock()  # one at a time
         handler = type("Handler", (_Handler,), {"view": self})
         try:
-            self._server = _Server((host, PORT if port is None else port), handler)
+            self._server = Doorkeeper((host, PORT if port is None else port), handler)
         except OSError:
             if port is not None:
                 raise
-            self._server = _Server((host, 0), handler)
+            self._server = Doorkeeper((host, 0), handler)
         self._thread = threading.Thread(
             target=self._server.serve_forever, args=(0.1,), name="yarpy view", daemon=True
         )
@@ -127,8 +129,15 @@ class View:
     def cut(self, fields: Mapping[str, str], write: Callable[[Path], object]) -> None:
         """Call `write` with a recording of a stretch of time, which goes again."""
         begin, end = self.stretch(fields)
+        if not self._cutting.acquire(timeout=VIEW_SECONDS):
+            raise Timeout("another stretch is being cut out: ask again when it has arrived")
+        try:
+            self._cut(begin, end, write)
+        finally:
+            self._cutting.release()
+
+    def _cut(self, begin: int, end: int, write: Callable[[Path], object]) -> None:
         with (
-            self._cutting,
             tempfile.TemporaryDirectory(prefix="yarpy-cut-") as folder,
             self.source.open() as recording,
         ):
@@ -141,34 +150,6 @@ class View:
             write(done.path)
 
 
-class _Server(ThreadingHTTPServer):
-    """Threads for connections, as many as are allowed."""
-
-    daemon_threads = True
-    block_on_close = False
-    request_queue_size = 64
-
-    def __init__(self, address: tuple[str, int], handler: Any) -> None:
-        self._room = threading.BoundedSemaphore(VIEW_CLIENTS)
-        super().__init__(address, handler)
-
-    def process_request(self, request: Any, client_address: Any) -> None:
-        if not self._room.acquire(blocking=False):
-            log.warning("a page is turned away: %d connections are open", VIEW_CLIENTS)
-            self.shutdown_request(request)
-            return
-        super().process_request(request, client_address)
-
-    def process_request_thread(self, request: Any, client_address: Any) -> None:
-        try:
-            super().process_request_thread(request, client_address)
-        finally:
-            self._room.release()
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        log.debug("a page has gone", exc_info=True)
-
-
 @cache
 def _file(name: str) -> bytes:
     return files("yarpy.kits.record.view").joinpath("assets", name).read_bytes()
@@ -178,6 +159,7 @@ class _Handler(BaseHTTPRequestHandler):
     """A connection."""
 
     view: View
+    server: Doorkeeper
     protocol_version = "HTTP/1.1"
     server_version = "yarpy"
     sys_version = ""
@@ -188,6 +170,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         """Answer."""
+        self.server.has_come(self.connection)
         headers = {key.lower(): value for key, value in self.headers.items()}
         origins = origins_of()
         if origins.turns_away(headers, self.connection.getsockname()[0]):
@@ -204,8 +187,15 @@ class _Handler(BaseHTTPRequestHandler):
             self._say(f"there is no {error}", 404)
         except (ValueError, OverflowError) as error:
             self._say(str(error), 400)
+        except Timeout as error:
+            self._say(str(error), 503)
         except YarpError as error:
             self._say(str(error), 500)
+
+    def handle_one_request(self) -> None:
+        """Read a request, which has to come in time, and answer it."""
+        self.server.expect(self.connection)
+        super().handle_one_request()
 
     def _answer(self, path: str, fields: Mapping[str, str]) -> None:
         view, name = self.view, "look.html" if path == "/" else path[1:]
@@ -257,7 +247,7 @@ class _Handler(BaseHTTPRequestHandler):
     def _send_file(self, path: Path) -> None:
         self._head("application/octet-stream", path.stat().st_size)
         with path.open("rb") as file:
-            shutil.copyfileobj(file, self.wfile)
+            shutil.copyfileobj(file, self.wfile, _PIECE)
 
     # -- the WebSocket ----------------------------------------------------------------------------
 
@@ -299,6 +289,7 @@ class _Handler(BaseHTTPRequestHandler):
             target=self._serve, args=(session,), name="yarpy view client", daemon=True
         )
         heard: list[Any] = []
+        size = 0  # of what was heard, in which a frame counts, too
         try:
             named = [(key.encode(), value.encode("latin-1")) for key, value in self.headers.items()]
             talk.initiate_upgrade_connection(named, self.path)
@@ -311,12 +302,13 @@ class _Handler(BaseHTTPRequestHandler):
                         sending.start()
                     elif isinstance(event, TextMessage | BytesMessage):
                         heard.append(event.data)
-                        if sum(map(len, heard)) > VIEW_ORDER:
+                        size += len(event.data) + 1
+                        if size > VIEW_ORDER:
                             put(CloseConnection(1009))
                             return
                         if event.message_finished:
                             self._hear(session, heard, send)
-                            heard = []
+                            heard, size = [], 0
                     elif isinstance(event, Ping):
                         put(event.response())
                     elif isinstance(event, CloseConnection):
