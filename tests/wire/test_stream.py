@@ -266,6 +266,28 @@ def test_read_parsed_in_any_pieces(size: int, piece: int) -> None:
     assert run(stream.read_parsed(framed), stream, chop(data, piece)) == body
 
 
+def test_read_parsed_of_an_end_that_is_found_bit_by_bit() -> None:
+    """Copies what has come a few times, not once for every few bytes."""
+    size = 1 << 20
+    stream = ByteStream()
+    steps = stream.read_parsed(lambda view: (b"all", size) if len(view) >= size else len(view) + 5)
+    assert is_waiting(steps)
+    buffers, fed = 0, 0
+    before: object = stream.buffer
+    while fed < size:
+        room = stream.get_buffer()
+        count = min(len(room), size - fed)
+        stream.feed(bytes(count))
+        fed += count
+        try:
+            assert next(steps) is None
+        except StopIteration as stop:
+            assert stop.value == b"all"
+        buffers += stream.buffer is not before
+        before = stream.buffer
+    assert fed == size and buffers < 12
+
+
 # ---------------------------------------------------------------------------------- read_line
 
 LINES = [

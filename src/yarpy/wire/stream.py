@@ -342,10 +342,13 @@ class ByteStream:
     def _enlarge(self, size: int) -> None:
         """The buffer is full and `size` bytes are announced: make it longer, up to twice as long.
 
-        Never more at once: the peer must have sent as much as we allocate for it.
+        Never more at once: the peer must have sent as much as we allocate for it. Never less than
+        half as much: who does not know the end of a message announces a few bytes at a time, and
+        all that is there is copied.
         """
         read = self.head - self.mark if self.mark >= 0 and not self._large else 0
-        fresh = bytearray(max(min(size, 2 * len(self.buffer)), len(self.buffer)) + read)
+        held = len(self.buffer)
+        fresh = bytearray(max(min(size, 2 * held), held + held // 2) + read)
         start = self.head - read
         count = self.tail - start
         fresh[:count] = self.view[start : self.tail]

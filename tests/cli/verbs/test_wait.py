@@ -49,3 +49,9 @@ def test_a_name_server_that_comes(cli, tmp_path):
                 assert process.wait() == 0
     finally:
         cli.environment["YARPY_SERVER"] = before
+
+
+def test_what_is_there_when_the_time_is_over(here, names):
+    with yarpy.Port("/wait/late", names=names):
+        code, _, err = here("wait", "/wait/late", "--timeout", "0")
+    assert (code, err) == (0, "")

@@ -36,15 +36,16 @@ def command(port: str, target: str | None, timeout: float | None) -> int:
             warn(f"{error}; waiting for one")
             time.sleep(max(0.0, left))
         if deadline is not None and time.monotonic() >= deadline:
-            complain(_why_not(port, target, timeout))
-            return 1
+            missing = _missing(port, target)
+            if missing:
+                complain(f"the {timeout:g} s are over: {missing}")
+            return 1 if missing else 0
 
 
-def _why_not(port: str, target: str | None, timeout: float | None) -> str:
-    """Return what is still missing when the time is over."""
-    over = f"the {timeout:g} s are over"
+def _missing(port: str, target: str | None) -> str:
+    """Return what is still missing when the time is over, "" if it came in the last moment."""
     try:
         yarpy.ping(port, timeout=1.0)
     except yarpy.YarpError as error:
-        return f"{over}: {error}"
-    return f'{over}: "{port}" is there' + (f', but does not send to "{target}"' if target else "")
+        return str(error)
+    return f'"{port}" is there, but does not send to "{target}"' if target else ""
