@@ -79,11 +79,14 @@ SECONDS ?= 3600
 soak: $(VENV)/.ready
 	$(BIN)/python tests/chaos/soak.py $(SECONDS)
 
+# PLW1514: text files are opened with an encoding, since that of Windows is none that files have.
 check: $(VENV)/.ready
 	$(BIN)/ruff check .
+	$(BIN)/ruff check --preview --select PLW1514 .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/mypy --platform darwin --cache-dir .mypy_cache/darwin
+	$(BIN)/mypy --platform win32 --cache-dir .mypy_cache/win32
 
 # Strange input for everything that reads. SEED=N does a run again.
 fuzz: $(VENV)/.ready

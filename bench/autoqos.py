@@ -78,7 +78,7 @@ class Steered:
     def __init__(self, hosts: Hosts, rules: str) -> None:
         self._folder = tempfile.TemporaryDirectory()
         file = Path(self._folder.name, "rules.toml")
-        file.write_text(rules)
+        file.write_text(rules, encoding="utf-8")
         os.environ["YARP_DATA_HOME"] = self._folder.name
         words = (sys.executable, "-m", "yarpy", "autoqos", str(file), "--json")
         self._process = hosts.spawn("switch", *words)

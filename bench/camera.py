@@ -78,7 +78,7 @@ def _used(process: object) -> float:
     """Nanoseconds of processor time of a program."""
     total = 0.0
     for thread in os.listdir(f"/proc/{process}/task"):
-        with open(f"/proc/{process}/task/{thread}/schedstat") as status:
+        with open(f"/proc/{process}/task/{thread}/schedstat", encoding="utf-8") as status:
             total += int(status.read().split()[0])
     return total
 

@@ -41,7 +41,7 @@ port.close()
 
 def used() -> tuple[float, int]:
     """Resident memory in MiB, and open file descriptors."""
-    with open("/proc/self/status") as lines:
+    with open("/proc/self/status", encoding="utf-8") as lines:
         fields = dict(line.split(":", 1) for line in lines)
     return int(fields["VmRSS"].split()[0]) / 1024, len(os.listdir("/proc/self/fd"))
 

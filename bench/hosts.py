@@ -184,6 +184,6 @@ class Idle:
 
 
 def _jiffies() -> tuple[int, int]:
-    with open("/proc/stat") as file:
+    with open("/proc/stat", encoding="utf-8") as file:
         numbers = [int(word) for word in file.readline().split()[1:9]]
     return numbers[3] + numbers[4], sum(numbers)

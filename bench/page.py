@@ -50,7 +50,7 @@ def goals(rows):
 
 
 def main():
-    with open(sys.argv[1]) as file:
+    with open(sys.argv[1], encoding="utf-8") as file:
         result = json.load(file)
     for heading, columns in TABLES:
         table(result["workloads"], heading, columns)

@@ -113,7 +113,7 @@ def processor_time(server):
     try:
         for process in ("self", server):
             for thread in os.listdir(f"/proc/{process}/task"):
-                with open(f"/proc/{process}/task/{thread}/schedstat") as status:
+                with open(f"/proc/{process}/task/{thread}/schedstat", encoding="utf-8") as status:
                     total += int(status.read().split()[0])
     except OSError:
         return None

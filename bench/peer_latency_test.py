@@ -38,7 +38,7 @@ def client(options, *mode):
         if options.pause:
             how = (*how, "--client_wait", str(options.pause))
         subprocess.run(run("--client", *frames, *how), check=True, stdout=subprocess.DEVNULL)
-        rows = Path(directory, f"log{PAYLOAD}.txt").read_text().splitlines()
+        rows = Path(directory, f"log{PAYLOAD}.txt").read_text(encoding="utf-8").splitlines()
     return [int(float(row.split()[0]) * 1e6) for row in rows[options.warmup :]]
 
 

@@ -173,7 +173,7 @@ def _program(words: list[str]) -> Iterator["subprocess.Popen[str]"]:
 
 def _used(process: int) -> float:
     """Seconds of processor time of a program."""
-    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 

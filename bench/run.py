@@ -144,7 +144,7 @@ def two_cores() -> list[int]:
     twins = ""
     with contextlib.suppress(OSError):
         path = f"/sys/devices/system/cpu/cpu{first}/topology/thread_siblings_list"
-        twins = Path(path).read_text().strip()
+        twins = Path(path).read_text(encoding="utf-8").strip()
     apart = [core for core in others if str(core) not in twins.replace("-", ",").split(",")]
     return [first, next(iter(apart or others), first)]
 
@@ -202,7 +202,7 @@ def machine() -> dict[str, object]:
     """The facts without which the numbers mean nothing."""
     model = platform.processor() or "unknown"
     with contextlib.suppress(OSError):
-        for line in Path("/proc/cpuinfo").read_text().splitlines():
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
             if line.startswith("model name"):
                 model = line.partition(":")[2].strip()
                 break

@@ -109,7 +109,7 @@ class BareNames:
 
 def traffic() -> tuple[int, int]:
     """Packets and bytes on the loopback so far."""
-    for line in Path("/proc/self/net/dev").read_text().splitlines():
+    for line in Path("/proc/self/net/dev").read_text(encoding="utf-8").splitlines():
         if line.strip().startswith("lo:"):
             words = line.split()
             return int(words[2]), int(words[1])
@@ -120,7 +120,9 @@ def processor(processes) -> float:
     """Seconds for which they have run so far."""
     ticks = 0
     for each in processes:
-        words = Path(f"/proc/{each.pid}/stat").read_text().rpartition(")")[2].split()
+        words = (
+            Path(f"/proc/{each.pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+        )
         ticks += int(words[11]) + int(words[12])
     return ticks / os.sysconf("SC_CLK_TCK")
 

@@ -64,7 +64,7 @@ def with_programs(cpp: CppYarp) -> Mapping[str, str]:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_links_lead_somewhere(page: Path):
-    for target, _ in _LINK.findall(page.read_text()):
+    for target, _ in _LINK.findall(page.read_text(encoding="utf-8")):
         if "://" not in target:
             assert (page.parent / target).exists(), f"{page.name} links to {target}"
 

@@ -30,7 +30,7 @@ CARRIERS = ("memory", "shmem")
 
 def left() -> dict[str, int]:
     """What there is of shared memory, and of this process's descriptors."""
-    with open("/proc/sysvipc/shm") as file:
+    with open("/proc/sysvipc/shm", encoding="utf-8") as file:
         segments = len(file.readlines()) - 1  # the first line is a heading
     return {
         "files in /dev/shm": len(os.listdir("/dev/shm")),
@@ -54,7 +54,7 @@ def settled(before: dict[str, int]) -> dict[str, int]:
 
 
 def _ours(table: str) -> list[str]:
-    with open(f"/proc/self/{table}") as file:
+    with open(f"/proc/self/{table}", encoding="utf-8") as file:
         return [line for line in file if "memfd:yarpy" in line]
 
 

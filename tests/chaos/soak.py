@@ -25,7 +25,7 @@ HERTZ = 1000.0
 
 def memory() -> float:
     """Megabytes."""
-    with open("/proc/self/statm") as file:
+    with open("/proc/self/statm", encoding="utf-8") as file:
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 

@@ -20,7 +20,7 @@ def say(*words):
 path = sys.argv[1]
 code = 0
 try:
-    with open(path) as file:
+    with open(path, encoding="utf-8") as file:
         exec(compile(file.read(), path, "exec"), {"__name__": "__main__", "print": say})
 except BaseException:
     traceback.print_exc()

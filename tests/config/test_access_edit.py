@@ -36,26 +36,30 @@ def file(tmp_path: Path) -> Path:
 
 def test_a_right_is_given_and_taken_back(file: Path) -> None:
     assert allow(file, "script", "192.168.1.0/24").startswith("192.168.1.0/24 may script from now")
-    assert file.read_text().startswith(RULES)
+    assert file.read_text(encoding="utf-8").startswith(RULES)
     assert file.stat().st_mode & 0o777 == 0o600
     rules = load(file)
     assert rules.rule_for(Peer("192.168.1.7"), "script", "/arm") is not None
     assert rules.rule_for(Peer("192.168.2.7"), "script", "/arm") is None
-    before = file.read_text()
+    before = file.read_text(encoding="utf-8")
     assert "already" in allow(file, "script", "192.168.1.0/24")
-    assert file.read_text() == before
+    assert file.read_text(encoding="utf-8") == before
     assert "may no longer script" in refuse(file, "script", "192.168.1.0/24")
-    assert file.read_text() == RULES
+    assert file.read_text(encoding="utf-8") == RULES
     assert "nothing to change" in refuse(file, "script", "192.168.1.0/24")
     assert [path.name for path in file.parent.iterdir()] == ["access.toml"]
 
 
 def test_comments_in_front_of_the_next_rule_stay(file: Path) -> None:
     allow(file, "script", "10.0.0.9")
-    file.write_text(file.read_text() + '\n# the next one\n[[allow]]\nwho = "key"\nmay = "read"\n')
+    file.write_text(
+        file.read_text(encoding="utf-8")
+        + '\n# the next one\n[[allow]]\nwho = "key"\nmay = "read"\n',
+        encoding="utf-8",
+    )
     refuse(file, "script", "10.0.0.9")
-    assert "# the next one\n[[allow]]" in file.read_text()
-    assert "10.0.0.9" not in file.read_text()
+    assert "# the next one\n[[allow]]" in file.read_text(encoding="utf-8")
+    assert "10.0.0.9" not in file.read_text(encoding="utf-8")
 
 
 def test_the_first_rule_takes_nothing_from_others(tmp_path: Path) -> None:
@@ -73,7 +77,7 @@ def test_a_link_is_followed(file: Path) -> None:
     link.symlink_to(file)
     allow(link, "script", "10.0.0.7")
     assert link.is_symlink()
-    assert "10.0.0.7" in file.read_text()
+    assert "10.0.0.7" in file.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -91,7 +95,7 @@ def test_a_link_is_followed(file: Path) -> None:
 def test_what_is_refused_changes_nothing(file: Path, change, right, who, told) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(AddressError, match=told):
         change(file, right, who)
-    assert file.read_text() == RULES
+    assert file.read_text(encoding="utf-8") == RULES
 
 
 @pytest.mark.parametrize(

@@ -98,7 +98,7 @@ def test_every_example_is_run_here():
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_it_is_short_and_says_how_to_run_it(path: Path):
-    text = path.read_text()
+    text = path.read_text(encoding="utf-8")
     assert len(text.splitlines()) <= LONGER.get(path.name, LONGEST)
     words = ast.get_docstring(ast.parse(text)) if path.suffix == ".py" else text
     assert words

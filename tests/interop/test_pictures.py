@@ -133,6 +133,6 @@ def test_a_recording(browser: Browser, line: CommandLine, tmp_path: Path) -> Non
 def test_each_is_on_a_page() -> None:
     pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
     named = set(re.findall(r"pictures/(\w+)\.png", "".join(page.read_text() for page in pages)))
-    made = set(re.findall(r'keep\(page, "(\w+)"', Path(__file__).read_text()))
+    made = set(re.findall(r'keep\(page, "(\w+)"', Path(__file__).read_text(encoding="utf-8")))
     kept = {path.stem for path in (ROOT / "docs" / "pictures").iterdir()}
     assert named == made == kept

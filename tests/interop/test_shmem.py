@@ -33,7 +33,10 @@ def nothing_left() -> Iterator[None]:
         return {name for name in os.listdir("/tmp") if name.startswith("SHMEM_")}
 
     def memory() -> set[str]:
-        lines = [line.split() for line in Path("/proc/sysvipc/shm").read_text().splitlines()[1:]]
+        lines = [
+            line.split()
+            for line in Path("/proc/sysvipc/shm").read_text(encoding="utf-8").splitlines()[1:]
+        ]
         return {line[1] for line in lines if line[6] == "0"}  # nobody has it
 
     before = files(), memory()

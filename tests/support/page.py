@@ -53,7 +53,7 @@ def blocks(page: Path) -> Iterator[Block]:
     """The blocks of code of a page."""
     inside: re.Match[str] | None = None
     start, found = 0, []
-    for number, line in enumerate(page.read_text().splitlines(), start=1):
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), start=1):
         fence = _FENCE.match(line)
         if inside is None and fence:
             inside, start, found = fence, number + 1, []
@@ -67,7 +67,7 @@ def blocks(page: Path) -> Iterator[Block]:
 
 def program(page: Path, cpp: bool) -> str:
     """The Python of a page, each line where it stands in the page."""
-    lines = [""] * len(page.read_text().splitlines())
+    lines = [""] * len(page.read_text(encoding="utf-8").splitlines())
     for block in blocks(page):
         if block.note == "cpp" and not cpp:
             break

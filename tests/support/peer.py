@@ -253,7 +253,7 @@ def why_missing(name: str) -> str:
     shared = os.environ.get("YARPY_TEST_PEERS")
     if shared is None:
         return PEERS[name]()
-    with open(shared, "r+") as file:
+    with open(shared, "r+", encoding="utf-8") as file:
         hold(file)
         known: dict[str, str] = json.loads(file.read() or "{}")
         if name not in known:

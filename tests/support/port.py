@@ -45,7 +45,9 @@ def _range() -> tuple[int, int]:
 def _ceiling() -> int:
     """First number that outgoing connections may take; a fixed one where nobody tells."""
     try:
-        lowest_outgoing = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text().split()[0])
+        lowest_outgoing = int(
+            Path("/proc/sys/net/ipv4/ip_local_port_range").read_text(encoding="utf-8").split()[0]
+        )
     except (OSError, ValueError, IndexError):
         return _HIGHEST
     # A host whose outgoing range covers everything leaves no better choice than luck.

@@ -191,7 +191,10 @@ class Process:
         if waited >= HANG:
             for pid in (*descendants(self.pid), self.pid):
                 with contextlib.suppress(OSError):
-                    if "python" in Path(f"/proc/{pid}/cmdline").read_text().split("\0")[0]:
+                    if (
+                        "python"
+                        in Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")[0]
+                    ):
                         _send(pid, signal.SIGABRT)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._popen.wait(5)

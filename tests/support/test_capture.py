@@ -39,7 +39,7 @@ def words(path: Path) -> set[str]:
     """Every string that a test file spells out."""
     return {
         node.value
-        for node in ast.walk(ast.parse(path.read_text()))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, ast.Constant) and isinstance(node.value, str)
     }
 

@@ -15,7 +15,7 @@ def python(code: str) -> Process:
 
 def is_running(pid: int) -> bool:
     try:
-        with open(f"/proc/{pid}/stat") as status:
+        with open(f"/proc/{pid}/stat", encoding="utf-8") as status:
             return status.read().rpartition(")")[2].split()[0] != "Z"
     except FileNotFoundError:
         return False

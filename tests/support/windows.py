@@ -190,6 +190,7 @@ def main(words: list[str]) -> int:
     program, expected = example()
     code, said = python(folder, ["-"], program)
     wrong = [] if (code, said.strip()) == (0, expected) else [f"the README's program: {said}"]
+    print(*wrong, sep="\n", end="\n" * bool(wrong))
     total = {"tests": 0, "failures": 0, "errors": 0, "skipped": 0}
     with ThreadPoolExecutor(AT_ONCE) as pool:
         for file, counts, bad in pool.map(lambda file: test(folder, file), files(words or PATHS)):
@@ -197,7 +198,7 @@ def main(words: list[str]) -> int:
                 total[name] += count
             wrong += bad
             print(".F"[bool(bad)], file.relative_to(ROOT), counts.get("tests", 0), flush=True)
-    print(*wrong, sep="\n")
+            print(*bad, sep="\n", end="\n" * bool(bad), flush=True)
     failed = total["failures"] + total["errors"]
     passed = total["tests"] - failed - total["skipped"]
     print(f"{passed} passed, {failed} failed, {total['skipped']} skipped on Windows' Python")

@@ -16,7 +16,7 @@ def listening() -> set[str]:
     own = {link for fd in Path("/proc/self/fd").glob("*") if (link := linked(fd))}
     found = set()
     for table in ("tcp", "tcp6", "udp"):
-        for line in Path(f"/proc/self/net/{table}").read_text().splitlines()[1:]:
+        for line in Path(f"/proc/self/net/{table}").read_text(encoding="utf-8").splitlines()[1:]:
             words = line.split()
             if words[3] in ("0A", "07") and f"socket:[{words[9]}]" in own:
                 found.add(f"{table} {words[1]}")

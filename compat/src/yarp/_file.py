@@ -19,7 +19,7 @@ def write(src: Image, dest: str, format: int = 0) -> bool:
     try:
         if str(picture.code) in ("dec", "int"):
             rows = (" ".join(f"{value:g}" for value in row) for row in picture.array)
-            Path(dest).write_text("".join(f"{row}\n" for row in rows))
+            Path(dest).write_text("".join(f"{row}\n" for row in rows), encoding="utf-8")
             return True
         grey = str(picture.code) == "mono" or format == FORMAT_PGM
         found = picture.converted("mono" if grey else "rgb")

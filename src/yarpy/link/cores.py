@@ -33,7 +33,7 @@ def share(root: Path, own: Path) -> float:
 def _second(file: Path) -> float:
     """A limit in the second version of cgroup: `50000 100000`, or `max 100000`."""
     try:
-        quota, period = file.read_text().split()
+        quota, period = file.read_text(encoding="utf-8").split()
         return math.inf if quota == "max" else int(quota) / int(period)
     except (OSError, ValueError, ZeroDivisionError):
         return math.inf

@@ -11,7 +11,6 @@ somebody ever did.
 
 from __future__ import annotations
 
-import os
 import socket
 import threading
 import time
@@ -26,6 +25,7 @@ from yarpy.limit import number_in
 from yarpy.log import logger
 from yarpy.names.address import local_addresses
 from yarpy.nameserver.command import NameService
+from yarpy.platform.process import lives
 
 log = logger("yarpy.name_server")
 
@@ -97,7 +97,7 @@ class Collector:
             if silent[contact.host] >= MOST_SILENT:
                 continue
             if contact.name not in suspects:
-                if local and process and _lives(process):
+                if local and process and lives(process):
                     continue
                 if not local:
                     time.sleep(1 / PER_SECOND)
@@ -165,17 +165,6 @@ class Collector:
             if self._service.store.query(contact.name) != contact:
                 return  # registered anew meanwhile
         self._unregister(Bottle(["unregister", contact.name]))
-
-
-def _lives(process: int) -> bool:
-    """Return whether there is a process with that number on this host."""
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True  # somebody else's
-    return True
 
 
 def _listens(contact: Contact, silent: set[str]) -> bool:

@@ -17,7 +17,7 @@ def test_write_read_and_clean(lone):
         f"Configuration file:\n  {path}\n"
         "Now stores:\n  host 10.0.0.1 port number 10001 (yarp name server)\n"
     )
-    assert path.read_text() == "10.0.0.1 10001 yarp\n"
+    assert path.read_text(encoding="utf-8") == "10.0.0.1 10001 yarp\n"
 
     said = lone.run("conf", "robot", "10000", "ros")
     assert said.stdout == (
@@ -28,7 +28,7 @@ def test_write_read_and_clean(lone):
 
     said = lone.run("conf", "--clean")
     assert (said.returncode, said.stdout) == (0, f"Cleared configuration file:\n  {path}\n")
-    assert path.read_text() == ""
+    assert path.read_text(encoding="utf-8") == ""
 
 
 def test_the_current_namespace(here, tmp_path, monkeypatch):

@@ -40,7 +40,7 @@ def test_by_multicast(found, here, tmp_path):
     said = here("detect", "--write")
     assert said.code == 0 and "== Address saved.\n" in said.out
     path = Path(tmp_path, "config/yarp.conf")
-    assert path.read_text() == f"127.0.0.1 {found.port} yarp\n"
+    assert path.read_text(encoding="utf-8") == f"127.0.0.1 {found.port} yarp\n"
     assert here("where").code == 0
 
 

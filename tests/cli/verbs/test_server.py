@@ -101,7 +101,9 @@ def test_another_address_is_stored_only_when_asked(lone, port):
 
 
 def test_an_address_file_that_cannot_be_written(lone, port):
-    Path(lone.environment["YARP_CONFIG_HOME"]).write_text("a file where a directory should be")
+    Path(lone.environment["YARP_CONFIG_HOME"]).write_text(
+        "a file where a directory should be", encoding="utf-8"
+    )
     with lone.start("server", "--ip", "127.0.0.1", "--socket", str(port)) as process:
         process.wait_line("warning: the address cannot be stored", stream="err")
         process.wait_line("Ready", stream="out")

@@ -37,7 +37,7 @@ print(p.find("k").toString(), p.find("q").toString(), p.find("q").isFloat64())
 print(yarp.Property("(a 1) (b (c d))").toString())
 with tempfile.TemporaryDirectory() as folder:
     path = os.path.join(folder, "robot.ini")
-    with open(path, "w") as file:
+    with open(path, "w", encoding="utf-8") as file:
         file.write("robot tiny\n[arm]\njoints 3\nlimits (-10 10)\n[camera]\nsize 320 240\n")
     print(p.fromConfigFile(path), p.toString())
     print(p.findGroup("arm").find("limits").asList().get(0).asInt32())

@@ -7,10 +7,10 @@ import yarp
 
 folder = os.path.realpath(tempfile.mkdtemp())
 os.chdir(folder)
-with open("x.ini", "w") as file:
+with open("x.ini", "w", encoding="utf-8") as file:
     file.write('a 1\nb 2.5\nname "hello world"\n[g]\nc 3\nlist (1 2 3)\n[h]\n')
 os.mkdir("sub")
-with open("sub/y.ini", "w") as file:
+with open("sub/y.ini", "w", encoding="utf-8") as file:
     file.write("q 2\n")
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import resource
 import socket
 import threading
 import time
@@ -11,6 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager, suppress
 
 import pytest
+from support.open_files import limited, resource
 from support.wait import wait_until
 
 from yarpy.link.begin import descriptors, pending
@@ -138,6 +138,7 @@ def test_sign_of_life_costs_nothing() -> None:
     served[0].close()
 
 
+@limited
 def test_thousand_silent_connections() -> None:
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     if hard != resource.RLIM_INFINITY and hard < 2500:
@@ -172,6 +173,7 @@ def test_oldest_silent_one_goes_when_there_are_too_many(
     assert "too many silent connections" in caplog.text
 
 
+@limited
 def test_no_more_files_is_survived(caplog: pytest.LogCaptureFixture) -> None:
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     with accepting(echo) as acceptor, ExitStack() as stack:

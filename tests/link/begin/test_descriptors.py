@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import resource
 import socket
 from contextlib import ExitStack
 
 import pytest
+from support.open_files import limited, resource
 
 from yarpy.link.begin import descriptors
 from yarpy.link.begin.descriptors import Descriptors, allowed, reserve, used
 
 
+@limited
 def test_what_is_used_is_counted() -> None:
     most = allowed()
     assert most is not None
@@ -49,6 +50,7 @@ def test_reserve_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.plenty
 
 
+@limited
 def test_limit_is_read_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (500, hard))

@@ -237,7 +237,7 @@ def test_settings_that_a_script_does_not_like_are_an_error(folder: Path) -> None
 
 def renew(path: Path, text: str) -> None:
     """Write a file so that it certainly looks changed."""
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     os.utime(path, (time.time() + 5, os.stat(path).st_mtime + 5))
 
 

@@ -84,11 +84,11 @@ def test_the_files_of_yarp_lead_to_it(
     for name in ("YARPY_SERVER", "YARP_NAMESPACE"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))
-    with open(f"{tmp_path}/yarp_namespace.conf", "w") as file:
+    with open(f"{tmp_path}/yarp_namespace.conf", "w", encoding="utf-8") as file:
         file.write("/root /ros")
-    with open(f"{tmp_path}/_ros.conf", "w") as file:
+    with open(f"{tmp_path}/_ros.conf", "w", encoding="utf-8") as file:
         file.write(f"127.0.0.1 {graph.port} ros\n")
-    with open(f"{tmp_path}/yarp.conf", "w") as file:
+    with open(f"{tmp_path}/yarp.conf", "w", encoding="utf-8") as file:
         file.write("127.0.0.1 10000 yarp\n")
     found = DefaultNames().current()
     assert isinstance(found, SeveralNames)

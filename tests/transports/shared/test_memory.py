@@ -100,7 +100,7 @@ def test_nothing_is_left_behind() -> None:
     reading.close()
     del sending, reading
     assert held.files() <= before
-    with open("/proc/net/unix") as sockets:
+    with open("/proc/net/unix", encoding="utf-8") as sockets:
         assert name not in sockets.read()
 
 

@@ -26,7 +26,7 @@ def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def keys() -> set[int]:
-    lines = Path("/proc/sysvipc/shm").read_text().splitlines()[1:]
+    lines = Path("/proc/sysvipc/shm").read_text(encoding="utf-8").splitlines()[1:]
     return {int(line.split()[0]) for line in lines}
 
 

@@ -29,7 +29,10 @@ HOST = "127.0.0.1"
 
 def segments() -> list[int]:
     """Of this process, as far as they have a key."""
-    lines = [line.split() for line in Path("/proc/sysvipc/shm").read_text().splitlines()[1:]]
+    lines = [
+        line.split()
+        for line in Path("/proc/sysvipc/shm").read_text(encoding="utf-8").splitlines()[1:]
+    ]
     return [int(line[0]) for line in lines if int(line[4]) == os.getpid() and int(line[0])]
 
 
@@ -253,7 +256,7 @@ def test_a_killed_peer_leaves_nothing() -> None:
     started = time.monotonic()
     assert listening.recv_into(room) == 0
     assert time.monotonic() - started < 30
-    lines = Path("/proc/sysvipc/shm").read_text().splitlines()[1:]
+    lines = Path("/proc/sysvipc/shm").read_text(encoding="utf-8").splitlines()[1:]
     assert not [line for line in lines if int(line.split()[4]) == peer.pid and line.split()[6] == 0]
     listening.close()
 

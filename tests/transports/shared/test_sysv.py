@@ -22,7 +22,7 @@ HEADER = 28
 
 def keys() -> set[int]:
     """Of all segments of this computer that have one."""
-    lines = Path("/proc/sysvipc/shm").read_text().splitlines()[1:]
+    lines = Path("/proc/sysvipc/shm").read_text(encoding="utf-8").splitlines()[1:]
     return {int(line.split()[0]) for line in lines} - {0}
 
 

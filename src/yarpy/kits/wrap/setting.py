@@ -71,7 +71,7 @@ def configure(source: str | os.PathLike[str] | Mapping[str, Any]) -> None:
 
 def _read(path: Path) -> Mapping[str, Any]:
     try:
-        text = path.read_text()
+        text = path.read_text(encoding="utf-8")
     except OSError as error:
         raise MissingFile(f"{path} cannot be read: {error.strerror or error}") from error
     if path.suffix in (".yml", ".yaml"):

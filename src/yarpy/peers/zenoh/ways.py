@@ -39,7 +39,7 @@ def machine() -> str:
     parts = []
     for file in ("/etc/machine-id", "/proc/sys/kernel/random/boot_id"):
         try:
-            parts.append(Path(file).read_text().strip())
+            parts.append(Path(file).read_text(encoding="utf-8").strip())
         except OSError:
             continue
     try:

@@ -20,7 +20,7 @@ def groups(kind: str, root: Path = ROOT, own: Path = OWN) -> Iterator[tuple[int,
     """The folders of the groups that this process is in, for `cpu` or `memory`, with the version of
     cgroup that they are of."""
     try:
-        lines = own.read_text().splitlines()
+        lines = own.read_text(encoding="utf-8").splitlines()
     except OSError:
         return  # no Linux
     for line in lines:
@@ -57,7 +57,7 @@ def free_memory(root: Path = ROOT, own: Path = OWN, info: Path = _INFO) -> float
 
 def _number(file: Path) -> float:
     try:
-        return int(file.read_text())  # or "max"
+        return int(file.read_text(encoding="utf-8"))  # or "max"
     except (OSError, ValueError):
         return math.inf
 
@@ -65,7 +65,7 @@ def _number(file: Path) -> float:
 def _field(file: Path, name: str) -> float:
     """The number behind a name, in a file of such lines."""
     try:
-        for line in file.read_text().splitlines():
+        for line in file.read_text(encoding="utf-8").splitlines():
             if line.startswith(name + " "):
                 return int(line.split()[1])
     except (OSError, ValueError, IndexError):

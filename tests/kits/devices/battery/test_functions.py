@@ -9,4 +9,4 @@ from yarpy.kits.thrift.module import python
 
 def test_the_module_is_written_from_the_file() -> None:
     file = Path(functions.__file__).with_suffix(".thrift")
-    assert Path(functions.__file__).read_text() == python(read_interface(file))
+    assert Path(functions.__file__).read_text(encoding="utf-8") == python(read_interface(file))

@@ -14,4 +14,4 @@ def test_they_are_what_the_file_says() -> None:
     from yarpy.kits.thrift.module import python
 
     path = Path(functions.__file__)
-    assert path.read_text() == python(read_interface(path.with_suffix(".thrift")))
+    assert path.read_text(encoding="utf-8") == python(read_interface(path.with_suffix(".thrift")))

@@ -44,14 +44,14 @@ def test_strangers_are_told_who_may() -> None:
 
 
 def test_an_address_in_the_rules_proves_nothing(rules: Path) -> None:
-    rules.write_text('[[allow]]\nwho = "anyone"\nmay = ["all", "run"]\n')
+    rules.write_text('[[allow]]\nwho = "anyone"\nmay = ["all", "run"]\n', encoding="utf-8")
     assert "certificate" in why(FAR)
     assert why(Peer("10.0.0.1", names=("operator",))) == ""
     assert "--allow PROGRAM" in why(Peer("10.0.0.1", key=True), listed=False)
 
 
 def test_all_rights_do_not_hold_that_one(rules: Path) -> None:
-    rules.write_text('[[allow]]\nwho = "tls:operator"\nmay = "all"\n')
+    rules.write_text('[[allow]]\nwho = "tls:operator"\nmay = "all"\n', encoding="utf-8")
     assert "yarpy access allow run" in why(Peer("10.0.0.1", names=("operator",)))
 
 

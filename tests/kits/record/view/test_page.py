@@ -85,7 +85,7 @@ def test_looking_back(browser: Browser, walk: View, tmp_path: Path) -> None:
     wait_until(lambda: "79.0 -79.0" in card(page, "/head/state:o"))
     with page.expect_download() as saved:
         page.locator("figure", has_text="/head/state:o").get_by_text("CSV").click()
-    lines = Path(saved.value.path()).read_text().splitlines()
+    lines = Path(saved.value.path()).read_text(encoding="utf-8").splitlines()
     assert len(lines) == 161 and saved.value.suggested_filename.startswith("head-state-o_")
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save").click()

@@ -13,7 +13,7 @@ from yarpy.peers.ros.message.standard import MESSAGES
 
 def write(path: Path, text: str) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     return path
 
 

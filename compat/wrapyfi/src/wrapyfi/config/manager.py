@@ -26,5 +26,5 @@ class ConfigManager(metaclass=SingletonOptimized):
         elif config is not None:
             import yaml
 
-            with open(config) as file:
+            with open(config, encoding="utf-8") as file:
                 self.config = yaml.safe_load(file) or {}

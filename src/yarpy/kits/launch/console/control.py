@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import re
 import socket
+import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -21,6 +21,7 @@ from yarpy.errors import LocalProtocolError
 from yarpy.kits.launch.supervise import process
 from yarpy.limit import CONTROL_LINE, CONTROL_REPLY
 from yarpy.platform.file_lock import hold
+from yarpy.platform.user import user
 from yarpy.transports.unix import runtime_directory
 
 _PATIENCE: Final = 10.0  # seconds that a request may take
@@ -31,16 +32,21 @@ Answer = Callable[[dict[str, Any]], dict[str, Any]]
 
 def folder() -> Path:
     """Return where the sockets are. Raises LocalProtocolError if others could write there."""
-    if not hasattr(socket, "AF_UNIX"):
-        raise LocalProtocolError("this system has no Unix sockets, which `yarpy up` is reached by")
+    _socket().close()
     path = runtime_directory() / "up"
     path.mkdir(parents=True, exist_ok=True, mode=0o700)
     found = path.lstat()
-    if found.st_uid != os.getuid():
+    if found.st_uid != user():
         raise LocalProtocolError(f"another user has made {path}: set XDG_RUNTIME_DIR")
     if found.st_mode & 0o077:
         path.chmod(0o700)
     return path
+
+
+def _socket() -> socket.socket:
+    if sys.platform == "win32":
+        raise LocalProtocolError("this system has no Unix sockets, which `yarpy up` is reached by")
+    return socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
 
 
 def _file(name: str, suffix: str) -> Path:
@@ -66,7 +72,7 @@ def ask(name: str, /, **request: Any) -> dict[str, Any]:
     """Return the answer of a running application. Raises LocalProtocolError if none of that name
     runs, or it refuses."""
     try:
-        with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as link:
+        with _socket() as link:
             link.settimeout(_PATIENCE)
             link.connect(str(_file(name, "sock")))
             link.sendall(json.dumps(request).encode() + b"\n")
@@ -130,7 +136,7 @@ class Control:
         self._path = _file(name, "sock")
         self._answer = answer
         self._path.unlink(missing_ok=True)
-        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self._socket = _socket()
         self._socket.bind(str(self._path))
         self._path.chmod(0o600)
         self._socket.listen(16)

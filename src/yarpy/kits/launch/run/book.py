@@ -78,7 +78,9 @@ class Book:
         target = self.path(entry.id, "json")
         draft = target.with_suffix(".draft")
         told = asdict(entry) | {"boot": self._boot}
-        with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
+        with open(
+            os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w", encoding="utf-8"
+        ) as file:
             json.dump(told, file)
         draft.replace(target)
 
@@ -132,7 +134,7 @@ def _read(file: Path) -> Entry | None:
     try:
         if file.stat().st_size > _LONGEST:
             return None
-        told = json.loads(file.read_text())
+        told = json.loads(file.read_text(encoding="utf-8"))
         numbers = ("pid", "began")
         kinds = {one.name: int if one.name in numbers else str for one in fields(Entry)}
         found = {key: told[key] for key in kinds}

@@ -8,13 +8,12 @@ first one and its group.
 
 from __future__ import annotations
 
-import os
 import signal
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
 from yarpy.kits.launch.supervise import process
+from yarpy.platform.process import go_on, in_group, lives, signal_group, signal_one
 
 MARK: Final = process.MARK
 
@@ -31,10 +30,7 @@ class Family:
     def leads(self) -> bool:
         """Return whether the first process lives."""
         if not process.known():
-            with suppress(OSError):
-                os.kill(self.pid, 0)
-                return True
-            return False
+            return lives(self.pid)
         found = process.look(self.pid)
         return found is not None and found.alive and self.began in (0, found.start)
 
@@ -49,18 +45,12 @@ class Family:
 
     def signal(self, number: int) -> bool:
         """Send all of them a signal; return whether there was one."""
-        sent = False
-        if self.leads:
-            with suppress(OSError):
-                os.killpg(self.pid, number)
-                sent = True
+        sent = self.leads and signal_group(self.pid, number)
         for pid in self.members():
-            with suppress(OSError):
-                if not sent or os.getpgid(pid) != self.pid:  # those of its group have it
-                    os.kill(pid, number)
-                sent = True
-                if number == signal.SIGTERM:  # one that is stopped would not hear it
-                    os.kill(pid, signal.SIGCONT)
+            if not sent or not in_group(pid, self.pid):  # those of its group have it
+                sent = signal_one(pid, number) or sent
+            if number == signal.SIGTERM:  # one that is stopped would not hear it
+                go_on(pid)
         return sent
 
 

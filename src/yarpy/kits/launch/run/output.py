@@ -48,7 +48,8 @@ class Output:
             self.at, self._rest = self.at + behind, b""
         until = min(size, self.at + _TURN)
         while self.at < until:
-            piece = os.pread(self._file, min(_PIECE, until - self.at), self.at)
+            os.lseek(self._file, self.at, os.SEEK_SET)
+            piece = os.read(self._file, min(_PIECE, until - self.at))
             if not piece:
                 break
             self.at += len(piece)
@@ -92,7 +93,7 @@ def _punch() -> Callable[[int, int, int], None]:
     known."""
     try:
         call = ctypes.CDLL(None, use_errno=True).fallocate
-    except (OSError, AttributeError):
+    except (OSError, AttributeError, TypeError):  # TypeError: Windows
         return lambda file, start, size: None
     call.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_int64, ctypes.c_int64]
 

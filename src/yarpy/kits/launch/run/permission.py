@@ -11,11 +11,12 @@ pages never: the browser that shows them is a program of the same user.
 
 from __future__ import annotations
 
-import os
+import sys
 from typing import Final
 
 from yarpy.config import access_file
 from yarpy.link.begin.admission import ASK, RUN, Admission, Gate, Peer
+from yarpy.platform.user import user as our_user
 from yarpy.wire.framing import REFUSED
 
 _TABLES: Final = ("/proc/net/tcp", "/proc/net/tcp6")
@@ -90,7 +91,7 @@ def is_own(peer: Peer) -> bool:
     """Return whether the peer is a program of the user that we are, or of the system's owner, as
     the system tells; False where it cannot tell."""
     user = user_of(peer)
-    return user is not None and user in (0, os.geteuid())
+    return user is not None and user in (0, our_user())
 
 
 def user_of(peer: Peer) -> int | None:
@@ -118,7 +119,6 @@ def user_of(peer: Peer) -> int | None:
 def _spelled(end: tuple[str, int], wide: bool) -> str:
     """Return an address as the system's tables spell it: words of the machine's order, in hex."""
     import socket
-    import sys
 
     host, port = end[0].partition("%")[0], end[1]
     try:

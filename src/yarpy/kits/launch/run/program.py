@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 import time
 from collections import deque
 from collections.abc import Mapping, Sequence
@@ -183,6 +184,8 @@ def open_input(book: Book, entry: Entry) -> int:
     """Open the input of a program, for both ends: then none of them ever sees an end of it. Raises
     OSError."""
     pipe = book.path(entry.id, "in")
+    if sys.platform == "win32":
+        raise OSError("Windows has no pipes in the file system")
     with suppress(FileExistsError):
         os.mkfifo(pipe, 0o600)
     return os.open(pipe, os.O_RDWR)

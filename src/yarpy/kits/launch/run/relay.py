@@ -10,6 +10,7 @@ a program that does not read is not waited for.
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
@@ -63,7 +64,8 @@ class TerminalRelay:
     def __init__(
         self, uuid: str, feed: int, gate: Callable[[str], Gate], names: NameClient | None
     ) -> None:
-        os.set_blocking(feed, False)
+        if sys.platform != "win32":  # where `program.open_input` has none
+            os.set_blocking(feed, False)
         self._feed = feed
         self._sender = LogSender(
             partial(open_hub, names=names, gate=gate), f"{uuid}/stdout", _gap, "", SHOWN

@@ -36,6 +36,7 @@ from yarpy.limit import RUN_PROGRAMS, RUN_REQUEST
 from yarpy.link.begin.admission import Gate
 from yarpy.log import logger
 from yarpy.names.base import NameClient
+from yarpy.platform.process import KILL
 from yarpy.port.keep.log_sender import LOGGER
 from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.wire.message import Message
@@ -177,7 +178,7 @@ class RunServer:
             time.sleep(0.02)
         for one in found:
             while one.running:  # those who are just being started are new
-                one.family.signal(signal.SIGKILL)
+                one.family.signal(KILL)
                 time.sleep(0.01)
         for one in found:
             with suppress(ValueError):  # the watch has forgotten it meanwhile

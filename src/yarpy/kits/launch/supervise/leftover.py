@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 import signal
 import time
 from collections.abc import Mapping
 from typing import Final
 
 from yarpy.kits.launch.supervise import process
+from yarpy.platform.process import KILL, signal_one
 
 _POLL: Final = 0.02  # seconds
 _GONE: Final = 2.0  # seconds after SIGKILL
@@ -31,10 +30,9 @@ def end_all(found: Mapping[int, str], grace: float) -> list[int]:
             pid for pid, one in looks if one is not None and one.alive and one.start == starts[pid]
         ]
 
-    for number, seconds in ((signal.SIGTERM, grace), (signal.SIGKILL, _GONE)):
+    for number, seconds in ((signal.SIGTERM, grace), (KILL, _GONE)):
         for pid in alive():
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.kill(pid, number)
+            signal_one(pid, number)
         until = time.monotonic() + seconds
         while alive() and time.monotonic() < until:
             time.sleep(_POLL)

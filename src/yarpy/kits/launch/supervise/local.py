@@ -19,13 +19,13 @@ from typing import Final
 from yarpy.kits.launch.supervise import process
 from yarpy.kits.launch.supervise.line import Lines
 from yarpy.kits.launch.supervise.runner import Program
+from yarpy.platform.process import KILL, signal_group, signal_one
 
 GRACE: Final = 5.0  # seconds from SIGTERM to SIGKILL
 _LAST_WORDS: Final = 1.0  # seconds for output that was written before the end
 _UNKILLABLE: Final = 2.0  # seconds after SIGKILL until a process is given up
 _POLL: Final = 0.02  # seconds between looks at what is left of a program
 _CHUNK: Final = 1 << 16  # bytes
-_SIGKILL: Final = getattr(signal, "SIGKILL", signal.SIGTERM)
 
 
 class LocalRunner:
@@ -118,9 +118,9 @@ class LocalHandle:
         to end; nothing if it has ended."""
         if self._ended.is_set():
             return
-        _send(self.pid, number)
+        signal_group(self.pid, number)
         if number in (signal.SIGTERM, signal.SIGINT) and self._timer is None:
-            timer = threading.Timer(self._grace, _send, (self.pid, _SIGKILL))
+            timer = threading.Timer(self._grace, signal_group, (self.pid, KILL))
             timer.daemon = True
             timer.name = f"yarpy grace {self._mark}"
             self._timer = timer
@@ -172,11 +172,11 @@ class LocalHandle:
         number = int(signal.SIGTERM)
         while left:
             for pid in left:
-                _send_one(pid, number)
+                signal_one(pid, number)
             passed = time.monotonic() - until
             if passed > _UNKILLABLE:
                 break  # another user's by now, or asleep in the system
-            number = _SIGKILL if passed > 0 else 0
+            number = KILL if passed > 0 else 0
             time.sleep(_POLL)
             left = self._others()
         self.remaining = left
@@ -185,25 +185,4 @@ class LocalHandle:
         if process.known():
             sessions = {self.pid: self._mark}
             return [*process.members(sessions, {self._mark}, self._scanner.scan)]
-        return [-self.pid] if _send(self.pid, 0) else []  # all of the group
-
-
-def _send(group: int, number: int) -> bool:
-    """Send a signal to a whole group of processes; return whether there is one."""
-    try:
-        if hasattr(os, "killpg"):
-            os.killpg(group, number)
-        elif number:
-            os.kill(group, number)
-        else:
-            return False
-    except (ProcessLookupError, PermissionError):
-        return False  # it has ended, or has become another user's
-    return True
-
-
-def _send_one(pid: int, number: int) -> None:
-    try:
-        os.kill(pid, number)
-    except (ProcessLookupError, PermissionError):
-        pass
+        return [-self.pid] if signal_group(self.pid, 0) else []  # all of the group

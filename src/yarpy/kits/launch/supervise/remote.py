@@ -30,9 +30,9 @@ PERIOD: Final = 0.25  # seconds between looks at what runs there
 AGAIN: Final = 1.0  # ... while the server does not answer
 ANSWER: Final = 3.0  # seconds that an answer may take
 STARTING: Final = 10.0  # ... that of a start
+_KILL: Final = 9  # what SIGKILL is there; this computer may have none
 _LAST_WORDS: Final = 1.0  # seconds for output that was written before the end
 _ABANDONED: Final = 300.0  # seconds in which a program that may have been started is looked for
-_SIGKILL: Final = getattr(signal, "SIGKILL", signal.SIGTERM)
 
 Line = Callable[[str], None]
 End = Callable[[int | None], None]
@@ -113,7 +113,7 @@ class RemoteRunner:
             node.signal(tag, signal.SIGTERM)
             while node.is_running(tag):
                 if time.monotonic() > until:
-                    node.signal(tag, _SIGKILL)
+                    node.signal(tag, _KILL)
                 time.sleep(PERIOD)
             return
         raise LocalProtocolError(
@@ -130,7 +130,7 @@ class RemoteRunner:
                 try:
                     with self.client() as node:
                         if node.is_running(tag):
-                            node.signal(tag, _SIGKILL)
+                            node.signal(tag, _KILL)
                         return
                 except YarpError:
                     time.sleep(AGAIN)
@@ -246,10 +246,10 @@ class RemoteHandle:
 
     def _terminate(self, number: int) -> None:
         ends = number in (signal.SIGTERM, signal.SIGINT)
-        self._asked = self._asked or ends or number == _SIGKILL
+        self._asked = self._asked or ends or number == _KILL
         self._send(number)
         if ends and not self._ended.wait(self._runner.grace):
-            self._send(_SIGKILL)
+            self._send(_KILL)
 
     def _send(self, number: int) -> None:
         """Send a signal, as soon as the server answers."""

@@ -19,6 +19,7 @@ from yarpy.errors import YarpError
 from yarpy.kits.launch.application.application import Module
 from yarpy.kits.launch.supervise.runner import Handle, Program, Runner
 from yarpy.limit import OUTPUT_LINES
+from yarpy.platform.process import KILL
 
 FIRST_PAUSE: Final = 0.1  # seconds before a program is started again; twice that the next time
 LONGEST_PAUSE: Final = 30.0
@@ -123,7 +124,7 @@ class Unit:
         """End it at once: it had its time."""
         self._stop.set()
         if self.running and self.handle is not None:
-            self.handle.terminate(getattr(signal, "SIGKILL", signal.SIGTERM))
+            self.handle.terminate(KILL)
 
     def join(self, timeout: float) -> bool:
         """Wait until it has ended; return whether it has."""

@@ -10,7 +10,7 @@ FILE = Path(functions.__file__).with_suffix(".thrift")
 
 
 def test_the_module_is_written_from_the_file() -> None:
-    assert Path(functions.__file__).read_text() == python(read_interface(FILE))
+    assert Path(functions.__file__).read_text(encoding="utf-8") == python(read_interface(FILE))
 
 
 def test_names_are_sent_as_they_are() -> None:

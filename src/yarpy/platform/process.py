@@ -1,0 +1,101 @@
+"""Other processes: whether one lives, and signals to it and to those whom it started.
+
+    Linux, macOS    signals, to one process or to all of a group
+    Windows         neither: a process is looked at by a handle, and can only be ended
+
+Rules: whoever has gone is no error.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from typing import Final
+
+if sys.platform == "win32":
+    #: what no program can refuse
+    KILL: Final = signal.SIGTERM
+
+    _QUERY: Final = 0x1000  # PROCESS_QUERY_LIMITED_INFORMATION
+    _DENIED: Final = 5  # ERROR_ACCESS_DENIED
+    _RUNS: Final = 259  # STILL_ACTIVE
+
+    def lives(pid: int) -> bool:
+        """Return whether there is a process with that number. `os.kill(pid, 0)` would be Ctrl-C."""
+        import ctypes
+
+        kernel = ctypes.WinDLL("kernel32", use_last_error=True)
+        kernel.OpenProcess.restype = ctypes.c_void_p
+        handle = ctypes.c_void_p(kernel.OpenProcess(_QUERY, False, pid))
+        if not handle:
+            return ctypes.get_last_error() == _DENIED  # somebody else's
+        try:
+            code = ctypes.c_ulong()
+            return bool(kernel.GetExitCodeProcess(handle, ctypes.byref(code))) and (
+                code.value == _RUNS
+            )
+        finally:
+            kernel.CloseHandle(handle)
+
+    def signal_group(pid: int, number: int) -> bool:
+        """Send a signal to all whom a process leads; return whether there is one. 0 asks only."""
+        if not lives(pid):
+            return False
+        return not number or signal_one(pid, number)
+
+    def signal_one(pid: int, number: int) -> bool:
+        """Send a process a signal; return whether there is one that can be sent it."""
+        try:
+            os.kill(pid, number)
+        except OSError:
+            return False
+        return True
+
+    def in_group(pid: int, leader: int) -> bool:
+        """Return whether a process belongs to the group of another one."""
+        return pid == leader
+
+    def go_on(pid: int) -> None:
+        """Have a process go on that was stopped."""
+
+else:
+    #: what no program can refuse
+    KILL: Final = signal.SIGKILL
+
+    def lives(pid: int) -> bool:
+        """Return whether there is a process with that number."""
+        try:
+            os.kill(pid, 0)
+        except ProcessLookupError:
+            return False
+        except OSError:
+            return True  # somebody else's
+        return True
+
+    def signal_group(pid: int, number: int) -> bool:
+        """Send a signal to all whom a process leads; return whether there is one. 0 asks only."""
+        try:
+            os.killpg(pid, number)
+        except (ProcessLookupError, PermissionError):
+            return False  # it has ended, or has become another user's
+        return True
+
+    def signal_one(pid: int, number: int) -> bool:
+        """Send a process a signal; return whether there is one that can be sent it."""
+        try:
+            os.kill(pid, number)
+        except (ProcessLookupError, PermissionError):
+            return False
+        return True
+
+    def in_group(pid: int, leader: int) -> bool:
+        """Return whether a process belongs to the group of another one."""
+        try:
+            return os.getpgid(pid) == leader
+        except OSError:
+            return False
+
+    def go_on(pid: int) -> None:
+        """Have a process go on that was stopped."""
+        signal_one(pid, signal.SIGCONT)
