@@ -18,7 +18,8 @@ from support.recordings import START, STEP, payload_of
 import yarpy
 from yarpy import record
 from yarpy.errors import YarpError
-from yarpy.kits.record.mcap.writer import COMPRESSIONS, McapWriter
+from yarpy.kits.record.mcap.pieces import COMPRESSIONS
+from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.report import lines, report
 from yarpy.kits.record.view import foxglove
 

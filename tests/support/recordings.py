@@ -23,9 +23,9 @@ def fill(writer: McapWriter, count: int = 10, ports: tuple[str, ...] = ("/a", "/
         writer.add(port, f"{n} {n}.5", START + n * STEP, payload_of([n]))
 
 
-def recorded(path: Path, count: int = 10, compression: str = "none") -> Path:
+def recorded(path: Path, count: int = 10, compression: str = "none", plain: bool = False) -> Path:
     """A finished file with `fill` in chunks of five messages."""
-    with McapWriter(path, compression) as writer:
+    with McapWriter(path, compression, plain=plain) as writer:
         for n in range(count):
             port = "/a" if n % 2 == 0 else "/b"
             writer.add(port, f"{n} {n}.5", START + n * STEP, payload_of([n]))

@@ -46,6 +46,9 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
             "write a recording in another way, or some of it",
             "convert walk.mcap -o short --start 5",
         ),
+        "cut": Verb("write a stretch of time of a recording", "cut walk.mcap -o fall --start 5"),
+        "merge": Verb("write several recordings as one", "merge left.mcap right.mcap -o both"),
+        "filter": Verb("write some ports of a recording", "filter walk.mcap -o small -e ^/icub/"),
     },
     "Applications": {
         "up": Verb("start the programs of a file and keep them running", "up robot.toml"),

@@ -33,7 +33,7 @@ def test_there_and_back(tmp_path: Path) -> None:
         ):
             writer.add(f"/p{n}", f"{n} 100.25", START + n * STEP, payload_of(value))
     with record.open(path) as found:
-        done = convert(found, tmp_path / "cpp", dumper=True, times="tx+rx")
+        done = convert(found, tmp_path / "cpp", form="dumper", times="tx+rx")
     assert (done.path, done.messages, done.left_out) == (tmp_path / "cpp", 4, 0)
     with record.open(tmp_path / "cpp") as found:
         convert(found, tmp_path / "back", compression="zstd")
@@ -82,5 +82,5 @@ def test_what_has_no_text_is_counted(tmp_path: Path) -> None:
         writer.add("/a", "", START, b"\xff\xff")
         writer.add("/a", "", START, payload_of([1]))
     with record.open(tmp_path / "x.mcap") as found:
-        done = convert(found, tmp_path / "y", dumper=True)
+        done = convert(found, tmp_path / "y", form="dumper")
     assert (done.messages, done.left_out) == (1, 1)

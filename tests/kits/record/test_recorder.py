@@ -15,6 +15,7 @@ from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy import record
+from yarpy.errors import LocalProtocolError
 from yarpy.kits.record import recorder as module
 from yarpy.kits.record.recorder import Recorder
 from yarpy.kits.record.room import Room
@@ -241,3 +242,83 @@ def test_a_defect_is_told(tmp_path, names, out, monkeypatch) -> None:
     with Recorder("/out", path=tmp_path / "x", names=names, tell=told.append) as recorder:
         assert recorder.ended.wait(HANG)
     assert recorder.failure == "ValueError: broken" and told[0] == recorder.failure
+
+
+def test_nothing_but_snapshots(tmp_path, names, out) -> None:
+    with Recorder("/out", path=tmp_path / "x", names=names, snapshot=3600) as recorder:
+        assert out.wait_for_outputs(timeout=HANG)
+        assert (recorder.state, recorder.files, recorder.snapshots) == ("keeping", [], True)
+        for number in (1, 2):
+            for n in range(50):
+                out.write([number, n])
+            wait_until(lambda number=number: recorder.messages == 50 * number)
+            wait_until(lambda: recorder.held > 0)
+            recorder.mark(f"mark {number}")
+            recorder.snapshot()
+            wait_until(lambda number=number: len(recorder.files) == number)
+            wait_until(lambda: recorder.held == 0)
+        assert [*tmp_path.iterdir()] != []
+    assert recorder.files == [tmp_path / "x-0001.mcap", tmp_path / "x-0002.mcap"]
+    first, second = ([one.value for one in recorded(file)] for file in recorder.files)
+    # What came between the message that was waited for and the snapshot may be in either.
+    assert first + second == [[number, n] for number in (1, 2) for n in range(50)]
+    assert len(first) == 50
+    assert {"mark", "snapshot", "connected"} <= {*kinds(recorder.files[0])}
+    assert recorder.lost == 0
+
+
+def test_a_message_that_is_waited_for(tmp_path, names, out) -> None:
+    told: list[str] = []
+    with Recorder(
+        "/out", path=tmp_path / "x", names=names, snapshot=60, triggers={"/out": "fall"},
+        tell=told.append,
+    ) as recorder:  # fmt: skip
+        assert out.wait_for_outputs(timeout=HANG)
+        for word in ("stands", "stands", "falls"):
+            out.write([word])
+        wait_until(lambda: recorder.files)
+        wait_until(lambda: recorder.held == 0)
+    assert [one.value for one in recorded(*recorder.files)] == [["stands"], ["stands"], ["falls"]]
+    assert any("/out" in line for line in told)
+
+
+def test_snapshots_are_asked_for_in_vain(tmp_path, names, out) -> None:
+    with pytest.raises(LocalProtocolError, match="snapshots"):
+        Recorder("/out", path=tmp_path / "y", names=names, triggers={"/out": "x"})
+    with (
+        Recorder("/out", path=tmp_path / "x", names=names) as recorder,
+        pytest.raises(LocalProtocolError, match="--snapshot"),
+    ):
+        recorder.snapshot()
+    with Recorder("/out", path=tmp_path / "z", names=names, snapshot=10) as recorder:
+        pass
+    assert recorder.files == [] and not (tmp_path / "z-0001.mcap").exists()
+
+
+def test_a_port_that_is_restarted_a_hundred_times(tmp_path, names) -> None:
+    """What each of them has sent is there, and each coming and going is noted."""
+    with Recorder("/out", path=tmp_path / "x", names=names) as recorder:
+        for life in range(100):
+            with yarpy.Port("/out", names=names) as out:
+                assert out.wait_for_outputs(timeout=HANG)
+                assert out.write([life], yarpy.Stamp(life, life), wait=True) == 1
+            wait_until(lambda life=life: recorder.messages == life + 1)
+            wait_until(lambda: not recorder.connected)
+    assert [one.value for one in recorded(*recorder.files)] == [[life] for life in range(100)]
+    told = kinds(*recorder.files)
+    assert told.count("connected") == told.count("disconnected") == 100
+    assert recorder.lost == 0
+
+
+def test_a_type_that_changes(tmp_path, names, out) -> None:
+    values = [[1, 2.5], "word", yarpy.Vector([1.5]), yarpy.Image(np.zeros((3, 5), "u1")), [3, 4]]
+    with Recorder("/out", path=tmp_path / "x", names=names) as recorder:
+        assert out.wait_for_outputs(timeout=HANG)
+        for value in values * 3:
+            out.write(value)
+        wait_until(lambda: recorder.messages == 15)
+    found = recorded(*recorder.files)
+    assert [one.value for one in found] == values * 3
+    with record.open(*recorder.files) as recording:
+        told = recording.ports["/out"].kinds
+    assert told == ["yarp/bottle", "yarp/vector", "yarp/image"]

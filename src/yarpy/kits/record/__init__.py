@@ -22,6 +22,7 @@ from yarpy.kits.record.recorder import Recorder
 from yarpy.kits.record.recording import Recording
 from yarpy.kits.record.recording import open_recording as open
 from yarpy.kits.record.room import Split
+from yarpy.kits.record.table import frame, table
 
 __all__ = [
     "Dataset",
@@ -33,5 +34,7 @@ __all__ = [
     "SingleFolder",
     "Split",
     "classical_folder",
+    "frame",
     "open",
+    "table",
 ]

@@ -38,7 +38,7 @@ class Ahead:
         try:
             for recorded in self._messages:
                 some.append(recorded)
-                if len(some) >= _AT_ONCE or len(recorded.payload) > _OVERHEAD:
+                if len(some) >= _AT_ONCE or recorded.size > _OVERHEAD:
                     if not self._hand_over(some):
                         return
                     some = []
@@ -85,4 +85,4 @@ class Ahead:
 
 
 def _size(recorded: Recorded) -> int:
-    return len(recorded.payload) + _OVERHEAD
+    return recorded.size + _OVERHEAD

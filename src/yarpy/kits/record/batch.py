@@ -40,7 +40,7 @@ class Batch:
     def add(self, taken: Taken) -> None:
         """Give a message to the output. Raises OSError."""
         self._taken.append(taken)
-        self._count_missed(taken)
+        self.count_missed(taken)
         try:
             self._output.add(taken)
         except LocalProtocolError:
@@ -52,7 +52,7 @@ class Batch:
         if not self._output.pending:
             self._settle()
 
-    def _count_missed(self, taken: Taken) -> None:
+    def count_missed(self, taken: Taken) -> None:
         """Count what the numbers of envelopes leave out."""
         number, space, _ = taken.envelope.partition(" ")
         if not (space and number.isascii() and number.isdigit() and len(number) < 11):

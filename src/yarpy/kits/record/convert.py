@@ -1,28 +1,32 @@
 """Recordings written anew: as an MCAP file or as the folders of C++, all of them or a part.
 
-Rules: messages keep their bytes, envelopes and times, as far as the new form has them; notes are
-kept in MCAP files. An unfinished or damaged recording becomes a whole one with what could be read.
+Rules: messages keep their bytes, envelopes and times, as far as the new form has them; notes, and
+what is not of YARP, are kept in MCAP files. An unfinished or damaged recording becomes a whole one
+with what could be read.
 """
 
 from __future__ import annotations
 
+import fnmatch
 import heapq
 import itertools
 import json
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from yarpy.errors import LocalProtocolError, UnknownName
+from yarpy.kits.record.bag.reader import BagTape
+from yarpy.kits.record.bag.writer import BagWriter
 from yarpy.kits.record.dumper.part import Times
 from yarpy.kits.record.dumper.writer import DumperWriter
 from yarpy.kits.record.envelope import SECOND
-from yarpy.kits.record.mcap.tape import FOREVER
+from yarpy.kits.record.mcap.layout import Other
+from yarpy.kits.record.mcap.tape import FOREVER, McapTape
 from yarpy.kits.record.mcap.writer import McapWriter
-from yarpy.kits.record.output import ENDING, Sink
-from yarpy.kits.record.recorded import Recorded
 from yarpy.kits.record.recording import Recording
+from yarpy.kits.record.sink import ENDING
 
 
 @dataclass
@@ -38,17 +42,20 @@ def convert(
     recording: Recording,
     path: str | Path,
     *,
-    dumper: bool = False,
+    form: Literal["mcap", "dumper", "bag1", "bag2"] = "mcap",
     compression: str = "none",
     times: Times = "",
     ports: Collection[str] | None = None,
     start: float = 0.0,
     duration: float | None = None,
+    rates: Mapping[str, float] | None = None,
 ) -> Converted:
     """Write a recording into the new file or folder `path`.
 
-    dumper: write the folders of C++ yarpdatadumper, with these `times` (see `DumperWriter`).
+    form: dumper writes the folders of C++ yarpdatadumper, with these `times` (see `DumperWriter`);
+    bag1 a bag of ROS 1, bag2 one of ROS 2: what came from ROS as it was.
     start, duration: the seconds that are left out at the beginning, and those that are written.
+    rates: the largest number of messages a second, by patterns of names: `{"/cam/*": 10}`.
     Raises FileExistsError, OSError; UnknownName for a port that is not in it, UnknownPlugin.
     """
     known = recording.ports
@@ -58,9 +65,11 @@ def convert(
     begin = min((tape.begin for tape in recording.tapes if tape.end), default=0)
     begin += round(start * SECOND)
     end = FOREVER if duration is None else begin + round(duration * SECOND)
-    sink: Sink
-    if dumper:
+    sink: DumperWriter | McapWriter | BagWriter
+    if form == "dumper":
         sink = DumperWriter(path, times)
+    elif form != "mcap":
+        sink = BagWriter(path, 1 if form == "bag1" else 2)
     else:
         where = Path(path)
         where = where if where.suffix == ENDING else where.with_name(f"{where.name}{ENDING}")
@@ -71,12 +80,28 @@ def convert(
         notes = _noted(recording, ports, begin if start else 0, end)
         sent = _sent(recording, ports, begin, end)
         # C++ has the comings and goings of a port in a file of their own, by another clock perhaps.
-        series = itertools.chain(notes, sent) if dumper else heapq.merge(notes, sent)
+        others = _others(recording, ports, begin, end)
+        series = (
+            itertools.chain(notes, sent, others)
+            if form == "dumper"
+            else heapq.merge(notes, sent, others)
+        )
+        thin = Thin(rates or {})
         for _, _, item in series:
-            if not isinstance(item, Recorded):
+            if isinstance(item, _Note):
                 sink.note({key: item[key] for key in item if key != "time_ns"}, item["time_ns"])
                 continue
+            port = item.channel.topic if isinstance(item, Other) else item.port
+            if thin.leaves_out(port, item.received_ns):
+                continue
             try:
+                if isinstance(item, Other):
+                    if isinstance(sink, DumperWriter):
+                        found.left_out += 1
+                        continue
+                    sink.add_other(item)
+                    found.messages += 1
+                    continue
                 sink.add(item.port, item.envelope, item.received_ns, item.payload)
                 found.messages += 1
             except LocalProtocolError:
@@ -84,6 +109,30 @@ def convert(
     finally:
         sink.close()
     return found
+
+
+class Thin:
+    """Leaves out what comes more often than wanted, by the times of receipt."""
+
+    def __init__(self, rates: Mapping[str, float]) -> None:
+        self._rates = dict(rates)
+        self._periods: dict[str, int] = {}
+        self._next: dict[str, int] = {}
+
+    def leaves_out(self, port: str, received: int) -> bool:
+        """Return whether a message is one too many."""
+        if not self._rates:
+            return False
+        period = self._periods.get(port)
+        if period is None:
+            found = [rate for name, rate in self._rates.items() if fnmatch.fnmatchcase(port, name)]
+            period = self._periods[port] = round(SECOND / min(found)) if found else 0
+        due = self._next.get(port, 0)
+        if not period or received >= due:
+            late = received - due
+            self._next[port] = (received if late > period else due) + period
+            return False
+        return True
 
 
 def _facts(recording: Recording) -> dict[str, str]:
@@ -120,6 +169,19 @@ def _sent(
 ) -> Iterator[tuple[int, int, Any]]:
     for number, recorded in enumerate(recording.between(ports, begin, end), start=1):
         yield recorded.received_ns, number, recorded
+
+
+def _others(
+    recording: Recording, ports: Collection[str] | None, begin: int, end: int
+) -> Iterator[tuple[int, int, Any]]:
+    series = [
+        tape.others(ports, begin, end)
+        for tape in recording.tapes
+        if isinstance(tape, McapTape | BagTape)
+    ]
+    one_after_the_other = heapq.merge(*series, key=lambda other: other.received_ns)
+    for number, other in enumerate(one_after_the_other, start=1):
+        yield other.received_ns, -number, other
 
 
 class _Note(dict[str, Any]):

@@ -14,100 +14,14 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Final, Literal, Protocol, TypeAlias
+from typing import Any
 
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.dumper.writer import DumperWriter
 from yarpy.kits.record.intake import Taken
 from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.room import Split
-
-ENDING: Final = ".mcap"
-
-Format: TypeAlias = Literal["mcap", "dumper", "both"]
-Opener: TypeAlias = "Callable[[Path], Sink]"
-
-
-class Sink(Protocol):
-    """A file or folder that is being written."""
-
-    path: Path
-
-    @property
-    def size(self) -> int:
-        """Return how many bytes were written."""
-
-    @property
-    def pending(self) -> int:
-        """Return how much waits to be written; 0 for nothing."""
-
-    def add(self, port: str, envelope: str, received: int, payload: bytes | memoryview) -> None:
-        """Take a message."""
-
-    def note(self, what: Mapping[str, Any], received: int) -> None:
-        """Take a note about the recording."""
-
-    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
-        """Take what is known at the end."""
-
-    def flush(self) -> None:
-        """Hand everything to the system."""
-
-    def sync(self) -> None:
-        """Wait for the disk."""
-
-    def close(self) -> None:
-        """Finish it."""
-
-
-class Both:
-    """An MCAP file, and the folders of C++ beside it."""
-
-    def __init__(self, file: McapWriter, folder: DumperWriter) -> None:
-        self._file = file
-        self._folder = folder
-        self.path = file.path
-
-    @property
-    def size(self) -> int:
-        """Return how many bytes were written."""
-        return self._file.size + self._folder.size
-
-    @property
-    def pending(self) -> int:
-        """Return how much waits to be written; 0 for nothing."""
-        return self._file.pending + self._folder.pending
-
-    def add(self, port: str, envelope: str, received: int, payload: bytes | memoryview) -> None:
-        """Take a message; what C++ cannot keep is in the file alone."""
-        self._file.add(port, envelope, received, payload)
-        with suppress(LocalProtocolError):
-            self._folder.add(port, envelope, received, payload)
-
-    def note(self, what: Mapping[str, Any], received: int) -> None:
-        """Take a note about the recording."""
-        self._file.note(what, received)
-        self._folder.note(what, received)
-
-    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
-        """Take what is known at the end."""
-        self._file.add_metadata(name, values)
-
-    def flush(self) -> None:
-        """Hand everything to the system."""
-        self._file.flush()
-        self._folder.flush()
-
-    def sync(self) -> None:
-        """Wait for the disk."""
-        self._file.sync()
-
-    def close(self) -> None:
-        """Finish both."""
-        try:
-            self._folder.close()
-        finally:
-            self._file.close()
+from yarpy.kits.record.sink import ENDING, Both, Format, Nowhere, Opener, Sink
 
 
 class Output:
@@ -118,6 +32,7 @@ class Output:
     split: when a new file begins. most: how many files are kept, 0 for all.
     facts: what is known of the recording, for each file.
     ended: called before a file is finished; what it returns is kept with the file.
+    waiting: write nothing before `begin`, and after `rest`.
     Raises FileExistsError, OSError.
     """
 
@@ -130,6 +45,7 @@ class Output:
         facts: Callable[[], Mapping[str, str]] = dict,
         ended: Callable[[], Mapping[str, str]] = dict,
         format: Format | Opener = "mcap",
+        waiting: bool = False,
     ) -> None:
         self._name = name
         self._compression = compression
@@ -141,10 +57,10 @@ class Output:
         self.files: list[Path] = []  # that are there
         self.removed = 0
         self._number = 0
-        self._numbered = split is not None
+        self._numbered = split is not None or waiting
         self._done = 0  # bytes of finished files
         self._began = 0.0
-        self._sink = self._open()
+        self._sink: Sink = Nowhere() if waiting else self._open()
 
     def _open_next(self) -> Sink:
         """Return the next file whose name is free: an older recording does not end this one."""
@@ -193,7 +109,7 @@ class Output:
     @property
     def gone(self) -> bool:
         """Return whether the file was taken away."""
-        return not os.path.exists(self._sink.path)
+        return not isinstance(self._sink, Nowhere) and not os.path.exists(self._sink.path)
 
     def add(self, taken: Taken) -> None:
         """Take a message. Raises OSError; LocalProtocolError for what no file takes."""
@@ -211,9 +127,23 @@ class Output:
 
     def split(self) -> None:
         """Go on in a new file. Raises OSError."""
-        self._finish()
+        self._finish(self._sink)
         self._done += self._sink.size
         self._sink = self._open_next()
+        self._make_room()
+
+    def begin(self) -> None:
+        """Begin a file after a time without. Raises OSError."""
+        self._sink = self._open_next()
+        self._make_room()
+
+    def rest(self) -> None:
+        """Finish the file, and write nothing before `begin`. Raises OSError."""
+        sink, self._sink = self._sink, Nowhere()
+        self._done += sink.size
+        self._finish(sink)
+
+    def _make_room(self) -> None:
         while self._most and len(self.files) > self._most:
             self._remove(self.files.pop(0))
 
@@ -227,10 +157,9 @@ class Output:
                 oldest.unlink()
             self.removed += 1
 
-    def _finish(self) -> None:
-        sink = self._sink
+    def _finish(self, sink: Sink) -> None:
         try:
-            if not self.gone:
+            if os.path.exists(sink.path):
                 sink.add_metadata("yarpy", self._ended())
         finally:
             sink.close()
@@ -253,4 +182,4 @@ class Output:
 
     def close(self) -> None:
         """Finish the last file. Raises OSError."""
-        self._finish()
+        self._finish(self._sink)

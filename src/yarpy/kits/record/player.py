@@ -289,7 +289,7 @@ class Player:
             return
         patience = 0 if recorded.port in self._slow else self.patience
         took = port.write(
-            Payload(recorded.payload),
+            Payload(recorded.parts),
             recorded.envelope or None,
             timeout=patience,
         )
@@ -316,13 +316,13 @@ class Player:
 class Payload:
     """The payload of a message, byte for byte."""
 
-    __slots__ = ("_payload",)
+    __slots__ = ("_parts",)
 
-    def __init__(self, payload: bytes | memoryview) -> None:
-        self._payload = payload
+    def __init__(self, parts: tuple[bytes | memoryview, ...]) -> None:
+        self._parts = parts
 
-    def to_wire(self) -> tuple[bytes | memoryview]:
-        return (self._payload,)
+    def to_wire(self) -> tuple[bytes | memoryview, ...]:
+        return self._parts
 
 
 def _ignore(message: object) -> None:

@@ -21,7 +21,7 @@ class Recorded:
     (the receipt, where it has none). `message` is what a port would have read.
     """
 
-    __slots__ = ("envelope", "payload", "port", "received_ns", "sent_ns")
+    __slots__ = ("envelope", "parts", "port", "received_ns", "sent_ns")
 
     def __init__(
         self,
@@ -29,13 +29,27 @@ class Recorded:
         received_ns: int,
         sent_ns: int,
         envelope: str,
-        payload: bytes | memoryview,
+        payload: bytes | memoryview | tuple[memoryview, ...],
     ) -> None:
         self.port = port
         self.received_ns = received_ns
         self.sent_ns = sent_ns
         self.envelope = envelope
-        self.payload = payload
+        #: its bytes, which may lie in several places of a file
+        self.parts: tuple[bytes | memoryview, ...]
+        self.parts = payload if isinstance(payload, tuple) else (payload,)
+
+    @property
+    def payload(self) -> bytes | memoryview:
+        """Return its bytes in one piece."""
+        if len(self.parts) > 1:
+            self.parts = (b"".join(self.parts),)
+        return self.parts[0]
+
+    @property
+    def size(self) -> int:
+        """Return how many bytes these are."""
+        return sum(map(len, self.parts))
 
     @property
     def message(self) -> Message:

@@ -12,27 +12,28 @@ so a kill or a power cut costs no more than a second or so. Whatever is odd is n
 from __future__ import annotations
 
 import json
-import os
 import platform
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final, Self
 
 from yarpy import __version__
-from yarpy.errors import AddressError
+from yarpy.errors import LocalProtocolError
+from yarpy.kits.record.backlog import Backlog
 from yarpy.kits.record.batch import Batch
 from yarpy.kits.record.following import Following, Wanted
 from yarpy.kits.record.intake import MEMORY, Count, Intake
-from yarpy.kits.record.output import ENDING, Format, Opener, Output
+from yarpy.kits.record.opening import open_port, without_ending
+from yarpy.kits.record.output import Output
 from yarpy.kits.record.room import Room, Split, size_text
+from yarpy.kits.record.sink import Format, Opener
 from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.port.connection import ConnectionEvent
-from yarpy.port.port import BufferedPort
 
 log = logger("yarpy.record")
 
@@ -56,6 +57,8 @@ class Recorder:
     split, most: when a new file begins (`Split(bytes=10**9)`), and how many are kept, 0 for all.
     memory: bytes of messages that may wait for the disk.
     rates: the largest number of messages a second, by patterns of names: `{"/cam/*": 10}`.
+    snapshot: write nothing but the last so many seconds, when `snapshot` is called; `memory` bounds
+    them, too. triggers: regular expressions by ports: a message with a match calls it.
     paused: take nothing before `resume`.
     carrier: how the ports are connected, else as `yarpy.connect` does.
     name: of its own port. names: a name client, None for the default.
@@ -78,6 +81,8 @@ class Recorder:
         most: int = 0,
         memory: int = MEMORY,
         rates: Mapping[str, float] | None = None,
+        snapshot: float = 0.0,
+        triggers: Mapping[str, str] | None = None,
         paused: bool = False,
         carrier: str = "",
         name: str = "",
@@ -88,6 +93,13 @@ class Recorder:
     ) -> None:
         wanted = Wanted(tuple(ports), every, pattern, exclude)
         self._now = now
+        self.memory = memory  # bytes of messages, at most
+        self._backlog = None
+        if snapshot:
+            self._backlog = Backlog(snapshot, memory - memory // 4, triggers or {})
+            memory //= 4
+        elif triggers:
+            raise LocalProtocolError("triggers are for snapshots: say how many seconds")
         self._intake = Intake(memory, rates, now)
         self._intake.paused = paused
         self._tell = tell
@@ -106,13 +118,14 @@ class Recorder:
         self._closing = threading.Event()
         self.ended = threading.Event()
         self.failure = ""
-        where = _path(path)
+        where = without_ending(path)
         self._room = room or Room(where.parent)
         self._port = open_port(name, self._take, self._connection, names)
         try:
             self._output = Output(
-                where, compression, split, most, lambda: self._facts, self._losses, format
-            )
+                where, compression, split, most, lambda: self._facts, self._losses,
+                format, self._backlog is not None,
+            )  # fmt: skip
         except BaseException:
             self._port.close()
             raise
@@ -141,13 +154,8 @@ class Recorder:
 
     @property
     def held(self) -> int:
-        """Return how many bytes wait for the disk."""
-        return self._intake.held
-
-    @property
-    def memory(self) -> int:
-        """Return how many bytes may wait for the disk."""
-        return self._intake.memory
+        """Return how many bytes are in memory."""
+        return self._intake.held + (self._backlog.held if self._backlog else 0)
 
     @property
     def free(self) -> int:
@@ -168,6 +176,18 @@ class Recorder:
     def lost(self) -> int:
         """Return how many messages came and could not be kept."""
         return sum(count.lost for count in self.counts.values())
+
+    @property
+    def state(self) -> str:
+        """Return recording, paused, or keeping: in memory, for snapshots."""
+        if self.paused:
+            return "paused"
+        return "recording" if self._backlog is None else "keeping"
+
+    @property
+    def snapshots(self) -> bool:
+        """Return whether nothing is written but when `snapshot` is called."""
+        return self._backlog is not None
 
     @property
     def connected(self) -> set[str]:
@@ -205,6 +225,14 @@ class Recorder:
     def split(self) -> None:
         """Go on in a new file."""
         self._wishes.append(self._output.split)
+        self._intake.wake()
+
+    def snapshot(self, why: str = "asked for") -> None:
+        """Write the last seconds into a new file. Raises LocalProtocolError if all is recorded."""
+        if self._backlog is None:
+            raise LocalProtocolError("everything is recorded: snapshots take --snapshot SECONDS")
+        self._note("snapshot", why=why)
+        self._wishes.append(self._save)
         self._intake.wake()
 
     # -- what comes --------------------------------------------------------------------------------
@@ -258,14 +286,11 @@ class Recorder:
             while not self.failure:
                 intake.wait(PERIOD)
                 last = self._closing.is_set()
-                for taken in intake.take():
-                    batch.add(taken)
-                while self._notes:
-                    self._output.note(*self._notes.popleft())
-                    batch.begin()
+                self._gather(batch)
                 if last or batch.due:
                     batch.flush()
                 while self._wishes:
+                    self._gather(batch)  # what came before it was asked for
                     batch.flush()
                     self._wishes.popleft()()
                 now = time.monotonic()
@@ -280,6 +305,39 @@ class Recorder:
             for taken in intake.take():
                 intake.lose(taken)
                 intake.free(taken.size)
+
+    def _gather(self, batch: Batch) -> None:
+        """Take what has come. Raises OSError."""
+        intake, backlog = self._intake, self._backlog
+        for taken in intake.take():
+            if backlog is None:
+                batch.add(taken)
+                continue
+            batch.count_missed(taken)
+            intake.free(taken.size)
+            if backlog.add(taken):
+                self._tell(f"a message of {taken.port} is written, with what was before it")
+                self.snapshot(f"a message of {taken.port}")
+        while self._notes:
+            note = self._notes.popleft()
+            if backlog is None:
+                self._output.note(*note)
+                batch.begin()
+            else:
+                backlog.note(*note)
+
+    def _save(self) -> None:
+        """Write the backlog into a file of its own. Raises OSError."""
+        assert self._backlog is not None
+        messages, notes = self._backlog.drain(self._now())
+        output = self._output
+        output.begin()
+        for note in notes:
+            output.note(*note)
+        for taken in messages:
+            with suppress(LocalProtocolError):  # no file takes it
+                output.add(taken)
+        output.rest()
 
     def _look_around(self, step: int, batch: Batch) -> int:
         """Once a second: the disk, the folder, the clock, what was lost."""
@@ -349,28 +407,3 @@ class Recorder:
 
     def __exit__(self, *details: object) -> None:
         self.close()
-
-
-def _path(path: str | Path | None) -> Path:
-    if path is None:
-        return Path(time.strftime("record-%Y-%m-%d-%H-%M-%S"))
-    found = Path(path)
-    return found.with_suffix("") if found.suffix == ENDING else found
-
-
-def open_port(
-    name: str,
-    take: Callable[[Any], None],
-    connection: Callable[[ConnectionEvent], None],
-    names: NameClient | None,
-    usual: str = "/record",
-) -> BufferedPort:
-    """Return the port, by that name, or by one that is free. Raises AddressError, NoNameServer."""
-    tries: Sequence[str] = [name] if name else [usual, f"{usual}/{os.getpid()}", "..."]
-    for number, one in enumerate(tries):
-        try:
-            return BufferedPort(one, callback=take, on_connection=connection, names=names)
-        except AddressError:
-            if number == len(tries) - 1:
-                raise
-    raise AssertionError

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from yarpy.errors import DecodeError, UnknownName
+from yarpy.kits.record.bag.reader import BagTape, is_bag
 from yarpy.kits.record.dumper.reader import DumperTape
 from yarpy.kits.record.envelope import SECOND
 from yarpy.kits.record.mcap.layout import Damaged
@@ -173,10 +174,10 @@ class Recording:
 
 
 def open_recording(*paths: str | Path) -> Recording:
-    """Open files and folders as one recording, finished or not: MCAP files, folders of these, and
-    folders that C++ yarpdatadumper has written.
+    """Open files and folders as one recording, finished or not: MCAP files, folders of these,
+    folders that C++ yarpdatadumper has written, bags of ROS (whose messages are not YARP's).
 
-    Raises MissingFile; DecodeError for what is no recording.
+    Raises MissingFile; DecodeError for what is no recording, UnknownPlugin without a library.
     """
     tapes: list[Tape] = []
     try:
@@ -190,7 +191,9 @@ def open_recording(*paths: str | Path) -> Recording:
 
 
 def _tapes(path: Path) -> Iterator[Tape]:
-    if path.is_dir():
+    if is_bag(path):
+        yield BagTape(path)
+    elif path.is_dir():
         files = sorted(path.glob("*.mcap"))
         yield from map(McapTape, files)
         if not files:

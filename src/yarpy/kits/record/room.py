@@ -97,6 +97,19 @@ def parse_split(text: str) -> Split:
         ) from None
 
 
+def parse_time(text: str) -> float:
+    """Return the seconds of `30`, `30s`, `5min`. Raises LocalProtocolError.
+
+    >>> parse_time("5min"), parse_time("30")
+    (300.0, 30.0)
+    """
+    match = _NUMBER.fullmatch(text.strip().lower())
+    factor = None if match is None else 1 if not match[2] else _TIMES.get(match[2])
+    if match is None or factor is None or float(match[1]) * factor <= 0:
+        raise LocalProtocolError(f'"{text}" is no time: 30s, 5min')
+    return float(match[1]) * factor
+
+
 def size_text(count: float) -> str:
     """Return a number of bytes as people read it.
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
 KEYS: Final = "space pause   s new file   m mark   q stop"
+SNAPSHOT_KEYS: Final = "space pause   s write the last seconds   m mark   q stop"
 TITLES: Final = ("msg/s", "messages", "size", "lost", "missed", "left out")
 _WIDTH: Final = 10  # of a column of numbers
 _LINES: Final = 5  # around the table
@@ -39,6 +40,7 @@ class Look:
     connected: Collection[str] = field(default_factory=set)
     waiting: Sequence[str] = ()
     news: str = ""
+    snapshots: bool = False
 
 
 @dataclass
@@ -85,7 +87,8 @@ def text(look: Look, width: int, height: int) -> Text:
     from rich.text import Text
 
     whole = Text(no_wrap=True, end="")
-    state = "paused" if look.paused else "recording"
+    state = "paused" if look.paused else "keeping" if look.snapshots else "recording"
+    keys = SNAPSHOT_KEYS if look.snapshots else KEYS
     head = f"{state} {clock(look.seconds)}"[:width]
     whole.append(head, "bold yellow" if look.paused else "bold green")
     room = width - len(head)
@@ -104,7 +107,7 @@ def text(look: Look, width: int, height: int) -> Text:
     if look.news:
         whole.append(cut(readable(look.news), width) + "\n", "yellow")
     more = f"{len(rows) - room} more ports   " if len(rows) > room else ""
-    whole.append(f"{more}{KEYS}"[:width], "dim")
+    whole.append(f"{more}{keys}"[:width], "dim")
     return whole
 
 

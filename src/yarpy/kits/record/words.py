@@ -1,6 +1,6 @@
 """The words that a recorder and a player are told over a port, and what belongs to each.
 
-    record   pause  resume  split  mark [TEXT]  status  stop  help
+    record   pause  resume  split  snapshot  mark [TEXT]  status  stop  help
     play     play  pause  resume  step  seek SECONDS  mark TEXT  rate N  stop  status  help
 
 and, of C++ yarpdataplayer, `getStatus`, `getProgress`, `getSpeed`, `setSpeed N`, `quit`.
@@ -72,7 +72,7 @@ def recorder_words(recorder: Recorder, stop: Callable[[], object]) -> Words:
     def status() -> list[Any]:
         counts = sorted(recorder.counts.items())
         return [
-            ["state", "paused" if recorder.paused else "recording"],
+            ["state", recorder.state],
             ["messages", recorder.messages],
             ["bytes", recorder.size],
             ["lost", recorder.lost],
@@ -86,6 +86,7 @@ def recorder_words(recorder: Recorder, stop: Callable[[], object]) -> Words:
             "pause": recorder.pause,
             "resume": recorder.resume,
             "split": recorder.split,
+            "snapshot": lambda: recorder.snapshot(),
             "mark": mark,
             "status": status,
             "stop": end,

@@ -35,7 +35,7 @@ def test_byte_for_byte(row: dict[str, object], tmp_path: Path) -> None:
     assert isinstance(options, list)
     times = TIMES["--rxTime" in options, "--txTime" in options]
     with record.open(folder) as recording:
-        convert(recording, tmp_path / "x", dumper=True, times=times)
+        convert(recording, tmp_path / "x", form="dumper", times=times)
         assert not recording.damages
     written = tmp_path / "x" / "cap" / "out"
     assert {file.name for file in written.iterdir()} == {file.name for file in folder.iterdir()}

@@ -10,6 +10,7 @@ from support.recordings import START, fill, recorded
 from yarpy.errors import DecodeError
 from yarpy.kits.record.mcap import index
 from yarpy.kits.record.mcap.index import Index, Window, read_index
+from yarpy.kits.record.mcap.layout import Schema
 from yarpy.kits.record.mcap.writer import McapWriter
 
 
@@ -107,7 +108,8 @@ def test_files_of_other_programs(tmp_path: Path) -> None:
             writer.finish()
         found = index_of(path)
         assert found.counts == {1: 5} and (found.begin, found.end) == (START, START + 4)
-        assert found.channels[1] == ("/point", "json", "Point", {"a": "b"})
+        schema = Schema("Point", "jsonschema", b"{}")
+        assert found.channels[1] == ("/point", "json", schema, {"a": "b"})
         assert not found.damages
 
 

@@ -41,9 +41,10 @@ def test_what_does_not_fit_is_named_with_its_byte(data: bytes, byte: int, why: s
 
 
 def test_descriptions() -> None:
-    assert layout.parse_schema(b"\x07\0" + TEXT, 0) == (7, "ab")
+    schema = layout.Schema("ab", "ab", b"ab")
+    assert layout.parse_schema(b"\x07\0" + 3 * TEXT, 0) == (7, schema)
     channel = b"\x01\0\x07\0" + TEXT + TEXT + b"\0\0\0\0"
-    assert layout.parse_channel(channel, 0, {7: "kind"}) == (1, ("ab", "ab", "kind", {}))
+    assert layout.parse_channel(channel, 0, {7: schema}) == (1, ("ab", "ab", schema, {}))
     assert layout.parse_metadata(TEXT + b"\x0c\0\0\0" + TEXT * 2, 0) == ("ab", {"ab": "ab"})
     assert layout.parse_index(b"\x05\0\x20\0\0\0", 0) == (5, 2)
 

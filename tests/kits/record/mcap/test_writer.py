@@ -10,14 +10,15 @@ from support.recordings import START, STEP, fill, payload_of, recorded
 
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.mcap import writer as module
+from yarpy.kits.record.mcap.pieces import COMPRESSIONS
 from yarpy.kits.record.mcap.reader import McapFile
-from yarpy.kits.record.mcap.writer import COMPRESSIONS, McapWriter
+from yarpy.kits.record.mcap.writer import McapWriter
 
 
 @pytest.mark.parametrize("compression", COMPRESSIONS)
 def test_the_library_reads_and_checks_it(tmp_path: Path, compression: str) -> None:
     path = tmp_path / "x.mcap"
-    with McapWriter(path, compression, {"host": "lab"}) as writer:
+    with McapWriter(path, compression, {"host": "lab"}, plain=True) as writer:
         fill(writer)
         writer.flush()
         writer.add("/c", "free text", START, b"\xff\0")

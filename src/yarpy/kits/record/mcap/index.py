@@ -86,7 +86,7 @@ class Index:
 
     def __init__(self) -> None:
         self.channels: dict[int, Channel] = {}
-        self.schemas: dict[int, str] = {}
+        self.schemas: dict[int, layout.Schema] = {}
         self.counts: dict[int, int] = {}
         self.places = array("Q")
         self.lengths = array("Q")
@@ -124,8 +124,8 @@ class Index:
     def describe(self, opcode: int, body: memoryview | bytes, place: int) -> None:
         """Take a schema or a channel."""
         if opcode == SCHEMA:
-            number, name = layout.parse_schema(body, place)
-            self.schemas[number] = name
+            number, schema = layout.parse_schema(body, place)
+            self.schemas[number] = schema
         else:
             number, channel = layout.parse_channel(body, place, self.schemas)
             self.channels[number] = channel

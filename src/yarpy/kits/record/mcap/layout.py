@@ -56,13 +56,31 @@ class Record(NamedTuple):
     data: memoryview
 
 
+class Schema(NamedTuple):
+    """What messages are: the name of their type, and its description in some language."""
+
+    name: str = ""
+    encoding: str = ""
+    data: bytes = b""
+
+
 class Channel(NamedTuple):
-    """A series of messages; `kind` is the name of its schema, "" without one."""
+    """A series of messages, whose schema is empty if they have none."""
 
     topic: str
     encoding: str
-    kind: str
+    schema: Schema
     metadata: dict[str, str]
+
+
+class Other(NamedTuple):
+    """A message that is not of YARP; times in nanoseconds since 1970."""
+
+    channel: Channel
+    sequence: int
+    received_ns: int
+    sent_ns: int
+    data: Bytes
 
 
 class ChunkHead(NamedTuple):
@@ -137,18 +155,19 @@ class Cursor:
         return found
 
 
-def parse_schema(view: Bytes, place: int) -> tuple[int, str]:
-    """Return the number and the name of a schema."""
+def parse_schema(view: Bytes, place: int) -> tuple[int, Schema]:
+    """Return the number of a schema, and what it is."""
     cursor = Cursor(view, place)
-    return cursor.u16(), cursor.text()
+    number, name, encoding = cursor.u16(), cursor.text(), cursor.text()
+    return number, Schema(name, encoding, bytes(cursor.data(cursor.u32())))
 
 
-def parse_channel(view: Bytes, place: int, schemas: dict[int, str]) -> tuple[int, Channel]:
+def parse_channel(view: Bytes, place: int, schemas: dict[int, Schema]) -> tuple[int, Channel]:
     """Return the number of a channel, and what it is."""
     cursor = Cursor(view, place)
     number, schema = cursor.u16(), cursor.u16()
     topic, encoding = cursor.text(), cursor.text()
-    return number, Channel(topic, encoding, schemas.get(schema, ""), cursor.pairs())
+    return number, Channel(topic, encoding, schemas.get(schema, Schema()), cursor.pairs())
 
 
 def parse_metadata(view: Bytes, place: int) -> tuple[str, dict[str, str]]:

@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from yarpy.errors import DecodeError
-from yarpy.kits.record.envelope import envelope_of
-from yarpy.kits.record.mcap.layout import Channel, Damaged
+from yarpy.kits.record.envelope import envelope_of, stamp_text
+from yarpy.kits.record.form.form import FORM, unspelled
+from yarpy.kits.record.mcap.layout import Channel, Damaged, Other
 from yarpy.kits.record.mcap.reader import McapFile
 from yarpy.kits.record.mcap.writer import ENCODING, NOTES
 from yarpy.kits.record.recorded import PortFacts, Recorded
@@ -69,10 +70,12 @@ class McapTape:
                 continue
             facts = found.setdefault(channel.topic, PortFacts(channel.topic))
             facts.messages += index.counts.get(number, 0)
-            kind = channel.kind or channel.encoding
+            kind = channel.schema.name or channel.encoding
+            if _is_of_yarp(channel):
+                kind = channel.metadata.get("kind", kind)
             if kind not in facts.kinds:
                 facts.kinds.append(kind)
-            facts.playable = facts.playable and channel.encoding == ENCODING
+            facts.playable = facts.playable and _is_of_yarp(channel)
         return found
 
     def messages(
@@ -85,15 +88,35 @@ class McapTape:
         wanted = None if ports is None else _Wanted(channels, ports)
         for number, sequence, received, sent, data in self._file.records(wanted, begin, end):
             channel = channels.get(number)
-            if channel is None or channel.encoding != ENCODING:
+            if channel is None or not _is_of_yarp(channel):
                 continue
+            payload: memoryview | tuple[memoryview, ...]
             try:
-                form = channel.metadata.get("envelope", "none")
-                envelope, payload = envelope_of(form, sequence, sent, data)
+                stamped = channel.metadata.get("envelope", "none")
+                form = channel.metadata.get(FORM)
+                if form is None:
+                    envelope, payload = envelope_of(stamped, sequence, sent, data)
+                else:
+                    payload, envelope = unspelled(form, data, stamped == "text")
+                    if stamped == "stamp":
+                        envelope = stamp_text(sequence, sent)
             except DecodeError as error:
                 self.damages.append(Damaged(0, f"a message of {channel.topic}: {error}"))
                 continue
             yield Recorded(channel.topic, received, sent, envelope, payload)
+
+    def others(
+        self, ports: Container[str] | None = None, begin: int = 0, end: int = FOREVER
+    ) -> Iterator[Other]:
+        """Yield what is not of YARP: the messages of these topics (None: all) as they are."""
+        channels = self._file.channels
+        if all(map(_is_known, channels.values())) and self.complete:
+            return
+        wanted = None if ports is None else _Wanted(channels, ports)
+        for number, sequence, received, sent, data in self._file.records(wanted, begin, end):
+            channel = channels.get(number)
+            if channel is not None and not _is_known(channel):
+                yield Other(channel, sequence, received, sent, data)
 
     def notes(self) -> list[dict[str, Any]]:
         """Return what was noted while it was recorded, each with `time_ns`."""
@@ -113,6 +136,14 @@ class McapTape:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+
+def _is_known(channel: Channel) -> bool:
+    return channel.topic == NOTES or _is_of_yarp(channel)
+
+
+def _is_of_yarp(channel: Channel) -> bool:
+    return channel.encoding == ENCODING or FORM in channel.metadata
 
 
 class _Wanted:

@@ -3,7 +3,8 @@
     sequence       the count of the envelope; without one, the number of the message
     publish_time   the time of the envelope; without one, that of receipt
     log_time       the receipt
-    data           the message in YARP's binary spelling (see `envelope.py` for the text form)
+    data           the message in YARP's binary spelling (see `envelope.py` for the text form), or
+                   in a form that other programs see, with YARP's bytes in it (`form/form.py`)
 
 What was noted of the recording itself is JSON on the topic `yarpy.record`.
 
@@ -18,7 +19,7 @@ import io
 import json
 import os
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from struct import Struct
@@ -27,17 +28,18 @@ from typing import Any, Final, Self
 from yarpy import __version__
 from yarpy.errors import LocalProtocolError, UnknownPlugin
 from yarpy.kits.record.envelope import LENGTH, fields_of
+from yarpy.kits.record.form.form import FORM, Form
+from yarpy.kits.record.form.spell import Spell
 from yarpy.kits.record.kind import kind_of
-from yarpy.kits.record.mcap.layout import MAGIC, MESSAGE, WHOLE_MESSAGE, Bytes
+from yarpy.kits.record.mcap.layout import MAGIC, MESSAGE, WHOLE_MESSAGE, Bytes, Other
+from yarpy.kits.record.mcap.pieces import compressor, joined, write_all
 from yarpy.limit import RECORDED_CHUNK
 
 CHUNK_SIZE: Final = 4 << 20  # bytes after which a chunk is written; less after a `flush`
 LARGEST: Final = RECORDED_CHUNK - (1 << 16)  # bytes of a message
 NOTES: Final = "yarpy.record"  # the topic of notes
 ENCODING: Final = "yarp"  # of messages
-COMPRESSIONS: Final = ("none", "lz4", "zstd")
-_AT_ONCE: Final = 512  # pieces in one system call
-_SMALL: Final = 4096  # bytes: smaller pieces are joined first
+_NOTE: Final = Form("", "json", "yarpy.Note", "", b"")
 _CHANNELS: Final = 0xFFFF
 _ENTRY: Final = Struct("<QQ")
 
@@ -47,6 +49,7 @@ class McapWriter:
 
     compression: "none", "lz4" or "zstd".
     metadata: what is known of the recording, kept as the metadata `yarpy`.
+    plain: keep every message as it is, for YARP alone.
     Raises UnknownPlugin if the library `mcap` is not installed, OSError.
     """
 
@@ -55,6 +58,7 @@ class McapWriter:
         path: str | Path,
         compression: str = "none",
         metadata: Mapping[str, str] | None = None,
+        plain: bool = False,
     ) -> None:
         try:
             from mcap import records
@@ -67,14 +71,15 @@ class McapWriter:
         self._records = records
         self._builder = RecordBuilder
         self._compression = "" if compression == "none" else compression
-        self._compress = _compressor(compression)
+        self._compress = compressor(compression)
         self.path = Path(path)
         self._file = io.FileIO(path, "x")
         self.size = 0  # bytes in the file
         self.messages = 0
-        self._channels: dict[tuple[str, str, str], int] = {}
+        self._spell = None if plain else Spell()
+        self._channels: dict[tuple[Any, ...], int] = {}
         self._described: list[Any] = []  # all schemas and channels
-        self._schemas: dict[str, int] = {}
+        self._schemas: dict[tuple[str, bytes], int] = {}
         self._counts: dict[int, int] = {}
         self._numbers: dict[str, int] = {}  # messages of each topic
         self._span = (0, 0)
@@ -104,17 +109,36 @@ class McapWriter:
         number = self._numbers.get(port, 0)
         self._numbers[port] = number + 1
         form, sequence, sent = fields_of(envelope, received, number)
-        key = port, kind_of(payload), form
+        kind = kind_of(payload)
+        text = envelope.encode("utf-8", "surrogateescape") if form == "text" else None
+        spell = self._spell
+        shown = None if spell is None else spell.spelled(port, kind, payload, sent)
+        parts: tuple[Bytes, ...]
+        if shown is not None:
+            key: tuple[str, ...] = port, kind, form, shown.form.schema, shown.form.name
+            parts = shown.parts(text)
+        else:
+            key = port, kind, form
+            parts = (payload,) if text is None else (LENGTH.pack(len(text)) + text, payload)
         channel = self._channels.get(key)
         if channel is None:
-            channel = self._channel(key, ENCODING, {"port": port, "envelope": form})
-        size = len(payload)
-        if form == "text":
-            text = envelope.encode("utf-8", "surrogateescape")
-            front = LENGTH.pack(len(text)) + text
-            self._take(channel, sequence, received, sent, size + len(front), (front, payload))
-        else:
-            self._take(channel, sequence, received, sent, size, (payload,))
+            facts = {"port": port, "kind": kind, "envelope": form}
+            channel = self._channel(
+                key, shown.form if shown else Form("", ENCODING, kind, "", b""), facts
+            )
+        self._take(channel, sequence, received, sent, sum(map(len, parts)), parts)
+
+    def add_other(self, other: Other) -> None:
+        """Take a message that is not of YARP, as it is. Raises OSError, LocalProtocolError."""
+        channel = other.channel
+        key = (channel.topic, channel.encoding, *channel.schema, *sorted(channel.metadata.items()))
+        number = self._channels.get(key)
+        if number is None:
+            name, encoding, data = channel.schema
+            form = Form("", channel.encoding, name, encoding, data)
+            number = self._channel(key, form, channel.metadata)
+        times = other.received_ns, other.sent_ns
+        self._take(number, other.sequence, *times, len(other.data), (other.data,))
 
     def note(self, what: Mapping[str, Any], received: int) -> None:
         """Take a note about the recording itself, as JSON. Raises OSError."""
@@ -122,7 +146,7 @@ class McapWriter:
         key = NOTES, "yarpy.Note", ""
         channel = self._channels.get(key)
         if channel is None:
-            channel = self._channel(key, "json", {})
+            channel = self._channel(key, _NOTE, {})
         self._notes += 1
         self._take(channel, self._notes, received, received, len(data), (data,))
 
@@ -160,22 +184,29 @@ class McapWriter:
         if self._chunk_size >= CHUNK_SIZE:
             self._end_chunk()
 
-    def _channel(self, key: tuple[str, str, str], encoding: str, facts: dict[str, str]) -> int:
+    def _channel(self, key: tuple[Any, ...], form: Form, facts: dict[str, str]) -> int:
         """Return the number of a new channel, which is described in the chunk."""
-        topic, kind, _ = key
         number = len(self._channels) + 1
         if number > _CHANNELS:
             raise LocalProtocolError(f"a file takes {_CHANNELS} ports and types, and has them all")
-        schema = self._schemas.get(kind)
+        named = form.schema, form.description
+        schema = self._schemas.get(named) if form.schema else 0
         if schema is None:
-            schema = self._schemas[kind] = len(self._schemas) + 1
-            self._describe(self._records.Schema(id=schema, data=b"", encoding="", name=kind))
+            schema = self._schemas[named] = len(self._schemas) + 1
+            self._describe(
+                self._records.Schema(
+                    id=schema,
+                    data=form.description,
+                    encoding=form.schema_encoding,
+                    name=form.schema,
+                )
+            )
         self._describe(
             self._records.Channel(
                 id=number,
-                topic=topic,
-                message_encoding=encoding,
-                metadata=facts,
+                topic=key[0],
+                message_encoding=form.encoding,
+                metadata={**facts, FORM: form.name} if form.name else facts,
                 schema_id=schema,
             )
         )
@@ -211,7 +242,7 @@ class McapWriter:
         span, size = self._chunk_span, self._chunk_size
         if span is None:
             return  # at most descriptions, which wait for the first message
-        parts = _joined(self._parts)
+        parts = joined(self._parts)
         entries, messages = self._entries, sum(map(len, self._entries.values())) // _ENTRY.size
         self._begin_chunk()
         checksum = 0
@@ -267,7 +298,7 @@ class McapWriter:
     def _append(self, parts: Sequence[Bytes]) -> None:
         """Write all of it, or nothing."""
         try:
-            written = _write_all(self._file, parts)
+            written = write_all(self._file, parts)
         except OSError:
             with suppress(OSError):
                 self._file.truncate(self.size)
@@ -342,59 +373,3 @@ class McapWriter:
 
     def __exit__(self, *details: object) -> None:
         self.close()
-
-
-def _joined(parts: list[Bytes]) -> list[Bytes]:
-    """Return the parts with small neighbours made one: each costs the system as much as a kB."""
-    found: list[Bytes] = []
-    run: list[Bytes] = []
-    for part in parts:
-        if len(part) < _SMALL:
-            run.append(part)
-        else:
-            if run:
-                found.append(b"".join(run))
-                run = []
-            found.append(part)
-    if run:
-        found.append(b"".join(run))
-    return found
-
-
-def _write_all(file: io.FileIO, parts: Sequence[Bytes]) -> int:
-    """Write all parts one after the other; how many bytes these were."""
-    views = [memoryview(part).cast("B") for part in parts if len(part)]
-    total, at = sum(map(len, views)), 0
-    together = getattr(os, "writev", None)
-    while at < len(views):
-        if together is not None:
-            done = together(file.fileno(), views[at : at + _AT_ONCE])
-        else:
-            done = file.write(views[at]) or 0
-        while at < len(views) and done >= len(views[at]):
-            done -= len(views[at])
-            at += 1
-        if done:
-            views[at] = views[at][done:]
-    return total
-
-
-def _compressor(name: str) -> Callable[[bytes], bytes] | None:
-    """Return what packs a chunk. Raises UnknownPlugin."""
-    try:
-        if name == "none":
-            return None
-        if name == "zstd":
-            import zstandard
-
-            return zstandard.ZstdCompressor(level=1).compress
-        if name == "lz4":
-            import lz4.frame
-
-            compress: Callable[[bytes], bytes] = lz4.frame.compress
-            return compress
-    except ImportError:
-        raise UnknownPlugin(
-            f'{name} needs a library: pip install "yarpy[record]"; or record with --compress none'
-        ) from None
-    raise LocalProtocolError(f'no compression "{name}": it is one of {", ".join(COMPRESSIONS)}')

@@ -5,6 +5,8 @@
     yarpy convert walk.mcap -o short --start 10 --duration 5 --ports /icub/cam/left
     yarpy convert killed.mcap -o whole                      what could be read, as a finished file
     yarpy convert one.mcap two.mcap -o both --compress zstd
+    yarpy convert drive.bag -o drive                        a bag of ROS 1, to the byte
+    yarpy convert walk.mcap -o walk_bag --format bag2       for ros2 bag play
 
 Exit codes: 0; 1 it cannot be read or written, or some of it is damaged.
 """
@@ -24,8 +26,8 @@ from yarpy.cli.stderr import complain, warn
 @click.option("-o", "--output", "path", required=True, metavar="NAME",
               help="Write NAME.mcap, or the folder NAME.")  # fmt: skip
 @click.option("--format", "format_", default="mcap", metavar="NAME",
-              type=click.Choice(["mcap", "dumper"]),
-              help="mcap or dumper, the folders of C++ yarpdatadumper.")  # fmt: skip
+              type=click.Choice(["mcap", "dumper", "bag1", "bag2"]),
+              help="mcap, dumper (C++ yarpdatadumper), bag1, bag2 (of ROS 1, 2).")  # fmt: skip
 @click.option("--compress", "compression", default="none", metavar="NAME",
               type=click.Choice(["none", "lz4", "zstd"]), help="none, lz4 or zstd.")  # fmt: skip
 @click.option("--times", default="", show_default=False, metavar="NAME",
@@ -39,7 +41,7 @@ from yarpy.cli.stderr import complain, warn
 def command(
     files: tuple[str, ...],
     path: str,
-    format_: str,
+    format_: Literal["mcap", "dumper", "bag1", "bag2"],
     compression: str,
     times: Literal["", "rx", "tx", "tx+rx"],
     ports: str | None,
@@ -55,7 +57,7 @@ def command(
             done = convert(
                 recording,
                 path,
-                dumper=format_ == "dumper",
+                form=format_,
                 compression=compression,
                 times=times,
                 ports=None if ports is None else [name for name in ports.split(",") if name],
@@ -69,6 +71,6 @@ def command(
     for damage in damages:
         warn(damage)
     if done.left_out:
-        warn(f"{done.left_out} messages have no text that C++ could read, and were left out")
+        warn(f"{done.left_out} messages cannot be written as {format_}, and were left out")
     print_line(f"{done.path}: {done.messages} messages")
     return 1 if damages else 0

@@ -59,6 +59,12 @@ PERIOD: Final = 0.5  # seconds between looks
 @click.option(
     "--memory", default="256MB", metavar="SIZE", help="For messages that wait for the disk."
 )
+@click.option("--snapshot", metavar="TIME",
+              help="Write the last TIME (30s, 5min) when asked, by key or rpc.")  # fmt: skip
+@click.option("--trigger", "triggers", multiple=True, metavar="PORT=REGEX",
+              help="... or when a message of PORT has a match.")  # fmt: skip
+@click.option("--recover", metavar="FILE",
+              help="Record nothing: make a whole file of what is left of FILE.")  # fmt: skip
 @click.option("--start-paused", "paused", is_flag=True, help="Record nothing before the space bar.")
 @click.option("--duration", type=click.FloatRange(0, min_open=True), metavar="S",
               help="Stop after so many seconds.")  # fmt: skip
@@ -79,6 +85,9 @@ def command(
     compression: str,
     rates: tuple[str, ...],
     memory: str,
+    snapshot: str | None,
+    triggers: tuple[str, ...],
+    recover: str | None,
     paused: bool,
     duration: float | None,
     carrier: str,
@@ -87,14 +96,20 @@ def command(
 ) -> int:
     """Keep what PORTs send in a file, which yarpy play plays and Foxglove reads."""
     from yarpy.kits.record.recorder import Recorder
-    from yarpy.kits.record.room import parse_size, parse_split
+    from yarpy.kits.record.room import parse_size, parse_split, parse_time
     from yarpy.kits.record.screen import Rates, summary
     from yarpy.kits.record.words import recorder_words
 
+    if recover is not None:
+        return recovered(recover, path, compression)
     if not (ports or every or pattern):
         raise click.UsageError("say which ports: names, -a for all, or -e REGEX")
-    if most is not None and split is None:
+    if most is not None and split is None and snapshot is None:
         raise click.UsageError("--max-files needs --split, which says when a file is full")
+    if snapshot is not None and split is not None:
+        raise click.UsageError("--snapshot writes a file each time: --split has nothing to do")
+    if triggers and snapshot is None:
+        raise click.UsageError("--trigger needs --snapshot, which says how much is written")
     live = sys.stdout.isatty() and not as_json
     if not live:
         log.show()
@@ -112,6 +127,8 @@ def command(
             most=most or 0,
             memory=parse_size(memory),
             rates=dict(map(parse_rate, rates)),
+            snapshot=0.0 if snapshot is None else parse_time(snapshot),
+            triggers=dict(map(parse_trigger, triggers)),
             paused=paused,
             carrier=carrier,
             name=name,
@@ -127,7 +144,7 @@ def command(
             if live:
                 _live(recorder, began, duration, news)
             else:
-                warn(f"recording into {recorder.files[0]} through the port {recorder.name}")
+                warn(beginning(recorder))
                 stop.wait(duration)
     except Interrupted:
         pass  # how it ends
@@ -157,6 +174,45 @@ def parse_rate(text: str) -> tuple[str, float]:
     return name, rate
 
 
+def parse_trigger(text: str) -> tuple[str, str]:
+    """Return the port and the pattern of `/imu=fall`. Raises LocalProtocolError."""
+    name, equals, pattern = text.partition("=")
+    if not (name.startswith("/") and equals and pattern):
+        raise LocalProtocolError(f'"{text}" is no trigger: /imu=fall')
+    return name, pattern
+
+
+def beginning(recorder: Recorder) -> str:
+    """Return the first line."""
+    if recorder.snapshots:
+        return (
+            f"keeping what comes to {recorder.name} in memory: "
+            f"yarpy rpc {recorder.name}/rpc:i, snapshot, writes it"
+        )
+    return f"recording into {recorder.files[0]} through the port {recorder.name}"
+
+
+def recovered(file: str, path: str | None, compression: str) -> int:
+    """Write what can be read of a file into a whole one; return the exit code."""
+    from yarpy.kits.record.convert import convert
+    from yarpy.kits.record.recording import open_recording
+
+    with open_recording(file) as recording:
+        try:
+            done = convert(
+                recording,
+                path or f"{file.removesuffix('.mcap')}-recovered",
+                compression=compression,
+            )
+        except FileExistsError as error:
+            complain(f"{error.filename} is there already: choose another name with -o")
+            return 1
+        for damage in recording.damages:
+            warn(damage)
+    print_line(f"{done.path}: {done.messages} messages")
+    return 0
+
+
 def look_at(recorder: Recorder, began: float, seen: Rates, news: list[str]) -> Look:
     """Return how a recorder is doing now."""
     from yarpy.kits.record.screen import Look
@@ -164,7 +220,12 @@ def look_at(recorder: Recorder, began: float, seen: Rates, news: list[str]) -> L
     counts = recorder.counts
     files = recorder.files
     return Look(
-        file=", ".join(map(str, files)) if len(files) < 4 else f"{files[0]} ... {files[-1]}",
+        file=(
+            f"{files[0]} ... {files[-1]}"
+            if len(files) > 3
+            else ", ".join(map(str, files)) or "nothing was written"
+        ),
+        snapshots=recorder.snapshots,
         seconds=time.monotonic() - began,
         size=recorder.size,
         held=recorder.held,
@@ -234,8 +295,12 @@ def press(recorder: Recorder, key: str, news: list[str]) -> bool:
         else:
             recorder.pause()
     elif key == "s":
-        recorder.split()
-        news.append("a new file")
+        if recorder.snapshots:
+            recorder.snapshot("a key")
+            news.append("a snapshot")
+        else:
+            recorder.split()
+            news.append("a new file")
     elif key == "m":
         recorder.mark()
         news.append(f"marked at {time.strftime('%H:%M:%S')}")

@@ -22,8 +22,8 @@ from yarpy.kits.record.intake import MEMORY, OVERHEAD, own
 from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.mcap.layout import Damaged
 from yarpy.kits.record.mcap.tape import FOREVER
+from yarpy.kits.record.opening import open_port
 from yarpy.kits.record.recorded import PortFacts, Recorded
-from yarpy.kits.record.recorder import open_port
 from yarpy.kits.record.recording import Recording
 from yarpy.kits.record.view.overview import SECOND, Overview
 from yarpy.kits.record.view.source import timeline

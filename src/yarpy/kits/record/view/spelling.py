@@ -17,10 +17,10 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.sig import jpeg
 from yarpy.data.sig.image import Image
 from yarpy.errors import YarpError
+from yarpy.kits.record.form.protobuf import descriptor_set, encode, timestamp
 from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.recorded import Recorded
 from yarpy.kits.record.view.foxglove import Channel
-from yarpy.kits.record.view.protobuf import descriptor_set, encode, timestamp
 
 PICTURE: Final = "yarp/image"
 NUMBERS: Final = 64  # of a message that are shown as curves

@@ -1,7 +1,7 @@
 """Messages of Foxglove, against the bytes that its own library writes."""
 
-from yarpy.kits.record.view import protobuf
-from yarpy.kits.record.view.protobuf import Field, descriptor_set, encode, timestamp
+from yarpy.kits.record.form import protobuf
+from yarpy.kits.record.form.protobuf import Field, descriptor_set, encode, timestamp
 
 
 def test_the_bytes_of_foxglove(monkeypatch) -> None:
