@@ -10,14 +10,19 @@ import io
 import itertools
 import json
 import tempfile
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 from support.recordings import START, STEP, payload_of
 
 import yarpy
 from yarpy import record
 from yarpy.errors import YarpError
+from yarpy.kits.record.form.form import Form
+from yarpy.kits.record.form.spell import Spell
+from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.mcap.pieces import COMPRESSIONS
 from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.report import lines, report
@@ -76,14 +81,30 @@ def _without_checksums(chunks: bool) -> bytes:
         for form in ("none", "stamp", "text")
     ]
     notes = writer.register_channel("yarpy.record", "json", 0)
+    spelled = [*_spelled()]
     writer.add_attachment(START, START, "robot.ini", "text/plain", b"[group]")
     writer.add_metadata("yarpy", {"missed": '{"/a": 3}'})
     for n in range(8):
         front = b"\4\0\0\0text" if n % 3 == 2 else b""
         writer.add_message(forms[n % 3], START + n, front + payload_of([n]), START, n)
         writer.add_message(notes, START + n, b'{"what": "lost", "port": "/a", "count": 1}', START)
+    for n, (form, data) in enumerate(spelled):
+        described = writer.register_schema(form.schema, form.schema_encoding, form.description)
+        facts = {"port": "/a", "envelope": "text", "yarp.form": form.name, "kind": "yarp/any"}
+        channel = writer.register_channel(f"/form{n}", form.encoding, described, facts)
+        writer.add_message(channel, START + n, data, START, n)
     writer.finish()
     return file.getvalue()
+
+
+def _spelled() -> Iterator[tuple[Form, bytes]]:
+    """Yield a message of each form that others see."""
+    picture = yarpy.Image(np.zeros((2, 3, 3), "u1"))
+    for value in (picture, yarpy.Sound(np.zeros((2, 3), "i2")), yarpy.Vector([1.5]), [1, 2.5]):
+        payload = payload_of(value)
+        found = Spell().spelled("/a", kind_of(payload), payload, START)
+        assert found is not None
+        yield found.form, b"".join(map(bytes, found.parts(b"text")))
 
 
 def read_folder(data: bytes) -> None:
