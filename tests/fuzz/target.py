@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fuzz import recording
+from fuzz import launch, recording
 from fuzz.grammar import GRAMMARS, REFUSALS
 from monitors.test_shipped import CASES
 from peers.ros2.message.test_description import description_of
@@ -871,3 +871,8 @@ else:
     TARGETS["recording"] = Target(recording.read_mcap, recording.mcap_files())
 TARGETS["dumper"] = Target(recording.read_folder, recording.folders())
 TARGETS["page"] = Target(recording.read_page, recording.pages())
+TARGETS["application xml"] = Target(launch.read_application, (launch.APPLICATION,))
+TARGETS["application toml"] = Target(launch.read_toml, (launch.TOML,))
+TARGETS["robot xml"] = Target(launch.read_robot, (launch.ROBOT,))
+TARGETS["run requests"] = Target(launch.read_request, launch.requests_())
+TARGETS["log lines"] = Target(launch.read_log, launch.logs())

@@ -25,3 +25,17 @@ def test_a_list_is_for_programs_and_their_first_words(tmp_path: Path) -> None:
     for name in ("LD_PRELOAD", "PATH", "PYTHONPATH", "YARPY_SCRIPTS"):
         with pytest.raises(AccessRefused, match=f"--allow-env {name}"):
             allowed.check(["sleep"], {name: "x"}, "/node")
+
+
+def test_variables_that_lead_to_other_files() -> None:
+    """Another access.toml, another name server, plug-ins of somebody's own."""
+    allowed = Allowed(["sleep"], ["YARP_DATA_DIRS"])
+    given = {"YARP_PORT_PREFIX": "/left", "YARP_RENAME_a": "/b/c", "YARP_ROBOT_NAME": "icub"}
+    allowed.check(["sleep"], given | {"YARP_NAMESPACE": "/lab"}, "/node")
+    allowed.check(["sleep"], {"YARP_DATA_DIRS": "/opt"}, "/node")
+    for name in ("YARP_CONFIG_HOME", "YARP_DATA_HOME", "YARP_CONFIG_DIRS", "YARP_RUNTIME_DIR"):
+        with pytest.raises(AccessRefused, match=f"--allow-env {name}"):
+            allowed.check(["sleep"], {name: "/tmp"}, "/node")
+    for value in ("../../tmp/x", "..", "/tmp"):
+        with pytest.raises(AccessRefused, match="--allow-env YARP_ROBOT_NAME"):
+            allowed.check(["sleep"], {"YARP_ROBOT_NAME": value}, "/node")

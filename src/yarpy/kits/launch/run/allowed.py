@@ -6,7 +6,8 @@
 Rules: an entry is a program, or a program with its first words; a command has to begin with all of
 them. The program is the file that the name stands for on this computer, so that another one of the
 same name in somebody's working directory is not meant. With a list, the environment may hold only
-what changes no program into another: YARP_..., DISPLAY, and what the owner names.
+what changes no program into another: DISPLAY, what the owner names, and YARP_... that does not say
+where programs find their files, which would be other rules of access, name servers and plug-ins.
 """
 
 from __future__ import annotations
@@ -21,6 +22,10 @@ from yarpy.kits.launch.run.command_line import words_of
 
 HARMLESS: Final = ("DISPLAY", "LANG", "TZ")
 PREFIX: Final = "YARP_"
+#: How the names of variables end that say where files are, as YARP_CONFIG_HOME and YARP_DATA_DIRS.
+PLACES: Final = ("_HOME", "_DIRS", "_DIR", "_PATH", "_CONF")
+#: Its value becomes the name of a folder.
+FOLDER: Final = "YARP_ROBOT_NAME"
 
 
 class Allowed:
@@ -46,8 +51,8 @@ class Allowed:
                 f'"{words[0]}" is not among the programs that {server} may start; to allow it, its '
                 f'owner adds: yarpy run --server {server} --allow "{words[0]}"'
             )
-        for name in variables:
-            if not name.startswith(PREFIX) and name not in self._variables:
+        for name, value in variables.items():
+            if not (name in self._variables or _is_harmless(name, value)):
                 raise AccessRefused(
                     f"the variable {name} may make a program do anything; to allow it, the owner "
                     f"of {server} adds: --allow-env {name}"
@@ -56,6 +61,13 @@ class Allowed:
     def path(self, program: str) -> str | None:
         """Return the file to start instead of a name, None if any file may be."""
         return located(program) if self.entries else None
+
+
+def _is_harmless(name: str, value: str) -> bool:
+    """Return whether a variable of YARP leads to no other files."""
+    if not name.startswith(PREFIX) or name.endswith(PLACES):
+        return False
+    return name != FOLDER or not ("/" in value or ".." in value)
 
 
 def located(program: str) -> str:
