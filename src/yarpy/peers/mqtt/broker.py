@@ -1,7 +1,9 @@
 """A port as a client of MQTT's brokers: it publishes, subscribes, and asks.
 
-Rules: version 3.1.1, which every broker understands; 5 for questions, and with `+v5`. The broker is
-promised a sign of life within KEEP_ALIVE, or what it wishes instead; the port sends it (`ping`).
+Rules: version 3.1.1, which every broker understands; 5 for questions and sessions, and with `+v5`.
+Sessions are clean, unless `+session.SECONDS` says for how long the broker keeps what comes while
+the port is away: then the port has the same name there each time. The broker is promised a sign of
+life within KEEP_ALIVE, or what it wishes instead; the port sends it (`ping`).
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ import os
 from collections import deque
 from dataclasses import replace
 from typing import Final
+from zlib import crc32
 
 from yarpy.carriers.base import Limits, refuse_unknown
 from yarpy.carriers.payload import message_of, to_payload
@@ -19,13 +22,14 @@ from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
 from yarpy.limit import MQTT_CONNECT, MQTT_HEARD, MQTT_TOPIC
 from yarpy.log import readable
 from yarpy.peers.mqtt import packet as mqtt
-from yarpy.peers.mqtt.session import BROKER, CLEAN, RPC, WILL, MqttPeer
+from yarpy.peers.mqtt.session import BROKER, CLEAN, RPC, SESSION, WILL, MqttPeer
 from yarpy.route import CarrierSpec, Route
 from yarpy.wire.message import CALL, SMALL, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
 TOGETHER: Final = 20  # messages with QoS 2 under way; of more, mosquitto loses some
+FOREVER: Final = 0xFFFFFFFF  # seconds of a session that never expires
 KEEP_ALIVE: Final = 60  # seconds of silence that we promise not to exceed
 _REFUSALS: Final = {
     1: "it does not speak version 3.1.1: say +v5",
@@ -38,7 +42,7 @@ _REFUSALS: Final = {
     0x87: "it does not admit us: say +user.NAME+password.WORD",
 }
 _WORDS: Final = (
-    *("sub", RPC, "qos.1", "qos.2", "retain", "will.TEXT"),
+    *("sub", RPC, "session.SECONDS", "qos.1", "qos.2", "retain", "will.TEXT"),
     *("user.NAME", "password.WORD", "v5", "raw"),
 )
 _LOGIN: Final = frozenset((4, 5, 0x86, 0x87))
@@ -64,8 +68,21 @@ def check(spec: CarrierSpec) -> None:
         raise LocalProtocolError(f"+qos.{qos[:20]}: there are QoS 0, 1 and 2")
     if spec.value("will") is not None and {"sub", RPC} & {*spec.tokens}:
         raise LocalProtocolError("+will.TEXT is for ports that write to a topic of a broker")
+    _check_session(spec)
     if spec.value("password") is not None and spec.value("user") is None:
         raise LocalProtocolError("a password for a broker needs a name: say +user.NAME")
+
+
+def _check_session(spec: CarrierSpec) -> None:
+    seconds = spec.value(SESSION)
+    if seconds is None:
+        return
+    if "sub" not in spec.tokens or RPC in spec.tokens:
+        raise LocalProtocolError("+session.SECONDS is for ports that read from topics of a broker")
+    if not (seconds.isascii() and seconds.isdecimal() and 0 < int(seconds[:20]) <= FOREVER):
+        raise LocalProtocolError(f"+session.{seconds[:20]}: say seconds, {FOREVER} for no end")
+    if spec.value("qos") not in ("1", "2"):
+        raise LocalProtocolError("a broker keeps what has a QoS: say +qos.1 beside +session")
 
 
 class Client(MqttPeer):
@@ -73,8 +90,8 @@ class Client(MqttPeer):
 
     ping = (mqtt.packet(mqtt.PINGREQ), KEEP_ALIVE / 2)
 
-    def _connect(self, stream: ByteStream) -> Steps[None]:
-        """Become a client of the broker."""
+    def _connect(self, stream: ByteStream) -> Steps[bool]:
+        """Become a client of the broker; return whether it knows us from before."""
         stream.write(self._hello())
         first, body = yield from mqtt.read_packet(stream, MQTT_CONNECT)
         if first != mqtt.CONNACK or len(body) < 2:
@@ -93,6 +110,7 @@ class Client(MqttPeer):
             if (most := wishes.get(mqtt.RECEIVE_MAXIMUM)) is not None:
                 ahead = min(ahead, max(1, int.from_bytes(most, "big")))
         self.limits = replace(self.limits, ahead=ahead)
+        return bool(body[0] & 1)
 
     def left(self, body: Buffer) -> Message:
         reason = bytes(body[:1])
@@ -141,19 +159,26 @@ class Client(MqttPeer):
         from urllib.parse import unquote_to_bytes
 
         route = self.route
-        client = f"yarpy{route.source.replace('/', '-')}-{os.urandom(4).hex()}"
+        seconds = route.spec.value(SESSION)
+        mark = os.urandom(4).hex() if seconds is None else f"{crc32(self.topic):08x}"
+        client = f"yarpy{route.source.replace('/', '-')}-{mark}"
         words = [route.spec.value(key) for key in ("user", "password")]
         user, password = (
             None if word is None else unquote_to_bytes(word.encode("utf-8", "surrogateescape"))
             for word in words
         )
-        flags = CLEAN | (0x80 if user is not None else 0) | (0x40 if password is not None else 0)
+        flags = (
+            (CLEAN if seconds is None else 0)
+            | (0x80 if user is not None else 0)
+            | (0x40 if password is not None else 0)
+        )
         will: tuple[bytes, ...] = ()
         if (text := route.spec.value("will")) is not None:
             will = self._one_topic(), unquote_to_bytes(text.encode("utf-8", "surrogateescape"))
             flags |= WILL | (self.qos << 3) | (0x20 if "retain" in route.spec.tokens else 0)
         body = mqtt.string(b"MQTT") + bytes((self.version, flags))
-        body += KEEP_ALIVE.to_bytes(2, "big") + self._properties()
+        kept = b"" if seconds is None else bytes((mqtt.EXPIRY,)) + int(seconds).to_bytes(4, "big")
+        body += KEEP_ALIVE.to_bytes(2, "big") + self._properties(kept)
         body += mqtt.string(client.encode("utf-8", "replace")[:1000])
         if will:
             body += self._properties() + b"".join(map(mqtt.string, will))
@@ -238,20 +263,31 @@ class Subscriber(Client):
 
     push = False
 
+    def __init__(self, route: Route) -> None:
+        super().__init__(route)
+        # Once it has dialled, the broker is the source, and the port the target.
+        self._topic, self._place = self.topic, BROKER.match(route.target)
+
     def greet(self, stream: ByteStream) -> Steps[None]:
-        topic = self.topic
+        topic = self._topic
         if not topic or len(topic) > MQTT_TOPIC:
             raise LocalProtocolError("the topic stands behind the broker: mqtt+sub://HOST/TOPIC")
-        qos = self.qos
-        yield from self._connect(stream)
-        self._subscribe(stream, topic, qos)
+        known = yield from self._connect(stream)
+        self._subscribe(stream, topic, self.qos)
+        if known:  # what it has kept may come before its answer
+            return
         first, body = yield from mqtt.read_packet(stream, MQTT_HEARD)
         self._subscribed(topic, first, body)
 
+    def obey(self, stream: ByteStream, first: int, body: Buffer) -> None:
+        if first == mqtt.SUBACK:
+            self._subscribed(self._topic, first, body)
+        else:
+            super().obey(stream, first, body)
+
     def source_of(self, topic: Buffer) -> str:
-        place = BROKER.match(self.route.target)
         shown = readable(bytes(topic).decode("utf-8", "replace"))
-        return f"{place[0]}{shown}" if place else ""
+        return f"{self._place[0]}{shown}" if self._place else ""
 
 
 class Asker(Client):

@@ -42,6 +42,7 @@ WITH_WILL: Final = 0x04  # the reason in a DISCONNECT: the will is to be publish
 
 RESPONSE_TOPIC: Final = 0x08
 CORRELATION: Final = 0x09
+EXPIRY: Final = 0x11  # of a session, in seconds
 SERVER_KEEP_ALIVE: Final = 0x13
 RECEIVE_MAXIMUM: Final = 0x21
 RETAIN_AVAILABLE: Final = 0x25

@@ -23,6 +23,7 @@ from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
 RPC: Final = "rpc"
+SESSION: Final = "session"
 CLEAN: Final = 0x02
 WILL: Final = 0x04
 BROKER: Final = re.compile(r"/mqtt://[^/]++/")
@@ -39,7 +40,8 @@ class MqttPeer(Carrier):
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         tokens = route.spec.tokens
-        self.version = mqtt.V5 if RPC in tokens or "v5" in tokens else mqtt.V3
+        newer = RPC in tokens or "v5" in tokens or route.spec.value(SESSION) is not None
+        self.version = mqtt.V5 if newer else mqtt.V3
         self.raw = "raw" in tokens
         self._owed: deque[tuple[int, int]] = deque()  # for each message its QoS and number
         self._unreleased: set[int] = set()  # numbers of those with QoS 2 that may come once more

@@ -8,12 +8,14 @@
 Rules: types are names, found as a program of ROS would find them, or classes made by
 `yarpy.idl.load`. What is written may be an object of the type, a dict or list of its fields, or a
 value of YARP (`Image`, `Vector`, str ...); what is read is an object of the type. Everything is
-safe to call from any thread. Ports of the node are ports of YARP too.
+safe to call from any thread. Ports of the node are ports of YARP too. What roslaunch and rosrun say
+on the command line of the program holds for all its nodes.
 """
 
 from __future__ import annotations
 
 import os
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final, Self, TypeAlias, TypeVar
@@ -34,9 +36,9 @@ from yarpy.names.node_name import (
     SUBSCRIBER,
     Category,
     NodeName,
-    check_graph_name,
     master_type,
 )
+from yarpy.peers.ros.arguments import expand, parse_arguments
 from yarpy.peers.ros.body import has_header
 from yarpy.peers.ros.calls import Calls
 from yarpy.peers.ros.carrier import TcpRos
@@ -179,14 +181,23 @@ class Node:
 
     master: as ROS_MASTER_URI; without it the master of the environment or of `yarpy detect --ros`.
     names: a name client that learns of the ports too; None: the default one, if there is any.
-    Raises AddressError for a name that ROS does not allow, or that another living node has at the
-    name server.
+    arguments: a command line with `__name:=x`, remappings and `_parameter:=value`, else that of
+    this program. Raises AddressError for a name that ROS does not allow, or that another living
+    node has at the name server; NoNameServer where the command line sets parameters, and there is
+    no master.
     """
 
     def __init__(
-        self, name: str, *, master: str | None = None, names: NameClient | None = None
+        self,
+        name: str,
+        *,
+        master: str | None = None,
+        names: NameClient | None = None,
+        arguments: Sequence[str] | None = None,
     ) -> None:
-        self.name = check_graph_name(name if name.startswith("/") else f"/{name}")
+        self._said = parse_arguments(sys.argv if arguments is None else arguments)
+        self.name = self._said.node(name)
+        master = master or self._said.special.get("master")
         self._names = names
         if master is not None:
             self.master = RosMaster(master)
@@ -199,6 +210,8 @@ class Node:
         plain = without_masters(self._names)
         self._node: GraphNode = GRAPH.use(self.name, self.master, plain, open_hub)
         self._closed = False
+        for key, value in self._said.parameters.items():
+            self.set_param(f"~{key}", value)
         self._simulated: float | None = None  # seconds, where the time is simulated
         if self._is_simulated():
             self._simulated = 0.0
@@ -354,12 +367,8 @@ class Node:
 
     def resolve(self, name: str) -> str:
         """The full name of a topic, service or parameter: `~rate` is below the node's own name,
-        `chatter` beside the node."""
-        if name.startswith("~"):
-            name = f"{self.name}/{name[1:]}"
-        elif not name.startswith("/"):
-            name = f"{self.name.rpartition('/')[0]}/{name}"
-        return check_graph_name(name)
+        `chatter` beside the node; or what the command line has in its place."""
+        return self._said.remap(expand(name, self.name), self.name)
 
     @property
     def uri(self) -> str:

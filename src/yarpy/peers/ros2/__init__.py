@@ -8,6 +8,7 @@ The other side are nodes whose RMW_IMPLEMENTATION is rmw_zenoh_cpp. What is here
     name, key, token, qos, attachment    the texts and bytes of that RMW; pure
     load                                 a type of ROS 2 as a class
     Node                                 a node, with parameters and actions
+    LifecycleNode                        one that others configure and activate
     Transforms                           where frames lie: /tf and /tf_static of a node
 
 Rules: pure files import no session.
@@ -34,12 +35,14 @@ _WHERE = {
     "Event": "yarpy.peers.ros2.event",
     "Qos": "yarpy.peers.ros2.qos",
     "qos_profile": "yarpy.peers.ros2.qos",
+    "LifecycleNode": "yarpy.peers.ros2.node.managed",
     "Node": "yarpy.peers.ros2.node.node",
     "Transforms": "yarpy.peers.ros2.transform",
 }
 
 if TYPE_CHECKING:
     from yarpy.peers.ros2.event import Event as Event
+    from yarpy.peers.ros2.node.managed import LifecycleNode as LifecycleNode
     from yarpy.peers.ros2.node.node import Node as Node
     from yarpy.peers.ros2.qos import Qos as Qos
     from yarpy.peers.ros2.qos import qos_profile as qos_profile

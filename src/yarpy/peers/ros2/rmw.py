@@ -34,9 +34,10 @@ class Endpoint(Held, Protocol):
 
 
 class Writer(Endpoint, Protocol):
-    """Publishes a topic."""
+    """Publishes a topic; `now` tells the time of headers without one."""
 
     events: Events
+    now: Callable[[], float]
 
     def write(self, value: object) -> None:
         """Send a value to all who subscribe. A header without a time gets the present one. Raises

@@ -8,7 +8,6 @@ Rules: as in `peers/ros/transform/topic.py`.
 
 from __future__ import annotations
 
-import time
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -28,7 +27,7 @@ class Transforms(Tree):
 
     def __init__(self, node: Node, kept: float = KEPT) -> None:
         super().__init__(
-            time.time, lambda topic, latch: node.publisher(topic, TYPE, qos=QOS[latch]), kept
+            node.now, lambda topic, latch: node.publisher(topic, TYPE, qos=QOS[latch]), kept
         )
         for topic in (FIXED, MOVING):
             fixed = topic == FIXED

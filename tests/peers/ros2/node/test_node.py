@@ -21,7 +21,7 @@ def test_how_others_see_it(names: yarpy.LocalNames) -> None:
             wait_until(lambda: len(part.graph.nodes(Node("/robot", "arm"))) == 1)
             tokens = [token for token in part.graph.tokens if token.node == Node("/robot", "arm")]
             served = {token.key.name for token in tokens if token.key and token.kind == "SS"}
-            assert "/robot/arm/get_parameters" in served and len(served) == 6
+            assert "/robot/arm/get_parameters" in served and len(served) == 7
             assert part.graph.endpoints("/parameter_events", "MP")
             node.action_server("fib", "example_interfaces/action/Fibonacci", lambda goal: None)
             wait_until(lambda: part.graph.endpoints("/robot/fib/_action/cancel_goal", "SS"))
@@ -66,3 +66,28 @@ def test_which_layer() -> None:
         assert chosen(None, {"RMW_IMPLEMENTATION": rmw}).__name__ == name
     with pytest.raises(AddressError, match="zenoh or dds"):
         chosen("tcp", {})
+
+
+def test_the_command_line(names: yarpy.LocalNames) -> None:
+    said = [
+        "--ros-args",
+        "-r",
+        "__node:=left",
+        "-r",
+        "__ns:=/lab",
+        "-r",
+        "add:=sum",
+        "-p",
+        "gain:=3.5",
+    ]
+    with ros2.Node("/adder", arguments=said, parameters={"gain": 2.5}) as adder:
+        assert adder.name == "/lab/left" and adder.parameters.get("gain") == 3.5
+        adder.service("add", ADD, lambda request: {"sum": request.a + request.b})
+        with ros2.Node("/asker") as asker:
+            assert asker.client("/lab/sum", ADD).wait(HANG)
+            assert asker.call("/lab/sum", ADD, [5, 37], timeout=HANG).sum == 42
+    for wrong in ("gain:=3", "gain:=fast"):
+        with pytest.raises(TypeError, match="gain is a double"):
+            ros2.Node("/x", arguments=["--ros-args", "-p", wrong], parameters={"gain": 2.5})
+    with ros2.Node("/x", arguments=["--ros-args", "--disable-rosout-logs"]) as quiet:
+        assert not quiet.logger.handlers

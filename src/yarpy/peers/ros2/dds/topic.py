@@ -6,6 +6,7 @@ Rules: those of `endpoint`. A subscription has a thread of its own, which calls.
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from typing import Any, Final
 
@@ -27,7 +28,9 @@ CLOSING: Final = 5.0  # seconds for the thread to end
 
 
 class DdsWriter(DdsPublisher):
-    """Publishes a topic."""
+    """Publishes a topic; `now` tells the time of headers without one."""
+
+    now: Callable[[], float] = staticmethod(time.time)
 
     def __init__(
         self, node: Node, domain: int, name: str, type_: str, qos: Qos | None = None
@@ -57,7 +60,7 @@ class DdsWriter(DdsPublisher):
     def write(self, value: object) -> None:
         """Send a value to all who subscribe. A header without a time gets the present one. Raises
         TypeError, ValueError, DecodeError for what is nothing of the type."""
-        body = encode_body(Packet(value), self.kind, self.clock)
+        body = encode_body(Packet(value), self.kind, self.now)
         with self._writing:
             if not self._over:
                 self.give(Outgoing(self.kind, body))

@@ -38,11 +38,22 @@ def is_hash(text: str) -> bool:
 
 def message_hash(definition: Definition) -> str:
     """The hash of a message type."""
-    return _hash(full_name(definition.name), definition.parsed.fields, definition.all_used())
+    return hash_of(*described_message(definition))
 
 
 def service_hash(definition: ServiceDefinition) -> str:
     """The hash of a service type."""
+    return hash_of(*described_service(definition))
+
+
+def described_message(definition: Definition) -> tuple[Description, list[Description]]:
+    """The description of a message type, and those of all types in it."""
+    others = [described(full_name(item.name), item.parsed.fields) for item in definition.all_used()]
+    return described(full_name(definition.name), definition.parsed.fields), others
+
+
+def described_service(definition: ServiceDefinition) -> tuple[Description, list[Description]]:
+    """The description of a service type, and those of all types in it."""
     name = full_name(definition.name, "srv")
     halves = definition.request, definition.response
     used = {item.name: item for half in halves for item in half.all_used()}
@@ -75,7 +86,7 @@ def service_hash(definition: ServiceDefinition) -> str:
     if "builtin_interfaces/Time" not in used:
         others.append(_TIME)
     whole = {"type_name": name, "fields": [*parts, _field("event_message", NESTED, event)]}
-    return hash_of(whole, others)
+    return whole, others
 
 
 def hash_of(description: Description, others: Iterable[Description]) -> str:
@@ -104,11 +115,6 @@ def described(name: str, fields: Iterable[FieldText]) -> Description:
 
 
 _HALVES: Final = ("request", "response")
-
-
-def _hash(name: str, fields: Iterable[FieldText], used: Iterable[Definition]) -> str:
-    others = (described(full_name(item.name), item.parsed.fields) for item in used)
-    return hash_of(described(name, fields), others)
 
 
 def _field(

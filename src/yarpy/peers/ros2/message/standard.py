@@ -65,6 +65,11 @@ string raw_file_contents
                 "float64 from_value; float64 to_value; float64 step"
             ),
             "rcl_interfaces/IntegerRange": "int64 from_value; int64 to_value; uint64 step",
+            "rcl_interfaces/Log": (
+                "byte DEBUG=10; byte INFO=20; byte WARN=30; byte ERROR=40; byte FATAL=50; "
+                "builtin_interfaces/Time stamp; uint8 level; string name; string msg; "
+                "string file; string function; uint32 line"
+            ),
             "rcl_interfaces/ListParametersResult": "string[] names; string[] prefixes",
             "rcl_interfaces/Parameter": "string name; ParameterValue value",
             "rcl_interfaces/ParameterDescriptor": (
@@ -90,6 +95,14 @@ string raw_file_contents
                 "string[] string_array_value"
             ),
             "rcl_interfaces/SetParametersResult": "bool successful; string reason",
+            "lifecycle_msgs/State": "uint8 id; string label",
+            "lifecycle_msgs/Transition": "uint8 id; string label",
+            "lifecycle_msgs/TransitionDescription": (
+                "Transition transition; State start_state; State goal_state"
+            ),
+            "lifecycle_msgs/TransitionEvent": (
+                "uint64 timestamp; Transition transition; State start_state; State goal_state"
+            ),
         }.items()
     },
 }
@@ -118,6 +131,12 @@ KeyValue[] extra_information
             ),
             "example_interfaces/SetBool": "bool data; ---; bool success; string message",
             "example_interfaces/Trigger": "---; bool success; string message",
+            "lifecycle_msgs/ChangeState": "Transition transition; ---; bool success",
+            "lifecycle_msgs/GetState": "---; State current_state",
+            "lifecycle_msgs/GetAvailableStates": "---; State[] available_states",
+            "lifecycle_msgs/GetAvailableTransitions": (
+                "---; TransitionDescription[] available_transitions"
+            ),
             "rcl_interfaces/DescribeParameters": (
                 "string[] names; ---; ParameterDescriptor[] descriptors"
             ),

@@ -10,13 +10,15 @@ Rules: it speaks with nodes whose middleware is rmw_zenoh, over the router of th
 YARPY_ZENOH, and opens no socket that others could dial; or, with `rmw="dds"`, with those that use
 DDS. What is written, asked and answered is an object of the type, or a list or dict of its fields;
 what comes is an object. Callbacks run in threads of the node: those of a topic or service one after
-the other. Everything is safe to call from any thread.
+the other. Everything is safe to call from any thread. What `ros2 run` and `ros2 launch` say on the
+command line of the program holds for all its nodes.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, Self, TypeVar
 
 from yarpy.errors import AddressError, DecodeError, LocalProtocolError
@@ -33,7 +35,12 @@ from yarpy.peers.ros2.event import Event
 from yarpy.peers.ros2.exchange import Question, Worker
 from yarpy.peers.ros2.key import domain as domain_of
 from yarpy.peers.ros2.message.library import default_library
-from yarpy.peers.ros2.name import check_node, check_topic
+from yarpy.peers.ros2.name import check_node
+from yarpy.peers.ros2.node import rosout
+from yarpy.peers.ros2.node.arguments import expand, parse_arguments
+from yarpy.peers.ros2.node.describer import TYPE as DESCRIBED
+from yarpy.peers.ros2.node.describer import Describer
+from yarpy.peers.ros2.node.sim_time import CLOCK, CLOCK_QOS, NodeTime
 from yarpy.peers.ros2.parameter.client import RemoteParameters
 from yarpy.peers.ros2.parameter.server import EVENT, EVENTS, QOS, SERVICES, Asked, event
 from yarpy.peers.ros2.parameter.store import Change, Parameters
@@ -49,7 +56,9 @@ SIMULATED: Final = "use_sim_time"  # the parameter that every node has
 class Node:
     """A node called `name`, with a namespace or without. `domain`: of ROS 2, else ROS_DOMAIN_ID.
     `parameters`: those that it begins with. `rmw`: zenoh or dds, else what RMW_IMPLEMENTATION says,
-    else zenoh. Raises AddressError, UnknownPlugin, LinkClosed (no router)."""
+    else zenoh. `arguments`: a command line with `--ros-args`, else that of this program. Raises
+    AddressError, UnknownPlugin, LinkClosed (no router); TypeError, ValueError for a parameter that
+    the command line sets to what it cannot be."""
 
     def __init__(
         self,
@@ -58,27 +67,39 @@ class Node:
         domain: int | None = None,
         parameters: Mapping[str, Any] | None = None,
         rmw: str | None = None,
+        arguments: Sequence[str] | None = None,
     ) -> None:
-        self._node = check_node(name)
+        self._said = parse_arguments(sys.argv if arguments is None else arguments)
+        self._node = self._said.node(check_node(name))
         self._domain = domain_of(None if domain is None else str(domain))
         self._held: list[Any] = []
         self._callers: dict[tuple[str, str], Caller] = {}
         self._closed = False
         self._rmw = self._keep(chosen(rmw)(self._node, self._domain))
         self._worker = self._keep(Worker(f"yarpy node {self.name}"))
-        self.parameters = Parameters()
-        for key, value in {SIMULATED: False, **(parameters or {})}.items():
-            self.parameters.declare(key, value)
+        self._describer = Describer()
+        self.logger = rosout.node_logger(self._node, self._said.log_level)
+        self.parameters = Parameters(given=self._said.parameters_of(self._node))
+        self._time = NodeTime(self._hear_clock)
         try:
+            for key, value in {SIMULATED: False, **(parameters or {})}.items():
+                self.parameters.declare(key, value)
+            self._time.follow(self.parameters.get(SIMULATED) is True)
+            if self._said.rosout:
+                out = self.publisher(rosout.TOPIC, rosout.TYPE, qos=rosout.QOS)
+                self.logger.addHandler(rosout.Rosout(out.write))
             self._events = self.publisher(EVENTS, EVENT, qos=QOS)
             asked = Asked(self.parameters)
             for service, type_ in SERVICES.items():
                 handler = asked.handlers[service]
                 self._answer(f"{self.name}/{service}", type_, handler, self._worker, QOS)
+            describe, name_ = self._describer.answer, f"{self.name}/get_type_description"
+            self._answer(name_, DESCRIBED, describe, self._worker, None)
         except BaseException:
             self.close()
             raise
         self.parameters._told = self._tell
+        self.parameters.watch(self._watch)
         self._tell(Change(new={key: self.parameters.get(key) for key in self.parameters}))
 
     @property
@@ -86,14 +107,16 @@ class Node:
         """The whole name."""
         return str(self._node)
 
-    def resolve(self, name: str) -> str:
-        """Return the full name of a topic or service: `~/x` is below the node's own name, `x`
-        beside the node. Raises AddressError."""
-        if name.startswith("~"):
-            return check_topic(f"{self.name}/{name[1:].strip('/')}")
-        if not name.startswith("/"):
-            return check_topic(f"{self._node.namespace.rstrip('/')}/{name}")
-        return check_topic(name)
+    def resolve(self, name: str, kind: str = "rostopic") -> str:
+        """Return the full name of a topic, or of a service, `kind` being "rosservice": `~/x` is
+        below the node's own name, `x` beside the node; or what the command line has in its place.
+        Raises AddressError."""
+        return self._said.remap(expand(name, self._node), self._node, kind)
+
+    def now(self) -> float:
+        """The time in seconds: the computer's, or what /clock said last, where the parameter
+        `use_sim_time` is true; 0 before the first."""
+        return self._time.now()
 
     # -- topics -----------------------------------------------------------------------------------
 
@@ -109,7 +132,8 @@ class Node:
         `yarpy.ros2.qos_profile` makes. `on_event` hears of what happens to it. Raises AddressError,
         UnknownType."""
         self._check()
-        made = self._keep(self._rmw.writer(self.resolve(topic), type_, _qos(qos)))
+        made = self._used(self._rmw.writer(self.resolve(topic), type_, _qos(qos)))
+        made.now = self.now
         made.events.hear = on_event
         return made
 
@@ -127,7 +151,7 @@ class Node:
         self._check()
         worker = self._keep(Worker(f"yarpy topic {topic}"))
         whole = self.resolve(topic)
-        made = self._keep(self._rmw.hearer(whole, type_, callback, worker, _qos(qos)))
+        made = self._used(self._rmw.hearer(whole, type_, callback, worker, _qos(qos)))
         made.events.hear = on_event
         return made
 
@@ -142,18 +166,19 @@ class Node:
             question.answer(made.kind.Response() if found is None else found)
 
         worker = self._keep(Worker(f"yarpy service {name}"))
-        made = self._answer(self.resolve(name), type_, answer, worker, None)
+        whole = self.resolve(name, "rosservice")
+        made = self._answer(whole, type_, answer, worker, None)
         return made
 
     def client(self, name: str, type_: str) -> Caller:
         """Return what asks a service: `client.call(request)`, `client.ask(request)`. Raises
         AddressError, UnknownType."""
-        return self._caller(self.resolve(name), type_)
+        return self._caller(self.resolve(name, "rosservice"), type_)
 
     def call(self, name: str, type_: str, request: object, timeout: float | None = 10.0) -> Any:
         """Ask a service; the answer is an object of the response type. Raises UnknownName (nobody
         serves it), RemoteProtocolError (the server fails), Timeout, LinkClosed."""
-        whole = self.resolve(name)
+        whole = self.resolve(name, "rosservice")
         found = self._callers.get((whole, type_))
         if found is None:
             found = self._callers.setdefault((whole, type_), self._caller(whole, type_))
@@ -163,7 +188,7 @@ class Node:
 
     def parameters_of(self, node: str, timeout: float | None = 5.0) -> RemoteParameters:
         """Return the parameters of another node, to be asked for and changed."""
-        return self._keep(RemoteParameters(self.resolve(node), self._caller, timeout))
+        return self._keep(RemoteParameters(expand(node, self._node), self._caller, timeout))
 
     # -- actions ----------------------------------------------------------------------------------
 
@@ -213,7 +238,7 @@ class Node:
         }
         for what, (kind, callback, qos) in heard.items():
             topic = place(whole, what)
-            self._keep(self._rmw.hearer(topic, kind, callback, worker, qos))
+            self._used(self._rmw.hearer(topic, kind, callback, worker, qos))
         return client
 
     # -- the end ----------------------------------------------------------------------------------
@@ -223,6 +248,7 @@ class Node:
         if self._closed:
             return
         self._closed = True
+        self.logger.handlers.clear()
         for item in reversed(self._held):
             item.close()
         self._held.clear()
@@ -252,15 +278,27 @@ class Node:
         qos: Qos | None,
     ) -> Answerer:
         self._check()
-        return self._keep(self._rmw.answerer(name, type_, handler, worker, qos))
+        return self._used(self._rmw.answerer(name, type_, handler, worker, qos))
 
     def _caller(self, name: str, type_: str) -> Caller:
         self._check()
-        return self._keep(self._rmw.caller(name, type_, None))
+        return self._used(self._rmw.caller(name, type_, None))
+
+    def _watch(self, changes: dict[str, Any]) -> None:
+        if SIMULATED in changes:
+            self._time.follow(changes[SIMULATED] is True)
+
+    def _hear_clock(self, heard: Callable[[Any], object]) -> Hearer:
+        return self.subscriber(CLOCK, "rosgraph_msgs/msg/Clock", heard, qos=CLOCK_QOS)
 
     def _check(self) -> None:
         if self._closed:
             raise LocalProtocolError(f"{self.name} is closed")
+
+    def _used(self, made: C) -> C:
+        """Keep an endpoint, and tell others of its type."""
+        self._describer.know(made.kind)  # type: ignore[attr-defined]
+        return self._keep(made)
 
     def _keep(self, item: C) -> C:
         self._held.append(item)

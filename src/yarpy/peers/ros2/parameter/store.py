@@ -60,10 +60,16 @@ class Change:
 
 
 class Parameters:
-    """Of one node. `told` is called with each Change, after it was made."""
+    """Of one node. `told` is called with each Change, after it was made. `given`: values that were
+    said from outside, in place of those that parameters are declared with."""
 
-    def __init__(self, told: Callable[[Change], None] = lambda change: None) -> None:
+    def __init__(
+        self,
+        told: Callable[[Change], None] = lambda change: None,
+        given: Mapping[str, Any] | None = None,
+    ) -> None:
         self._told = told
+        self.given = dict(given or {})
         self._all: dict[str, _Parameter] = {}
         self._watchers: list[Watcher] = []
         self._lock = threading.RLock()  # a watcher may look at other parameters
@@ -73,6 +79,8 @@ class Parameters:
         none; TypeError for a value that can be no parameter."""
         descriptor = descriptor or Descriptor()
         made = plain(value)
+        if name in self.given:
+            made = _given(name, plain(self.given[name]), made, descriptor)
         descriptor.check(name, made)
         with self._lock:
             if not name or name in self._all:
@@ -153,6 +161,15 @@ class Parameters:
             raise TypeError(f"{name} is a {NAMES[item.kind]}, not a {NAMES[kind]}")
         item.descriptor.check(name, value)
         return value
+
+
+def _given(name: str, value: Value, declared: Value, descriptor: Descriptor) -> Value:
+    """The value from outside, if it is of the kind that was declared."""
+    kind, wanted = kind_of(value), kind_of(declared)
+    if kind != wanted and wanted != NOT_SET and not descriptor.dynamic:
+        hint = f": write {value!r}.0" if (wanted, kind) == (DOUBLE, INTEGER) else ""
+        raise TypeError(f"{name} is a {NAMES[wanted]}, but set to a {NAMES[kind]}{hint}")
+    return value
 
 
 def _is_wanted(name: str, prefixes: list[str], depth: int) -> bool:

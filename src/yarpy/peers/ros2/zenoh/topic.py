@@ -7,6 +7,7 @@ counted.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -27,7 +28,9 @@ log = logger("yarpy.ros2")
 
 
 class Writer(Publisher):
-    """Publishes a topic."""
+    """Publishes a topic; `now` tells the time of headers without one."""
+
+    now: Callable[[], float] = staticmethod(time.time)
 
     def __init__(
         self, node: Node, domain: int, name: str, type_: str, qos: Qos | None = None
@@ -38,7 +41,7 @@ class Writer(Publisher):
     def write(self, value: object) -> None:
         """Send a value to all who subscribe; it waits for nobody. A header without a time gets the
         present one. Raises TypeError, ValueError, DecodeError for what is nothing of the type."""
-        body = encode_body(Packet(value), self.kind, self.clock)
+        body = encode_body(Packet(value), self.kind, self.now)
         try:
             if not self.ended():
                 self.give(Outgoing(self.kind, body))
