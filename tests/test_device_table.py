@@ -15,6 +15,7 @@ def test_every_interface_has_one_row() -> None:
     assert len(device_table.NAMES) == len({*device_table.NAMES})
     made = {name for *_, has in device_table.OWN for name in has.split()}
     made |= {each.VIEW or "INavigation2DVelocityActions" for each in interfaces().values()}
+    made |= {name for has in device_table.ALSO.values() for name in has.split()}
     assert made <= {*device_table.NAMES}
     assert not made & device_table.WHY.keys()
     assert made | device_table.WHY.keys() == {*device_table.NAMES}

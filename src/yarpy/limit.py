@@ -167,6 +167,7 @@ MAP_GRIDS: Final = 100  # maps that it keeps
 TALK_LINES: Final = 1000  # of a conversation that are kept
 WORLD_OBJECTS: Final = 10_000  # of a simulated world, and devices that somebody has described
 SERIAL_WAITING: Final = 1 << 16  # characters that nobody has received yet
+SPOKEN_LETTERS: Final = 1000  # of a text that a simulated voice says
 
 # Applications
 APPLICATION_FILE: Final = 4 << 20  # bytes of one file

@@ -4,10 +4,11 @@ check_every_member(Odometry2D, names)
 """
 
 from functools import partial
-from typing import Any
+from typing import Annotated, Any, get_args, get_origin
 
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
+import yarpy
 from yarpy.kits.devices.network.model import Interface, Member
 from yarpy.kits.thrift.kind import kind_of
 from yarpy.kits.thrift.structure import default_of, same
@@ -19,9 +20,22 @@ def value(annotation: Any) -> Any:
     try:
         kind = kind_of(annotation, {})[0]
     except TypeError:
-        return annotation([[0.0]])
+        return _plain(annotation)
     made = default_of(kind)()
-    return annotation([[1.0]]) if made is None else made
+    return _plain(annotation) if made is None or isinstance(made, yarpy.Sound) else made
+
+
+def _plain(annotation: Any) -> Any:
+    """Something of a class with an encoding of its own."""
+    while get_origin(annotation) is Annotated:
+        annotation = get_args(annotation)[0]
+    if annotation is yarpy.Sound:
+        return yarpy.Sound([[1, 2], [3, 4]], 8000)
+    if annotation is yarpy.Image:
+        import numpy as np
+
+        return yarpy.Image(np.zeros((2, 3, 3), "u1"))
+    return annotation([[1.0]])
 
 
 class Recorder:
@@ -52,7 +66,7 @@ def check_every_member(interface: type[Interface], names: LocalNames) -> None:
         device = Recorder(interface)
         with (
             interface.serve("/device", device, 0.01, newer=newer, names=names),
-            interface.connect("/device", names=names) as client,
+            interface.connect("/device", timeout=HANG, names=names) as client,
         ):
             for each in interface.members.values():
                 assert each.doc, f"{each.name} has no docstring"

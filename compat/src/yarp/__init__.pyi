@@ -86,7 +86,10 @@ from yarp._mirror import ILocalization2D as ILocalization2D
 from yarp._mirror import IMap2D as IMap2D
 from yarp._mirror import INavigation2D as INavigation2D
 from yarp._mirror import IOdometry2D as IOdometry2D
+from yarp._mirror import IRGBDSensor as IRGBDSensor
 from yarp._mirror import ISimulatedWorld as ISimulatedWorld
+from yarp._mirror import ISpeechSynthesizer as ISpeechSynthesizer
+from yarp._mirror import ISpeechTranscription as ISpeechTranscription
 from yarp._motion_view import ICurrentControl as ICurrentControl
 from yarp._motion_view import IImpedanceControl as IImpedanceControl
 from yarp._motion_view import IPWMControl as IPWMControl

@@ -189,6 +189,32 @@ class ISimulatedWorld(Mirror, of=("World",)):
     """The objects of a simulator."""
 
 
+class ISpeechSynthesizer(Mirror, of=("SpeechSynthesizer",)):
+    """Somebody who speaks."""
+
+
+class ISpeechTranscription(Mirror, of=("SpeechTranscription",)):
+    """Somebody who understands."""
+
+
+class IRGBDSensor(Mirror, of=("DepthCamera",)):
+    """A camera that measures distances."""
+
+    def getImages(
+        self, colorFrame: Any, depthFrame: Any, colorStamp: Any = None, depthStamp: Any = None
+    ) -> bool:
+        """Read both pictures; they come with no stamps."""
+        return bool(self.getRgbImage(colorFrame) and self.getDepthImage(depthFrame))
+
+    def getRgbImage(self, rgbImage: Any, timeStamp: Any = None) -> bool:
+        """Read the newest picture; it comes with no stamp."""
+        return self._tell(lambda: _fill(rgbImage, yarpy.Image, self._board.colour()))
+
+    def getDepthImage(self, depthImage: Any, timeStamp: Any = None) -> bool:
+        """Read the newest distances, in metres; they come with no stamp."""
+        return self._tell(lambda: _fill(depthImage, yarpy.Image, self._board.depth()))
+
+
 class MirrorViews:
     """What a PolyDriver has of them."""
 
@@ -209,6 +235,18 @@ class MirrorViews:
 
     def viewIOdometry2D(self) -> IOdometry2D | None:
         found: IOdometry2D | None = self._view(IOdometry2D, "odometry")
+        return found
+
+    def viewISpeechSynthesizer(self) -> ISpeechSynthesizer | None:
+        found: ISpeechSynthesizer | None = self._view(ISpeechSynthesizer, "synthesize")
+        return found
+
+    def viewISpeechTranscription(self) -> ISpeechTranscription | None:
+        found: ISpeechTranscription | None = self._view(ISpeechTranscription, "transcribe")
+        return found
+
+    def viewIRGBDSensor(self) -> IRGBDSensor | None:
+        found: IRGBDSensor | None = self._view(IRGBDSensor, "depth")
         return found
 
     def viewILLM(self) -> ILLM | None:

@@ -17,8 +17,10 @@ from yarpy.kits.devices.interfaces import interfaces
 
 INTERFACES = interfaces()
 #: By the names of clients and of servers.
-CLIENTS = {each.NWC: each for each in INTERFACES.values()}
+CLIENTS = {each.NWC: each for each in INTERFACES.values() if each.NWC}
+CLIENTS |= {"JoypadControlClient": devices.Joypad, "RGBDSensorClient": devices.DepthCamera}
 SERVED = {each.NWS: each for each in INTERFACES.values()}
+SERVED |= {"JoypadControlServer": devices.Joypad, "AudioPlayerWrapper": devices.AudioPlayer}
 #: Clients with classes of their own.
 OWN: dict[str, Any] = {
     "battery_nwc_yarp": devices.Battery,
@@ -28,18 +30,24 @@ OWN: dict[str, Any] = {
 LOCAL: dict[str, Callable[[], Any]] = {
     "fakeBattery": devices.SimulatedBattery,
     "fakeChatBotDevice": devices.SimulatedChatBot,
+    "fakeDepthCamera": devices.SimulatedDepthCamera,
+    "fakeJoypad": devices.SimulatedJoypad,
     "fakeLLMDevice": devices.SimulatedLanguageModel,
     "fakeLocalizer": devices.SimulatedBase,
+    "fakeMicrophone": devices.SimulatedMicrophone,
     "fakeNavigation": devices.SimulatedBase,
     "fakeOdometry2D": devices.SimulatedBase,
     "fakeSerialPort": devices.SimulatedSerialPort,
     "fakeSimulatedWorld": devices.SimulatedWorld,
+    "fakeSpeaker": devices.SimulatedSpeaker,
+    "fakeSpeechSynthesizer": devices.SimulatedSynthesizer,
+    "fakeSpeechTranscription": devices.SimulatedTranscription,
     "map2DStorage": devices.MapStorage,
     "robotDescriptionStorage": devices.DescriptionStorage,
 }
 
 #: What says whose client it is.
-_REMOTES = ("remote", "server", "navigation_server")
+_REMOTES = ("remote", "server", "navigation_server", "remoteRpcPort", "RemoteRpcPort")
 _NAVIGATION = (
     ("navigation_server", "Navigation2D"),
     ("map_locations_server", "Map2D"),
@@ -83,6 +91,8 @@ def connect(device: str, text: Callable[[str, str], str], names: Any) -> Any:
     if device == "frameTransformClient":
         return devices.TransformClient(text("remote", "/frameTransformServer"), local, names=names)
     remote = next((text(each, "") for each in _REMOTES if text(each, "")), "")
+    # A camera with distances is named by its ports.
+    remote = remote.removesuffix("/rpc:i") if device.startswith("RGBD") else remote
     if not remote:
         raise yarpy.AddressError('the option "remote" says whose client it is: (remote /maps)')
     if device in OWN:

@@ -42,7 +42,8 @@ _MODULES = {
     "_struct": "Map2DLocation Map2DLocationVector Map2DPath Map2DArea Map2DObject OdometryData "
     "Pose6D ColorRGB LLM_Message LLMVector",
     "_place_view": "IBattery IFrameTransform",
-    "_mirror": "ILocalization2D IMap2D INavigation2D IOdometry2D ILLM ISimulatedWorld",
+    "_mirror": "ILocalization2D IMap2D INavigation2D IOdometry2D ILLM ISimulatedWorld "
+    "ISpeechSynthesizer ISpeechTranscription IRGBDSensor",
     "_resource_finder": "ResourceFinder",
     "_rf_module": "RFModule",
     "_thread": "Thread PeriodicThread RateThread Semaphore",

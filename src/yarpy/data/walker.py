@@ -29,6 +29,16 @@ _read_pair = Struct("<ii").unpack_from
 _read_sound = Struct("<10i").unpack_from
 
 
+def sound_size(view: Buffer) -> int:
+    """Return how many bytes the Sound takes whose header of 40 bytes this is, as YARP 3.9 has it.
+    Raises DecodeError."""
+    _, _, _, samples, one, channels, also, _, again, _ = _read_sound(view, 0)
+    if (one, also, again) != (1, 1, 1) or samples < 0 or channels < 0:
+        raise DecodeError("unknown element tag 0 at byte 8: not a Bottle")
+    size: int = 40 + 2 * samples * channels
+    return size
+
+
 class Walk(Protocol):
     """Finds the end of a message in a buffer that grows."""
 
@@ -39,7 +49,7 @@ class Walk(Protocol):
 
 
 class Walker:
-    """Finds the end of one Bottle (or of a Sound, which only looks like one).
+    """Finds the end of one Bottle (or of a Sound, which only looks like one, also within one).
 
     Call `advance` with everything received so far, again and again, until `done`. Every call
     returns the least number of bytes that the message can have; if that is more than have come,
@@ -133,6 +143,17 @@ class Walker:
                 if start + 4 > size:
                     return self._wait(pos, 3)
                 count = _read_i32(view, start)[0]
+                if kind == LIST and count == 4 and start != pos:
+                    if start + 8 > size:
+                        return self._wait(pos, 7)
+                    if _read_i32(view, start + 4)[0] == 0:
+                        if pos + 40 > size:
+                            return self._wait(pos, 35)
+                        self._owed -= 5
+                        left[-1] -= 1
+                        pos += sound_size(view[pos : pos + 40])
+                        self._check(pos)
+                        continue
             self._owed -= 5
             left[-1] -= 1
             pos = start + 4
@@ -174,10 +195,7 @@ class Walker:
         """A Sound announces a list of four and then has a 0 where no Bottle has one."""
         if size < 40:
             return 40
-        _, _, _, samples, one, channels, also, _, again, _ = _read_sound(view, 0)
-        if (one, also, again) != (1, 1, 1) or samples < 0 or channels < 0:
-            raise DecodeError("unknown element tag 0 at byte 8: not a Bottle")
-        self._pos = 40 + 2 * samples * channels
+        self._pos = sound_size(view)
         self._check(self._pos)
         self.done = self._pos <= size
         return self._pos

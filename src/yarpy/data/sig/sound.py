@@ -50,7 +50,7 @@ class Sound(Wired):
     #: samples per second of each channel
     frequency: int
 
-    def __init__(self, samples: ArrayLike, frequency: int = 16000) -> None:
+    def __init__(self, samples: ArrayLike = (), frequency: int = 16000) -> None:
         import numpy as np
 
         given = np.asarray(samples)

@@ -23,6 +23,8 @@ from typing import TYPE_CHECKING
 
 _WHERE = {
     "Area": "interfaces.place",
+    "AudioPlayer": "interfaces.audio",
+    "AudioRecorder": "interfaces.audio",
     "BATTERY": "battery.interface",
     "Battery": "battery.client",
     "BatteryServer": "battery.server",
@@ -31,6 +33,7 @@ _WHERE = {
     "ControlBoard": "control_board.client",
     "ControlBoardServer": "control_board.server",
     "ControlMode": "control_board.interface",
+    "DepthCamera": "interfaces.depth",
     "Description": "interfaces.world",
     "DescriptionStorage": "simulated.world",
     "Descriptions": "interfaces.world",
@@ -41,6 +44,8 @@ _WHERE = {
     "Grid": "interfaces.grid",
     "InteractionMode": "control_board.interface",
     "Interface": "network.model",
+    "Joypad": "interfaces.joypad",
+    "JoypadState": "interfaces.joypad",
     "LanguageModel": "interfaces.talk",
     "Laser": "laser.client",
     "LaserServer": "laser.server",
@@ -65,10 +70,18 @@ _WHERE = {
     "SimulatedBattery": "simulated.battery",
     "SimulatedCamera": "simulated.camera",
     "SimulatedChatBot": "simulated.talk",
+    "SimulatedDepthCamera": "simulated.depth_camera",
     "SimulatedJoints": "simulated.joints",
+    "SimulatedJoypad": "simulated.joypad",
     "SimulatedLanguageModel": "simulated.talk",
+    "SimulatedMicrophone": "simulated.audio",
     "SimulatedSerialPort": "simulated.serial",
+    "SimulatedSpeaker": "simulated.audio",
+    "SimulatedSynthesizer": "simulated.speech",
+    "SimulatedTranscription": "simulated.speech",
     "SimulatedWorld": "simulated.world",
+    "SpeechSynthesizer": "interfaces.speech",
+    "SpeechTranscription": "interfaces.speech",
     "Thing": "interfaces.place",
     "TransformClient": "transforms.client",
     "TransformServer": "transforms.server",
@@ -81,6 +94,8 @@ __all__ = [
     "BATTERY",
     "FEATURES",
     "Area",
+    "AudioPlayer",
+    "AudioRecorder",
     "Battery",
     "BatteryServer",
     "ChatBot",
@@ -88,6 +103,7 @@ __all__ = [
     "ControlBoard",
     "ControlBoardServer",
     "ControlMode",
+    "DepthCamera",
     "Description",
     "DescriptionStorage",
     "Descriptions",
@@ -97,6 +113,8 @@ __all__ = [
     "Grid",
     "InteractionMode",
     "Interface",
+    "Joypad",
+    "JoypadState",
     "LanguageModel",
     "Laser",
     "LaserServer",
@@ -121,10 +139,18 @@ __all__ = [
     "SimulatedBattery",
     "SimulatedCamera",
     "SimulatedChatBot",
+    "SimulatedDepthCamera",
     "SimulatedJoints",
+    "SimulatedJoypad",
     "SimulatedLanguageModel",
+    "SimulatedMicrophone",
     "SimulatedSerialPort",
+    "SimulatedSpeaker",
+    "SimulatedSynthesizer",
+    "SimulatedTranscription",
     "SimulatedWorld",
+    "SpeechSynthesizer",
+    "SpeechTranscription",
     "Thing",
     "TransformClient",
     "TransformServer",
@@ -150,7 +176,12 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.frame_grabber.client import FrameGrabber as FrameGrabber
     from yarpy.kits.devices.frame_grabber.interface import FEATURES as FEATURES
     from yarpy.kits.devices.frame_grabber.server import FrameGrabberServer as FrameGrabberServer
+    from yarpy.kits.devices.interfaces.audio import AudioPlayer as AudioPlayer
+    from yarpy.kits.devices.interfaces.audio import AudioRecorder as AudioRecorder
+    from yarpy.kits.devices.interfaces.depth import DepthCamera as DepthCamera
     from yarpy.kits.devices.interfaces.grid import Grid as Grid
+    from yarpy.kits.devices.interfaces.joypad import Joypad as Joypad
+    from yarpy.kits.devices.interfaces.joypad import JoypadState as JoypadState
     from yarpy.kits.devices.interfaces.localization import Localization2D as Localization2D
     from yarpy.kits.devices.interfaces.map2d import Map2D as Map2D
     from yarpy.kits.devices.interfaces.mobile_base import MobileBase as MobileBase
@@ -162,6 +193,8 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.interfaces.place import Place as Place
     from yarpy.kits.devices.interfaces.place import Thing as Thing
     from yarpy.kits.devices.interfaces.serial import SerialPort as SerialPort
+    from yarpy.kits.devices.interfaces.speech import SpeechSynthesizer as SpeechSynthesizer
+    from yarpy.kits.devices.interfaces.speech import SpeechTranscription as SpeechTranscription
     from yarpy.kits.devices.interfaces.talk import ChatBot as ChatBot
     from yarpy.kits.devices.interfaces.talk import LanguageModel as LanguageModel
     from yarpy.kits.devices.interfaces.talk import Line as Line
@@ -177,12 +210,20 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.multi_sensor.server import MultiSensorServer as MultiSensorServer
     from yarpy.kits.devices.network.model import Interface as Interface
     from yarpy.kits.devices.refusal import Refused as Refused
+    from yarpy.kits.devices.simulated.audio import SimulatedMicrophone as SimulatedMicrophone
+    from yarpy.kits.devices.simulated.audio import SimulatedSpeaker as SimulatedSpeaker
     from yarpy.kits.devices.simulated.base import SimulatedBase as SimulatedBase
     from yarpy.kits.devices.simulated.battery import SimulatedBattery as SimulatedBattery
     from yarpy.kits.devices.simulated.camera import SimulatedCamera as SimulatedCamera
+    from yarpy.kits.devices.simulated.depth_camera import (
+        SimulatedDepthCamera as SimulatedDepthCamera,
+    )
     from yarpy.kits.devices.simulated.joints import SimulatedJoints as SimulatedJoints
+    from yarpy.kits.devices.simulated.joypad import SimulatedJoypad as SimulatedJoypad
     from yarpy.kits.devices.simulated.map_storage import MapStorage as MapStorage
     from yarpy.kits.devices.simulated.serial import SimulatedSerialPort as SimulatedSerialPort
+    from yarpy.kits.devices.simulated.speech import SimulatedSynthesizer as SimulatedSynthesizer
+    from yarpy.kits.devices.simulated.speech import SimulatedTranscription as SimulatedTranscription
     from yarpy.kits.devices.simulated.talk import SimulatedChatBot as SimulatedChatBot
     from yarpy.kits.devices.simulated.talk import SimulatedLanguageModel as SimulatedLanguageModel
     from yarpy.kits.devices.simulated.world import DescriptionStorage as DescriptionStorage

@@ -39,6 +39,7 @@ from yarpy.data.value import (
     Float32,
     Vocab,
 )
+from yarpy.data.walker import sound_size
 from yarpy.data.yarp4 import FLOAT32_4, FLOAT64_4, to_yarp3
 from yarpy.errors import DecodeError, Truncated
 from yarpy.kits.thrift.kind import (
@@ -69,6 +70,9 @@ _UNPACK: Final = {tag: Packing("<" + letter).unpack_from for tag, (letter, _) in
 
 #: tags of YARP 4.0 to those of 3.x; one that it has no more to one that nobody has
 _NAMES: Final = {FLOAT64_4: FLOAT64, FLOAT32_4: FLOAT32, FLOAT32: 0xFF}
+
+#: how a Sound of YARP 3.9 begins, which is no Bottle
+_RAW_SOUND: Final = Packing("<iii").pack(LIST, 4, 0)
 
 _INTEGERS: Final = frozenset((INT8, INT16, INT32, INT64))
 _WHAT: Final = {
@@ -325,10 +329,14 @@ def _external(kind: External, cursor: Cursor, path: str, code: int | None) -> An
     start = cursor.at
     if code is not None or (kind.python and not reads_list(cursor, path)):
         raise _other(kind.name, cursor.tag(path) if code is None else code, cursor, path)
-    for _ in range(kind.size):
-        skip(cursor, path)
+    raw = bytes(cursor.data[start : start + 12]) == _RAW_SOUND
+    if raw:
+        cursor.take(sound_size(cursor.take(40, path)) - 40, path)
+    else:
+        for _ in range(kind.size):
+            skip(cursor, path)
     data = cursor.data[start : cursor.at]
-    if cursor.yarp4:
+    if cursor.yarp4 and not raw:
         data = to_yarp3(_PACK_PAIR(LIST, kind.size) + data)[8:]
     if kind.size != 1:
         data = _PACK_PAIR(LIST, kind.size) + data

@@ -42,6 +42,9 @@ Add = Callable[[Buffer], Any]
 OK: Final = 0x6B6F
 FAIL: Final = 0x6C696166
 
+#: what is no Bottle as 3.9 has it
+_SOUND: Final = "yarp::sig::Sound"
+
 _PAIR: Final = Packing("<ii").pack
 _I32: Final = Packing("<i").pack
 #: numbers of short lists are packed without numpy
@@ -63,7 +66,7 @@ def _put(kind: Kind, value: Any, add: Add, path: str, bottle: bool, depth: int) 
     elif isinstance(kind, MapOf):
         _put_map(kind, value, add, path, bottle, depth + 1)
     elif isinstance(kind, External):
-        add(external(kind, value, path))
+        add(external(kind, value, path, bottle))
     elif is_enum(kind):
         add(_I32(kind._base.code))
         add(enum_payload(kind, value, path))
@@ -222,9 +225,11 @@ def enum_payload(kind: Any, value: Any, path: str) -> bytes:
     return _number(base, value, path)
 
 
-def external(kind: External, value: Any, path: str) -> bytes:
+def external(kind: External, value: Any, path: str, bottle: bool = False) -> bytes:
     """Encode a type with an encoding of its own: one element that is a list, unless it says
-    otherwise."""
+    otherwise. `bottle`: a Sound, too, as YARP 4.0 has it."""
+    if bottle and kind.name == _SOUND and hasattr(value, "frequency"):
+        return b"".join(codec.encode(value.to_bottle("4.0")))
     try:
         data = b"".join(codec.encode(value))
     except (TypeError, ValueError, OverflowError) as error:

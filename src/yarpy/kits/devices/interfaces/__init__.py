@@ -13,8 +13,12 @@ if TYPE_CHECKING:
 
 #: Which module of this package has which interface.
 WHERE: Final = {
+    "AudioPlayer": "audio",
+    "AudioRecorder": "audio",
     "ChatBot": "talk",
+    "DepthCamera": "depth",
     "Descriptions": "world",
+    "Joypad": "joypad",
     "LanguageModel": "talk",
     "Localization2D": "localization",
     "Map2D": "map2d",
@@ -22,6 +26,8 @@ WHERE: Final = {
     "Navigation2D": "navigation",
     "Odometry2D": "mobile_base",
     "SerialPort": "serial",
+    "SpeechSynthesizer": "speech",
+    "SpeechTranscription": "speech",
     "World": "world",
 }
 

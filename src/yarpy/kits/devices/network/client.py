@@ -7,15 +7,18 @@ is fresh. Ports of the server that it has not are missed when they are used.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from contextlib import ExitStack
 from typing import Any, ClassVar, Final
 
+from yarpy.data.bottle import Bottle
 from yarpy.errors import LocalProtocolError, RemoteError, RemoteProtocolError
 from yarpy.kits.devices.closeable import local_prefix, prefix
 from yarpy.kits.devices.latest_message import LatestMessage
 from yarpy.kits.devices.network.functions import Status, functions_of
 from yarpy.kits.devices.network.model import Interface, Member
+from yarpy.kits.devices.network.words import question, results
 from yarpy.kits.devices.status import OK, reason
 from yarpy.kits.thrift.client import client_class
 from yarpy.kits.thrift.structure import Struct
@@ -45,6 +48,7 @@ class _Remote:
 
     members: ClassVar[dict[str, Member]]
     RPC: ClassVar[str]
+    WORDS: ClassVar[str]
 
     def __init__(
         self, remote: str, local: str, carrier: str, timeout: float, names: NameClient | None
@@ -54,7 +58,10 @@ class _Remote:
         self._carrier, self._timeout, self._names = carrier, timeout, names
         self._latest: dict[str, LatestMessage[Any]] = {}
         self._sinks: dict[str, Port] = {}
+        self._lock = threading.Lock()  # a stream is listened to once
         self._functions: Any = None
+        self._rpc: Any = None
+        self._in_words: bool | None = None  # whether it is asked in words; None: find out
         members = self.members.values()
         with ExitStack() as resources:
             self._open = resources
@@ -65,8 +72,10 @@ class _Remote:
                     )
                 )
                 self._functions = client_class(functions_of(_interface(type(self))))(rpc, TIMEOUT)
+                self._rpc = rpc
             for each in members:
-                if each.source and not each.function:
+                # What is asked by calls may never need the streams beside them.
+                if each.source and not each.function and self._functions is None:
                     self._listen(each)
             self._open = resources.pop_all()
 
@@ -92,6 +101,13 @@ class _Remote:
             )
         )
 
+    def _heard(self, each: Member) -> Any:
+        """The newest value of a stream, which is listened to from now on."""
+        with self._lock:
+            if each.name not in self._latest:
+                self._listen(each)
+        return self._latest[each.name].value()
+
     def _sink(self, each: Member) -> Port:
         port = self._sinks.get(each.name)
         if port is None:
@@ -103,6 +119,8 @@ class _Remote:
         return port
 
     def _ask(self, each: Member, values: tuple[Any, ...]) -> Any:
+        if each.words and self._speaks_in_words():
+            return self._say(each, values)
         try:
             answer = getattr(self._functions, each.function)(*values)
         except RemoteError:
@@ -115,6 +133,19 @@ class _Remote:
         if code != OK:
             raise LocalProtocolError(f'"{self.remote}" refuses {each.name}: {reason(code)}')
         found = tuple(getattr(answer, f"value{at}") for at in range(len(each.results)))
+        return found[0] if len(found) == 1 else found or None
+
+    def _speaks_in_words(self) -> bool:
+        """Return whether the server is of YARP 3, where it knows no Thrift."""
+        if self._in_words is None:
+            self._in_words = self._functions.remote_version() is None
+        return self._in_words
+
+    def _say(self, each: Member, values: tuple[Any, ...]) -> Any:
+        message = self._rpc.ask(question(each, values), TIMEOUT)
+        found = results(each, self.WORDS, message.as_(Bottle))
+        if found is None:
+            raise LocalProtocolError(f'"{self.remote}" refuses {each.name}: {reason("fail")}')
         return found[0] if len(found) == 1 else found or None
 
     def _put(self, each: Member, values: tuple[Any, ...]) -> None:
@@ -155,7 +186,7 @@ def _method(each: Member) -> Any:
     elif each.source:
 
         def function(self: _Remote, *given: Any, **named: Any) -> Any:
-            return self._latest[each.name].value()
+            return self._heard(each)
 
     else:
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import inspect
 import sys
+from collections.abc import Callable
 from typing import Any, ClassVar, Final
 
 from yarpy.data.value import Buffer
@@ -38,8 +39,16 @@ class Functions(DeviceService):
     #: the classes of answers by the names of members; None where there is no status
     _answers: ClassVar[dict[str, type[Any] | None]] = {}
 
+    #: answers a message in words (`network.words`), or returns None: it is not in words
+    said: Callable[[Any], Any] | None = None
+
     def __init__(self, perform: Any) -> None:
         self._perform = perform
+
+    def __call__(self, message: Any) -> Any:
+        """Answer a message."""
+        found = None if self.said is None else self.said(message)
+        return super().__call__(message) if found is None else found
 
 
 class StatusEnd:
@@ -112,6 +121,8 @@ def _made(interface: type[Interface]) -> type[Functions]:
         function = vars(made)[name]
         if answers[function.member] is not None:
             made._methods[name] = StatusMethod(name, function, known._names)
+        if interface.members[function.member].whole:
+            made._methods[name].words = [name]
     return made
 
 

@@ -13,6 +13,10 @@
         @taken("flash:i", Flash)                        <name>/flash:i reads Flash(es) for it
         def flash(self, seconds: float) -> None: ...
 
+        @sent("colour:o")                               <name>/colour:o gets what it returns
+        @call("find_colour_RPC", cpp="findColour")
+        def find_colour(self, name: str) -> Colour: ...
+
     with Lamp.serve("/lamp", MyLamp()), Lamp.connect("/lamp") as lamp:
         lamp.dim(0.5)
 
@@ -20,7 +24,7 @@ Rules: annotations are those of Thrift (`yarpy.kits.thrift`); a tuple is several
 none. In front of the results travels the status of the call, as each version of YARP spells it. A
 struct that C++ writes by itself is `Nested`. `cpp` is the name of the method in C++, for `compat`.
 What is published but no call is read from that port by clients; what is taken but no call is
-written there.
+written there. None, and a sound of no length, is not sent.
 
 Source: the interfaces of YARP's devices, and how Thrift spells them.
 """
@@ -43,14 +47,27 @@ _FACTS: Final = "_device_facts"
 
 
 def call(
-    function: str, *, cpp: str = "", status: bool = True, boxed: bool = False
+    function: str,
+    *,
+    cpp: str = "",
+    status: bool = True,
+    boxed: bool = False,
+    whole: bool = False,
+    words: str = "",
 ) -> Callable[[F], F]:
     """Mark a member that is called by this function of the network.
 
     status: False where no status stands in front of the results. boxed: YARP 4 has the status in a
-    list of its own where there are no results.
+    list of its own where there are no results. whole: the name travels as one word. words: how
+    programs of YARP 3 ask for it, where they do not by Thrift (`network.words`).
     """
-    return _mark(function=function, cpp=cpp, status=status, boxed=boxed)
+    facts = {"function": function, "cpp": cpp, "status": status, "boxed": boxed}
+    return _mark(**facts, whole=whole, words=tuple(words.split()))
+
+
+def sent(port: str) -> Callable[[F], F]:
+    """Mark a member whose result, whenever somebody asks for it, is also sent by a port."""
+    return _mark(copy=port)
 
 
 def published(port: str, cpp: str = "") -> Callable[[F], F]:
@@ -83,9 +100,17 @@ class Member:
     cpp: str = ""
     status: bool = True
     boxed: bool = False
+    whole: bool = False
+    words: tuple[str, ...] = ()
+    copy: str = ""
     source: str = ""
     sink: str = ""
     sink_kind: type[Any] | None = None
+
+    @property
+    def has_sink(self) -> bool:
+        """True if a port is read for it; its name behind the prefix may be empty."""
+        return self.sink_kind is not None
 
     def arguments(self, given: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
         """All arguments in their order. TypeError as a call of a function raises it."""
@@ -104,6 +129,8 @@ class Interface:
     #: the view in C++, and its port for calls, behind the prefix: "" is the prefix itself
     VIEW: ClassVar[str] = ""
     RPC: ClassVar[str] = "rpc"
+    #: how YARP 3 answers where it is asked by words: `is` or `ok`, see `network.words`
+    WORDS: ClassVar[str] = ""
     #: the members, by name
     members: ClassVar[dict[str, Member]] = {}
 

@@ -2,7 +2,7 @@
 
 Rules: the device is used by one thread at a time. What it lacks, and what it raises, is told by the
 status of the answer; the log says why. Nothing is read while nobody listens. Readers of YARP 4 get
-floats as it spells them.
+floats as it spells them, and sounds. (Those of 3.10 to 3.12 are told by `newer` alone.)
 """
 
 from __future__ import annotations
@@ -12,8 +12,11 @@ import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
+from reprlib import repr as shown
 from typing import Any
 
+from yarpy.data.bottle import Bottle
+from yarpy.data.sig.sound import Sound
 from yarpy.data.stamp import Stamp
 from yarpy.data.yarp4 import to_yarp4
 from yarpy.errors import DecodeError
@@ -21,6 +24,7 @@ from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.closeable import Closeable, prefix
 from yarpy.kits.devices.network.functions import Status, functions_of
 from yarpy.kits.devices.network.model import Interface, Member
+from yarpy.kits.devices.network.words import answer, arguments, asked
 from yarpy.kits.devices.publisher import Publisher
 from yarpy.kits.devices.refusal import Complaints, Refused
 from yarpy.kits.devices.status import FAILED, MISSING, OK, older, oldest
@@ -51,6 +55,7 @@ class Server(Closeable):
         self.interface = interface
         self.name = name = prefix(name)
         self.device = device
+        self._newer = newer
         self._complain = Complaints(name)
         self._access = Access(device, 0, self._complain, threading.Lock())
         if not self._access.offers(interface.members):
@@ -63,15 +68,21 @@ class Server(Closeable):
                 functions = functions_of(interface)(self._perform)
                 functions.before = older if newer else oldest
                 functions._yarp = (3, 12, 0) if newer else (3, 10, 0)  # type: ignore[misc]
+                if interface.WORDS:
+                    functions.said = self._said
                 rpc = f"{name}/{interface.RPC}".rstrip("/")
                 resources.enter_context(RpcServer(rpc, functions, names=names))
             self._sources: list[tuple[Member, Dialects]] = []
+            self._copies: dict[str, Dialects] = {}
             for each in members:
-                if each.sink:
+                if each.copy:
+                    copies = BufferedPort(f"{name}/{each.copy}", names=names)
+                    self._copies[each.name] = Dialects(resources.enter_context(copies))
+            for each in members:
+                if each.has_sink:
                     take = partial(self._take, each)
-                    resources.enter_context(
-                        BufferedPort(f"{name}/{each.sink}", callback=take, names=names)
-                    )
+                    sink = f"{name}/{each.sink}".rstrip("/")
+                    resources.enter_context(BufferedPort(sink, callback=take, names=names))
                 if each.source:
                     port = BufferedPort(f"{name}/{each.source}", names=names)
                     resources.enter_context(port)
@@ -102,12 +113,31 @@ class Server(Closeable):
         found = self._access.ask(each.name, *arguments)
         if not each.results:
             return ()
-        if len(each.results) == 1:
-            return (found,)
-        values = tuple(found)
+        values = (found,) if len(each.results) == 1 else tuple(found)
         if len(values) != len(each.results):
             raise Refused(f"{each.name} gives {len(values)} values, not {len(each.results)}")
+        readers = self._copies.get(each.name)
+        if readers:
+            self._send(readers, values[0] if len(values) == 1 else Bottle(values), None)
+        if self._newer:
+            return tuple(_of_3_10(value) if isinstance(value, Sound) else value for value in values)
         return values
+
+    def _said(self, message: Message) -> Bottle | None:
+        """Answer a request in words; None if it is none."""
+        try:
+            request = message.as_(Bottle)
+        except DecodeError:
+            return None
+        each = asked(self.interface.members.values(), request)
+        if each is None:
+            return None
+        found: tuple[Any, ...] | None = None
+        try:
+            found = self._results(each, arguments(each, request))
+        except (Refused, DecodeError) as error:
+            log.info("%s: %s: %s", self.name, shown([*request]), error)
+        return answer(each, self.interface.WORDS, found)
 
     def _take(self, each: Member, message: Message) -> None:
         kind: Any = each.sink_kind
@@ -115,7 +145,7 @@ class Server(Closeable):
             found = message.as_(kind)
             fields = isinstance(found, Struct)
             values = [getattr(found, name) for name in kind._attributes] if fields else [found]
-            self._access.ask(each.name, *each.arguments(tuple(values), {}))
+            self._results(each, each.arguments(tuple(values), {}))
         except (DecodeError, Refused) as error:
             self._complain(each.sink, error)
 
@@ -129,8 +159,27 @@ class Server(Closeable):
             except Refused as refusal:
                 self._complain(each.source, refusal)
                 continue
+            if found is None or getattr(found, "length", 1) == 0:
+                continue
             stamp = stamp or self._next_stamp()
-            _send(readers, found, stamp)
+            self._send(readers, found, stamp)
+
+    def _send(self, readers: Dialects, found: Any, stamp: Stamp | None) -> None:
+        older_form: Callable[[], object] = lambda: found  # noqa: E731
+        newer_form = older_form
+        if isinstance(found, Sound):
+            newer_form = lambda: found.to_bottle("4.0")  # noqa: E731
+            if self._newer:
+                older_form = lambda: found.to_bottle("3.10")  # noqa: E731
+        elif isinstance(found, Struct):
+            data = found.to_wire()[0]
+            older_form, newer_form = lambda: Encoded(data), lambda: Encoded(to_yarp4(data))
+            if not self._newer and hasattr(found, "older"):
+                older_form = found.older
+        elif isinstance(found, Bottle):
+            data = found.to_bytes()
+            older_form, newer_form = lambda: Encoded(data), lambda: Encoded(to_yarp4(data))
+        readers.write(older_form, newer_form, stamp)
 
     def _next_stamp(self) -> Stamp:
         self._stamp = self._stamp.next(time.time())
@@ -141,10 +190,16 @@ def _status(answer: type[Any], code: str) -> Any:
     return answer(code) if answer is Status else answer(Status(code))
 
 
-def _send(readers: Dialects, found: Any, stamp: Stamp) -> None:
-    older_form: Callable[[], object] = lambda: found  # noqa: E731
-    newer_form = older_form
-    if isinstance(found, Struct):
-        data = found.to_wire()[0]
-        older_form, newer_form = lambda: Encoded(data), lambda: Encoded(to_yarp4(data))
-    readers.write(older_form, newer_form, stamp)
+def _of_3_10(sound: Sound) -> Sound:
+    """The same sound, which goes over the network as YARP 3.10 to 3.12 have it."""
+    return _Sound310(sound.array, sound.frequency)
+
+
+class _Sound310(Sound):
+    """A Sound in the form of YARP 3.10."""
+
+    __slots__ = ()
+
+    def to_wire(self) -> tuple[bytes | memoryview, ...]:
+        """A Bottle."""
+        return (self.to_bottle("3.10").to_bytes(),)

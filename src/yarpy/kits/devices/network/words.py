@@ -1,0 +1,161 @@
+"""Words: how programs of YARP 3 ask for the members that have some, instead of by Thrift.
+
+    WORDS = "is"    [visd] [get] [fov]            [visd] [fov] [is] 57.0 43.0
+                    [visd] [set] [fov] 60.0 45.0  [visd] [set] 1
+                    [fgc] [has] [feat] 3          [fgc] [has] [feat] 1952540006 1
+                    [fgc] [set] [feat] 3 0.5      [nak]
+    WORDS = "ok"    [ijpc] [get] [butn] [val] 2   [ok] 0.5
+
+Rules: pure functions of lists. The second word is the verb: `get`, `set` or `has`. What fails is
+`[fail]`, or `[visd] [set] 0`. A struct is its fields; a list of structs is how many there are, then
+all fields; a table of properties is one list. Results that are not sent have their defaults.
+
+Source: RGBDSensor_nws_yarp and JoypadControlServer of YARP 3.9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Annotated, Any, Final, get_args, get_origin
+
+from yarpy.data.bottle import Bottle, Property
+from yarpy.data.sig.matrix import Matrix
+from yarpy.data.value import Vocab, vocab_code
+from yarpy.data.writer import dict_elements
+from yarpy.errors import DecodeError
+from yarpy.kits.devices.kind import word
+from yarpy.kits.devices.network.model import Member
+from yarpy.kits.thrift.structure import Struct
+
+_IS: Final = Vocab("is")
+_OK: Final = Vocab("ok")
+FAIL: Final = Vocab("fail")
+_NAK: Final = Vocab("nak")
+
+
+def asked(members: Iterable[Member], request: Sequence[Any]) -> Member | None:
+    """Return the member that a request is about; None if that is none."""
+    said = tuple(word(each) for each in request[:4])
+    found = [each for each in members if each.words and said[: len(each.words)] == each.words]
+    return max(found, key=lambda each: len(each.words), default=None)
+
+
+def arguments(each: Member, request: Sequence[Any]) -> tuple[Any, ...]:
+    """Return the arguments in a request for a member. DecodeError."""
+    elements = _Elements(request[len(each.words) :])
+    takes = [*each.signature.parameters.values()][1:]
+    return tuple(elements.take(one.annotation) for one in takes)
+
+
+def question(each: Member, values: Sequence[Any]) -> Bottle:
+    """Return the request for a member."""
+    return Bottle([*map(Vocab, each.words), *_flat(values)])
+
+
+def answer(each: Member, form: str, results: Sequence[Any] | None) -> Bottle:
+    """Return what is answered; `results` is None where it failed."""
+    verb = each.words[1]
+    head = [Vocab(one) for one in each.words]
+    if form == "ok":
+        return Bottle([FAIL] if results is None else [_OK, *_flat(results)])
+    if verb == "set":
+        if head[0] == "fgc":
+            return Bottle([FAIL if results is None else _NAK])
+        return Bottle([*head[:2], int(results is not None)])
+    if results is None:
+        return Bottle([FAIL])
+    if verb == "has":
+        return Bottle([*head[:3], vocab_code(each.words[2].encode()), *_flat(results)])
+    return Bottle([head[0], *head[2:], _IS, *_flat(results)])
+
+
+def results(each: Member, form: str, found: Sequence[Any]) -> tuple[Any, ...] | None:
+    """Return the results in an answer; None if it failed. DecodeError."""
+    verb = each.words[1]
+    first = word(found[0]) if found else ""
+    if first == "fail":
+        return None
+    if form == "ok":
+        begin = 1
+    elif verb == "set":
+        return None if first != "nak" and (len(found) < 3 or not found[2]) else ()
+    else:
+        begin = 4 if verb == "has" else len(each.words)
+    elements = _Elements(found[begin:])
+    return tuple(elements.take(annotation, True) for annotation in each.results)
+
+
+def _flat(values: Iterable[Any]) -> list[Any]:
+    """Values as elements of a Bottle."""
+    found: list[Any] = []
+    for each in values:
+        if isinstance(each, bool):
+            found.append(int(each))
+        elif isinstance(each, Struct):
+            found += _flat(getattr(each, name) for name in type(each)._attributes)
+        elif isinstance(each, Matrix):
+            found += Bottle.from_bytes(b"".join(each.to_wire()))
+        elif isinstance(each, dict):
+            found.append(Bottle(dict_elements(Property(each))))
+        elif isinstance(each, list):
+            found += [len(each), *_flat(each)]
+        else:
+            found.append(each)
+    return found
+
+
+class _Elements:
+    """Elements of a Bottle, one after the other."""
+
+    def __init__(self, elements: Sequence[Any]) -> None:
+        self._elements = [*elements]
+
+    def take(self, annotation: Any, may_miss: bool = False) -> Any:
+        """Take the value of an annotation; may_miss: its default if nothing is left."""
+        while get_origin(annotation) is Annotated:
+            annotation = get_args(annotation)[0]
+        if get_origin(annotation) is list:
+            return [self.take(get_args(annotation)[0]) for _ in range(self._count())]
+        if isinstance(annotation, type) and issubclass(annotation, Struct):
+            if may_miss and not self._elements:
+                return annotation()
+            made = annotation()
+            for name in annotation._attributes:
+                setattr(made, name, self._like(getattr(made, name)))
+            return made
+        if annotation is Matrix:
+            rows, columns, values = (self._next() for _ in range(3))
+            return Matrix.from_wire(Bottle([rows, columns, values]).to_bytes())
+        if may_miss and not self._elements:
+            return annotation()
+        if annotation is Property:
+            pairs = self._next()
+            return Property.from_bytes(Bottle(pairs if isinstance(pairs, list) else []).to_bytes())
+        return self._like(annotation())
+
+    def _like(self, default: Any) -> Any:
+        """Take a value of the kind of this one."""
+        found = self._next()
+        if isinstance(default, str):
+            return str.__str__(found) if isinstance(found, str) else str(found)
+        if isinstance(default, bool):
+            return bool(found) and word(found) != "fail"
+        if isinstance(found, str):
+            if isinstance(default, int) and isinstance(found, Vocab):
+                return found.code
+            raise DecodeError(f"expected a number, got {found[:40]!r}")
+        try:
+            return type(default)(found)
+        except (TypeError, ValueError, OverflowError):
+            raise DecodeError(f"expected a number, got {found!r:.40}") from None
+
+    def _count(self) -> int:
+        count = self._like(0)
+        if not 0 <= count <= len(self._elements):
+            raise DecodeError(f"{count} are announced, {len(self._elements)} elements are there")
+        return int(count)
+
+    def _next(self) -> Any:
+        if not self._elements:
+            raise DecodeError("the request or answer is incomplete")
+        return self._elements.pop(0)

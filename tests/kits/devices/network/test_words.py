@@ -1,0 +1,62 @@
+"""Words of YARP 3: requests and answers as C++ has them, and what is refused."""
+
+import pytest
+
+from yarpy.data.bottle import Bottle
+from yarpy.errors import DecodeError
+from yarpy.kits.devices.interfaces.depth import DepthCamera
+from yarpy.kits.devices.interfaces.joypad import Joypad, Point
+from yarpy.kits.devices.network import words
+from yarpy.kits.devices.network.model import Member
+
+DEPTH, PAD = DepthCamera.members, Joypad.members
+
+
+@pytest.mark.parametrize(
+    ("each", "form", "values", "request_", "results", "answer"),
+    [
+        (PAD["button_count"], "ok", (), "[ijpc] [get] [butn] [cnt]", (4,), "[ok] 4"),
+        (PAD["button"], "ok", (2,), "[ijpc] [get] [butn] [val] 2", (0.5,), "[ok] 0.5"),
+        (PAD["trackball"], "ok", (0,), "[ijpc] [get] [trbl] [val] 0", (Point(1.0, 2.0),),
+         "[ok] 1.0 2.0"),
+        (DEPTH["depth_width"], "is", (), "[visd] [get] [w]", (320,), "[visd] [w] [is] 320"),
+        (DEPTH["mirror_depth"], "is", (True,), "[visd] [set] [mirr] 1", (), "[visd] [set] 1"),
+        (DEPTH["push"], "is", (3,), "[fgc] [set] [onep] 3", (), "[nak]"),
+        (DEPTH["clip_planes"], "is", (), "[visd] [get] [clip]", (0.2, 8.0),
+         "[visd] [clip] [is] 0.2 8.0"),
+    ],
+)  # fmt: skip
+def test_both_ways(
+    each: Member, form: str, values: tuple[object, ...], request_: str, results: tuple[object, ...],
+    answer: str,
+) -> None:  # fmt: skip
+    request = words.question(each, values)
+    assert request == Bottle.from_text(request_)
+    members = [*(PAD if form == "ok" else DEPTH).values()]
+    assert words.asked(members, request) is each
+    assert words.arguments(each, request) == values
+    found = words.answer(each, form, results)
+    assert found == Bottle.from_text(answer)
+    assert words.results(each, form, found) == results
+    failed = words.answer(each, form, None)
+    assert words.results(each, form, failed) is None
+
+
+def test_nobody_is_meant() -> None:
+    for text in ("[ijpc]", "[visd] [get]", "[visd] [get] [bogu]", "hello", "1 2 3", "[get] [axis]"):
+        assert words.asked(DEPTH.values(), Bottle.from_text(text)) is None
+
+
+@pytest.mark.parametrize("text", ["[fgc] [get] [feat]", "[fgc] [get] [feat] hello"])
+def test_bad_arguments(text: str) -> None:
+    with pytest.raises(DecodeError):
+        words.arguments(DEPTH["feature"], Bottle.from_text(text))
+
+
+def test_bad_answers() -> None:
+    with pytest.raises(DecodeError):
+        words.results(DEPTH["depth_width"], "is", Bottle.from_text("[visd] [w] [is] hello"))
+    with pytest.raises(DecodeError):
+        words.results(DEPTH["configurations"], "is", Bottle.from_text("[visr] [conf] [is] 900"))
+    # A server that says less than others.
+    assert words.results(DEPTH["clip_planes"], "is", Bottle([])) == (0.0, 0.0)
