@@ -151,7 +151,7 @@ class Walker:
                             return self._wait(pos, 35)
                         self._owed -= 5
                         left[-1] -= 1
-                        pos += sound_size(view[pos : pos + 40])
+                        pos += sound_size(bytes(view[pos : pos + 40]))
                         self._check(pos)
                         continue
             self._owed -= 5

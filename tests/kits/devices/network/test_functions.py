@@ -2,10 +2,13 @@
 
 import pytest
 
+import yarpy
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
+from yarpy.kits.devices.interfaces.audio import AudioPlayer
 from yarpy.kits.devices.interfaces.mobile_base import MobileBase
 from yarpy.kits.devices.interfaces.place import Place
+from yarpy.kits.devices.interfaces.speech import SpeechSynthesizer, SpeechTranscription
 from yarpy.kits.devices.network.functions import Status, functions_of
 from yarpy.kits.devices.network.model import Interface, call
 from yarpy.kits.devices.status import oldest
@@ -102,6 +105,39 @@ def test_what_is_written() -> None:
     assert oldest(alone) == words("00010000 01000000 09000000 6661696c")
     assert SERVICE._methods["flush"].answer(3) == words("00010000 01000000 01000000 03000000")
     assert oldest(SERVICE._methods["flush"].answer(3)) == SERVICE._methods["flush"].answer(3)
+
+
+HEARD = yarpy.Sound([[1, 2, 3]], 8000)
+
+
+@pytest.mark.parametrize("form", ["3.9", "3.5", "3.10", "4.0"])
+def test_sounds_of_each_version(form: str) -> None:
+    """An answer with a sound, also byte by byte: that of 3.9 is no Bottle."""
+    sound = HEARD.to_wire()[0] if form == "3.9" else HEARD.to_bottle(form).to_bytes()
+    status = "09000000 6f6b0000" if form != "4.0" else "00010000 01000000 09000000 6f6b0000"
+    data = words(f"00010000 02000000 | {status}") + bytes(sound)
+    method = functions_of(SpeechSynthesizer)._methods["synthesize"]
+    assert method.read_answer(data).value0 == HEARD
+    ending = method.ending(1 << 20)
+    for length in range(len(data)):
+        assert length < ending.advance(data[:length]) <= len(data) and not ending.done
+    assert ending.advance(data + b"more") == len(data) and ending.done
+
+
+def test_sounds_in_questions_and_answers() -> None:
+    method = functions_of(SpeechTranscription)._methods["transcribe"]
+    asked = bytes(method.ask(HEARD))
+    assert asked.endswith(bytes(HEARD.to_wire()[0]))
+    at = len(asked) - len(HEARD.to_wire()[0])
+    assert method.read_arguments(asked, at) == (HEARD,)
+    newer = bytes(method.yarp4_ask((HEARD,)))
+    assert newer.endswith(HEARD.to_bottle("4.0").to_bytes())
+    assert method.read_arguments(newer, at) == (HEARD,)
+
+
+def test_a_name_that_is_one_word() -> None:
+    asked = functions_of(AudioPlayer)._methods["sw_audio_gain"].ask(0.5)
+    assert Bottle.from_bytes(asked) == ["sw_audio_gain", 0.5]
 
 
 def test_a_request() -> None:
