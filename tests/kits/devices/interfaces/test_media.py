@@ -1,4 +1,4 @@
-"""What devices exchange of sight and sound."""
+"""Texts, states and sizes that devices exchange."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What devices exchange of sight and sound, as annotations; and the sizes of buffers.
+"""Sounds, images and tables that devices exchange, as annotations; and the sizes of buffers.
 
 Source: yarp::sig of YARP 3.9 to 4.0.
 """
@@ -18,7 +18,7 @@ Transform = Annotated[yarpy.Matrix, External("yarp::sig::Matrix", python="yarpy.
 
 
 class Text(Struct):
-    """What is said; several words are one text."""
+    """A text; several words are one."""
 
     text: str = ""
 
@@ -38,8 +38,8 @@ class AudioSize(Struct):
 
 
 class AudioStatus(Struct):
-    """Whether a recorder or player is at work, and the samples in its buffer, at present and at
-    most."""
+    """The state of a recorder or player: is it at work, and how many samples are in its buffer, at
+    present and at most."""
 
     enabled: bool = False
     current: size_t = 0
