@@ -16,7 +16,7 @@ LETTER = 800
 
 
 class _Speaker:
-    """What both have: a language."""
+    """The language that both have."""
 
     def __init__(self) -> None:
         self._language = "auto"
