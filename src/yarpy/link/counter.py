@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import asdict, dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 _SMOOTHING = 1 / 16  # the gain RFC 3550 uses for jitter
 SUMMED: Final = ("messages", "bytes", "replaced", "drops", "unconfirmed")
@@ -73,7 +73,17 @@ class Counter:
         return {**found, "rate": self.rate}
 
 
-_State: TypeAlias = tuple[tuple[int, ...], tuple[tuple[Counter, int], ...]]
+class _State:
+    """The sums, and the last counters with drops that these do not include.
+
+    An object, not a tuple: compiled code keeps a tuple as a plain value, which is never the same.
+    """
+
+    __slots__ = ("last", "sums")
+
+    def __init__(self, sums: tuple[int, ...], last: tuple[tuple[Counter, int], ...]) -> None:
+        self.sums = sums
+        self.last = last
 
 
 class Past:
@@ -85,28 +95,29 @@ class Past:
     """
 
     def __init__(self) -> None:
-        # The sums, and the last counters with drops that these do not include: replaced as one.
-        self._state: _State = ((0,) * len(SUMMED), ())
+        self._state = _State((0,) * len(SUMMED), ())  # replaced as one
 
     def add(self, counter: Counter, lost: int = 0) -> None:
         """A connection has ended; `lost` are drops that its counter does not include. Once is
         enough."""
         while True:
             state = self._state
-            sums, last = state
+            sums, last = state.sums, state.last
             if any(one is counter for one, _ in last):
                 return
             last = (*last, (counter, lost))
             if len(last) > KEEP:
                 sums, last = _sum(sums, *last[0]), last[1:]
+            replaced = _State(sums, last)
             if self._state is state:  # else a signal handler has added another one meanwhile
-                self._state = sums, last
+                self._state = replaced
                 return
 
     def as_dict(self) -> dict[str, int]:
         """The sums by name."""
-        sums, last = self._state
-        for counter, lost in last:
+        state = self._state
+        sums = state.sums
+        for counter, lost in state.last:
             sums = _sum(sums, counter, lost)
         return dict(zip(SUMMED, sums, strict=True))
 
