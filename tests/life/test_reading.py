@@ -51,7 +51,7 @@ def signalled(port: Port, source: Port, act: Callable[[], object]) -> Iterator[N
             act()
             return
         for number in range(50):
-            source.write(["more", number])
+            source.write(["more", number], timeout=0.0)  # who reads is the frame beneath
         pause *= 1.5
         signal.setitimer(signal.ITIMER_REAL, pause)
 

@@ -70,7 +70,12 @@ def watch() -> Iterator[ServerWatch]:
 
 def hub(client: Client) -> SimpleNamespace:
     """What is looked at of a port."""
-    registration = SimpleNamespace(type="", describe=lambda names: names.said.append("describe"))
+    registration = SimpleNamespace(
+        type="",
+        registered=True,
+        describe=lambda names: names.said.append("describe"),
+        give_back=lambda: client.said.append("give back"),
+    )
     contact = yarpy.Contact("tcp", "/port", "127.0.0.1", 10002)
     return SimpleNamespace(
         name="/port",
@@ -199,3 +204,25 @@ def test_a_server_reached_too_late_is_left(client: Client, watch: ServerWatch) -
     assert not server.returned(ours)
     assert theirs.recv(1) == b""
     theirs.close()
+
+
+def test_a_port_without_a_name_is_not_registered(watch, client):
+    """It was, a second after it had asked for another one, and nobody took its name back."""
+    nameless = hub(client)
+    nameless.registration.registered = False
+    client.known.clear()
+    settle(watch, [nameless])
+    assert client.said == []
+
+
+def test_a_port_that_closes_while_it_is_registered_gives_the_name_back(watch, client):
+    closing = hub(client)
+    client.known.clear()
+
+    def describe(names):
+        names.said.append("describe")
+        closing.life.closing = True
+
+    closing.registration.describe = describe
+    settle(watch, [closing])
+    assert client.said == ["register /port", "describe", "give back"]

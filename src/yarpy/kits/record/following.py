@@ -120,10 +120,10 @@ class Following:
         there = self._connected()
         return [name for name in self._wanted.names if name not in there]
 
-    def close(self) -> None:
-        """Look no more."""
+    def close(self, timeout: float | None = None) -> None:
+        """Look no more; wait so many seconds for a look that has begun, None: until it is over."""
         self._closing.set()
-        self._thread.join()
+        self._thread.join(timeout)
 
     def _run(self) -> None:
         while not self._closing.is_set():

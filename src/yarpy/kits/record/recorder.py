@@ -12,6 +12,7 @@ so a kill or a power cut costs no more than a second or so. Whatever is odd is n
 from __future__ import annotations
 
 import json
+import math
 import platform
 import threading
 import time
@@ -21,7 +22,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final, Self
 
-from yarpy import __version__
+from yarpy import __version__, linger
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.backlog import Backlog
 from yarpy.kits.record.batch import Batch
@@ -134,6 +135,7 @@ class Recorder:
         self._writing.start()
         self._syncing.start()
         self._following = Following(self._port, wanted, carrier, names, tell)
+        linger.add(self, self.close)
 
     # -- what people want to know ------------------------------------------------------------------
 
@@ -392,18 +394,31 @@ class Recorder:
 
     # -- the end -----------------------------------------------------------------------------------
 
-    def close(self) -> None:
-        """Write what has come, and finish the file. What could not be written is in `failure`."""
+    def close(self, timeout: float | None = None) -> None:
+        """Write what has come, and finish the file. What could not be written is in `failure`.
+
+        timeout: seconds that all of it may take, None: as many as the disk needs. It may be called
+        again, and goes on where Ctrl-C has cut it short.
+        """
+        until = math.inf if timeout is None else time.monotonic() + timeout
         if not self._closing.is_set():
-            self._following.close()
-            self._port.close()
+            self._following.close(_left(until, 1 / 4))
+            self._port.close(_left(until, 1 / 2))
             self._closing.set()
-            self._intake.wake()
-        self._writing.join()
-        self._syncing.join()
+        self._intake.wake()
+        for thread in (self._writing, self._syncing):
+            thread.join(_left(until))
+        if self._writing.is_alive():
+            self._end(f"{self._output.path} is not finished: the disk takes too long")
+        linger.remove(self)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *details: object) -> None:
         self.close()
+
+
+def _left(until: float, share: float = 1.0) -> float | None:
+    """Return that share of the seconds until a moment of `time.monotonic()`; None without one."""
+    return None if until == math.inf else max(0.0, until - time.monotonic()) * share

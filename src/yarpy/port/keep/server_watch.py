@@ -65,18 +65,21 @@ class ServerWatch:
 
     def _register_again(self, client: YarpNameClient, describe: bool) -> None:
         for hub in self._hubs:
-            if hub.life.closing or client not in _servers(hub.names):
-                continue
+            registration = hub.registration
+            if hub.life.closing or not registration.registered or client not in _servers(hub.names):
+                continue  # a port without a name of its own is in no list
             try:
                 known = client.query(hub.name)
                 contact = hub.contact
                 if known is None or (known.host, known.port) != (contact.host, hub.port):
                     client.register(
-                        hub.name, "tcp", contact.host, hub.port, hub.registration.type or None
+                        hub.name, "tcp", contact.host, hub.port, registration.type or None
                     )
                 elif not describe:
                     continue
-                hub.registration.describe(client)
+                registration.describe(client)
+                if hub.life.closing:  # meanwhile: it may have given its name back before this
+                    registration.give_back()
             except YarpError as error:
                 log.warning("%s could not be registered again: %s", hub.name, error)
 

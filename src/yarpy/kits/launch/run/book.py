@@ -113,8 +113,10 @@ class Book:
             self.path(id_, "at").write_text(str(at))
 
     def close(self) -> None:
-        """Let another server have it."""
-        os.close(self._lock)
+        """Let another server have it; idempotent."""
+        lock, self._lock = self._lock, -1
+        if lock >= 0:
+            os.close(lock)
 
 
 def default_folder() -> Path:

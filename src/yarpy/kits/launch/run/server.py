@@ -11,6 +11,7 @@ needs a system with sessions and pipes in the file system, so not Windows.
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import threading
@@ -21,6 +22,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final, Self
 
+from yarpy import linger
 from yarpy.data.bottle import Bottle
 from yarpy.errors import AddressError, DecodeError, LocalProtocolError, YarpError
 from yarpy.kits.launch.run import program as programs
@@ -68,6 +70,7 @@ class RunServer:
         if os.name != "posix":
             raise AddressError("yarpy run --server needs Linux, macOS or another Unix")
         self._name, self._names = name, names
+        self._process = os.getpid()
         self._allowed = Allowed() if allowed is None else allowed
         self._log, self._ends, self._on_exit = log, ends, on_exit
         self._lock = threading.Lock()  # of the table; programs are started outside of it
@@ -91,6 +94,7 @@ class RunServer:
                 self._port._hub.names.set(name, "yarprun", "true")
         self._thread = threading.Thread(target=self._watch, name=f"programs of {name}", daemon=True)
         self._thread.start()
+        linger.add(self, self.close)
 
     @property
     def name(self) -> str:
@@ -103,22 +107,31 @@ class RunServer:
         with self._lock:
             return [*self._programs]
 
-    def close(self) -> list[Program]:
-        """Start nothing more; return the programs that go on."""
-        self._port.close()
+    def close(self, timeout: float | None = None) -> list[Program]:
+        """Start nothing more; return the programs that go on.
+
+        timeout: seconds that all of it may take; None: GRACE for programs that end with the server,
+        TELLING for what they have said last. It may be called again, and goes on where Ctrl-C has
+        cut it short.
+        """
+        if os.getpid() != self._process:
+            return []  # a forked child has no programs: they are its parent's
+        over = math.inf if timeout is None else time.monotonic() + timeout
+        self._port.close(None if timeout is None else timeout / 4)
         if self._ends:
-            self._end_all()
+            self._end_all(min(time.monotonic() + GRACE, over))
         self._closing.set()
         self._news.set()
         self._thread.join()
         left = self.programs
         for one in left:
             one.leave()
-        until = time.monotonic() + TELLING
+        until = min(time.monotonic() + TELLING, over)
         for one in (*left, *self._last):
             for listener in one.listeners:
                 listener.wait(until - time.monotonic())
         self._book.close()
+        linger.remove(self)
         return left
 
     def __enter__(self) -> Self:
@@ -168,12 +181,11 @@ class RunServer:
         code = "" if one.code is None else f" with {one.code}"
         log.info("%s: %s ended%s", self._name, one.entry.tag, code)
 
-    def _end_all(self) -> None:
-        """Ask all to end, and make them after GRACE."""
+    def _end_all(self, until: float) -> None:
+        """Ask all to end, and make them at that time."""
         found = self.programs
         for one in found:
             one.family.signal(signal.SIGTERM)
-        until = time.monotonic() + GRACE
         while time.monotonic() < until and any(one.running for one in found):
             time.sleep(0.02)
         for one in found:
