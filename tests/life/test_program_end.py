@@ -1,8 +1,7 @@
 """The end of a program that does not close its ports: what it wrote arrives, its names are gone.
 
 Rules: each program is a process of its own, with a name server and a reader here. Which end it
-takes
-is a line of Python.
+takes is a line of Python.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ import yarpy
 WRITER = """
 import os, signal, sys, threading, time
 import yarpy
-port = yarpy.{kind}("/life/out")
+port = yarpy.{kind}("/life/out", timeout=60)
 port.connect("/life/in")
 """
 WRITE = "for n in range({count}): port.write([n])\n"
@@ -129,7 +128,7 @@ def test_the_program_s_own_handler_decides(server: yarpy.NameServer) -> None:
     program = (
         "import os, signal, sys\nimport yarpy\n"
         "signal.signal(signal.SIGTERM, lambda *_: sys.exit(9))\n"
-        "port = yarpy.Port('/life/own')\n"
+        "port = yarpy.Port('/life/own', timeout=60)\n"
         "os.kill(os.getpid(), signal.SIGTERM)\nsignal.pause()\n"
     )
     assert run(server, program).returncode == 9
@@ -158,7 +157,7 @@ def test_forty_ports_with_a_stopped_name_server_end_within_the_linger() -> None:
                 sys.executable,
                 "-c",
                 "import sys, time\nimport yarpy\n"
-                "ports = [yarpy.Port(f'/life/many/{n}') for n in range(40)]\n"
+                "ports = [yarpy.Port(f'/life/many/{n}', timeout=60) for n in range(40)]\n"
                 "print('open', flush=True)\nsys.stdin.readline()\nbegun = time.monotonic()\n"
                 "from yarpy import linger\nlinger.end()\n"
                 "print(time.monotonic() - begun, flush=True)\n",
@@ -181,6 +180,6 @@ def test_forty_ports_with_a_stopped_name_server_end_within_the_linger() -> None:
 
 
 def test_a_killed_program_leaves_what_it_leaves(server: yarpy.NameServer) -> None:
-    program = "import os, signal\nimport yarpy\nport = yarpy.Port('/life/killed')\n"
+    program = "import os, signal\nimport yarpy\nport = yarpy.Port('/life/killed', timeout=60)\n"
     done = run(server, program + "os.kill(os.getpid(), signal.SIGKILL)\n")
     assert done.returncode == -signal.SIGKILL

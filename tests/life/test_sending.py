@@ -7,7 +7,7 @@ import sys
 import threading
 
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 
@@ -33,7 +33,10 @@ with yarpy.Port("/w", names=names) as out, yarpy.Port("/r", names=names):
 @pytest.mark.parametrize("how", ["close", "interrupt"])
 def test_a_signal_handler_ends_a_write(how: str, carrier: str) -> None:
     done = subprocess.run(
-        [sys.executable, "-c", SCRIPT, how, carrier], capture_output=True, text=True, timeout=60
+        [sys.executable, "-c", SCRIPT, how, carrier],
+        capture_output=True,
+        text=True,
+        timeout=3 * HANG,
     )
     assert done.stdout == "woken\n", done.stderr
 
