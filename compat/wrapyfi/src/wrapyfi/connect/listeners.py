@@ -51,6 +51,10 @@ class ListenerWatchDog:
     def add_listener(self, listener: Listener) -> None:
         self.listener_ring.append(listener)
 
+    def remove_listener(self, listener: Listener) -> None:
+        if listener in self.listener_ring:
+            self.listener_ring.remove(listener)
+
     def scan(self) -> None:
         self.listener_ring = [one for one in self.listener_ring if not one.establish(repeats=1)]
 

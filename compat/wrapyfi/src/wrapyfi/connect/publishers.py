@@ -51,6 +51,10 @@ class PublisherWatchDog:
     def add_publisher(self, publisher: Publisher) -> None:
         self.publisher_ring.append(publisher)
 
+    def remove_publisher(self, publisher: Publisher) -> None:
+        if publisher in self.publisher_ring:
+            self.publisher_ring.remove(publisher)
+
     def scan(self) -> None:
         self.publisher_ring = [one for one in self.publisher_ring if not one.establish(repeats=1)]
 

@@ -25,6 +25,7 @@ from wrapyfi.connect.clients import Clients
 from wrapyfi.connect.listeners import Listeners
 from wrapyfi.connect.publishers import Publishers
 from wrapyfi.connect.servers import Servers
+from wrapyfi.utils.core_utils import deepcopy, get_default_args, match_args  # noqa: F401
 from yarpy import fork
 
 DEFAULT_COMMUNICATOR = os.environ.get(

@@ -178,7 +178,7 @@ _proxies: dict[tuple[int, str, int, int], threading.Thread] = {}
 _lock = threading.Lock()  # of the proxies
 
 
-def _keep_proxy(host: str, front: int, back: int) -> None:
+def keep_proxy(host: str, front: int, back: int) -> None:
     """The broker of requests, here or in another program; when that ends, here."""
     key = os.getpid(), host, front, back
     with _lock:
@@ -254,7 +254,7 @@ class _Serving(_Socket):
     def __init__(self, side: Any) -> None:
         host, front, back = _numbers(side.options)
         if str(side.options.get("start_proxy_broker", "True")) != "False":
-            _keep_proxy(host, front, back)
+            keep_proxy(host, front, back)
         super().__init__(zmq.REP, f"tcp://{host}:{back}")
 
     def take(self) -> tuple[list[bytes], Callable[[Any], None]]:

@@ -12,27 +12,82 @@ WRAPYFI_PLUGIN_PATHS; nothing is executed from the current directory. Star impor
 
 from __future__ import annotations
 
+import copy
 import glob
 import importlib
+import inspect
 import os
 import sys
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
 __all__ = [
+    "WRAPYFI_MWARE_PATHS",
+    "WRAPYFI_PLUGIN_PATHS",
     "Path",
     "Plugin",
     "PluginRegistrar",
     "SingletonOptimized",
+    "deepcopy",
     "dynamic_module_import",
+    "get_default_args",
     "glob",
+    "match_args",
     "os",
     "scan_external",
     "sys",
     "threading",
 ]
+
+#: variables of the environment
+WRAPYFI_PLUGIN_PATHS = "WRAPYFI_PLUGIN_PATHS"
+WRAPYFI_MWARE_PATHS = "WRAPYFI_MWARE_PATHS"
+
+
+def deepcopy(
+    obj: Any,
+    exclude_keys: Iterable[str] | None = None,
+    shallow_keys: Iterable[str] | None = None,
+) -> Any:
+    """Copy an object; without some keys of the dicts in it, and with the values of others as they
+    are, in the outermost dict."""
+    if exclude_keys is None:
+        return copy.deepcopy(obj)
+    left_out, kept = {*exclude_keys}, {*(shallow_keys or ())}
+    if isinstance(obj, dict):
+        return {
+            key: value if key in kept else deepcopy(value, left_out)
+            for key, value in obj.items()
+            if key in kept or key not in left_out
+        }
+    if type(obj) in (list, tuple, set):
+        return type(obj)(deepcopy(item, left_out) for item in obj)
+    return copy.deepcopy(obj)
+
+
+def get_default_args(fnc: Callable[..., Any]) -> dict[str, Any]:
+    """Return the arguments of a function that have a value of their own."""
+    found = inspect.signature(fnc).parameters.values()
+    return {each.name: each.default for each in found if each.default is not each.empty}
+
+
+def match_args(
+    args: Iterable[Any],
+    kwargs: Mapping[str, Any],
+    src_args: Sequence[Any],
+    src_kwargs: Mapping[str, Any],
+) -> tuple[tuple[Any, ...], dict[str, Any]]:
+    """Put arguments of a call in the places of `$0` and `$name`."""
+
+    def filled(value: Any) -> Any:
+        if not isinstance(value, str) or not value.startswith("$"):
+            return value
+        name = value[1:]
+        return src_args[int(name)] if name.isdigit() else src_kwargs[name]
+
+    return tuple(map(filled, args)), {key: filled(value) for key, value in kwargs.items()}
 
 
 class SingletonOptimized(type):
@@ -85,7 +140,7 @@ class PluginRegistrar:
     @staticmethod
     def scan() -> None:
         """Load the plug-ins of WRAPYFI_PLUGIN_PATHS."""
-        scan_external("WRAPYFI_PLUGIN_PATHS", "plugins")
+        scan_external(WRAPYFI_PLUGIN_PATHS, "plugins")
 
     @classmethod
     def encoder(cls, value: Any) -> type[Plugin] | None:

@@ -1,0 +1,1 @@
+"""Programs by themselves: `python -m wrapyfi.standalone.zeromq_proxy_broker`."""

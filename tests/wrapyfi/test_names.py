@@ -1,0 +1,136 @@
+"""What can be imported: the names of the original, read from its files, and its programs."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import json
+import os
+import sys
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import zmq
+from support.peer import brings
+from support.port import free_block
+from support.process import Process
+from support.wait import wait_until
+from support.wrapyfi_venv import prepare
+
+SOURCE = Path(__file__).parents[2] / "compat" / "wrapyfi" / "src"
+
+#: what is not here, and why
+WHY = {
+    "clients": "the classes are in wrapyfi.middlewares, which registers them",
+    "listeners": "... as those",
+    "publishers": "... as those",
+    "servers": "... as those",
+    "plugins": "what they read is unpickled; tensors come without, see utils/_tensors.py",
+    "standalone.zeromq_param_server": "parameters over ZeroMQ are not shared",
+}
+#: names that are not here: parts of how the original starts brokers, and finds its version
+PARTS = {
+    "ZEROMQ_POST_OPTS",
+    "ZeroMQMiddlewareParamServer",
+    "ZeroMQMiddlewarePubSubListen",
+    "ZeroMQMiddlewarePubSubPublish",
+    "ROSNativeObjectService",
+    "ROSImageService",
+    "get_project_info_from_setup",
+    "project_info",
+    "mdata",
+    "name",
+    "lock",
+}
+
+
+@pytest.fixture(scope="module")
+@brings("wrapyfi")
+def original() -> Path:
+    (found,) = (prepare() / "lib").glob("python3*/site-packages/wrapyfi")
+    return found
+
+
+def names_of(path: Path) -> Iterator[str]:
+    """What a module defines for others."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it has escapes that Python does not know
+        bodies = [ast.parse(path.read_text("utf-8")).body]
+    for body in bodies:
+        for item in body:
+            if isinstance(item, ast.ClassDef | ast.FunctionDef):
+                yield item.name
+            elif isinstance(item, ast.Assign):
+                yield from (each.id for each in item.targets if isinstance(each, ast.Name))
+            elif isinstance(item, ast.Try):
+                bodies.append(item.body)
+
+
+def test_names_of_the_original(original: Path) -> None:
+    missing = set()
+    for path in sorted(original.rglob("*.py")):
+        parts = path.relative_to(original).with_suffix("").parts
+        module = ".".join(part for part in parts if part != "__init__")
+        if module.startswith("tests") or module in WHY or parts[0] in WHY:
+            continue
+        found = importlib.import_module(f"wrapyfi.{module}".rstrip("."))
+        for name in names_of(path):
+            if name not in PARTS and not name.startswith("__") and not hasattr(found, name):
+                missing.add(f"{module}.{name}")
+    programs = "zeromq_proxy_broker", "zeromq_pubsub_topic_monitor"
+    assert missing <= {f"standalone.{name}.args" for name in programs}  # there when they run
+
+
+def test_helpers() -> None:
+    from wrapyfi.connect.wrapper import (  # type: ignore[import-not-found]
+        deepcopy,
+        get_default_args,
+        match_args,
+    )
+
+    assert match_args(("$0", 3), {"a": "$b", "c": "d"}, ["x"], {"b": 2}) == (
+        ("x", 3),
+        {"a": 2, "c": "d"},
+    )
+    assert get_default_args(lambda a, b=3: None) == {"b": 3}
+    inner = [1]
+    found = deepcopy({"a": inner, "b": inner, "c": [{"b": 1, "d": 2}]}, ["b"], ["a"])
+    assert found == {"a": [1], "c": [{"d": 2}]} and found["a"] is inner
+    assert deepcopy(inner) == inner and deepcopy(inner) is not inner
+
+
+def command(module: str, *words: str) -> Process:
+    path = os.pathsep.join(map(str, (SOURCE, SOURCE.parents[2] / "src")))
+    environment = {**os.environ, "PYTHONPATH": path, "PYTHONUNBUFFERED": "1"}
+    return Process([sys.executable, "-m", f"wrapyfi.standalone.{module}", *words], env=environment)
+
+
+def test_the_broker_and_who_watches_it() -> None:
+    number = free_block(2)
+    words = ("--socket_pub_port", str(number), "--socket_sub_port", str(number + 1))
+    context = zmq.Context()
+    watched = ("--socket_pub_address", f"tcp://127.0.0.1:{number}")
+    try:
+        with (
+            command("zeromq_proxy_broker", *words) as broker,
+            command("zeromq_pubsub_topic_monitor", *watched) as monitor,
+        ):
+            wait_until(lambda: "broker of topics" in broker.stdout + broker.stderr)
+            reader, writer = context.socket(zmq.SUB), context.socket(zmq.PUB)
+            reader.connect(f"tcp://127.0.0.1:{number}")
+            reader.subscribe("robot")
+            writer.connect(f"tcp://127.0.0.1:{number + 1}")
+
+            def came() -> bool:
+                writer.send_multipart([b"robot", json.dumps([1]).encode()])
+                return bool(reader.poll(100))
+
+            wait_until(came)
+            assert reader.recv_multipart() == [b"robot", b"[1]"]
+            # It hears of what comes after it: whoever looks late sees the next change.
+            reader.subscribe("more")
+            wait_until(lambda: "ZEROMQ/CONNECTIONS" in monitor.stdout + monitor.stderr)
+    finally:
+        context.destroy(linger=0)
