@@ -123,3 +123,11 @@ def test_what_cannot_be_kept_is_counted() -> None:
     odd.source = "/odd"
     intake.put(odd)
     assert intake.counts["/odd"].lost == 1
+
+
+def test_what_comes_after_the_end_is_refused() -> None:
+    intake = Intake()
+    intake.put(message(1, "/a"))
+    assert [taken.port for taken in intake.end()] == ["/a"]
+    intake.put(message(2, "/a"))
+    assert intake.take() == [] and intake.counts["/a"].lost == 1

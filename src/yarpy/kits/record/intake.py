@@ -78,6 +78,7 @@ class Intake:
         self._rates = dict(rates or {})
         self._periods: dict[str, int] = {}  # nanoseconds between messages of a port
         self._waiting: list[Taken] = []
+        self._ended = False
         self._lock = threading.Lock()  # links come from threads of their own
         self._urgent = threading.Event()
 
@@ -102,7 +103,7 @@ class Intake:
         size = length + OVERHEAD
         with self._lock:
             count = self._count(port)
-            if self.held + size > self.memory or length > LARGEST:
+            if self.held + size > self.memory or length > LARGEST or self._ended:
                 count.refuse()
                 return
             now = self._now()
@@ -159,6 +160,12 @@ class Intake:
         with self._lock:
             taken, self._waiting = self._waiting, []
         return taken
+
+    def end(self) -> list[Taken]:
+        """Return what waits, and refuse what comes from now on."""
+        with self._lock:
+            self._ended = True
+        return self.take()
 
     def free(self, size: int) -> None:
         """So many bytes were written."""

@@ -28,6 +28,7 @@ from yarpy.kits.record.backlog import Backlog
 from yarpy.kits.record.batch import Batch
 from yarpy.kits.record.following import Following, Wanted
 from yarpy.kits.record.intake import MEMORY, Count, Intake
+from yarpy.kits.record.loss import Losses
 from yarpy.kits.record.opening import open_port, without_ending
 from yarpy.kits.record.output import Output
 from yarpy.kits.record.room import Room, Split, size_text
@@ -113,8 +114,7 @@ class Recorder:
             "wanted": json.dumps({"ports": ports, "every": every, "pattern": pattern}),
         }
         self._notes: deque[tuple[dict[str, Any], int]] = deque(maxlen=_NOTES)
-        self._told: dict[str, tuple[int, int, int]] = {}  # losses that were noted
-        self._kept: dict[str, tuple[int, int, int]] = {}  # losses of finished files
+        self._losses = Losses(self._intake.counts)
         self._wishes: deque[Callable[[], None]] = deque()
         self._closing = threading.Event()
         self.ended = threading.Event()
@@ -124,7 +124,7 @@ class Recorder:
         self._port = open_port(name, self._take, self._connection, names)
         try:
             self._output = Output(
-                where, compression, split, most, lambda: self._facts, self._losses,
+                where, compression, split, most, lambda: self._facts, self._losses.of_file,
                 format, self._backlog is not None,
             )  # fmt: skip
         except BaseException:
@@ -300,20 +300,29 @@ class Recorder:
                     looked = now
                     step = self._look_around(step, batch)
                 if last:
-                    self._note_losses()
+                    self._losses.tell(self._output.note, self._tell, self._now())
                     return
         finally:
             batch.lose()
-            for taken in intake.take():
+            # What comes between the failure and the end is not written either.
+            for taken in intake.end():
                 intake.lose(taken)
                 intake.free(taken.size)
 
     def _gather(self, batch: Batch) -> None:
         """Take what has come. Raises OSError."""
         intake, backlog = self._intake, self._backlog
-        for taken in intake.take():
+        waiting = deque(intake.take())
+        while waiting:
+            taken = waiting.popleft()
             if backlog is None:
-                batch.add(taken)
+                try:
+                    batch.add(taken)
+                except OSError:
+                    for rest in waiting:
+                        intake.lose(rest)
+                        intake.free(rest.size)
+                    raise
                 continue
             batch.count_missed(taken)
             intake.free(taken.size)
@@ -336,14 +345,23 @@ class Recorder:
         output.begin()
         for note in notes:
             output.note(*note)
-        for taken in messages:
-            with suppress(LocalProtocolError):  # no file takes it
-                output.add(taken)
+        written = 0
+        try:
+            for number, taken in enumerate(messages, start=1):
+                with suppress(LocalProtocolError):  # no file takes it
+                    output.add(taken)
+                if not output.pending:
+                    written = number
+            output.flush()
+            written = len(messages)
+        finally:
+            for taken in messages[written:]:
+                self._intake.lose(taken)
         output.rest()
 
     def _look_around(self, step: int, batch: Batch) -> int:
         """Once a second: the disk, the folder, the clock, what was lost."""
-        self._note_losses()
+        self._losses.tell(self._output.note, self._tell, self._now())
         before, state = self._room.state, self._room.look()
         if state == "full":
             self._end(f"the disk is full but for {size_text(self._room.free)}: recording stops")
@@ -361,31 +379,6 @@ class Recorder:
             self._note("clock set", seconds=(now - step) / SECOND)
             self._tell(f"the clock was set by {(now - step) / SECOND:+.1f} s")
         return now
-
-    def _note_losses(self) -> None:
-        for port, count in self.counts.items():
-            now = count.lost, count.missed, count.left_out
-            before = self._told.get(port, (0, 0, 0))
-            if now[:2] != before[:2]:
-                self._told[port] = now
-                lost, missed = now[0] - before[0], now[1] - before[1]
-                self._output.note(
-                    {"what": "lost", "port": port, "count": lost, "missed": missed}, self._now()
-                )
-                if lost:
-                    self._tell(f"{lost} messages of {port} were lost: the disk is too slow")
-
-    def _losses(self) -> dict[str, str]:
-        """Return what was lost since the last file was finished."""
-        found: dict[str, dict[str, int]] = {"lost": {}, "missed": {}, "left out": {}}
-        for port, count in self.counts.items():
-            now = count.lost, count.missed, count.left_out
-            before = self._kept.get(port, (0, 0, 0))
-            self._kept[port] = now
-            for key, new, old in zip(found, now, before, strict=True):
-                if new > old:
-                    found[key][port] = new - old
-        return {key: json.dumps(value) for key, value in found.items()}
 
     def _sync(self) -> None:
         while not self.ended.wait(SYNC):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import signal
+import urllib.error
 import urllib.request
 
 import numpy as np
@@ -184,10 +185,31 @@ def test_a_recording_and_the_last_minutes(cli, names, tmp_path):
             assert viewer.wait(HANG) in (0, 130), viewer.stderr
 
 
+def test_foxglove_may_read_when_it_is_told_so(cli, names, tmp_path):
+    path = str(recorded(tmp_path / "walk.mcap"))
+    for words, allowed in (((), False), (("--foxglove",), True)):
+        with cli.start("view", path, *words, "--no-browser") as viewer:
+            shown = r"is shown at (http://127\.0\.0\.1:\d+/)$"
+            url = viewer.wait_line(shown, stream="out", timeout=HANG)[1]
+            if allowed:
+                viewer.wait_line(
+                    "Foxglove at https://app.foxglove.dev/", stream="out", timeout=HANG
+                )
+            asked = urllib.request.Request(
+                f"{url}timeline", headers={"Origin": "https://app.foxglove.dev"}
+            )
+            try:
+                with urllib.request.urlopen(asked, timeout=HANG) as answer:
+                    code = answer.status
+            except urllib.error.HTTPError as error:
+                code = error.code
+            assert code == (200 if allowed else 403)
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [(("--keep", "much"), "no time that is kept"), (("--keep", "5MB"), "no time that is kept"),
-     (("none.mcap",), "none.mcap")],
+     (("none.mcap",), "none.mcap"), (("--foxglove", "/a"), "--keep")],
 )  # fmt: skip
 def test_what_cannot_be_looked_back_at(words, said, cli):
     done = cli.run("view", "--no-browser", *words)

@@ -12,7 +12,9 @@ Exit codes: 1 a port cannot be opened, or a source cannot be one; otherwise it r
 
 from __future__ import annotations
 
+import os
 import threading
+import time
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
@@ -25,6 +27,7 @@ from yarpy.cli.ports import open_port
 from yarpy.cli.source import Source, also_said
 from yarpy.cli.stderr import warn
 from yarpy.errors import LocalProtocolError
+from yarpy.wire.message import Message
 
 NAME = "/view"
 
@@ -54,6 +57,10 @@ NAME = "/view"
     "--keep", metavar="TIME",
     help="Keep the last TIME (30s, 5min) of PORTS, all by default, to look back.",
 )  # fmt: skip
+@click.option("--foxglove", is_flag=True,
+              help="Let Foxglove's page read a recording or what is kept; open it.")  # fmt: skip
+@click.option("--rerun", is_flag=True,
+              help="Show recordings, or what PORTS send, in Rerun's window.")  # fmt: skip
 @click.option("--lan", is_flag=True, help="Let other computers see a recording, or what is kept.")
 def command(
     ports: tuple[str, ...],
@@ -64,12 +71,18 @@ def command(
     outs: tuple[str, ...],
     no_browser: bool,
     keep: str | None,
+    foxglove: bool,
+    rerun: bool,
     lan: bool,
 ) -> int:
     """Show the images that arrive at PORTS (/view), or recordings, in a browser."""
+    if rerun:
+        return in_rerun(ports, carrier or "", not no_browser)
     if keep is not None or any(map(is_recording, ports)):
-        look_back(ports, keep, carrier, lan, not no_browser)
+        look_back(ports, keep, carrier, lan, not no_browser, foxglove)
         return 0
+    if foxglove:
+        raise click.UsageError("--foxglove shows recordings, or with --keep 1min what PORTS send")
     from yarpy.kits.views.picture import Picture
     from yarpy.kits.views.viewer import Viewer
 
@@ -104,11 +117,17 @@ def is_recording(word: str) -> bool:
 
 
 def look_back(
-    words: tuple[str, ...], keep: str | None, carrier: str | None, lan: bool, browser: bool
+    words: tuple[str, ...],
+    keep: str | None,
+    carrier: str | None,
+    lan: bool,
+    browser: bool,
+    foxglove: bool = False,
 ) -> None:
     """Show files, or the last minutes of ports, until a signal."""
     from yarpy.kits.record.following import Wanted
     from yarpy.kits.record.room import parse_split
+    from yarpy.kits.record.view.elsewhere import FOXGLOVE, foxglove_address
     from yarpy.kits.record.view.ring import LiveSource
     from yarpy.kits.record.view.server import View
     from yarpy.kits.record.view.source import FileSource
@@ -124,8 +143,52 @@ def look_back(
             raise LocalProtocolError(f'"{keep}" is no time that is kept: 30s, 5min')
         wanted = Wanted(words, every=not words)
         source = LiveSource(wanted, seconds, carrier=carrier or "", tell=warn)
+    if foxglove:  # its page comes from elsewhere, and may read what is asked for here
+        known = os.environ.get("YARPY_WEB_ORIGINS", "")
+        os.environ["YARPY_WEB_ORIGINS"] = f"{known} {FOXGLOVE}"
     with source, View(source, "" if lan else "127.0.0.1") as view:
         print_line(f"{source.title} is shown at {view.url}")
+        page = foxglove_address(view.url) if foxglove else view.url
+        if foxglove:
+            print_line(f"and by Foxglove at {page}")
         if browser:
-            open_page(view.url)
+            open_page(page)
         threading.Event().wait()
+
+
+def in_rerun(words: tuple[str, ...], carrier: str, window: bool) -> int:
+    """Hand recordings to Rerun, or what ports send until a signal; return the exit code. Without a
+    window it is handed to one that listens already."""
+    from yarpy.kits.record.following import Following, Wanted
+    from yarpy.kits.record.opening import open_port
+    from yarpy.kits.record.recorded import Recorded
+    from yarpy.kits.record.recording import open_recording
+    from yarpy.kits.record.view.elsewhere import rerun_library, show
+
+    rr = rerun_library()
+    rr.init("yarpy", spawn=window)
+    if not window:
+        rr.connect_grpc()
+    if any(map(is_recording, words)):
+        with open_recording(*words) as recording:
+            for recorded in recording:
+                show(rr, recorded)
+            for damage in recording.damages:
+                warn(damage)
+        rr.disconnect()  # what is on its way arrives before this program ends
+        return 0
+
+    def take(message: Message) -> None:
+        now, stamp = time.time_ns(), message.stamp
+        sent = now if stamp is None or not stamp.valid else round(stamp.time * 1e9)
+        payload = bytes(message.to_bytes())
+        show(rr, Recorded(message.source, now, sent, message.envelope, payload))
+
+    with open_port("", take, lambda event: None, None, NAME) as port:
+        following = Following(port, Wanted(words, every=not words), carrier, tell=warn)
+        print_line(f"what {port.name} hears is shown in Rerun")
+        try:
+            threading.Event().wait()
+        finally:
+            following.close()
+    return 0
