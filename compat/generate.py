@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 HERE = Path(__file__).parent
 STUB = HERE / "src/yarp/__init__.pyi"
 README = HERE / "README.md"
+VERSIONS = ("3.9.1", "4.0.0")
 BEGIN, END = "<!-- generated: table -->\n", "<!-- end -->\n"
 
 
@@ -78,6 +80,56 @@ def coverage() -> tuple[float, float, list[str]]:
     return len(there) / len(rows), uses, missing
 
 
+def recorded(version: str) -> dict[str, list[str]]:
+    """The public names of the bindings of a version of YARP, and the members of classes."""
+    lines = (HERE / f"names-{version}.txt").read_text().splitlines()
+    rows = [line.split() for line in lines if line and not line.startswith("#")]
+    return {name: members for name, *members in rows}
+
+
+def has(owner: Any, member: str) -> bool:
+    """Return whether a class, or what it makes of nothing, has a member."""
+    if hasattr(owner, member):
+        return True
+    try:
+        return hasattr(owner(), member)
+    except Exception:
+        return False
+
+
+def score(version: str) -> tuple[float, float, list[str]]:
+    """The share of a version's names, of its members, and the names that are missing."""
+    import yarp
+
+    names = recorded(version)
+    missing, there, count = [], 0, 0
+    for name, members in names.items():
+        count += len(members)
+        try:
+            found = getattr(yarp, name)
+        except AttributeError:
+            missing.append(name)
+            continue
+        there += sum(has(found, member) for member in members)
+    return 1 - len(missing) / len(names), there / count, missing
+
+
+def scores() -> list[str]:
+    """The lines of README.md about them."""
+    lines = ["Of all public names of the bindings, as SWIG makes them (`names-*.txt`):", ""]
+    lines += ["| | names | members of classes |", "|---|---|---|"]
+    absent: dict[str, None] = {}
+    for version in VERSIONS:
+        names, members, missing = score(version)
+        lines.append(f"| YARP {version} | {names:.1%} | {members:.1%} |")
+        absent |= dict.fromkeys(missing)
+    raw = sorted(name for name in absent if name.endswith("Raw"))
+    rest = sorted(name for name in absent if name not in raw)
+    lines += ["", f"Not here: {', '.join(f'`{name}`' for name in rest)}, and the {len(raw)}"]
+    lines += ["interfaces `I...Raw`, which drivers of boards in C++ have towards each other.", ""]
+    return lines
+
+
 def table() -> str:
     """The section of README.md."""
     from yarp._poly_driver import DEVICES
@@ -89,6 +141,7 @@ def table() -> str:
         f"{names:.1%} are here, and {uses:.1%} of the times that they are used. Not here:",
         f"{', '.join(f'`{name}`' for name in missing)}.",
         "",
+        *scores(),
         "| | |",
         "|---|---|",
     ]

@@ -55,6 +55,10 @@ from yarp._control_view import IInteractionMode as IInteractionMode
 from yarp._control_view import IPidControl as IPidControl
 from yarp._control_view import Pid as Pid
 from yarp._control_view import PidVector as PidVector
+from yarp._device import DeviceDriver as DeviceDriver
+from yarp._device import DeviceResponder as DeviceResponder
+from yarp._device import Drivers as Drivers
+from yarp._device import IConfig as IConfig
 from yarp._file import read as read
 from yarp._file import write as write
 from yarp._image import FlexImage as FlexImage
@@ -72,6 +76,7 @@ from yarp._log import yError as yError
 from yarp._log import yInfo as yInfo
 from yarp._log import yTrace as yTrace
 from yarp._log import yWarning as yWarning
+from yarp._map_grid import MapGrid2D as MapGrid2D
 from yarp._matrix import Matrix as Matrix
 from yarp._measuring_view import IAmplifierControl as IAmplifierControl
 from yarp._measuring_view import IAxisInfo as IAxisInfo
@@ -97,6 +102,9 @@ from yarp._motion_view import IPositionControl as IPositionControl
 from yarp._motion_view import IPositionDirect as IPositionDirect
 from yarp._motion_view import ITorqueControl as ITorqueControl
 from yarp._motion_view import IVelocityControl as IVelocityControl
+from yarp._net_int import NetInt16 as NetInt16
+from yarp._net_int import NetInt32 as NetInt32
+from yarp._net_int import NetInt64 as NetInt64
 from yarp._network import Network as Network
 from yarp._network import NetworkBase as NetworkBase
 from yarp._numbers import BVector as BVector
@@ -104,8 +112,14 @@ from yarp._numbers import DVector as DVector
 from yarp._numbers import IVector as IVector
 from yarp._numbers import SVector as SVector
 from yarp._numbers import ShortVector as ShortVector
+from yarp._pixel import PixelBgr as PixelBgr
+from yarp._pixel import PixelBgra as PixelBgra
+from yarp._pixel import PixelHsv as PixelHsv
+from yarp._pixel import PixelHsvFloat as PixelHsvFloat
 from yarp._pixel import PixelRgb as PixelRgb
 from yarp._pixel import PixelRgbFloat as PixelRgbFloat
+from yarp._pixel import PixelRgbInt as PixelRgbInt
+from yarp._pixel import PixelRgbSigned as PixelRgbSigned
 from yarp._pixel import PixelRgba as PixelRgba
 from yarp._place_view import IBattery as IBattery
 from yarp._place_view import IFrameTransform as IFrameTransform
@@ -116,19 +130,23 @@ from yarp._portable import PortReaderCreator as PortReaderCreator
 from yarp._portable import PortWriter as PortWriter
 from yarp._portable import Portable as Portable
 from yarp._property import Property as Property
+from yarp._qos import QosStyle as QosStyle
 from yarp._random import Random as Random
 from yarp._resource_finder import ResourceFinder as ResourceFinder
+from yarp._return_value import ReturnValue as ReturnValue
 from yarp._rf_module import RFModule as RFModule
 from yarp._rpc import RpcClient as RpcClient
 from yarp._rpc import RpcServer as RpcServer
 from yarp._searchable import Searchable as Searchable
 from yarp._sensor_view import IContactLoadCellArrays as IContactLoadCellArrays
 from yarp._sensor_view import IEncoderArrays as IEncoderArrays
+from yarp._sensor_view import ILinearVelocitySensors as ILinearVelocitySensors
 from yarp._sensor_view import IOrientationSensors as IOrientationSensors
 from yarp._sensor_view import IPositionSensors as IPositionSensors
 from yarp._sensor_view import ISixAxisForceTorqueSensors as ISixAxisForceTorqueSensors
 from yarp._sensor_view import ISkinPatches as ISkinPatches
 from yarp._sensor_view import ITemperatureSensors as ITemperatureSensors
+from yarp._sensor_view import IThreeAxisAngularAccelerometers as IThreeAxisAngularAccelerometers
 from yarp._sensor_view import IThreeAxisGyroscopes as IThreeAxisGyroscopes
 from yarp._sensor_view import IThreeAxisLinearAccelerometers as IThreeAxisLinearAccelerometers
 from yarp._sensor_view import IThreeAxisMagnetometers as IThreeAxisMagnetometers
@@ -201,10 +219,35 @@ BOTTLE_TAG_LIST: int
 BOTTLE_TAG_STRING: int
 BOTTLE_TAG_VOCAB: int
 BOTTLE_TAG_VOCAB32: int
+BOTTLE_TAG_VOCAB64: int
 BUS_FIREWIRE: int
 BUS_UNKNOWN: int
 BUS_USB: int
+BusType_BUS_FIREWIRE: int
+BusType_BUS_UNKNOWN: int
+BusType_BUS_USB: int
 ContactLoadCellArray_EXTENDED_INTERFACE: int
+ControlModeEnum_VOCAB_CM_CALIBRATING: int
+ControlModeEnum_VOCAB_CM_CALIB_DONE: int
+ControlModeEnum_VOCAB_CM_CONFIGURED: int
+ControlModeEnum_VOCAB_CM_CONTROL_MODE: int
+ControlModeEnum_VOCAB_CM_CONTROL_MODES: int
+ControlModeEnum_VOCAB_CM_CONTROL_MODE_GROUP: int
+ControlModeEnum_VOCAB_CM_CURRENT: int
+ControlModeEnum_VOCAB_CM_FORCE_IDLE: int
+ControlModeEnum_VOCAB_CM_HW_FAULT: int
+ControlModeEnum_VOCAB_CM_IDLE: int
+ControlModeEnum_VOCAB_CM_IMPEDANCE_POS: int
+ControlModeEnum_VOCAB_CM_IMPEDANCE_VEL: int
+ControlModeEnum_VOCAB_CM_MIXED: int
+ControlModeEnum_VOCAB_CM_NOT_CONFIGURED: int
+ControlModeEnum_VOCAB_CM_POSITION: int
+ControlModeEnum_VOCAB_CM_POSITION_DIRECT: int
+ControlModeEnum_VOCAB_CM_PWM: int
+ControlModeEnum_VOCAB_CM_TORQUE: int
+ControlModeEnum_VOCAB_CM_UNKNOWN: int
+ControlModeEnum_VOCAB_CM_VELOCITY: int
+ControlModeEnum_VOCAB_CM_VELOCITY_DIRECT: int
 EncoderArray_EXTENDED_INTERFACE: int
 FORMAT_ANY: int
 FORMAT_JPG: int
@@ -214,6 +257,12 @@ FORMAT_NUMERIC_COMPRESSED: int
 FORMAT_PGM: int
 FORMAT_PNG: int
 FORMAT_PPM: int
+FeatureMode_MODE_AUTO: int
+FeatureMode_MODE_MANUAL: int
+FeatureMode_MODE_UNKNOWN: int
+JointTypeEnum_VOCAB_JOINTTYPE_PRISMATIC: int
+JointTypeEnum_VOCAB_JOINTTYPE_REVOLUTE: int
+JointTypeEnum_VOCAB_JOINTTYPE_UNKNOWN: int
 MAS_ERROR: int
 MAS_OK: int
 MAS_OVF: int
@@ -226,6 +275,27 @@ MODE_UNKNOWN: int
 OrientationSensor_EXTENDED_INTERFACE: int
 PeriodicThreadClock_Absolute: int
 PeriodicThreadClock_Relative: int
+SelectableControlModeEnum_VOCAB_CM_CALIBRATING: int
+SelectableControlModeEnum_VOCAB_CM_CALIB_DONE: int
+SelectableControlModeEnum_VOCAB_CM_CONFIGURED: int
+SelectableControlModeEnum_VOCAB_CM_CONTROL_MODE: int
+SelectableControlModeEnum_VOCAB_CM_CONTROL_MODES: int
+SelectableControlModeEnum_VOCAB_CM_CONTROL_MODE_GROUP: int
+SelectableControlModeEnum_VOCAB_CM_CURRENT: int
+SelectableControlModeEnum_VOCAB_CM_FORCE_IDLE: int
+SelectableControlModeEnum_VOCAB_CM_HW_FAULT: int
+SelectableControlModeEnum_VOCAB_CM_IDLE: int
+SelectableControlModeEnum_VOCAB_CM_IMPEDANCE_POS: int
+SelectableControlModeEnum_VOCAB_CM_IMPEDANCE_VEL: int
+SelectableControlModeEnum_VOCAB_CM_MIXED: int
+SelectableControlModeEnum_VOCAB_CM_NOT_CONFIGURED: int
+SelectableControlModeEnum_VOCAB_CM_POSITION: int
+SelectableControlModeEnum_VOCAB_CM_POSITION_DIRECT: int
+SelectableControlModeEnum_VOCAB_CM_PWM: int
+SelectableControlModeEnum_VOCAB_CM_TORQUE: int
+SelectableControlModeEnum_VOCAB_CM_UNKNOWN: int
+SelectableControlModeEnum_VOCAB_CM_VELOCITY: int
+SelectableControlModeEnum_VOCAB_CM_VELOCITY_DIRECT: int
 ShouldUseSystemClock_No: int
 ShouldUseSystemClock_Yes: int
 SixAxisForceTorqueSensor_EXTENDED_INTERFACE: int
@@ -267,6 +337,7 @@ VOCAB_CM_PWM: int
 VOCAB_CM_TORQUE: int
 VOCAB_CM_UNKNOWN: int
 VOCAB_CM_VELOCITY: int
+VOCAB_CM_VELOCITY_DIRECT: int
 VOCAB_CURRENTCONTROL_INTERFACE: int
 VOCAB_CURRENT_RANGE: int
 VOCAB_CURRENT_RANGES: int
@@ -284,18 +355,22 @@ VOCAB_E_RESETS: int
 VOCAB_GEARBOX_RATIO: int
 VOCAB_IANALOG: int
 VOCAB_ICONTROLMODE: int
+VOCAB_IJOINTFAULT: int
 VOCAB_IMPEDANCE: int
 VOCAB_IMP_OFFSET: int
 VOCAB_IMP_PARAM: int
 VOCAB_IM_COMPLIANT: int
 VOCAB_IM_STIFF: int
 VOCAB_IM_UNKNOWN: int
+VOCAB_INAVIGATION: int
 VOCAB_INFO_NAME: int
 VOCAB_INFO_TYPE: int
 VOCAB_INTERACTION_MODE: int
 VOCAB_INTERACTION_MODES: int
 VOCAB_INTERACTION_MODE_GROUP: int
 VOCAB_INTERFACE_INTERACTION_MODE: int
+VOCAB_ITRANSFORM: int
+VOCAB_JF_GET_JOINTFAULT: int
 VOCAB_JOINTTYPE_PRISMATIC: int
 VOCAB_JOINTTYPE_REVOLUTE: int
 VOCAB_JOINTTYPE_UNKNOWN: int
@@ -314,7 +389,44 @@ VOCAB_MOTOR_ENCODER_SPEEDS: int
 VOCAB_MOTOR_E_RESET: int
 VOCAB_MOTOR_E_RESETS: int
 VOCAB_MOTOR_PARAMS: int
+VOCAB_NAV_AREA: int
+VOCAB_NAV_CLEARALL_X: int
+VOCAB_NAV_DELETE_X: int
+VOCAB_NAV_GET_ABS_TARGET: int
+VOCAB_NAV_GET_CURRENT_POS: int
+VOCAB_NAV_GET_CURRENT_POSCOV: int
+VOCAB_NAV_GET_CURRENT_WAYPOINT: int
+VOCAB_NAV_GET_ESTIMATED_ODOM: int
+VOCAB_NAV_GET_LIST_X: int
+VOCAB_NAV_GET_LOCALIZER_POSES: int
+VOCAB_NAV_GET_LOCALIZER_STATUS: int
+VOCAB_NAV_GET_NAME_TARGET: int
+VOCAB_NAV_GET_NAVIGATION_STATUS: int
+VOCAB_NAV_GET_NAVIGATION_WAYPOINTS: int
+VOCAB_NAV_GET_NAV_MAP: int
+VOCAB_NAV_GET_REL_TARGET: int
+VOCAB_NAV_GET_X: int
+VOCAB_NAV_GOTOABS: int
+VOCAB_NAV_GOTOABS_AND_NAME: int
+VOCAB_NAV_GOTOREL: int
+VOCAB_NAV_LOCALIZATION_START: int
+VOCAB_NAV_LOCALIZATION_STOP: int
+VOCAB_NAV_LOCATION: int
+VOCAB_NAV_PATH: int
+VOCAB_NAV_RECOMPUTE_PATH: int
+VOCAB_NAV_RENAME_X: int
+VOCAB_NAV_RESUME: int
+VOCAB_NAV_SET_INITIAL_POS: int
+VOCAB_NAV_SET_INITIAL_POSCOV: int
+VOCAB_NAV_STOP: int
+VOCAB_NAV_STORE_X: int
+VOCAB_NAV_SUSPEND: int
+VOCAB_NAV_TEMPORARY_FLAGS: int
+VOCAB_NAV_VELOCITY_CMD: int
 VOCAB_PID: int
+VOCAB_PIDCONTROL_INTERFACE: int
+VOCAB_PIDCONTROL_SET_FEEDFORWARD: int
+VOCAB_PIDCONTROL_SET_OFFSET: int
 VOCAB_PIDS: int
 VOCAB_PIDTYPE_CURRENT: int
 VOCAB_PIDTYPE_POSITION: int
@@ -348,6 +460,8 @@ VOCAB_PIXEL_YUV_420: int
 VOCAB_PIXEL_YUV_422: int
 VOCAB_PIXEL_YUV_444: int
 VOCAB_POSITION: int
+VOCAB_POSITIONCONTROL_INTERFACE: int
+VOCAB_POSITIONDIRECTCONTROL_INTERFACE: int
 VOCAB_POSITION_DIRECT: int
 VOCAB_POSITION_DIRECTS: int
 VOCAB_POSITION_DIRECT_GROUP: int
@@ -368,14 +482,21 @@ VOCAB_TEMPERATURE: int
 VOCAB_TEMPERATURES: int
 VOCAB_TEMPERATURE_LIMIT: int
 VOCAB_TORQUE: int
+VOCAB_TORQUECONTROL_INTERFACE: int
 VOCAB_TORQUES_DIRECT: int
 VOCAB_TORQUES_DIRECTS: int
 VOCAB_TORQUES_DIRECT_GROUP: int
 VOCAB_TORQUE_MODE: int
+VOCAB_TRANSFORM_DELETE: int
+VOCAB_TRANSFORM_DELETE_ALL: int
+VOCAB_TRANSFORM_SET: int
 VOCAB_TRQ: int
 VOCAB_TRQS: int
 VOCAB_VARIABLE: int
 VOCAB_VELOCITY: int
+VOCAB_VELOCITYCONTROL_INTERFACE: int
+VOCAB_VELOCITY_MOVE: int
+VOCAB_VELOCITY_MOVES: int
 VOCAB_VELOCITY_MOVE_GROUP: int
 VOCAB_VEL_LIMITS: int
 VOCAB_VEL_PID: int
@@ -407,6 +528,38 @@ YARP_FEATURE_TRIGGER_DELAY: int
 YARP_FEATURE_WHITE_BALANCE: int
 YARP_FEATURE_WHITE_SHADING: int
 YARP_FEATURE_ZOOM: int
+cameraFeature_id_t_YARP_FEATURE_BRIGHTNESS: int
+cameraFeature_id_t_YARP_FEATURE_CAPTURE_QUALITY: int
+cameraFeature_id_t_YARP_FEATURE_CAPTURE_SIZE: int
+cameraFeature_id_t_YARP_FEATURE_EXPOSURE: int
+cameraFeature_id_t_YARP_FEATURE_FOCUS: int
+cameraFeature_id_t_YARP_FEATURE_FRAME_RATE: int
+cameraFeature_id_t_YARP_FEATURE_GAIN: int
+cameraFeature_id_t_YARP_FEATURE_GAMMA: int
+cameraFeature_id_t_YARP_FEATURE_HUE: int
+cameraFeature_id_t_YARP_FEATURE_INVALID: int
+cameraFeature_id_t_YARP_FEATURE_IRIS: int
+cameraFeature_id_t_YARP_FEATURE_MIRROR: int
+cameraFeature_id_t_YARP_FEATURE_NUMBER_OF: int
+cameraFeature_id_t_YARP_FEATURE_OPTICAL_FILTER: int
+cameraFeature_id_t_YARP_FEATURE_PAN: int
+cameraFeature_id_t_YARP_FEATURE_SATURATION: int
+cameraFeature_id_t_YARP_FEATURE_SHARPNESS: int
+cameraFeature_id_t_YARP_FEATURE_SHUTTER: int
+cameraFeature_id_t_YARP_FEATURE_TEMPERATURE: int
+cameraFeature_id_t_YARP_FEATURE_TILT: int
+cameraFeature_id_t_YARP_FEATURE_TRIGGER: int
+cameraFeature_id_t_YARP_FEATURE_TRIGGER_DELAY: int
+cameraFeature_id_t_YARP_FEATURE_WHITE_BALANCE: int
+cameraFeature_id_t_YARP_FEATURE_WHITE_SHADING: int
+cameraFeature_id_t_YARP_FEATURE_ZOOM: int
+global_map: int
+global_trajectory: int
+local_map: int
+local_trajectory: int
+localization_status_error: int
+localization_status_localized_ok: int
+localization_status_not_yet_localized: int
 navigation_status_aborted: int
 navigation_status_error: int
 navigation_status_failing: int
@@ -425,6 +578,7 @@ ColorRGB_copyPortable = ColorRGB.copyPortable
 Contact_convertHostToIp = Contact.convertHostToIp
 Contact_fromConfig = Contact.fromConfig
 Contact_fromString = Contact.fromString
+Drivers_factory = Drivers.factory
 FlexImage_copyPortable = FlexImage.copyPortable
 Image_copyPortable = Image.copyPortable
 ImageFloat_copyPortable = ImageFloat.copyPortable
@@ -446,6 +600,7 @@ Map2DArea_copyPortable = Map2DArea.copyPortable
 Map2DLocation_copyPortable = Map2DLocation.copyPortable
 Map2DObject_copyPortable = Map2DObject.copyPortable
 Map2DPath_copyPortable = Map2DPath.copyPortable
+MapGrid2D_copyPortable = MapGrid2D.copyPortable
 Matrix_copyPortable = Matrix.copyPortable
 Network_assertion = Network.assertion
 Network_autoInitMinimum = Network.autoInitMinimum
@@ -457,6 +612,7 @@ Network_exists = Network.exists
 Network_fini = Network.fini
 Network_finiMinimum = Network.finiMinimum
 Network_getConfigFile = Network.getConfigFile
+Network_getConnectionQos = Network.getConnectionQos
 Network_getDefaultPortRange = Network.getDefaultPortRange
 Network_getDirectorySeparator = Network.getDirectorySeparator
 Network_getEnvironment = Network.getEnvironment
@@ -478,6 +634,7 @@ Network_poll = Network.poll
 Network_queryName = Network.queryName
 Network_registerContact = Network.registerContact
 Network_registerName = Network.registerName
+Network_setConnectionQos = Network.setConnectionQos
 Network_setEnvironment = Network.setEnvironment
 Network_setLocalMode = Network.setLocalMode
 Network_setProperty = Network.setProperty
@@ -500,6 +657,7 @@ NetworkBase_disconnectInput = NetworkBase.disconnectInput
 NetworkBase_exists = NetworkBase.exists
 NetworkBase_finiMinimum = NetworkBase.finiMinimum
 NetworkBase_getConfigFile = NetworkBase.getConfigFile
+NetworkBase_getConnectionQos = NetworkBase.getConnectionQos
 NetworkBase_getDefaultPortRange = NetworkBase.getDefaultPortRange
 NetworkBase_getDirectorySeparator = NetworkBase.getDirectorySeparator
 NetworkBase_getEnvironment = NetworkBase.getEnvironment
@@ -520,6 +678,7 @@ NetworkBase_poll = NetworkBase.poll
 NetworkBase_queryName = NetworkBase.queryName
 NetworkBase_registerContact = NetworkBase.registerContact
 NetworkBase_registerName = NetworkBase.registerName
+NetworkBase_setConnectionQos = NetworkBase.setConnectionQos
 NetworkBase_setEnvironment = NetworkBase.setEnvironment
 NetworkBase_setLocalMode = NetworkBase.setLocalMode
 NetworkBase_setProperty = NetworkBase.setProperty
@@ -541,6 +700,8 @@ PeriodicThread_yield_c = PeriodicThread.yield_c
 Portable_copyPortable = Portable.copyPortable
 Pose6D_copyPortable = Pose6D.copyPortable
 Property_copyPortable = Property.copyPortable
+QosStyle_getDSCPByVocab = QosStyle.getDSCPByVocab
+QosStyle_getLevelByVocab = QosStyle.getLevelByVocab
 Random_normal = Random.normal
 Random_seed = Random.seed
 Random_seed_c = Random.seed_c
@@ -556,6 +717,7 @@ ResourceFinder_getDataDirs = ResourceFinder.getDataDirs
 ResourceFinder_getDataHome = ResourceFinder.getDataHome
 ResourceFinder_getDataHomeNoCreate = ResourceFinder.getDataHomeNoCreate
 ResourceFinder_getResourceFinderSingleton = ResourceFinder.getResourceFinderSingleton
+ReturnValue_copyPortable = ReturnValue.copyPortable
 Sound_copyPortable = Sound.copyPortable
 Stamp_copyPortable = Stamp.copyPortable
 Thread_getCount = Thread.getCount

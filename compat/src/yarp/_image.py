@@ -186,6 +186,22 @@ class Image(Portable):
 
     access = pixel
 
+    def getRow(self, r: int) -> bytes:
+        """Return the bytes of a row, without what pads it."""
+        if not 0 <= r < self._height:
+            raise IndexError(f"no row {r} (there are {self._height})")
+        begin = r * self.getRowSize()
+        return bytes(self._memory[begin : begin + self._width * self.getPixelSize()])
+
+    getRowArray = getRow
+
+    def isEqual(self, alt: Image) -> bool:
+        """Return whether size, kind and every pixel are the same."""
+        mine = (self._width, self._height, self._kind)
+        if mine != (alt._width, alt._height, alt._kind):
+            return False
+        return all(self.getRow(at) == alt.getRow(at) for at in range(self._height))
+
     def safePixel(self, x: int, y: int) -> Any:
         """The same; black where there is none."""
         if self.isPixel(x, y):

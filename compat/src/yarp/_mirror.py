@@ -200,6 +200,11 @@ class ISpeechTranscription(Mirror, of=("SpeechTranscription",)):
 class IRGBDSensor(Mirror, of=("DepthCamera",)):
     """A camera that measures distances."""
 
+    RGBD_SENSOR_NOT_READY, RGBD_SENSOR_OK_STANDBY, RGBD_SENSOR_OK_IN_USE = range(3)
+    RGB_SENSOR_ERROR, DEPTH_SENSOR_ERROR, RGBD_SENSOR_GENERIC_ERROR, RGBD_SENSOR_TIMEOUT = range(
+        3, 7
+    )
+
     def getImages(
         self, colorFrame: Any, depthFrame: Any, colorStamp: Any = None, depthStamp: Any = None
     ) -> bool:

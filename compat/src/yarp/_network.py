@@ -13,6 +13,7 @@ import yarpy
 from yarp import _names
 from yarp._contact import Contact, ContactStyle
 from yarp._log import say
+from yarp._qos import get_connection_qos, set_connection_qos
 from yarp._value import Value
 from yarpy.data.text import plain_text
 
@@ -168,6 +169,9 @@ class NetworkBase:
         except yarpy.YarpError:
             return False
         return True
+
+    setConnectionQos = staticmethod(set_connection_qos)
+    getConnectionQos = staticmethod(get_connection_qos)
 
     @staticmethod
     def queryName(name: str) -> Contact:

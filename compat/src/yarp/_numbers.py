@@ -105,6 +105,23 @@ class StdVector(Generic[T]):
         """Where results go."""
         return self
 
+    def insert(self, index: int, x: T) -> None:
+        """Put an element in front of that one."""
+        self._items.insert(index, self._kind(x))
+
+    def erase(self, index: int, last: int | None = None) -> int:
+        """Remove an element, or those from one up to another; return the index of what follows."""
+        del self._items[index : index + 1 if last is None else last]
+        return index
+
+    def begin(self) -> int:
+        """Return the index of the first element."""
+        return 0
+
+    def end(self) -> int:
+        """Return the index behind the last element."""
+        return len(self._items)
+
     def iterator(self) -> Iterator[T]:
         return iter(self._items)
 

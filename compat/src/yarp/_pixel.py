@@ -50,3 +50,35 @@ class PixelRgbFloat(Pixel):
     """r, g, b as float32."""
 
     _default = 0.0
+
+
+class PixelBgr(Pixel):
+    """b, g, r of 0 to 255."""
+
+    _letters = "bgr"
+
+
+class PixelBgra(Pixel):
+    """b, g, r, a of 0 to 255."""
+
+    _letters = "bgra"
+
+
+class PixelHsv(Pixel):
+    """h, s, v of 0 to 255."""
+
+    _letters = "hsv"
+
+
+class PixelHsvFloat(PixelHsv):
+    """h, s, v as float32."""
+
+    _default = 0.0
+
+
+class PixelRgbSigned(Pixel):
+    """r, g, b of -128 to 127."""
+
+
+class PixelRgbInt(Pixel):
+    """r, g, b as int32."""

@@ -19,6 +19,16 @@ from yarpy.kits import devices
 class IBattery(View):
     """What a battery says of itself."""
 
+    (
+        BATTERY_OK_STANDBY,
+        BATTERY_OK_IN_CHARGE,
+        BATTERY_OK_IN_USE,
+        BATTERY_GENERAL_ERROR,
+        BATTERY_TIMEOUT,
+        BATTERY_LOW_WARNING,
+        BATTERY_CRITICAL_WARNING,
+    ) = range(7)
+
     def getBatteryVoltage(self) -> float:
         """V."""
         return self._number("voltage")

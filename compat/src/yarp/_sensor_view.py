@@ -159,3 +159,21 @@ class ISkinPatches(Sensors):
     getSkinPatchName = Sensors._name
     getSkinPatchSize = Sensors._size
     getSkinPatchMeasure = Sensors._measure
+
+
+class IThreeAxisAngularAccelerometers(Sensors):
+    kind = "angular_accelerations"
+    getNrOfThreeAxisAngularAccelerometers = Sensors._count
+    getThreeAxisAngularAccelerometerStatus = Sensors._status
+    getThreeAxisAngularAccelerometerName = Sensors._name
+    getThreeAxisAngularAccelerometerFrameName = Sensors._frame
+    getThreeAxisAngularAccelerometerMeasure = Sensors._measure
+
+
+class ILinearVelocitySensors(Sensors):
+    kind = "linear_velocities"
+    getNrOfLinearVelocitySensors = Sensors._count
+    getLinearVelocitySensorStatus = Sensors._status
+    getLinearVelocitySensorName = Sensors._name
+    getLinearVelocitySensorFrameName = Sensors._frame
+    getLinearVelocitySensorMeasure = Sensors._measure

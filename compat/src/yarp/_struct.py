@@ -10,6 +10,7 @@ import math
 from typing import Any, ClassVar, TypeVar
 
 import yarpy
+from yarp._map_grid import MapGrid2D
 from yarp._numbers import StdVector
 from yarp._portable import Portable
 from yarpy.kits import devices, thrift
@@ -322,6 +323,7 @@ class Map2DLocationVector(_StructVector[Map2DLocation]):
 STRUCTS: dict[str, Any] = {
     "Area": Map2DArea,
     "Colour": ColorRGB,
+    "Grid": MapGrid2D,
     "Line": LLM_Message,
     "Odometry": OdometryData,
     "Path": Map2DPath,

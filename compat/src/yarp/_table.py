@@ -34,7 +34,13 @@ _MODULES = {
     "_vector": "Vector VectorInt VectorBase",
     "_matrix": "Matrix",
     "_sound": "Sound",
-    "_pixel": "PixelRgb PixelRgba PixelRgbFloat",
+    "_pixel": "PixelRgb PixelRgba PixelRgbFloat PixelBgr PixelBgra PixelHsv PixelHsvFloat "
+    "PixelRgbSigned PixelRgbInt",
+    "_net_int": "NetInt16 NetInt32 NetInt64",
+    "_qos": "QosStyle",
+    "_device": "IConfig DeviceDriver DeviceResponder Drivers",
+    "_return_value": "ReturnValue",
+    "_map_grid": "MapGrid2D",
     "_image": "Image ImageRgb ImageRgba ImageRgbFloat ImageMono ImageMono16 ImageInt ImageFloat "
     "FlexImage",
     "_file": "read write",
@@ -56,7 +62,8 @@ _MODULES = {
     "_control_view": "IControlMode IInteractionMode IControlLimits IPidControl Pid PidVector",
     "_sensor_view": "IThreeAxisGyroscopes IThreeAxisLinearAccelerometers IThreeAxisMagnetometers "
     "IOrientationSensors ITemperatureSensors ISixAxisForceTorqueSensors IPositionSensors "
-    "IContactLoadCellArrays IEncoderArrays ISkinPatches",
+    "IContactLoadCellArrays IEncoderArrays ISkinPatches ILinearVelocitySensors "
+    "IThreeAxisAngularAccelerometers",
     "_camera_view": "IFrameGrabberImage IFrameGrabberRgb IFrameGrabberControls CameraDescriptor",
 }
 WHERE = {name: module for module, names in _MODULES.items() for name in names.split()}
