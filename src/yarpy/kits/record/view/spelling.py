@@ -16,6 +16,7 @@ from typing import Any, Final
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig import jpeg
 from yarpy.data.sig.image import Image
+from yarpy.data.sig.vector import Vector
 from yarpy.errors import YarpError
 from yarpy.kits.record.form.protobuf import descriptor_set, encode, timestamp
 from yarpy.kits.record.kind import kind_of
@@ -78,6 +79,8 @@ def numbers_of(recorded: Recorded) -> list[float]:
         value = recorded.value
     except YarpError:
         return []
+    if isinstance(value, Vector):  # however long it is
+        return [float(number) for number in value.array[:NUMBERS]]
     found: list[float] = []
     words = 0
     for item in _items(value, _DEPTH):
