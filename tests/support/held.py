@@ -17,8 +17,11 @@ def threads() -> set[threading.Thread]:
 
 
 def files() -> Counter[str]:
-    """Return what the open descriptors of this process lead to, and how many lead there."""
+    """Return what the open descriptors of this process lead to, and how many lead there; nothing
+    where the system does not list them."""
     found: Counter[str] = Counter()
+    if not os.path.isdir("/proc/self/fd"):
+        return found
     for number in os.listdir("/proc/self/fd"):
         with contextlib.suppress(FileNotFoundError):  # closed meanwhile; or that of this listing
             link = os.readlink(f"/proc/self/fd/{number}")

@@ -10,7 +10,7 @@ import time
 
 import pytest
 from support.port import free_port
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.errors import AddressError
 from yarpy.transports.tcp import NEAR, TcpListener, TcpTransport, dial, is_taken
@@ -102,6 +102,20 @@ def test_accept_does_not_wait() -> None:
     listener = TcpListener()
     with pytest.raises(BlockingIOError):
         listener.accept()
+    listener.close()
+    listener.release()
+
+
+def test_who_reads_from_what_was_accepted_waits() -> None:
+    listener = TcpListener()
+    with socket.create_connection(("127.0.0.1", listener.port), HANG) as caller:
+        assert readable(listener, HANG)
+        sock, _ = listener.accept()
+        later = threading.Timer(0.05, caller.sendall, (b"words",))
+        later.start()
+        with sock:
+            assert sock.recv(5) == b"words"
+        later.join()
     listener.close()
     listener.release()
 

@@ -8,6 +8,7 @@ Rules: nobody waits.
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from typing import Final
@@ -26,7 +27,9 @@ if sys.platform == "win32":
         try:
             os.lseek(file, FAR, os.SEEK_SET)
             msvcrt.locking(file, msvcrt.LK_NBLCK, 1)
-        except PermissionError:
+        except OSError as error:
+            if error.errno not in (errno.EACCES, errno.EDEADLK, 0):  # 0: the C library of wine
+                raise
             return False
         finally:
             os.lseek(file, place, os.SEEK_SET)

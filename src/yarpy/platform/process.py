@@ -40,12 +40,12 @@ if sys.platform == "win32":
 
     def signal_group(pid: int, number: int) -> bool:
         """Send a signal to all whom a process leads; return whether there is one. 0 asks only."""
-        if not lives(pid):
-            return False
-        return not number or signal_one(pid, number)
+        return signal_one(pid, number) if number else lives(pid)
 
     def signal_one(pid: int, number: int) -> bool:
         """Send a process a signal; return whether there is one that can be sent it."""
+        if not lives(pid):  # somebody may hold a handle of one that has ended
+            return False
         try:
             os.kill(pid, number)
         except OSError:

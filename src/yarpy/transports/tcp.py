@@ -200,8 +200,11 @@ class TcpListener:
         self._closed = False
 
     def accept(self) -> tuple[socket.socket, Address]:
-        """The next connection, without waiting. Raises BlockingIOError if there is none."""
+        """The next connection, without waiting; who reads from it waits. Raises BlockingIOError if
+        there is none."""
         sock, raw = self.sock.accept()
+        if sys.platform != "linux":  # on Windows and the BSDs it has the ways of the listener
+            sock.setblocking(True)
         return sock, (str(raw[0]), int(raw[1]))
 
     @property

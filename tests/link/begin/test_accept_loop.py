@@ -20,6 +20,8 @@ from yarpy.link.begin.acceptor import Acceptor
 @pytest.fixture(params=[True, False], ids=["seen", "woken"])
 def loop(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> AcceptLoop:
     """A loop of its own; also as on systems where the thread must be woken for a new socket."""
+    if request.param and not accept_loop._SEES_MORE:
+        pytest.skip("select() of this system does not see sockets that come while it waits")
     monkeypatch.setattr(accept_loop, "_SEES_MORE", request.param)
     made = AcceptLoop()
     monkeypatch.setattr(acceptor, "LOOP", made)
