@@ -62,6 +62,7 @@ BESIDE = {
     ("peers.ros2", "peers.zenoh"),
     ("kits.launch", "kits.record"),
     ("kits.launch", "kits.thrift"),
+    ("kits.launch", "kits.views"),
     ("kits.views", "kits.sim"),
     ("kits.views", "kits.devices"),
     ("kits.sim", "kits.devices"),

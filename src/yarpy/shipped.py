@@ -202,7 +202,9 @@ _COMMANDS: Final[Mapping[str, Row]] = _table(
     Row("scope", f"{_KITS}.views.verbs.scope:command"),
     Row("sim", f"{_KITS}.sim.verbs.sim:command"),
     Row("speak", f"{_KITS}.views.verbs.speak:command", "audio"),
+    Row("start", f"{_KITS}.launch.verbs.start:command"),
     Row("status", f"{_KITS}.launch.verbs.status:command"),
+    Row("stop", f"{_KITS}.launch.verbs.stop:command"),
     Row("up", f"{_KITS}.launch.verbs.up:command"),
     Row("view", f"{_KITS}.views.verbs.view:command"),
 )
@@ -267,6 +269,8 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     ),
     # What bodies of POST requests are read as, by their Content-Type.
     "contents": _table(Row("application/x-thrift", f"{_KITS}.thrift.apache.body:Body")),
+    # What `yarpy check FILE` asks.
+    "checks": _table(Row("check_file", f"{_KITS}.launch.verbs.check_file:command")),
     # What `yarpy idl` can do with them.
     "idl_commands": _table(
         Row("rosmsg", f"{_PEERS}.ros.verbs.rosmsg:command", "ros"),

@@ -17,9 +17,11 @@ SOURCE = Path(frame.__file__).parents[1]
 
 
 def test_every_verb_has_a_module_and_every_module_is_a_verb():
-    """In `cli/verbs`, or in the room of a peer or kit, where those of `yarpy idl` are, too."""
+    """In `cli/verbs`, or in the room of a peer or kit, where those of `yarpy idl` and what `check`
+    asks are, too."""
     found = [path.stem for path in SOURCE.rglob("verbs/*.py") if path.stem != "__init__"]
-    assert sorted(found) == sorted([*VERBS, *registry.idl_commands.names()])
+    others = [*registry.idl_commands.names(), *registry.checks.names()]
+    assert sorted(found) == sorted([*VERBS, *others])
 
 
 @pytest.mark.parametrize("verb", VERBS)

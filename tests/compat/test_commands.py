@@ -94,6 +94,16 @@ def test_robots(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert _commands.translate_robot([]) == ["robot", "r.xml"]
 
 
+def test_the_window_of_yarpmanager_is_a_page() -> None:
+    from yarp import _commands
+
+    expected = ["up", "a.xml", "--idle", "--page"]
+    assert _commands.translate_manager(["--application", "a.xml"]) == expected
+    assert _commands.translate_manager(["a.xml", "--watchdog", "yes"]) == expected
+    with pytest.raises(_commands.Wrong, match="--application FILE"):
+        _commands.translate_manager([])
+
+
 def test_what_the_help_shows_is_taken() -> None:
     from yarp import _commands
     from yarpy.kits.thrift.verbs.thrift import command as thrift

@@ -31,6 +31,7 @@ ALLOWED = {
     "yarpy.kits",
     "yarpy.kits.devices",
     "yarpy.kits.devices.interfaces",
+    "yarpy.kits.launch.manager",
     "yarpy.log",
     "yarpy.names.default",
     "yarpy.network.connection",

@@ -14,6 +14,7 @@ ROOT = Path(__file__).parents[2]
 COMMANDS = {
     *("yarp", "yarpserver", "yarpview", "yarpscope", "yarphear", "yarpdev", "yarpidl_thrift"),
     *("yarplogger", "yarprun", "yarpidl_rosmsg", "yarp-config", "yarprobotinterface"),
+    *("yarpmanager", "yarpmanager-console"),
     *("yarpdatadumper", "yarpdataplayer", "yarpdataplayer-console"),
 }
 

@@ -8,6 +8,7 @@
     yarpdev           see `_yarpdev`
     yarpdatadumper    see `_datadumper`       yarpdataplayer    see `_dataplayer`
     yarprobotinterface                        yarpy robot
+    yarpmanager       yarpy up --idle --page  yarpmanager-console    see `yarpy.kits.launch.manager`
 
 Rules: arguments are translated word by word (`translate_...`, pure) and `yarpy` does the rest. What
 a page in a browser has no use for, such as the place of a window, is left out, and that is said.
@@ -89,6 +90,17 @@ def translate_hear(arguments: Sequence[str]) -> list[str]:
     name = _text(options, "name") or "/yarphear"
     rest = _rest(options, {"remote", "name"}, {"carrier", "record", "duration"})
     return ["hear", *plain, *_words(options, "remote"), "--name", name, *rest]
+
+
+def translate_manager(arguments: Sequence[str]) -> list[str]:
+    """`yarpmanager --application F.xml`, whose window is a page here; nothing runs at first."""
+    options, plain = _split(arguments)
+    files = [*_words(options, "application"), *plain]
+    if len(files) != 1 and not _HELP.intersection(arguments):
+        raise Wrong("yarpmanager --application FILE.xml")
+    known = {"application", "from", "ymanagerini_dir", "apppath", "modpath", "respath"}
+    known |= {"templpath", "load_subfolders", "watchdog", "add_current_dir", "silent"}
+    return ["up", *files, "--idle", "--page", *_rest(options, known, set())]
 
 
 def translate_thrift(arguments: Sequence[str]) -> list[str]:
@@ -346,6 +358,16 @@ def yarprun() -> NoReturn:
 
 def yarprobotinterface() -> NoReturn:
     _forward("yarprobotinterface", translate_robot)
+
+
+def yarpmanager() -> NoReturn:
+    _forward("yarpmanager", translate_manager)
+
+
+def yarpmanager_console() -> NoReturn:
+    from yarpy.kits.launch.manager import words
+
+    sys.exit(words.main(sys.argv[1:]))
 
 
 def yarpidl_thrift() -> NoReturn:

@@ -55,6 +55,8 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
         "down": Verb("stop a running application", "down robot"),
         "status": Verb("show how a running application is doing", "status"),
         "logs": Verb("show what its programs have printed", "logs camera -n 100"),
+        "start": Verb("start one of its programs", "start camera"),
+        "stop": Verb("end one of its programs, and leave it so", "stop camera"),
         "restart": Verb("end one of its programs and start it again", "restart camera"),
         "new": Verb("write a project that runs and is tested", "new ball_tracker"),
         "robot": Verb("open and join the devices of a robot", "robot icub.xml --check"),
@@ -123,7 +125,7 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
             "trafficgen /load --bandwidth 100 --size 1",
         ),
         "doctor": Verb("say why nothing arrives, and what mends it", "doctor /talker /listener"),
-        "check": Verb("try whether ports can be opened, found and connected here", "check"),
+        "check": Verb("try whether ports work here, or what is odd in files", "check robot.xml"),
         "access": Verb(
             "show who may do what with the ports here, or change it",
             "access allow script 192.168.1.9",

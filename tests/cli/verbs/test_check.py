@@ -67,3 +67,14 @@ def test_access_with_a_mistake(here, monkeypatch, tmp_path):
     assert 'line 3: may: there is no right "raed" (did you mean "read"?)' in said.err
     for words in (("--access", "loopback"), ("loopback", "read", "/arm")):
         assert here("check", *words).code != 0
+
+
+def test_files(here, tmp_path):
+    file = tmp_path / "a.toml"
+    file.write_text("nmae = 'x'\n[programs]\na = 'true'\n")
+    said = here("check", "--offline", str(file))
+    assert said.code == 0
+    assert said.out.splitlines() == [
+        f'{file}:1:1: warning: "nmae" is ignored: did you mean "name"?',
+        "a: 1 programs, 0 connections, 1 problem",
+    ]

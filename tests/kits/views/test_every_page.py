@@ -27,6 +27,8 @@ from yarpy.carriers.web.http.asset import KINDS, PREFIX
 from yarpy.carriers.web.http.page import Site
 from yarpy.carriers.web.http.request import MAY, READS
 from yarpy.kits.devices.multi_sensor.server import MultiSensorServer
+from yarpy.kits.launch.page.owner import Owners
+from yarpy.kits.launch.page.page import ApplicationPage
 from yarpy.kits.views.dash import Dash
 from yarpy.kits.views.panel import Panel
 from yarpy.kits.views.picture import Picture
@@ -83,6 +85,21 @@ def scope() -> Iterator[Any]:
 
 
 @contextmanager
+def application() -> Iterator[Any]:
+    """The page of a running application; whose programs are its owner's is asked in its tests."""
+    link = {"from": f"/{SECRET}", "to": "/b", "state": "waiting"}
+    told = {"application": SECRET, "programs": [], "connections": [link]}
+    lines = {"lines": [[1, SECRET, SECRET]]}
+
+    def answer(asked: dict[str, Any]) -> dict[str, Any]:
+        return told if asked["do"] == "status" else lines
+
+    with opened(yarpy.Port) as port:
+        ApplicationPage(port, answer, Owners(dict), list)
+        yield port
+
+
+@contextmanager
 def sensors() -> Iterator[Any]:
     with MultiSensorServer(f"/{SECRET}", Thermometer(), names=yarpy.LocalNames()) as server:
         yield server._rpc
@@ -118,6 +135,7 @@ SERVERS: dict[str, Callable[[], Any]] = {
     "kits/views/panel.py": panel,
     "kits/views/viewer.py": viewer,
     "kits/views/scope.py": scope,
+    "kits/launch/page/page.py": application,
     "kits/devices/multi_sensor/server.py": sensors,
     "nameserver/serving.py": name_server,
     "the port itself": camera,

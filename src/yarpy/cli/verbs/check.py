@@ -1,5 +1,6 @@
 """`yarpy check`: try whether ports can be opened, found, connected, written and read here.
 
+    FILE...                    what in files of applications and robots is ignored, or wrong
     --access                   who may do what with the ports of this computer (access.toml)
     --access WHO RIGHT PORT    whether somebody may do that, and why
 
@@ -9,11 +10,14 @@ allowed; 1 not.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
 import yarpy
 from yarpy.cli import log
 from yarpy.cli.output import print_line
+from yarpy.registry import checks
 
 LINE = "=" * 66
 NUMBER = 42
@@ -21,13 +25,17 @@ NUMBER = 42
 
 @click.command()
 @click.option("--access", is_flag=True, help="Tell who may do what with the ports here.")
-@click.argument("question", nargs=-1, metavar="[WHO RIGHT PORT]")
-def command(access: bool, question: tuple[str, ...]) -> int:
-    """Try whether ports work here, or tell who may do what with them."""
+@click.option("--offline", is_flag=True, help="Do not ask the name server (FILE).")
+@click.argument("words", nargs=-1, metavar="[FILE...] [WHO RIGHT PORT]")
+def command(access: bool, offline: bool, words: tuple[str, ...]) -> int:
+    """Try whether ports work here, say what is odd in files, or who may do what with ports."""
     if access:
-        return _tell_access(question)
-    if question:
-        raise click.UsageError("WHO RIGHT PORT belongs to --access")
+        return _tell_access(words)
+    if words:
+        files = tuple(map(Path, words))
+        checking: click.Command = checks.load("check_file")
+        code: int = click.get_current_context().invoke(checking, files=files, offline=offline)
+        return code
     return _check()
 
 

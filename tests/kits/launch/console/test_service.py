@@ -40,3 +40,14 @@ def test_what_cannot_be_done(supervisor: Supervisor) -> None:
         answer(supervisor, {"do": "dance"})
     with pytest.raises(UnknownName):
         answer(supervisor, {"do": "restart", "name": "b"})
+
+
+def test_start_and_stop_by_hand(supervisor: Supervisor) -> None:
+    supervisor.rest()
+    assert answer(supervisor, {"do": "start", "name": "a"}) == {"ok": True}
+    for word in ("stop", "kill"):
+        assert answer(supervisor, {"do": word, "name": "a"}) == {"ok": True}
+    with pytest.raises(UnknownName, match="has no connection /x -> /y"):
+        answer(supervisor, {"do": "connect", "from": "/x", "to": "/y"})
+    supervisor.stop()
+    assert supervisor.units["a"].state == "stopped"

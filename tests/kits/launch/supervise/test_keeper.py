@@ -1,9 +1,12 @@
 """Connections that are kept: made when both ports are there, and again when one comes back."""
 
+import pytest
 from support.wait import HANG, wait_until
 
 import yarpy
+from yarpy.errors import UnknownName
 from yarpy.kits.launch.application.application import Connection
+from yarpy.kits.launch.document.problem import Where
 from yarpy.kits.launch.supervise.keeper import Keeper
 
 
@@ -67,5 +70,58 @@ def test_priorities_are_asked_for(network: yarpy.LocalNames) -> None:
             wait_until(lambda: keeper.links[0].state == "connected")
             sender, _ = yarpy.network.qos.granted("/out", "/in", network)
             assert sender.tos == 144
+        finally:
+            keeper.close()
+
+
+def test_one_that_is_let_go_stays_so_until_it_is_taken_up(network: yarpy.LocalNames) -> None:
+    keeper = Keeper([Connection("/out", "/in")], network)
+    (link,) = keeper.links
+    with yarpy.Port("/out", names=network) as out, yarpy.BufferedPort("/in", names=network):
+        keeper.start()
+        try:
+            wait_until(lambda: link.state == "connected" and not link.busy)
+            keeper.let_go("/out", "/in")
+            wait_until(lambda: not out.outputs)
+            keeper.touch()
+            assert link.state == "off" and link.settled and link.made == 1
+            keeper.take_up("/out", "/in")
+            wait_until(lambda: link.made == 2)
+            with pytest.raises(UnknownName, match="has no connection /out -> /other"):
+                keeper.let_go("/out", "/other")
+        finally:
+            keeper.close()
+
+
+def test_others_instead(network: yarpy.LocalNames) -> None:
+    stays, goes = Connection("/out", "/a"), Connection("/out", "/b")
+    keeper = Keeper([stays, goes], network)
+    with (
+        yarpy.Port("/out", names=network) as out,
+        yarpy.BufferedPort("/a", names=network),
+        yarpy.BufferedPort("/b", names=network),
+        yarpy.BufferedPort("/c", names=network),
+    ):
+        keeper.start()
+        try:
+            wait_until(lambda: all(one.made and not one.busy for one in keeper.links))
+            moved = Connection("/out", "/a", where=Where("f", 7, 1))
+            keeper.replace([moved, Connection("/out", "/c")])
+            wait_until(lambda: {one.target for one in out.outputs} == {"/a", "/c"})
+            assert keeper.links[0].made == 1
+        finally:
+            keeper.close()
+
+
+def test_nothing_is_made_at_rest(network: yarpy.LocalNames) -> None:
+    keeper = Keeper([Connection("/out", "/in")], network)
+    with yarpy.Port("/out", names=network) as out, yarpy.BufferedPort("/in", names=network):
+        keeper.rest()
+        keeper.start()
+        try:
+            keeper.touch()
+            assert keeper.links[0].state == "off" and not out.outputs
+            keeper.take_up("/out", "/in")
+            assert out.wait_for_outputs(timeout=HANG)
         finally:
             keeper.close()

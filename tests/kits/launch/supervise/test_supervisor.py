@@ -157,3 +157,55 @@ def test_a_hundred_programs(network: yarpy.LocalNames) -> None:
     began = time.monotonic()
     assert running.stop() == [] and left(running) == {}
     assert time.monotonic() - began < HANG
+
+
+def test_what_is_ended_by_hand_can_be_started_again(network: yarpy.LocalNames) -> None:
+    running = supervisor(module("a"), names=network)
+    running.start()
+    unit = running.units["a"]
+    for stop in (False, True):
+        wait_until(lambda: unit.state == "running")
+        running.take_off("a", at_once=stop)
+        wait_until(lambda: unit.state == "stopped")
+        assert not running.over.is_set()
+        running.begin("a")
+    wait_until(lambda: unit.state == "running")
+    running.begin("a")  # it runs already
+    assert unit.state == "running"
+    running.stop()
+    assert left(running) == {}
+
+
+def test_at_rest_nothing_runs_and_nothing_is_over(network: yarpy.LocalNames) -> None:
+    running = supervisor(module("a"), module("b", "true"), names=network)
+    running.rest()
+    assert all_in(running, "stopped") and left(running) == {}
+    running.begin("b")
+    wait_until(lambda: running.units["b"].state == "ended")
+    assert not running.over.is_set()
+    running.restart("a")
+    wait_until(lambda: running.units["a"].state == "running")
+    assert running.sessions() == {running.units["a"].handle.pid: "a"}  # type: ignore[union-attr]
+    running.stop()
+
+
+def test_another_description(network: yarpy.LocalNames) -> None:
+    running = supervisor(module("stays"), module("goes"), module("other"), names=network)
+    running.start()
+    wait_until(lambda: all_in(running, "running"))
+    before = {**running.units}
+    found = Application("app", modules=[
+        module("stays"), module("other", "sleep", "601"), module("new")
+    ])  # fmt: skip
+    assert running.change(found) == [
+        "new is new",
+        "goes is no longer in the file",
+        "other is described otherwise, and was started again",
+    ]
+    wait_until(lambda: all_in(running, "running"))
+    assert [*running.units] == ["stays", "other", "new"]
+    assert running.units["stays"] is before["stays"]
+    assert running.units["other"].handle is not before["other"].handle
+    assert before["goes"].state == "stopped" and not running.over.is_set()
+    running.stop()
+    assert left(running) == {}

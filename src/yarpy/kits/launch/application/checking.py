@@ -19,9 +19,7 @@ from yarpy.names.default import DEFAULT
 
 def checked(application: Application, names: NameClient | None = None) -> Iterator[Problem]:
     """Yield what will not work here and now."""
-    for module in application.modules:
-        if not module.node:
-            yield from _local(module)
+    yield from here(application)
     try:
         known = {one.name for one in (names or DEFAULT.current()).list()}
     except YarpError as error:
@@ -43,6 +41,13 @@ def checked(application: Application, names: NameClient | None = None) -> Iterat
                 yield Problem(one.where, f'the external port "{name}" is not there')
             elif not external and name in known and any(name.startswith(f"{p}/") for p in own):
                 yield Problem(one.where, f'"{name}" is taken: it is registered already')
+
+
+def here(application: Application) -> Iterator[Problem]:
+    """Yield what this computer alone can tell."""
+    for module in application.modules:
+        if not module.node:
+            yield from _local(module)
 
 
 def _local(module: Module) -> Iterator[Problem]:

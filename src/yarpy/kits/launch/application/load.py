@@ -97,7 +97,7 @@ class _Loading:
         self.opened += 1
         if self.opened > APPLICATION_FILES:
             raise DecodeError(f"{path}: more than {APPLICATION_FILES} files in one application")
-        data = _content(path)
+        data = content(path)
         if path.suffix.lower() == ".toml":
             return toml_file.read(data, str(path), self.environment, variables)
         return manager_file.read(data, str(path), self.environment, variables)
@@ -127,7 +127,7 @@ class _Loading:
                 :APPLICATION_FILES
             ]:
                 try:
-                    document = manager_file.read(_content(file), str(file), self.environment)
+                    document = manager_file.read(content(file), str(file), self.environment)
                 except (YarpError, OSError):
                     continue
                 if document is not None and document.application.name:
@@ -136,7 +136,8 @@ class _Loading:
         return self._places[folder]
 
 
-def _content(path: Path) -> bytes:
+def content(path: Path) -> bytes:
+    """Return the bytes of a file, of one that is too large only some. Raises MissingFile."""
     try:
         with open(path, "rb") as file:
             return file.read(APPLICATION_FILE + 1)

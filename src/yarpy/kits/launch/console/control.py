@@ -49,7 +49,8 @@ def _socket() -> socket.socket:
     return socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
 
 
-def _file(name: str, suffix: str) -> Path:
+def place(name: str, suffix: str) -> Path:
+    """Return a file of the application `name`. Raises LocalProtocolError as `folder`."""
     safe = re.sub(r"[^\w.-]", "_", name, flags=re.ASCII)[:_LONGEST] or "_"
     return folder() / f"{safe}.{suffix}"
 
@@ -62,7 +63,7 @@ def running() -> list[str]:
 def _taken(name: str) -> bool:
     """Return whether somebody holds the lock of a name."""
     try:
-        with open(_file(name, "lock"), "r+b") as file:
+        with open(place(name, "lock"), "r+b") as file:
             return not hold(file.fileno())
     except FileNotFoundError:
         return False
@@ -74,7 +75,7 @@ def ask(name: str, /, **request: Any) -> dict[str, Any]:
     try:
         with _socket() as link:
             link.settimeout(_PATIENCE)
-            link.connect(str(_file(name, "sock")))
+            link.connect(str(place(name, "sock")))
             link.sendall(json.dumps(request).encode() + b"\n")
             with link.makefile("rb") as file:
                 line = file.readline(CONTROL_REPLY)
@@ -99,14 +100,14 @@ class Record:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self._file = open(_file(name, "lock"), "a+b")  # noqa: SIM115
+        self._file = open(place(name, "lock"), "a+b")  # noqa: SIM115
         if not hold(self._file.fileno()):
             self._file.close()
             raise LocalProtocolError(
                 f'"{name}" is running already: `yarpy status {name}` shows it, `yarpy down {name}` '
                 "ends it"
             )
-        self._path = _file(name, "json")
+        self._path = place(name, "json")
 
     def left(self) -> dict[int, str]:
         """Return the processes of a supervisor that was killed, each with the program's name."""
@@ -133,7 +134,7 @@ class Control:
     """Answers requests until it is closed."""
 
     def __init__(self, name: str, answer: Answer) -> None:
-        self._path = _file(name, "sock")
+        self._path = place(name, "sock")
         self._answer = answer
         self._path.unlink(missing_ok=True)
         self._socket = _socket()

@@ -74,7 +74,7 @@ def lines(status: dict[str, Any], width: int, height: int) -> list[tuple[str, st
     room -= len(shown)
     for one in odd[: max(room, 0)]:
         text = f"{one['from']} -> {one['to']}  {one['state']} {one['detail']}"
-        found.append((readable(text)[:width], _STYLES[one["state"]]))
+        found.append((readable(text)[:width], _STYLES.get(one["state"], "dim")))
     hidden = len(programs) - len(shown) + max(len(odd) - max(room, 0), 0)
     if hidden:
         found.append((f"{hidden} more"[:width], "dim"))
@@ -92,8 +92,10 @@ def _row(cells: Sequence[str], first: int, hosts: bool, width: int) -> str:
     return f"{row}  {last[:room]}".rstrip() if room > 4 else row[:width]
 
 
-def text(status: dict[str, Any], news: Sequence[str], width: int, height: int) -> Text:
-    """Return the whole screen."""
+def text(
+    status: dict[str, Any], news: Sequence[str], width: int, height: int, keys: str = KEYS
+) -> Text:
+    """Return the whole screen; `keys` is its last line."""
     from rich.text import Text
 
     whole = Text(no_wrap=True, end="")
@@ -102,7 +104,7 @@ def text(status: dict[str, Any], news: Sequence[str], width: int, height: int) -
         whole.append(line + "\n", style)
     for one in told:
         whole.append(one + "\n", "dim")
-    whole.append(KEYS[:width], "dim")
+    whole.append(keys[:width], "dim")
     return whole
 
 

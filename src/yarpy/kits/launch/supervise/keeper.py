@@ -8,14 +8,17 @@ was touched by a program that has just started, is looked at at once.
 
 from __future__ import annotations
 
+import contextlib
 import threading
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Final
 
-from yarpy.errors import YarpError
+from yarpy.errors import UnknownName, YarpError
 from yarpy.kits.launch.application.application import Connection
+from yarpy.kits.launch.document.problem import NOWHERE
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
 from yarpy.network import connection
@@ -29,7 +32,8 @@ _WORKERS: Final = 4
 
 
 class Link:
-    """A connection and how it is doing: `waiting`, `connected` or `refused`."""
+    """A connection and how it is doing: `waiting`, `connected`, `refused`, or `off` while somebody
+    wants it to be."""
 
     def __init__(self, wanted: Connection) -> None:
         self.wanted = wanted
@@ -40,6 +44,11 @@ class Link:
         self.busy = False
         self.ends: tuple[str, str] | None = None
         self.looked = 0.0
+
+    @property
+    def settled(self) -> bool:
+        """Return whether it is as it should be."""
+        return self.state in ("connected", "off")
 
 
 class Keeper:
@@ -56,8 +65,53 @@ class Keeper:
 
     def start(self) -> None:
         """Begin, if there is anything to keep."""
-        if self.links:
+        if self.links and not self._thread.is_alive():
             self._thread.start()
+
+    def rest(self) -> None:
+        """Make no connection until it is taken up."""
+        for link in self.links:
+            link.state, link.detail = "off", "not made yet"
+
+    def find(self, source: str, target: str) -> Link:
+        """Return a connection. Raises UnknownName."""
+        for link in self.links:
+            if (link.wanted.source, link.wanted.target) == (source, target):
+                return link
+        raise UnknownName(f"the application has no connection {source} -> {target}")
+
+    def let_go(self, source: str, target: str) -> None:
+        """End a connection, and do not make it again. Raises UnknownName, a YarpError."""
+        link = self.find(source, target)
+        link.state, link.detail = "off", "by hand"
+        self._end(link.wanted)
+
+    def take_up(self, source: str, target: str) -> None:
+        """Keep a connection that was let go. Raises UnknownName."""
+        link = self.find(source, target)
+        if link.state == "off":
+            link.state, link.detail, link.ends = "waiting", "", None
+        self.touch()
+
+    def replace(self, wanted: Sequence[Connection]) -> None:
+        """Keep these from now on: what stays is not touched, what is not among them ends."""
+        before = {replace(link.wanted, where=NOWHERE): link for link in self.links}
+        bare = [replace(one, where=NOWHERE) for one in wanted]
+        self.links = [
+            before.pop(key) if key in before else Link(one)
+            for key, one in zip(bare, wanted, strict=True)
+        ]
+        for link in before.values():
+            link.state = "off"
+            with contextlib.suppress(YarpError):  # one of its ports has gone
+                self._end(link.wanted)
+        self.touch()
+        if not self._over.is_set():
+            self.start()
+
+    def _end(self, wanted: Connection) -> None:
+        if connection.is_connected(wanted.source, wanted.target, names=self._names):
+            connection.disconnect(wanted.source, wanted.target, names=self._names)
 
     def touch(self) -> None:
         """A program has started or ended: look at everything again soon."""
@@ -95,13 +149,13 @@ class Keeper:
                 if oldest is not None and now - oldest.looked > _LEAST:
                     self._look(oldest)
                 next_look = now + _EACH
-            missing = any(one.state != "connected" for one in self.links)
+            missing = not all(one.settled for one in self.links)
             period = _QUICK if missing and now < self._hurry else _SLOW
             self._wake.wait(period)
             self._over.wait(0.02)  # several programs may have started at once
 
     def _consider(self, link: Link, places: dict[str, str] | None, now: float) -> None:
-        if link.busy or places is None:
+        if link.busy or places is None or link.state == "off":
             return
         ends = []
         for name in (link.wanted.source, link.wanted.target):
@@ -131,15 +185,20 @@ class Keeper:
             if self._over.is_set():
                 return
             if not connection.is_connected(source, target, names=names):
+                if link.state == "off":
+                    return
                 link.state = "waiting"
                 connection.join(source, target, wanted.carrier, names=names)
                 link.made += 1
                 self._dress(wanted)
-            link.state, link.detail = "connected", ""
-        except YarpError as error:
-            link.state, link.detail = "refused", str(error)
+            if link.state == "off":  # meanwhile
+                self._end(wanted)
+            else:
+                link.state, link.detail = "connected", ""
         except Exception as error:
-            link.state, link.detail = "refused", f"{type(error).__name__}: {error}"
+            kind = "" if isinstance(error, YarpError) else f"{type(error).__name__}: "
+            if link.state != "off":
+                link.state, link.detail = "refused", f"{kind}{error}"
         finally:
             link.busy = False
 
@@ -166,7 +225,7 @@ class Keeper:
             found = (self._names or DEFAULT.current()).list()
         except YarpError as error:
             for link in self.links:
-                if link.state != "connected":
+                if not link.settled:
                     link.detail = str(error)
             return None
         return {one.name: one.address for one in found}

@@ -1,6 +1,7 @@
 """An application that runs: its units, its connections, and how all of it ends.
 
-Rules: what starts programs is handed in, by computer. Stopping goes from the last that was started
+Rules: what starts programs is handed in, by computer. What was ended by hand is not over: it can be
+started again. Stopping goes from the last that was started
 to the first: what had to wait for others ends before them, the rest side by side.
 """
 
@@ -13,9 +14,10 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from yarpy.errors import UnknownName
-from yarpy.kits.launch.application.application import Application
+from yarpy.kits.launch.application.application import Application, Module
 from yarpy.kits.launch.document.advice import advice
 from yarpy.kits.launch.supervise import process
+from yarpy.kits.launch.supervise.difference import difference
 from yarpy.kits.launch.supervise.keeper import Keeper
 from yarpy.kits.launch.supervise.local import GRACE, LocalRunner
 from yarpy.kits.launch.supervise.runner import Runner
@@ -23,7 +25,7 @@ from yarpy.kits.launch.supervise.unit import FINAL, Unit
 from yarpy.kits.launch.supervise.waiting import USUAL, Waiting
 from yarpy.names.base import NameClient
 
-_KILLED: Final = 5.0  # seconds beyond the grace in which a program is gone
+_KILLED: Final = 20.0  # seconds beyond the grace in which a program is gone, on a busy computer too
 _SAMPLE: Final = 1.0  # seconds between looks at processors and memory
 
 
@@ -62,25 +64,25 @@ class Supervisor:
         self._usage: dict[str, tuple[float, int]] = {}
         self.keeper = Keeper(application.connections, names)
         self.waiting = Waiting(self.find, patience, names)
-        number = itertools.count(1).__next__
-        self.units = {
-            module.label: Unit(
-                module,
-                self._runner(module.node),
-                self.waiting,
-                usual=usual,
-                number=number,
-                changed=self._changed,
-                said=lambda unit, line: self._said(unit.label, line),
-            )
-            for module in application.modules
-        }
+        self._off: set[str] = set()  # programs that were ended by hand
+        self._usual = usual
+        self._number = itertools.count(1).__next__
+        self.units = {module.label: self._unit(module) for module in application.modules}
 
     def find(self, label: str) -> Unit:
         """Return a unit. Raises UnknownName, which names the nearest one."""
         if label not in self.units:
             raise UnknownName(f'no program is called "{label}"{advice(label, [*self.units])}')
         return self.units[label]
+
+    def rest(self) -> None:
+        """Begin without starting anything: programs and connections are off until somebody wants
+        them."""
+        self._off = set(self.units)
+        for unit in self.units.values():
+            unit.state, unit.detail = "stopped", "not started yet"
+        self.keeper.rest()
+        self.keeper.start()
 
     def start(self) -> str:
         """Start all. Return "", or why the application cannot: a port that it needs is missing."""
@@ -98,6 +100,44 @@ class Supervisor:
     def restart(self, label: str) -> None:
         """End a program and start it again. Raises UnknownName."""
         self.find(label).restart()
+        self._off.discard(label)
+
+    def begin(self, label: str) -> None:
+        """Start a program that has ended, or was taken off. Raises UnknownName."""
+        unit = self.find(label)
+        self._off.discard(label)
+        if unit.state in FINAL:
+            unit.restart()
+
+    def take_off(self, label: str, at_once: bool = False) -> None:
+        """End a program, until it is started again by hand; `at_once` with SIGKILL. Raises
+        UnknownName."""
+        unit = self.find(label)
+        self._off.add(label)
+        unit.stop()
+        if at_once:
+            unit.kill()
+
+    def change(self, application: Application) -> list[str]:
+        """Become another application: programs that are new are started, those that are not there
+        any more end, those that are described otherwise end and start again; connections alike.
+        Return what was done, for people."""
+        done = difference(self.application, application)
+        self.application = application
+        for label in (*done.gone, *done.other):
+            self._off.add(label)  # nothing is over while they end
+            self.units[label].stop()
+        for label in (*done.gone, *done.other):
+            unit = self.units[label]
+            unit.join(self.grace + _KILLED + unit.module.rest)
+        modules = {module.label: module for module in application.modules}
+        new = {label: self._unit(modules[label]) for label in (*done.new, *done.other)}
+        self.units = {label: new.get(label) or self.units[label] for label in modules}
+        self._off.difference_update(done.gone, done.other)
+        self.keeper.replace(application.connections)
+        for unit in new.values():
+            unit.start()
+        return [*done.texts()]
 
     def stop(self) -> list[str]:
         """Stop all, in reverse; return what would not end."""
@@ -136,6 +176,14 @@ class Supervisor:
         """End all at once."""
         for unit in self.units.values():
             unit.kill()
+
+    def sessions(self) -> dict[int, str]:
+        """Return the labels of the programs that run here, each by its session."""
+        return {
+            unit.handle.pid: unit.label
+            for unit in self.units.values()
+            if unit.running and unit.handle is not None and not unit.module.node
+        }
 
     def lines(self, label: str = "", since: int = 0, most: int = 100) -> list[tuple[int, str, str]]:
         """Return the newest lines of one program, or of all: `most` of those with numbers above
@@ -190,6 +238,17 @@ class Supervisor:
             "connections": connections,
         }
 
+    def _unit(self, module: Module) -> Unit:
+        return Unit(
+            module,
+            self._runner(module.node),
+            self.waiting,
+            usual=self._usual,
+            number=self._number,
+            changed=self._changed,
+            said=lambda unit, line: self._said(unit.label, line),
+        )
+
     def _runner(self, node: str) -> Runner:
         if not node:
             return self.local
@@ -207,7 +266,9 @@ class Supervisor:
             self._news(unit.label, text)
         elif unit.state != "waiting":
             self._news(unit.label, f"{unit.state}: {unit.detail}" if unit.detail else unit.state)
-        if unit.state in FINAL and all(one.state in FINAL for one in self.units.values()):
+        if unit.state in FINAL and all(
+            one.state in FINAL and one.label not in self._off for one in self.units.values()
+        ):
             self.over.set()
 
     def _place(self, unit: Unit) -> None:
@@ -227,12 +288,7 @@ class Supervisor:
         then, before = self._sampled
         if now - then < _SAMPLE:
             return self._usage
-        sessions = {
-            unit.handle.pid: unit.label
-            for unit in self.units.values()
-            if unit.running and unit.handle is not None and not unit.module.node
-        }
-        found = process.usage(sessions)
+        found = process.usage(self.sessions())
         self._usage = {
             label: (
                 100 * max(seconds - before.get(label, (seconds, 0))[0], 0.0) / (now - then)

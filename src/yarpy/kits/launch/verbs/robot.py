@@ -63,6 +63,7 @@ def command(
     from yarpy.config.command_line import parse_options
     from yarpy.config.resource import Search
     from yarpy.kits.launch.document.problem import Problem, Where
+    from yarpy.kits.launch.robot.checking import unknown_types
     from yarpy.kits.launch.robot.merged import tags
     from yarpy.kits.launch.robot.robot_file import load
 
@@ -79,7 +80,7 @@ def command(
 
         for line in lines(found):
             print_line(line)
-    problems = [*found.problems, *_types(found)]
+    problems = [*found.problems, *unknown_types(found)]
     if not (check or show or keep_going):  # nobody hands devices in here
         missing = found.missing()
         problems = [one for one in problems if one not in missing]
@@ -96,24 +97,6 @@ def command(
     if show or any(problem.fatal for problem in problems):
         return 1 if any(problem.fatal for problem in problems) else 0
     return _run(found, keep_going)
-
-
-def _types(description: Description) -> list[Problem]:
-    """Return the types of devices that nothing here opens."""
-    from yarpy.kits.launch.document.advice import advice
-    from yarpy.kits.launch.document.problem import Problem
-    from yarpy.registry import devices
-
-    known = devices.names()
-    return [
-        Problem(
-            one.where,
-            f'no device of type "{one.type}" is installed{advice(one.type, known)}',
-            fatal=True,
-        )
-        for one in description.devices
-        if one.type not in known
-    ]
 
 
 def _checked(description: Description, problems: list[Problem]) -> int:

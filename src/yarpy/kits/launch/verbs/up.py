@@ -2,10 +2,14 @@
 
     yarpy up robot.toml                 yarpmanager's XML is read, too
     yarpy up robot.xml --check          say what in the file is ignored, misspelt or missing
+    yarpy up robot.toml --page          show it in a browser, too
+    yarpy up robot.toml -d              in the background, until `yarpy down`
+    yarpy up robot.toml --watch         start again what changes on the disk
 
 On a terminal a table shows each program: its state, processors, memory and last line; elsewhere
 each line of output is printed behind the program's name. ^C stops all in reverse order, a second
-one at once. `yarpy status`, `logs`, `restart` and `down` reach it from other terminals.
+one at once. `yarpy status`, `logs`, `start`, `stop`, `restart` and `down` reach it from other
+terminals; `yarpy status --page` opens its page.
 
 Exit codes: 0 all ended well, or were stopped; 1 the file has errors, something failed, or would not
 end.
@@ -19,8 +23,9 @@ import signal
 import sys
 import threading
 import time
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -30,6 +35,7 @@ from yarpy.cli.stderr import complain, warn
 
 if TYPE_CHECKING:
     from yarpy.kits.launch.application.application import Application
+    from yarpy.kits.launch.supervise.log_stream import LogStream
     from yarpy.kits.launch.supervise.supervisor import Supervisor
 
 PERIOD: Final = 1.0  # seconds between looks
@@ -51,6 +57,14 @@ _NEWS: Final = 100  # that are kept for the screen
     "--stop-on-failure", is_flag=True, help="Stop all as soon as one has failed for good."
 )
 @click.option("--replace", is_flag=True, help="End programs that a killed `yarpy up` has left.")
+@click.option("-d", "--detach", "detached", is_flag=True,
+              help="Run in the background: `yarpy down` ends it.")  # fmt: skip
+@click.option("--idle", is_flag=True,
+              help="Start nothing until `yarpy start`, or the page, does.")  # fmt: skip
+@click.option("--log", is_flag=True, help="Show what programs print in `yarpy log`, too.")
+@click.option("--watch", is_flag=True,
+              help="Follow changes of the file, and of files of programs.")  # fmt: skip
+@click.option("--page", is_flag=True, help="Show a page of it, which only you can see.")
 @click.option("--lines", "as_lines", is_flag=True, help="Print lines, on a terminal too.")
 def command(
     file: Path,
@@ -60,6 +74,11 @@ def command(
     grace: float,
     stop_on_failure: bool,
     replace: bool,
+    detached: bool,
+    idle: bool,
+    log: bool,
+    watch: bool,
+    page: bool,
     as_lines: bool,
 ) -> int:
     """Start the application of FILE and keep it running."""
@@ -85,64 +104,135 @@ def command(
     if not application.modules and not application.connections:
         complain(f"{file}: there are no programs and no connections in it")
         return 1
-    return _run(application, policy, patience, grace, stop_on_failure, replace, as_lines)
+    wish = _Wish(
+        policy, patience, grace, stop_on_failure, replace, idle, log, watch, page, as_lines
+    )
+    return _detach(application, file, wish) if detached else _run(application, file, wish)
 
 
-def _run(
-    application: Application,
-    policy: str,
-    patience: float,
-    grace: float,
-    stop_on_failure: bool,
-    replace: bool,
-    as_lines: bool,
-) -> int:
+@dataclass(frozen=True, slots=True)
+class _Wish:
+    """What the options say."""
+
+    policy: str
+    patience: float
+    grace: float
+    stop_on_failure: bool
+    replace: bool
+    idle: bool
+    log: bool
+    watch: bool
+    page: bool
+    as_lines: bool
+
+    def words(self) -> list[str]:
+        """Return the options that say the same, but for what only a terminal has."""
+        flags = ("stop_on_failure", "replace", "idle", "log", "watch")
+        return [
+            *(
+                "--restart",
+                self.policy,
+                "--wait",
+                f"{self.patience:g}",
+                "--grace",
+                f"{self.grace:g}",
+            ),
+            *(f"--{name.replace('_', '-')}" for name in flags if getattr(self, name)),
+        ]
+
+
+def _detach(application: Application, file: Path, wish: _Wish) -> int:
+    from yarpy.cli.browser import open_page
+    from yarpy.kits.launch.console import control
+    from yarpy.kits.launch.console.detach import detach
+
+    name = application.name
+    path = detach(name, [str(file), *wish.words()])
+    print_line(f"{name} runs in the background: `yarpy status {name}`, `yarpy down {name}`")
+    print_line(
+        f"what it says is in {path}, and what its programs print in `yarpy logs --of {name}`"
+    )
+    if wish.page:
+        url = control.ask(name, do="page")["url"]
+        print_line(f"{name} is shown at {url}")
+        open_page(url)
+    return 0
+
+
+def _run(application: Application, file: Path, wish: _Wish) -> int:
+    from yarpy.kits.launch.application.load import load
     from yarpy.kits.launch.console.control import Control, Record
     from yarpy.kits.launch.console.service import answer
+    from yarpy.kits.launch.page.serving import Serving
     from yarpy.kits.launch.supervise.leftover import end_all, told
+    from yarpy.kits.launch.supervise.log_stream import LogStream
     from yarpy.kits.launch.supervise.remote import RemoteRunner
     from yarpy.kits.launch.supervise.supervisor import Supervisor
+    from yarpy.kits.launch.supervise.watch import Watch
 
-    live = sys.stdout.isatty() and not as_lines
-    printer = _Printer(live)
+    live = sys.stdout.isatty() and not wish.as_lines
+    stream = LogStream(application) if wish.log else None
+    printer = _Printer(live, stream)
 
     @functools.cache
     def runners(node: str) -> RemoteRunner:
-        return RemoteRunner(node, application.name, grace=grace, replace=replace)
+        return RemoteRunner(node, application.name, grace=wish.grace, replace=wish.replace)
 
     supervisor = Supervisor(
         application,
         runners=runners,
-        usual=policy,
-        patience=patience,
-        grace=grace,
+        usual=wish.policy,
+        patience=wish.patience,
+        grace=wish.grace,
         news=printer.news,
         said=printer.line,
     )
     record = Record(application.name)
     found = record.left()
-    if found and not replace:
+    if found and not wish.replace:
         complain(
             f"programs of an earlier `yarpy up`, which was killed, are still there: {told(found)}; "
             f"`yarpy down {application.name}` ends them, and so does --replace"
         )
         return 1
-    end_all(found, grace)
-    record.write(supervisor.local.run, [*supervisor.units])
-    control = Control(application.name, lambda asked: answer(supervisor, asked))
+    end_all(found, wish.grace)
+
+    def note() -> None:
+        record.write(supervisor.local.run, [*supervisor.units])
+
+    note()
+    serving = Serving(supervisor)
+
+    def told_of(asked: dict[str, Any]) -> dict[str, Any]:
+        return {"url": serving.url()} if asked.get("do") == "page" else answer(supervisor, asked)
+
+    control = Control(application.name, told_of)
+    watch = Watch(supervisor, lambda: load(file), printer.news, note) if wish.watch else None
     left: list[str] = []
     why = ""
     try:
         try:
-            why = supervisor.start()
+            if wish.page:
+                _show(serving.url(), printer)
+            if wish.idle:
+                supervisor.rest()
+            else:
+                why = supervisor.start()
+            if watch is not None:
+                watch.start()
             if not why:
-                _follow(supervisor, printer, live, stop_on_failure)
+                _follow(supervisor, printer, live, wish.stop_on_failure)
         except Interrupted:
             pass
         _at_once(supervisor)
+        if watch is not None:
+            watch.close()
         left = supervisor.stop()
     finally:
         control.close()
+        serving.close()
+        if stream is not None:
+            stream.close()
         record.close()
     for text in [why, *supervisor.failed] if why else supervisor.failed:
         complain(text)
@@ -151,6 +241,15 @@ def _run(
         lost = handle.detail if handle is not None else ""
         complain(f"{label} {f'may go on: {lost}' if lost else _UNKILLABLE}")
     return 1 if why or left or supervisor.failed else 0
+
+
+def _show(url: str, printer: _Printer) -> None:
+    """Say where the page is, and open it where there is a display."""
+    from yarpy.cli.browser import open_page
+
+    printer.page = url
+    printer.news("", f"shown at {url}")
+    open_page(url)
 
 
 def _at_once(supervisor: Supervisor) -> None:
@@ -178,13 +277,14 @@ def _follow(supervisor: Supervisor, printer: _Printer, live: bool, stop_on_failu
     from rich.console import Console
     from rich.live import Live
 
-    from yarpy.kits.launch.console.look import text
+    from yarpy.kits.launch.console.look import KEYS, text
 
     console = Console(highlight=False)
     with Live(console=console, auto_refresh=False, screen=True) as screen:
         while True:
             size = shutil.get_terminal_size((80, 24))
-            shown = text(supervisor.status(), printer.told, size.columns, size.lines)
+            keys = f"{KEYS}; {printer.page}" if printer.page else KEYS
+            shown = text(supervisor.status(), printer.told, size.columns, size.lines, keys)
             screen.update(shown, refresh=True)
             if over():
                 return
@@ -193,9 +293,12 @@ def _follow(supervisor: Supervisor, printer: _Printer, live: bool, stop_on_failu
 class _Printer:
     """Lines of programs and news of them, printed whole; for the screen only kept."""
 
-    def __init__(self, live: bool) -> None:
+    def __init__(self, live: bool, stream: LogStream | None = None) -> None:
         self.told: list[str] = []
+        self.page = ""
+        """Where the page is, if it was asked for."""
         self._live = live
+        self._stream = stream
         self._lock = threading.Lock()
 
     def news(self, label: str, text: str) -> None:
@@ -206,6 +309,8 @@ class _Printer:
             self._print(f"* {whole}")
 
     def line(self, label: str, line: str) -> None:
+        if self._stream is not None:
+            self._stream.hear(label, line)
         if not self._live:
             self._print(f"{label} | {line}")
 

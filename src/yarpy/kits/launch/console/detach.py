@@ -1,0 +1,55 @@
+"""An application in the background: `yarpy up` in a session of its own.
+
+Rules: whoever starts it waits until it can be reached, or has ended; what it says goes to a file
+beside its socket, which is told if it ends at once. The file is new each time.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from yarpy.errors import LocalProtocolError, Timeout
+from yarpy.kits.launch.console import control
+
+_POLL: Final = 0.02  # seconds
+_PATIENCE: Final = 120.0  # seconds until it can be reached
+_SAID: Final = 2000  # letters of what it said that are told
+
+
+def detach(name: str, words: Sequence[str], patience: float = _PATIENCE) -> Path:
+    """Start `yarpy up` with these words, which runs the application `name`; return the file of
+    what it says. Raises LocalProtocolError with what it said if it ends at once, Timeout."""
+    if name in control.running():
+        raise LocalProtocolError(
+            f'"{name}" is running already: `yarpy status {name}` shows it, `yarpy down {name}` '
+            "ends it"
+        )
+    path = control.place(name, "log")
+    with open(path, "wb") as file:
+        child = subprocess.Popen(
+            [sys.executable, "-m", "yarpy", "up", *words],
+            stdin=subprocess.DEVNULL,
+            stdout=file,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )
+    until = time.monotonic() + patience
+    while child.poll() is None:
+        try:
+            control.ask(name, do="status")
+            return path
+        except LocalProtocolError:
+            if time.monotonic() > until:
+                raise Timeout(
+                    f'"{name}" cannot be reached after {patience:g} s: see {path}'
+                ) from None
+            time.sleep(_POLL)
+    said = path.read_text("utf-8", "replace").strip()[-_SAID:]
+    if child.returncode == 0:
+        return path  # all of it has ended well already
+    raise LocalProtocolError(f'"{name}" has ended with {child.returncode}: {said}')
