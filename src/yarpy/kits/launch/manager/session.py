@@ -14,9 +14,10 @@ from typing import Any, Final
 
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.kits.launch.application.application import Application
-from yarpy.kits.launch.application.load import load
+from yarpy.kits.launch.application.load import content, load
 from yarpy.kits.launch.console import control
 from yarpy.kits.launch.console.detach import detach
+from yarpy.kits.launch.document.element import parse
 
 PATIENCE: Final = 10.0  # seconds in which a program comes up, beyond what its file says
 STOPPING: Final = 30.0  # ... and ends
@@ -48,10 +49,10 @@ class Session:
         pattern = "**/*.xml" if deep else "*.xml"
         for path in sorted(folder.glob(pattern))[:_MOST]:
             try:
-                self.add(path)
+                if parse(content(path), str(path)).tag.lower() == "application":
+                    self.add(path)  # modules and resources lie there, too
             except YarpError as error:
-                if "no <application>" not in str(error):  # modules and resources lie there, too
-                    yield str(error)
+                yield str(error)
 
     def choose(self, name: str) -> Application:
         """Load an application by its name. Raises LocalProtocolError."""
