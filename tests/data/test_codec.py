@@ -476,3 +476,17 @@ def test_works_without_numpy():
         "assert 'numpy' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True, timeout=30)
+
+
+@pytest.mark.parametrize(
+    "value", [[1, 2, 3], [1.5, -2.5], [Int8(1)] * 9, [Int16(7)] * 3, [Int64(1)] * 2], ids=str
+)
+def test_what_a_list_of_numbers_takes_is_known_at_once(value: list[object]) -> None:
+    message = b"".join(codec.encode(value))
+    found = codec.decode_leading(message + b"next")
+    assert found is not None
+    assert found[1] == len(message)
+    assert list(found[0]) == value
+    assert type(found[0]) is type(codec.decode(message))
+    assert kinds(list(found[0])) == kinds(list(codec.decode(message)))
+    assert all(codec.decode_leading(message[:size]) is None for size in range(len(message)))

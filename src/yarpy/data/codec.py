@@ -35,12 +35,13 @@ from yarpy.data.embedded import with_article
 from yarpy.data.python import described, description, typed
 from yarpy.data.python.array import array_of, scalar
 from yarpy.data.python.array import blocks as array_blocks
-from yarpy.data.reader import SMALL, read_small
+from yarpy.data.reader import KEPT, SMALL, read_small
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.vector import Vector
 from yarpy.data.stamp import Stamp
 from yarpy.data.text import print_text, text_of
 from yarpy.data.value import (
+    FIXED,
     FLOAT32,
     FLOAT64,
     GROUP_MASK,
@@ -248,11 +249,14 @@ def _decode_older(view: Buffer) -> Any:
 def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
     """The natural value of the message that `buffer` begins with, and the bytes it takes.
 
-    None if it is incomplete, or is not of the usual kinds: lists and single values.
+    None if it is incomplete, or is not of the usual kinds: lists, those of numbers, single values.
     """
     if not 12 <= len(buffer) <= SMALL:
         return None
     code, count = _read_head(buffer)
+    if code - LIST in KEPT and count > 0:  # numbers alone, whose length their count says
+        end = 8 + count * FIXED[code - LIST][1]
+        return (decode(buffer[:end]), end) if 12 <= end <= len(buffer) else None
     if code != LIST or count == 4:  # four elements may be an Image or a Sound
         return None
     if len(buffer) >= description.SMALLEST and buffer.find(_KEY) >= 0:

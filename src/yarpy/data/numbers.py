@@ -69,7 +69,7 @@ class Packed(list[Any]):
     ) -> Any:
         """The numbers in `view`. `make` is what an element becomes, `room` how many elements the
         message may still have."""
-        self = cls()
+        self = cls.__new__(cls)  # `__init__` would be half of the time of a short message
         self._view = view
         self.tag = tag
         self._becomes = make

@@ -75,12 +75,14 @@ def read_list(
         kind = code & UNIT_MASK
         if kind in KEPT:
             packed = _packed(memoryview(view), 8, kind, count)
-            kept: L = keep(packed, kind, _FROM_FIXED.get(kind), room_for(size))
+            room = None if size <= SMALL else room_for(size)
+            kept: L = keep(packed, kind, _FROM_FIXED.get(kind), room)
             return kept
     if size <= SMALL:
         return read_small(make_list, make_dict, bytes(view), keep)[0]
     items = make_list()
-    buffer, room = memoryview(view), room_for(size)
+    buffer = memoryview(view)
+    room = room_for(size)
     try:
         code, count = _read_pair(buffer)
         kind = code & UNIT_MASK
