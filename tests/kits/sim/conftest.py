@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from yarpy.errors import UnknownPlugin
-from yarpy.kits.sim.mujoco_model import mujoco
+from yarpy.kits.sim.mujoco.model import mujoco
 
 ARM = Path(__file__).parents[2] / "support" / "arm.xml"
 

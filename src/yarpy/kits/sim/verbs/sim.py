@@ -67,7 +67,7 @@ def command(
     if model is None:
         name, parts = NAME, icub_head(size)
     else:
-        from yarpy.kits.sim.mujoco_robot import mujoco_robot
+        from yarpy.kits.sim.mujoco.robot import mujoco_robot
 
         try:
             name, parts = mujoco_robot(model, size, warn=warn)

@@ -5,9 +5,9 @@ import pytest
 from support.peer import brings
 
 from yarpy.errors import UnknownPlugin
-from yarpy.kits.sim import mujoco_camera
-from yarpy.kits.sim.mujoco_camera import FREE, Camera, Painter
-from yarpy.kits.sim.mujoco_model import load
+from yarpy.kits.sim.mujoco import camera
+from yarpy.kits.sim.mujoco.camera import FREE, Camera, Painter
+from yarpy.kits.sim.mujoco.model import load
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def test_where_nothing_can_draw(model, monkeypatch):
             asked.append(arguments)
             raise RuntimeError("no display")
 
-    monkeypatch.setattr(mujoco_camera.mujoco(), "Renderer", Blind)
+    monkeypatch.setattr(camera.mujoco(), "Renderer", Blind)
     monkeypatch.setattr(Painter, "_spoiled", "")
     for _ in range(2):
         with pytest.raises(UnknownPlugin, match=r"libegl1 .*no display"):

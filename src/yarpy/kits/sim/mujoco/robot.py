@@ -15,9 +15,9 @@ from pathlib import Path
 from yarpy.errors import UnknownPlugin
 from yarpy.kits.sim.board import Board
 from yarpy.kits.sim.body import Clock
-from yarpy.kits.sim.mujoco_camera import FREE, Camera, Painter
-from yarpy.kits.sim.mujoco_model import load
-from yarpy.kits.sim.mujoco_sensor import Sensors
+from yarpy.kits.sim.mujoco.camera import FREE, Camera, Painter
+from yarpy.kits.sim.mujoco.model import load
+from yarpy.kits.sim.mujoco.sensor import Sensors
 from yarpy.kits.sim.robot import SIZE, Parts
 
 

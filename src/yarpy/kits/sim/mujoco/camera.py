@@ -17,7 +17,7 @@ from typing import Any, ClassVar, Final, TypeVar
 
 from yarpy.data.sig.image import Image
 from yarpy.errors import UnknownPlugin
-from yarpy.kits.sim.mujoco_model import Model, mujoco
+from yarpy.kits.sim.mujoco.model import Model, mujoco
 
 SHADOWS: Final = 1024  # pixels of a shadow map
 SAMPLES: Final = 2  # samples per pixel, against jagged edges

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import degrees
 from typing import Any, Final
 
-from yarpy.kits.sim.mujoco_model import Model, mujoco
+from yarpy.kits.sim.mujoco.model import Model, mujoco
 from yarpy.kits.sim.rotation import Rotation, Vector, roll_pitch_yaw
 
 #: MuJoCo's kind of sensor -> the method of a device that returns it.

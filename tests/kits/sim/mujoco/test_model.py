@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from yarpy.errors import UnknownPlugin
-from yarpy.kits.sim.mujoco_model import LONGEST, Model, load
+from yarpy.kits.sim.mujoco.model import LONGEST, Model, load
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ import pytest
 import yarpy
 from yarpy.errors import UnknownPlugin
 from yarpy.kits.devices import ControlBoard
-from yarpy.kits.sim import mujoco_robot as module
-from yarpy.kits.sim.mujoco_robot import mujoco_robot
+from yarpy.kits.sim.mujoco import robot as module
+from yarpy.kits.sim.mujoco.robot import mujoco_robot
 from yarpy.kits.sim.robot import Robot
 
 

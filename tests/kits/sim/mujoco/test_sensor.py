@@ -2,8 +2,8 @@
 
 import pytest
 
-from yarpy.kits.sim.mujoco_model import load
-from yarpy.kits.sim.mujoco_sensor import Sensors
+from yarpy.kits.sim.mujoco.model import load
+from yarpy.kits.sim.mujoco.sensor import Sensors
 
 
 @pytest.fixture
