@@ -72,7 +72,7 @@ class SystemClock:
 
 
 class NetworkClock:
-    """What a port of the network sends: Bottles of seconds and nanoseconds.
+    """The time that a port of the network sends: Bottles of seconds and nanoseconds.
 
     source: that port. name: of the own port that hears it. names: a name client, None for the
     default. Raises NoNameServer, AddressError.

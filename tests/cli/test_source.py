@@ -49,7 +49,7 @@ def test_carrier(listener):
 
 def test_it_is_waited_for_and_comes_back_however_late(listener, monkeypatch):
     monkeypatch.setattr(
-        "yarpy.port.connect.reconnect.INPUT_PATIENCE", 0.0
+        "yarpy.port.connect.reconnect.INPUT_TIMEOUT", 0.0
     )  # the port itself gives up
     found, lines = follow(listener, "/source/late")
     assert not found.connected

@@ -148,7 +148,7 @@ def _outgoing(annotation: Any, value: Any) -> Any:
 
 
 def _nothing(each: Member) -> Any:
-    """What the bindings return where there is no result."""
+    """Return what the bindings return where there is no result."""
     made = [_outgoing(kind, _default(kind)) for kind in each.results]
     return made[0] if len(made) == 1 else tuple(made)
 
@@ -221,7 +221,7 @@ class IRGBDSensor(Mirror, of=("DepthCamera",)):
 
 
 class MirrorViews:
-    """What a PolyDriver has of them."""
+    """The views that a PolyDriver has."""
 
     def _view(self, kind: Any, member: str) -> Any:
         raise NotImplementedError

@@ -17,7 +17,7 @@ from yarpy.kits import devices
 
 
 class IBattery(View):
-    """What a battery says of itself."""
+    """The state of a battery."""
 
     (
         BATTERY_OK_STANDBY,
@@ -53,7 +53,7 @@ class IBattery(View):
         return devices.BATTERY.index("error")
 
     def getBatteryInfo(self) -> str:
-        """What it is."""
+        """Return the description of the battery; "" without one."""
         found: list[str] = []
         return found[0] if self._tell(lambda: found.append(str(self._board.info))) else ""
 

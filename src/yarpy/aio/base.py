@@ -158,7 +158,7 @@ class BasePort(Generic[P]):
 
     @property
     def stats(self) -> PortStats:
-        """What every connection has counted; see `yarpy.Port.stats`."""
+        """The counts of every connection; see `yarpy.Port.stats`."""
         return self.port.stats
 
     @property

@@ -119,7 +119,7 @@ def root(ctx: click.Context, version: bool) -> int:
 
 
 def _plain(text: str) -> str:
-    """What click says of a number, for people who know no types."""
+    """Return what click says of a number in words for people who know no types."""
     text = re.sub(r"is not a valid integer( range)?", "is no whole number", text)
     text = re.sub(r"is not a valid float( range)?", "is no number", text)
     return re.sub(r"is not in the range (\S+)<=x<=(\S+?)\.$", r"is not from \1 to \2.", text)

@@ -310,7 +310,7 @@ class YarpNameClient:
         return Contact(host=self.host, port=self.port).address
 
     def _ask(self, kind: Literal["lines", "acked"], talk: Callable[[_Line], _T]) -> _T:
-        seconds = self._patience()
+        seconds = self._time_limit()
         until = time.monotonic() + seconds
         try:
             line = self._borrow(kind)
@@ -328,7 +328,7 @@ class YarpNameClient:
                 raise
             raise self._silent(seconds) from error
 
-    def _patience(self) -> float:
+    def _time_limit(self) -> float:
         """The seconds for a command. Raises Timeout if the call under way has none left."""
         whole = scope.left()
         return self.timeout if whole == math.inf else min(self.timeout, SHARE * whole)
@@ -348,7 +348,7 @@ class YarpNameClient:
         self, kind: Literal["lines", "acked"], until: float | None = None, bare: bool = False
     ) -> _Line:
         if until is None:
-            until = time.monotonic() + self._patience()
+            until = time.monotonic() + self._time_limit()
         try:
             connection = connected(self.host, self.port, until - time.monotonic())
         except (Timeout, PortClosed):

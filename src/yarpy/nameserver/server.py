@@ -96,7 +96,7 @@ class NameServer:
 
     @property
     def service(self) -> NameService:
-        """What it knows, and the commands that it understands."""
+        """Return what it knows, with the commands that it understands."""
         return self._serving.service
 
     @property

@@ -278,7 +278,7 @@ def _kept_rules(connection: sqlite3.Connection) -> tuple[Any, ...]:
 
 
 def _mend(path: str | Path, error: Exception) -> str:
-    """What to do about a database that cannot be opened."""
+    """Return what to do about a database that cannot be opened."""
     folder = Path(path).parent
     if not folder.is_dir():
         return f"there is no folder {folder}; make it first"

@@ -37,7 +37,7 @@ class RemoteConnection(Connection):
 
     @property
     def stats(self) -> RemoteStats:
-        """What the sender has counted, or the receiver if only that one counts; `replaced` and
+        """The counts of the sender, or of the receiver if only that one counts; `replaced` and
         `drops` of both."""
         found = flow(self.source, self.target, self._names)
         counted: dict[str, Any] = {key: found.measured(key) for key in COUNTED}

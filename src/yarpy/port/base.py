@@ -70,7 +70,7 @@ class BasePort:
 
     @property
     def stats(self) -> PortStats:
-        """What every connection and the mailbox have counted; `past` has the sums over connections
+        """The counts of every connection and of the mailbox; `past` has the sums over connections
         that have ended. `stats.as_dict()` is plain data."""
         return port_stats(self._hub.snapshot())
 

@@ -32,7 +32,7 @@ class Connection:
 
     @property
     def stats(self) -> ConnectionStats | RemoteStats:
-        """What was counted: `messages`, `bytes`, `drops`, `rate` (1/s), `jitter`, `latency` (s)
+        """The counts: `messages`, `bytes`, `drops`, `rate` (1/s), `jitter`, `latency` (s)
         ..."""
         raise NotImplementedError
 
@@ -77,7 +77,7 @@ class PortConnection(Connection):
 
     @property
     def stats(self) -> ConnectionStats:
-        """What this end has counted.
+        """The counts of this end.
 
         For every mode: messages sent = messages delivered + drops, counted where they happen. Once
         a connection has broken, some of those `unconfirmed` may have been delivered as well.

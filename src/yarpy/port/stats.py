@@ -56,7 +56,7 @@ class ConnectionStats(_Plain):
 
 @dataclass(frozen=True, slots=True)
 class RemoteStats(_Plain):
-    """What the two ports of a connection say that they have counted: the sender, or the receiver if
+    """The counts that both ports of a connection tell: those of the sender, or of the receiver if
     only that one counts; `replaced` and `drops` are of both. None: not counted."""
 
     messages: int | None

@@ -153,7 +153,7 @@ def test_goodbye_is_acknowledged() -> None:
 
 
 def test_goodbye_to_a_peer_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "CLOSE_PATIENCE", 0.05)
+    monkeypatch.setattr(module, "CLOSE_TIMEOUT", 0.05)
     with connected() as (link, far):
         link.send(Packet([1]))
         started = time.monotonic()
@@ -170,7 +170,7 @@ def test_link_to_a_peer_that_takes_nothing_can_be_closed(
     background: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whoever is stuck in sending is freed, and gets an error."""
-    monkeypatch.setattr(module, "CLOSE_PATIENCE", 0.1)
+    monkeypatch.setattr(module, "CLOSE_TIMEOUT", 0.1)
     with connected(FastTcp) as (link, _):
         if background:
             link.start_background()

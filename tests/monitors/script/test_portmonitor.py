@@ -721,7 +721,7 @@ def test_a_destroy_that_never_returns(folder: Path, caplog: pytest.LogCaptureFix
 def test_a_script_that_never_returns_holds_no_other_thread(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, "PATIENCE", 0.05)
+    monkeypatch.setattr(module, "CALLBACK_TIMEOUT", 0.05)
     python(folder, ENDLESS.format(callback="accept") + "def trig(): pass\n")
     monitor = make("type.python+file.gate")
     entered, go_on = endless(monitor)

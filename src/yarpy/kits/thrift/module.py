@@ -278,7 +278,7 @@ class _Module(Code):
         return lines
 
     def _given(self, method: MethodText, name: str) -> str:
-        """What the decorator of a method is told; "" for nothing."""
+        """Return the arguments of the decorator of a method; "" for none."""
         given = []
         if method.name.startswith("_"):
             given.append(f"name={quoted(method.name)}")
@@ -296,7 +296,7 @@ class _Module(Code):
 
 
 def _facts(each: StructText, names: dict[str, str]) -> list[str]:
-    """What a class says of its fields beside their types."""
+    """Return the lines of a class that say of its fields more than their types."""
     lines = []
     numbers = numbered(each.fields)
     if numbers != (*range(1, len(numbers) + 1),):

@@ -26,6 +26,6 @@ class Error(Struct, Exception):
     _sort: ClassVar[str] = "exception"
 
     def __str__(self) -> str:
-        """What it says, or all of its fields."""
+        """Return its message, or all of its fields."""
         text = getattr(self, "message", None)
         return text if isinstance(text, str) and text else repr(self)

@@ -119,7 +119,7 @@ class AcceptLoop:
         selector = self._selector
         assert selector is not None
         while not self._is_over():
-            for key, _ in selector.select(self._patience()):
+            for key, _ in selector.select(self._until_due()):
                 if key.data is None:
                     self._let_in()
                 else:
@@ -138,7 +138,7 @@ class AcceptLoop:
                 self._stop()
             return not self._entrances
 
-    def _patience(self) -> float | None:
+    def _until_due(self) -> float | None:
         if not self._due:
             return None
         return max(0.0, min(self._due.values()) - time.monotonic())

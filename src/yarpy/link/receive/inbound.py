@@ -64,7 +64,7 @@ class Owner(Protocol):
 
 
 class Guard(Protocol):
-    """What stands before a connection whose peer may not do everything."""
+    """Reads for a connection whose peer may not do everything."""
 
     def advance(self, link: Inbound, deadline: float | None) -> Message:
         """Return the next message that may come. Raises AccessRefused, which ends the link."""

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from yarpy.route import Route
 
 UNSENT: Final = 1 << 16  # bytes of a lossy connection that the kernel may buffer
-CLOSE_PATIENCE: Final = 1.0  # seconds to wait for the acknowledgement of `q`
+CLOSE_TIMEOUT: Final = 1.0  # seconds to wait for the acknowledgement of `q`
 
 
 class Outbound:
@@ -316,10 +316,10 @@ class Outbound:
 
     def close(self, quit_: bool = True, until: float | None = None) -> None:
         """End the connection: say `q`, wait for its acknowledgement, hang up. That takes until
-        `until`, or CLOSE_PATIENCE. Where the frame beneath is at work on it, as under a signal
+        `until`, or CLOSE_TIMEOUT. Where the frame beneath is at work on it, as under a signal
         handler, it ends at once."""
         sender, driver = self.sender, self.driver
-        by = scope.until(moment(CLOSE_PATIENCE) if until is None else until)
+        by = scope.until(moment(CLOSE_TIMEOUT) if until is None else until)
         if sender.held():
             driver.transport.interrupt()
             sender.give_up(at_rest=False)

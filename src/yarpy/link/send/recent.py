@@ -1,7 +1,7 @@
 """Recent: the last messages wait for a reader that is behind, and a writer does not.
 
 Rules: a message leaves in the writer's thread, without a copy, if the reader takes it within
-PATIENCE. One that does not is behind, until it takes one at once again: what it does not take at
+GRACE. One that does not is behind, until it takes one at once again: what it does not take at
 once waits for the connection's own thread, with so many others. Where there is no room, the oldest
 that waits gives way, and counts as `replaced`.
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from yarpy.link.send.sender import Sender
     from yarpy.wire.message import Packet
 
-PATIENCE: Final = 0.1  # seconds, once for each time that a reader falls behind
+GRACE: Final = 0.1  # seconds, once for each time that a reader falls behind
 
 
 class Recent(Outbox):
@@ -59,7 +59,7 @@ class _Offered(Rest):
     def __init__(self, box: Recent, packet: Packet, due: float | None) -> None:
         super().__init__(box, packet, due)
         self._recent = box
-        self._by = moment(NOW if box.behind else PATIENCE) or NOW
+        self._by = moment(NOW if box.behind else GRACE) or NOW
 
     def offer(self, until: float | None) -> bool | Rest:
         """As `Outbox.offer`."""

@@ -12,7 +12,8 @@ triggered; then, at the receiving end of a connection, the constraint; then `upd
 fails the message is dropped, if `update` fails it passes unchanged; each different error is logged
 once. A script that has changed on disk is loaded again; if the new one does not start, the old one
 stays in use. A script that never comes back holds whoever gave it a message, and nobody else: what
-other threads want of it fails after PATIENCE, and its connection or port is closed without it.
+other threads want of it fails after CALLBACK_TIMEOUT, and its connection or port is closed without
+it.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from yarpy.monitors.monitor_list import Series, places
 from yarpy.monitors.script.control import Control
 from yarpy.monitors.script.permission import SYSTEM, granted
 from yarpy.monitors.script.script import (
-    PATIENCE,
+    CALLBACK_TIMEOUT,
     Load,
     Script,
     ScriptError,
@@ -214,8 +215,8 @@ class PortMonitor:
     def _holding(self) -> Iterator[None]:
         """Hold the script, for what is no message. Raises ScriptError if a callback does not
         return: no thread can be ended."""
-        patience = 0.0 if self._stuck else max(0.0, min(PATIENCE, scope.remaining()))
-        if not self._lock.acquire(timeout=patience):
+        timeout = 0.0 if self._stuck else max(0.0, min(CALLBACK_TIMEOUT, scope.remaining()))
+        if not self._lock.acquire(timeout=timeout):
             self._stuck = True
             raise ScriptError(f"{self._path}: a callback still runs, and nothing can end it")
         self._stuck = False

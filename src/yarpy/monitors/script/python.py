@@ -33,7 +33,7 @@ from yarpy import scope
 from yarpy.data.bottle import Property
 from yarpy.monitors.base import FAILURES
 from yarpy.monitors.script.control import Control
-from yarpy.monitors.script.script import PATIENCE, ScriptError
+from yarpy.monitors.script.script import CALLBACK_TIMEOUT, ScriptError
 from yarpy.wire.message import Message
 
 _NAMES: Final = {
@@ -162,7 +162,7 @@ class PythonScript:
         except RuntimeError:  # Python is ending, and starts no more threads
             run()
         else:
-            thread.join(max(0.0, min(PATIENCE, scope.remaining())))
+            thread.join(max(0.0, min(CALLBACK_TIMEOUT, scope.remaining())))
         if thread.is_alive():
             raise ScriptError(f"{self._path}: destroy still runs, and nothing can end it")
         for error in failed:

@@ -23,7 +23,7 @@ from yarpy.monitors.script.permission import look_for
 from yarpy.wire.message import Message
 
 INTERVAL: Final = 0.5  # seconds between checks of a file
-PATIENCE: Final = 3.0  # seconds that who closes or sets it up waits for a callback to return
+CALLBACK_TIMEOUT: Final = 3.0  # seconds that who closes or sets it up waits for a callback
 
 
 class ScriptError(LocalProtocolError):

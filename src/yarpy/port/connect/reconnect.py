@@ -45,7 +45,7 @@ SILENCE: Final = (
     1.0  # seconds for a first answer; a dead host gives none, and its name may be elsewhere
 )
 SLOWER: Final = 1.3  # so much longer is each pause than the one before, and up to so much by chance
-INPUT_PATIENCE: Final = 60.0  # seconds for a sender that vanished to come back
+INPUT_TIMEOUT: Final = 60.0  # seconds for a sender that vanished to come back
 GOODBYE: Final = 1.0  # seconds between a goodbye and the end that it was for
 MOST_SENDERS: Final = 200  # of one port that are waited for
 
@@ -262,7 +262,7 @@ class Reconnector:
             pass  # not yet
         finally:
             now = time.monotonic()
-            waited = now - item.since > INPUT_PATIENCE
+            waited = now - item.since > INPUT_TIMEOUT
             if done or (waited and item.incoming and not _is_pulled(item.route)):
                 with self._lock:
                     self._lost = [other for other in self._lost if other is not item]

@@ -181,7 +181,7 @@ def test_silence_ends(capsys):
 
 
 def test_what_never_sounds_is_not_waited_for_without_end(here, names, tmp_path, monkeypatch):
-    monkeypatch.setattr("yarpy.kits.views.verbs.hear.PATIENCE", 0.0)
+    monkeypatch.setattr("yarpy.kits.views.verbs.hear.LATENESS", 0.0)
     words = ("--record", str(tmp_path / "x.wav"), "--name", "/hear/h", "--duration", "0.1")
     said = here("hear", "/hear/nobody", *words)
     assert said.code == 1

@@ -75,7 +75,7 @@ class Request:
 
 
 class Content(Protocol):
-    """What a plug-in of `yarpy.contents` makes of the body of a POST, which it is called with;
+    """The body of a POST as a plug-in of `yarpy.contents` reads it, which is called with it;
     DecodeError for one that it cannot read."""
 
     kind: str

@@ -77,7 +77,7 @@ class Call(Message[Any]):
 
 
 class Answer:
-    """What is answered: REPLY or EXCEPTION, and a struct. `request` makes the answer on YARP's
+    """An answer: REPLY or EXCEPTION, and a struct. `request` makes the answer on YARP's
     wire, for loggers."""
 
     def __init__(self, kind: int, body: bytes, wire: Callable[[], bytes] | None = None) -> None:

@@ -27,7 +27,7 @@ from yarpy.cli.stderr import complain, warn
 
 NAME = "/hear"
 LATE = 0.5  # seconds that the loudspeaker may be behind
-PATIENCE: Final = 10.0  # seconds that a sound may be later than the duration asked for
+LATENESS: Final = 10.0  # seconds that a sound may be later than the duration asked for
 
 
 @click.command()
@@ -49,7 +49,7 @@ def command(
     from yarpy.kits.views.audio import Speaker
     from yarpy.kits.views.wav import WavWriter
 
-    silence = None if duration is None else duration + PATIENCE
+    silence = None if duration is None else duration + LATENESS
     code = 0
     with ExitStack() as stack:
         file = stack.enter_context(WavWriter(path)) if path is not None else None
