@@ -440,7 +440,11 @@ def test_mutated(message, type_, data):
     except DecodeError:
         return
     assert isinstance(value, type_)
-    array = getattr(value, "array", None)
+    try:
+        array = getattr(value, "array", None)
+    except ValueError:
+        assert type_ in (object, Bottle, list), "lists may hold other things than numbers"
+        return
     if array is not None and array.size:
         array.tolist()
 
