@@ -46,9 +46,10 @@ time.sleep(600)"</parameters></module>
         wait_until(lambda: joined in manager("--connect", "--exit"), 4 * HANG)
         told = json.loads(cli.run("status", "--json").stdout)
         assert [one["state"] for one in told["programs"]] == ["running"] * 2
-        second = manager("--check_state", "--check_con", "--disconnect", "--stop", "--exit")
-        assert second.count("<RUNNING>") == 2 and "<DISCONNECTED>" in second
-        assert second.count("<STOPPED>") == 2
+        second = manager("--check_state", "--check_con", "--exit")
+        assert second.count("<RUNNING>") == 2 and joined in second
+        third = manager("--disconnect", "--stop", "--exit")
+        assert "<DISCONNECTED>" in third and third.count("<STOPPED>") == 2
         assert cli.run("status").returncode == 1  # nothing is left, not even who kept it
     finally:
         cli.run("down")
