@@ -31,10 +31,13 @@ ALLOWED = {
     "yarpy.kits",
     "yarpy.kits.devices",
     "yarpy.kits.devices.interfaces",
+    "yarpy.kits.devices.status",
     "yarpy.kits.launch.manager",
     "yarpy.log",
     "yarpy.names.default",
     "yarpy.network.connection",
+    "yarpy.network.qos",
+    "yarpy.qos",
 }
 
 

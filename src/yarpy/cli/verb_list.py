@@ -47,7 +47,6 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
             "convert walk.mcap -o short --start 5",
         ),
         "cut": Verb("write a stretch of time of a recording", "cut walk.mcap -o fall --start 5"),
-        "merge": Verb("write several recordings as one", "merge left.mcap right.mcap -o both"),
         "filter": Verb("write some ports of a recording", "filter walk.mcap -o small -e ^/icub/"),
     },
     "Applications": {

@@ -1,6 +1,9 @@
 """`yarpy convert`; tests/kits/record/test_convert.py has what it writes."""
 
-from support.recordings import recorded
+from support.recordings import START, STEP, payload_of, recorded
+
+from yarpy import record
+from yarpy.kits.record.mcap.writer import McapWriter
 
 
 def test_there_and_back(here, tmp_path) -> None:
@@ -19,3 +22,17 @@ def test_what_is_damaged_is_told(here, tmp_path) -> None:
     path.write_bytes(path.read_bytes()[:400])
     said = here("convert", str(path), "-o", str(tmp_path / "y"))
     assert said.code == 1 and "x.mcap: byte " in said.err and "messages" in said.out
+
+
+def test_several_as_one(here, tmp_path) -> None:
+    paths = [tmp_path / "even.mcap", tmp_path / "odd.mcap"]
+    for n, path in enumerate(paths):
+        with McapWriter(path) as writer:
+            for m in range(5):
+                writer.add(f"/{n}", "", START + (2 * m + n) * STEP, payload_of([2 * m + n]))
+    out = tmp_path / "both"
+    assert here("convert", *map(str, paths), "-o", str(out)).code == 0
+    with record.open(f"{out}.mcap") as found:
+        assert [one.value for one in found] == [[n] for n in range(10)]
+    said = here("convert", *map(str, paths), "-o", str(out))
+    assert said.code == 1 and "there already" in said.err

@@ -175,6 +175,8 @@ class RunServer:
 
     def _forget(self, one: Program) -> None:
         with self._lock:
+            if one not in self._programs:
+                return  # the watch and the end of the server have both seen that it is over
             self._programs.remove(one)
             self._last.append(one)
         one.finish()
@@ -193,8 +195,7 @@ class RunServer:
                 one.family.signal(KILL)
                 time.sleep(0.01)
         for one in found:
-            with suppress(ValueError):  # the watch has forgotten it meanwhile
-                self._forget(one)
+            self._forget(one)
 
     # -- requests ---------------------------------------------------------------------------------
 

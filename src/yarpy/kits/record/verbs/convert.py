@@ -13,12 +13,16 @@ Exit codes: 0; 1 it cannot be read or written, or some of it is damaged.
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
 from yarpy.cli.output import print_line
 from yarpy.cli.stderr import complain, warn
+
+if TYPE_CHECKING:
+    from yarpy.kits.record.recording import Recording
 
 
 @click.command()
@@ -49,21 +53,33 @@ def command(
     duration: float | None,
 ) -> int:
     """Write FILEs, as one recording, in another way."""
+
+    def chosen(recording: Recording) -> dict[str, Any]:
+        return {
+            "form": format_,
+            "times": times,
+            "ports": None if ports is None else [name for name in ports.split(",") if name],
+            "start": start,
+            "duration": duration,
+        }
+
+    return write_part(files, path, chosen, compression)
+
+
+def write_part(
+    files: Sequence[str],
+    path: str,
+    chosen: Callable[[Recording], dict[str, Any]],
+    compression: str,
+) -> int:
+    """Write what `chosen` says of a recording, as arguments of `convert`; return the exit code."""
     from yarpy.kits.record.convert import convert
     from yarpy.kits.record.recording import open_recording
 
     with open_recording(*files) as recording:
+        arguments = chosen(recording)
         try:
-            done = convert(
-                recording,
-                path,
-                form=format_,
-                compression=compression,
-                times=times,
-                ports=None if ports is None else [name for name in ports.split(",") if name],
-                start=start,
-                duration=duration,
-            )
+            done = convert(recording, path, compression=compression, **arguments)
         except FileExistsError as error:
             complain(f"{error.filename} is there already: choose another name with -o")
             return 1
@@ -71,6 +87,7 @@ def command(
     for damage in damages:
         warn(damage)
     if done.left_out:
-        warn(f"{done.left_out} messages cannot be written as {format_}, and were left out")
+        form = arguments.get("form", "mcap")
+        warn(f"{done.left_out} messages cannot be written as {form}, and were left out")
     print_line(f"{done.path}: {done.messages} messages")
     return 1 if damages else 0
