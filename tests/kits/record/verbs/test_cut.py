@@ -1,6 +1,6 @@
 """`yarpy cut`: a stretch of time is left."""
 
-from support.recordings import START, STEP, fill
+from support.recordings import START, STEP, fill, recorded
 
 from yarpy import record
 from yarpy.kits.record.mcap.writer import McapWriter
@@ -28,3 +28,10 @@ def test_a_stretch_of_time(here, tmp_path) -> None:
     assert said.code == 1 and "not behind" in said.err
     said = here("cut", str(path), "-o", "y", "--duration", "1", "--to", "fell")
     assert said.code == 1 and "both say where it ends" in said.err
+
+
+def test_what_is_damaged_is_told(here, tmp_path) -> None:
+    path = recorded(tmp_path / "x.mcap")
+    path.write_bytes(path.read_bytes()[:400])
+    said = here("cut", str(path), "-o", str(tmp_path / "y"))
+    assert said.code == 1 and "x.mcap: byte " in said.err

@@ -26,10 +26,3 @@ def test_some_of_the_ports(here, tmp_path) -> None:
     said = here("filter", path, "-o", str(tmp_path / "none"), "--kind", "image")
     assert said.code == 1 and "no port is left of /a /b" in said.err
     assert here("filter", path, "-o", str(tmp_path / "none"), "--ports", "/c").code == 1
-
-
-def test_what_is_damaged_is_told(here, tmp_path) -> None:
-    path = recorded(tmp_path / "x.mcap")
-    path.write_bytes(path.read_bytes()[:400])
-    said = here("filter", str(path), "-o", str(tmp_path / "y"))
-    assert said.code == 1 and "x.mcap: byte " in said.err
