@@ -71,6 +71,16 @@ def test_every_message_to_the_byte(tmp_path: Path, names, out) -> None:
     assert kinds(*recorder.files) == ["connected", "disconnected"]
 
 
+@pytest.mark.parametrize("carrier", ["", "tcp", "fast_tcp"])
+def test_what_was_just_written_is_in_it(tmp_path: Path, names, out, carrier: str) -> None:
+    for run in range(10):
+        with Recorder("/out", path=tmp_path / f"{run}", names=names, carrier=carrier) as recorder:
+            assert out.wait_for_outputs(timeout=HANG)
+            for n in range(50):
+                out.write([n])
+        assert [one.value[0] for one in recorded(*recorder.files)] == [*range(50)]
+
+
 @pytest.mark.parametrize("compression", ["lz4", "zstd"])
 def test_what_was_flushed_can_be_read_meanwhile(tmp_path, names, out, compression) -> None:
     path = tmp_path / "x.mcap"

@@ -13,6 +13,7 @@ import re
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -22,7 +23,7 @@ from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError, NoNameServer, YarpError
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
-from yarpy.network.connection import admin
+from yarpy.network.connection import admin, disconnect
 from yarpy.network.remote import connect
 from yarpy.network.sampling import can_answer
 from yarpy.network.traffic import pairs
@@ -31,6 +32,7 @@ from yarpy.port.base import BasePort
 PAUSE: Final = 0.5  # seconds between looks
 TIMEOUT: Final = 3.0  # seconds for a port to answer
 LONGEST: Final = 10.0  # seconds until what could not be connected is tried again
+LEAVING: Final = 1.0  # seconds for all ports to send what they have written, at the end
 AT_ONCE: Final = 8  # connections that are being made
 
 
@@ -121,9 +123,20 @@ class Following:
         return [name for name in self._wanted.names if name not in there]
 
     def close(self, timeout: float | None = None) -> None:
-        """Look no more; wait so many seconds for a look that has begun, None: until it is over."""
+        """Look no more, and have every port that is connected send what it has written, and end.
+
+        timeout: seconds for a look that has begun, None: until it is over. As many, and LEAVING at
+        most, are for the ports: of one that does not answer comes what is here already.
+        """
         self._closing.set()
         self._thread.join(timeout)
+        until = time.monotonic() + (LEAVING if timeout is None else min(timeout, LEAVING))
+        for name in sorted(self._connected()):
+            left = until - time.monotonic()
+            if left <= 0:
+                return
+            with suppress(YarpError):
+                disconnect(name, self._port.name, names=self._names, timeout=min(left, LEAVING / 4))
 
     def _run(self) -> None:
         while not self._closing.is_set():

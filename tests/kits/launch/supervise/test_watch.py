@@ -40,7 +40,7 @@ class Running:
         return {label: one.handle.pid for label, one in self.supervisor.units.items() if one.handle}
 
     def change(self, path: Path, text: str) -> None:
-        path.write_text(text)
+        path.write_text(text, encoding="utf-8")
         self.watch.look()  # it may still be written to
         self.watch.look()
 
