@@ -119,7 +119,8 @@ def test_what_an_earlier_up_has_left_is_not_started_twice(
         Started(runner, "sleep", "600")
     replacing = RemoteRunner("/node", "app one", grace=5.0, replace=True, names=network)
     second = Started(replacing, "sleep", "600")
-    assert second.handle.pid != first.handle.pid and len(server.programs) == 1
+    assert second.handle.pid != first.handle.pid
+    wait_until(lambda: len(server.programs) == 1)  # it looks for those that have ended
     second.handle.terminate()
     assert second.end() == -signal.SIGTERM
 
