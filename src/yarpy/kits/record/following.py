@@ -32,7 +32,7 @@ from yarpy.port.base import BasePort
 PAUSE: Final = 0.5  # seconds between looks
 TIMEOUT: Final = 3.0  # seconds for a port to answer
 LONGEST: Final = 10.0  # seconds until what could not be connected is tried again
-LEAVING: Final = 1.0  # seconds for all ports to send what they have written, at the end
+LEAVING: Final = 2.0  # seconds for all ports to send what they have written, at the end
 AT_ONCE: Final = 8  # connections that are being made
 
 
@@ -78,13 +78,14 @@ def compiled(pattern: str) -> re.Pattern[str] | None:
 class _Try:
     """What is known of a port that is to be connected."""
 
-    __slots__ = ("address", "after", "pause", "running", "unfit")
+    __slots__ = ("address", "after", "dialled", "pause", "running", "unfit")
 
     def __init__(self) -> None:
         self.address = ""
         self.after = 0.0  # as of time.monotonic
         self.pause = PAUSE
         self.running = False
+        self.dialled = False  # it may have a connection that has not begun at our end
         self.unfit = False  # it only asks or answers
 
 
@@ -131,12 +132,13 @@ class Following:
         self._closing.set()
         self._thread.join(timeout)
         until = time.monotonic() + (LEAVING if timeout is None else min(timeout, LEAVING))
-        for name in sorted(self._connected()):
+        dialled = {name for name, known in [*self._tries.items()] if known.dialled}
+        for name in sorted(self._connected() | dialled):
             left = until - time.monotonic()
             if left <= 0:
                 return
             with suppress(YarpError):
-                disconnect(name, self._port.name, names=self._names, timeout=min(left, LEAVING / 4))
+                disconnect(name, self._port.name, names=self._names, timeout=min(left, LEAVING / 2))
 
     def _run(self) -> None:
         while not self._closing.is_set():
@@ -192,6 +194,7 @@ class Following:
             if not named and not can_be_heard(name, self._names):
                 known.unfit = True
             elif not self._closing.is_set():
+                known.dialled = True
                 connect(name, self._port.name, self._carrier, names=self._names)
                 self._once(name, "")
                 known.pause = PAUSE
