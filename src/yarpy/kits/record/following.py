@@ -110,6 +110,7 @@ class Following:
         self._tell = tell
         self._tries: dict[str, _Try] = {}
         self._told: dict[str, str] = {}
+        self._process = os.getpid()
         self._closing = threading.Event()
         self._room = threading.BoundedSemaphore(AT_ONCE)
         self._thread = threading.Thread(
@@ -131,6 +132,8 @@ class Following:
         """
         self._closing.set()
         self._thread.join(timeout)
+        if os.getpid() != self._process:
+            return  # the connections are those of the parent, who goes on
         until = time.monotonic() + (LEAVING if timeout is None else min(timeout, LEAVING))
         dialled = {name for name, known in [*self._tries.items()] if known.dialled}
         for name in sorted(self._connected() | dialled):
