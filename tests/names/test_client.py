@@ -12,10 +12,11 @@ from support.port import free_port
 
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
-from yarpy.errors import AccessRefused, AddressError, NoNameServer, RemoteProtocolError
+from yarpy.errors import AccessRefused, AddressError, NoNameServer, RemoteProtocolError, Timeout
 from yarpy.names import client as client_module
 from yarpy.names.client import YarpNameClient
 from yarpy.nameserver.reply import Reply
+from yarpy.scope import Scope, moment
 
 
 class Scripted:
@@ -218,6 +219,17 @@ def test_a_server_that_says_nothing() -> None:
         with pytest.raises(NoNameServer, match=r"within 0\.2 s"):
             names.query("/x")
         assert time.monotonic() - start < 2
+
+
+def test_the_last_moment_of_a_call_says_nothing_of_the_server() -> None:
+    """wait_for() asks again until its time is over: no server answers within the rest of that."""
+    with (
+        Scripted(b"") as server,
+        YarpNameClient("127.0.0.1", server.port) as names,
+        Scope(moment(0.05)),
+        pytest.raises(Timeout),
+    ):
+        names.query("/x")
 
 
 def test_a_server_that_hangs_up_after_each_reply() -> None:

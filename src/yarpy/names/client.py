@@ -47,6 +47,7 @@ IDLE = 10.0  # seconds after which an unused connection is not trusted any more
 SPARE = 2  # connections of each kind that are kept for the next command
 WHO = 1.0  # seconds to find out what listens there when it does not answer
 SHARE: Final = 0.8  # of the time of a call, for the answer; the rest is for finding that out
+FAIR: Final = 0.1  # seconds in which a server that is there answers; less says nothing of it
 
 _ACK = "<ACK>"
 _FAILED = ("[fail]", "fail")
@@ -326,7 +327,13 @@ class YarpNameClient:
         except TimeoutError as error:
             if isinstance(error, YarpError):  # the time was over before anybody was asked
                 raise
+            if seconds < FAIR:
+                raise self._late() from error
             raise self._silent(seconds) from error
+        except NoNameServer as error:
+            if seconds < FAIR and isinstance(error.__cause__, TimeoutError):
+                raise self._late() from error
+            raise
 
     def _time_limit(self) -> float:
         """The seconds for a command. Raises Timeout if the call under way has none left."""
@@ -411,6 +418,9 @@ class YarpNameClient:
                 self._idle.append(line)
                 return
         line.close()
+
+    def _late(self) -> Timeout:
+        return Timeout(f"the time was over before the name server at {self.address} answered")
 
     def _silent(self, seconds: float) -> NoNameServer:
         """The error for a server that accepts but was silent: perhaps it is no name server."""
