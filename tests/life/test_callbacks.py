@@ -1,4 +1,5 @@
-"""Every method of a port, in each of its callbacks: it returns, and does not wait for itself."""
+"""Every method of every kind of port, in each of its callbacks: it returns, and does not wait for
+itself."""
 
 from __future__ import annotations
 
@@ -14,16 +15,25 @@ from support.wait import HANG
 
 from yarpy import network
 from yarpy.data.stamp import Stamp
-from yarpy.errors import PortClosed, YarpError
+from yarpy.errors import NotAllowed, PortClosed, YarpError
 from yarpy.nameserver.local import LocalNames
-from yarpy.port.port import Port
+from yarpy.port.base import BasePort
+from yarpy.port.port import BufferedPort, Port
+from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.qos import Qos
 
+
+def _methods_of_no_service(client: RpcClient[Any]) -> None:
+    with pytest.raises(TypeError):
+        client.remote  # noqa: B018
+
+
 # What is called, for each public name of a port.
-CALLS: dict[str, Callable[[Port], object]] = {
+CALLS: dict[str, Callable[[Any], object]] = {
     "address": lambda port: port.address,
     "ask": lambda port: port.ask("question", timeout=0.2),
     "attach": lambda port: port.attach("in", {"monitor": "throttleDown"}),
+    "call": lambda port: port.call("question", timeout=0.2),
     "close": lambda port: port.close(),
     "closed": lambda port: port.closed,
     "connect": lambda port: port.connect("/sink", "tcp"),
@@ -43,8 +53,12 @@ CALLS: dict[str, Callable[[Port], object]] = {
     "poll": lambda port: port.poll(),
     "prepare": lambda port: port.prepare(3),
     "read": lambda port: port.read(timeout=0.05),
+    "read_strictly": lambda port: port.read_strictly(True),
+    "remote": lambda port: _methods_of_no_service(port),
     "resume": lambda port: port.resume(),
     "stats": lambda port: port.stats,
+    "strict": lambda port: port.strict,
+    "tell": lambda port: port.tell("news", timeout=0.2),
     "wait_for_inputs": lambda port: port.wait_for_inputs(2, timeout=0.05),
     "wait_for_outputs": lambda port: port.wait_for_outputs(2, timeout=0.05),
     "waiting": lambda port: port.waiting,
@@ -52,14 +66,28 @@ CALLS: dict[str, Callable[[Port], object]] = {
 }
 
 
+OPEN: dict[type[BasePort], Callable[..., BasePort]] = {
+    Port: lambda names, heard: Port("/port", names=names, callback=heard),
+    BufferedPort: lambda names, heard: BufferedPort("/port", names=names, callback=heard),
+    RpcClient: lambda names, heard: RpcClient(name="/port", names=names),
+    RpcServer: lambda names, heard: RpcServer("/port", heard, names=names),
+}
+
+
+def methods(kind: type[BasePort]) -> set[str]:
+    return {name for name in dir(kind) if not name.startswith("_")}
+
+
 def test_nothing_public_is_left_out() -> None:
-    assert set(CALLS) == {name for name in dir(Port) if not name.startswith("_")}
+    assert set(CALLS) == set[str]().union(*map(methods, OPEN))
 
 
 class World:
     """A port with one kind of callback, and others around it."""
 
-    def __init__(self, kind: str, act: Callable[[Port], object]) -> None:
+    def __init__(
+        self, kind: str, act: Callable[[Any], object], port: type[BasePort] = Port
+    ) -> None:
         self.names = LocalNames()
         self.done = threading.Event()
         self.took = 0.0
@@ -70,8 +98,9 @@ class World:
         self.other = Port("/other", names=self.names)
         self.source = Port("/source", names=self.names)
         on_message = self._call if kind == "message" else lambda message: None
-        self.port = Port("/port", names=self.names, callback=on_message)
-        self.port.connect("/sink", "tcp")
+        self.port = OPEN[port](self.names, on_message)
+        if port is not RpcServer:  # it has no outputs
+            self.port.connect("/sink", "tcp")
 
     def _call(self, *arguments: Any) -> Any:
         if self._begun:  # what we do has callbacks, too
@@ -134,19 +163,53 @@ def _get(url: str) -> None:
         pass  # the port may be closed before it answers
 
 
-@pytest.mark.parametrize("method", CALLS)
-@pytest.mark.parametrize("kind", ["message", "connection", "end", "deadline", "admin", "page"])
-def test_every_method_in_every_callback(kind: str, method: str) -> None:
-    world = World(kind, CALLS[method])
+KINDS = ["message", "connection", "end", "deadline", "admin", "page"]
+# After these the others have nothing more to do.
+LAST = ("inputs", "outputs", "disconnect", "interrupt", "close")
+
+
+def happens(kind: str, act: Callable[[Any], object], port: type[BasePort] = Port) -> World:
+    """Return what came of `act` in a callback of this kind."""
+    world = World(kind, act, port)
     try:
         getattr(world, kind)()
         assert world.done.wait(HANG), "it waits for itself"
-        if isinstance(world.error, PortClosed):
-            assert method in ("read", "poll")  # there is nothing to read beside a callback
-        else:
-            assert world.error is None
-        assert world.took < 5.0
-        if method in ("close", "inputs"):
-            assert world.took < 0.9  # it does not wait for the thread that it is called in
+        return world
     finally:
         world.close()
+
+
+@pytest.mark.parametrize("method", [name for name in CALLS if hasattr(Port, name)])
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_method_in_every_callback(kind: str, method: str) -> None:
+    world = happens(kind, CALLS[method])
+    if isinstance(world.error, PortClosed):
+        assert method in ("read", "poll")  # there is nothing to read beside a callback
+    else:
+        assert world.error is None
+    assert world.took < 5.0
+    if method in ("close", "inputs"):
+        assert world.took < 0.9  # it does not wait for the thread that it is called in
+
+
+@pytest.mark.parametrize("port", [kind for kind in OPEN if kind is not Port])
+@pytest.mark.parametrize("kind", KINDS)
+def test_all_methods_of_other_ports_one_after_another(kind: str, port: type[BasePort]) -> None:
+    if port is RpcClient and kind in ("message", "deadline"):
+        pytest.skip("a client takes no messages but the answers to its questions")
+    done: list[str] = []
+
+    def all_of_them(port: BasePort) -> None:
+        found = methods(type(port))
+        for method in [*sorted(found.difference(LAST)), *LAST]:
+            try:
+                CALLS[method](port)
+            except PortClosed:
+                assert method in ("read", "poll")  # there is nothing to read beside a callback
+            except NotAllowed:
+                assert (type(port), method) == (RpcServer, "connect")  # it has no outputs
+            done.append(method)
+
+    world = happens(kind, all_of_them, port)
+    assert world.error is None, f"in what follows {done[-1:]}"
+    assert set(done) == methods(port)

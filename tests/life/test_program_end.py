@@ -22,7 +22,7 @@ WRITER = """
 import os, signal, sys, threading, time
 import yarpy
 port = yarpy.{kind}("/life/out", timeout=60)
-port.connect("/life/in")
+port.connect("/life/in", timeout=60)
 """
 WRITE = "for n in range({count}): port.write([n])\n"
 ENDS = {
@@ -117,9 +117,10 @@ def test_a_child_of_multiprocessing_ends_in_good_order(
         + child
         + "    for n in range(100): port.write([n])\n"
         + "process = multiprocessing.get_context('fork').Process(target=work)\n"
-        + "process.start(); process.join()\n"
+        + "process.start(); process.join()\nraise SystemExit(process.exitcode)\n"
     )
-    assert run(server, program).returncode == 0
+    done = run(server, program)
+    assert done.returncode == 0, done.stderr
     reader.wait_for(100)
     assert yarpy.query("/life/out") is None
 
