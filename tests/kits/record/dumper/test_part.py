@@ -1,5 +1,10 @@
 """How pictures are stored, by the type of the folder; what comes back."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from support.recordings import payload_of
@@ -41,3 +46,17 @@ def test_the_type_of_a_port() -> None:
     assert type_of(payload_of([1])) == "Bottle"
     assert type_of(payload_of(yarpy.Image(np.zeros((2, 2), "f4")))) == "Depth"
     assert type_of(payload_of(yarpy.Image(np.zeros((2, 2), "u1")))) == "Image"
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows has no fork")
+def test_a_forked_child_writes_nothing_twice(tmp_path: Path) -> None:
+    program = (
+        "import os, sys\nfrom pathlib import Path\nfrom yarpy.data import codec\n"
+        "from yarpy.kits.record.dumper.part import Part\n"
+        "part = Part(Path(sys.argv[1]), 'Bottle')\n"
+        "payload = b''.join(map(bytes, codec.encode(['once'])))\n"
+        "part.add('', 1_000_000_000, payload)\n"
+        "if child := os.fork(): os.waitpid(child, 0)\n"
+    )
+    subprocess.run([sys.executable, "-c", program, str(tmp_path)], check=True, timeout=60)
+    assert (tmp_path / "data.log").read_text() == "-1 1.000000 once\n"

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Sequence
+from io import FileIO
 from pathlib import Path
 from struct import Struct
-from typing import Any, BinaryIO, Final, Literal, TypeAlias
+from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 
@@ -53,7 +54,8 @@ class Part:
         self.size = 0
         self._pictures = type_ != BOTTLE
         self.tell(f"Type: {type_};\nStamp: {times or 'rx'};\n{''.join(events)}")
-        self.file: BinaryIO = open(folder / DATA, "xb")  # noqa: SIM115 - for the whole recording
+        # Without a buffer: a forked child would write what is in it a second time, at its end.
+        self.file: Final = FileIO(folder / DATA, "xb")
 
     def tell(self, text: str) -> None:
         """Write into info.log."""
@@ -68,7 +70,11 @@ class Part:
             content = self._stored(payload) if picture and self._pictures else _text(payload)
         except (DecodeError, ValueError) as error:
             raise LocalProtocolError(f"a message that C++ cannot record: {error}") from error
-        self.size += self.file.write(self._head(envelope, received) + b" " + content + b"\n")
+        line = memoryview(self._head(envelope, received) + b" " + content + b"\n")
+        while line:
+            done = self.file.write(line)
+            self.size += done
+            line = line[done:]
         self._number += 1
 
     def _head(self, envelope: str, received: int) -> bytes:
