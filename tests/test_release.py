@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import subprocess
 import sys
 import tarfile
@@ -15,6 +16,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+import yaml
 from support.wait import HANG
 
 ROOT = Path(__file__).parents[1]
@@ -75,3 +77,24 @@ def test_the_version_is_told_once() -> None:
     import yarpy
 
     assert yarpy.__version__ == PROJECT["version"]
+
+
+def test_all_is_every_extra_of_users() -> None:
+    extras = PROJECT["optional-dependencies"]
+    (text,) = extras["all"]
+    named = re.fullmatch(r"yarpy\[(.*)\]", text)
+    assert named is not None
+    assert set(named[1].split(",")) == set(extras) - {"all", "test", "build", "bench"}
+
+
+def test_the_recipe_of_conda_says_the_same() -> None:
+    recipe = yaml.safe_load((ROOT / "packaging" / "conda" / "recipe.yaml").read_text("utf-8"))
+    assert recipe["package"] == {"name": PROJECT["name"], "version": PROJECT["version"]}
+    python, *others = (line.replace(" ", "") for line in recipe["requirements"]["run"])
+    assert python == f"python{PROJECT['requires-python']}"
+    assert others == PROJECT["dependencies"]
+
+
+def test_the_package_of_debian_says_the_same() -> None:
+    first = (ROOT / "packaging" / "debian" / "changelog").read_text("utf-8").splitlines()[0]
+    assert first.startswith(f"{PROJECT['name']} ({PROJECT['version']})")
