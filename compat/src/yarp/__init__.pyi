@@ -1,5 +1,7 @@
 """Written by generate.py: the names of `yarp`, for type checkers."""
 
+from yarp._abstract_contactable import AbstractContactable as AbstractContactable
+from yarp._abstract_contactable import UnbufferedContactable as UnbufferedContactable
 from yarp._bottle import Bottle as Bottle
 from yarp._buffered_port import BottleCallback as BottleCallback
 from yarp._buffered_port import BufferedPort as BufferedPort
@@ -39,8 +41,10 @@ from yarp._buffered_port import TypedReaderCallbackVectorInt as TypedReaderCallb
 from yarp._buffered_port import VectorCallback as VectorCallback
 from yarp._buffered_port import VectorIntCallback as VectorIntCallback
 from yarp._camera_view import CameraDescriptor as CameraDescriptor
+from yarp._camera_view import IFrameGrabber as IFrameGrabber
 from yarp._camera_view import IFrameGrabberControls as IFrameGrabberControls
 from yarp._camera_view import IFrameGrabberImage as IFrameGrabberImage
+from yarp._camera_view import IFrameGrabberImageBase as IFrameGrabberImageBase
 from yarp._camera_view import IFrameGrabberRgb as IFrameGrabberRgb
 from yarp._connection import ConnectionReader as ConnectionReader
 from yarp._connection import ConnectionWriter as ConnectionWriter
@@ -55,10 +59,37 @@ from yarp._control_view import IInteractionMode as IInteractionMode
 from yarp._control_view import IPidControl as IPidControl
 from yarp._control_view import Pid as Pid
 from yarp._control_view import PidVector as PidVector
+from yarp._control_view import PidWithExtraInfo as PidWithExtraInfo
 from yarp._device import DeviceDriver as DeviceDriver
 from yarp._device import DeviceResponder as DeviceResponder
 from yarp._device import Drivers as Drivers
 from yarp._device import IConfig as IConfig
+from yarp._environment import cachehome as cachehome
+from yarp._environment import configdirs as configdirs
+from yarp._environment import confighome as confighome
+from yarp._environment import datadirs as datadirs
+from yarp._environment import datahome as datahome
+from yarp._environment import getEnvironment as getEnvironment
+from yarp._environment import get_bool as get_bool
+from yarp._environment import get_path as get_path
+from yarp._environment import get_string as get_string
+from yarp._environment import home as home
+from yarp._environment import is_set as is_set
+from yarp._environment import path_separator as path_separator
+from yarp._environment import runtimedir as runtimedir
+from yarp._environment import setEnvironment as setEnvironment
+from yarp._environment import set_bool as set_bool
+from yarp._environment import set_path as set_path
+from yarp._environment import set_string as set_string
+from yarp._environment import tempdir as tempdir
+from yarp._environment import unset as unset
+from yarp._environment import unsetEnvironment as unsetEnvironment
+from yarp._environment import yarpcachehome as yarpcachehome
+from yarp._environment import yarpconfigdirs as yarpconfigdirs
+from yarp._environment import yarpconfighome as yarpconfighome
+from yarp._environment import yarpdatadirs as yarpdatadirs
+from yarp._environment import yarpdatahome as yarpdatahome
+from yarp._environment import yarpruntimedir as yarpruntimedir
 from yarp._file import read as read
 from yarp._file import write as write
 from yarp._image import FlexImage as FlexImage
@@ -70,6 +101,8 @@ from yarp._image import ImageMono16 as ImageMono16
 from yarp._image import ImageRgb as ImageRgb
 from yarp._image import ImageRgbFloat as ImageRgbFloat
 from yarp._image import ImageRgba as ImageRgba
+from yarp._image import PAD_BYTES as PAD_BYTES
+from yarp._iterator import SwigPyIterator as SwigPyIterator
 from yarp._log import Log as Log
 from yarp._log import yDebug as yDebug
 from yarp._log import yError as yError
@@ -77,7 +110,25 @@ from yarp._log import yInfo as yInfo
 from yarp._log import yTrace as yTrace
 from yarp._log import yWarning as yWarning
 from yarp._map_grid import MapGrid2D as MapGrid2D
+from yarp._map_place import Map2DArea as Map2DArea
+from yarp._map_place import Map2DLocation as Map2DLocation
+from yarp._map_place import Map2DPath as Map2DPath
+from yarp._map_port import BufferedPortMap2DArea as BufferedPortMap2DArea
+from yarp._map_port import BufferedPortMap2DLocation as BufferedPortMap2DLocation
+from yarp._map_port import BufferedPortMap2DPath as BufferedPortMap2DPath
+from yarp._map_port import BufferedPortMapGrid2D as BufferedPortMapGrid2D
+from yarp._map_port import Map2DAreaCallback as Map2DAreaCallback
+from yarp._map_port import Map2DLocationCallback as Map2DLocationCallback
+from yarp._map_port import Map2DPathCallback as Map2DPathCallback
+from yarp._map_port import MapGrid2DCallback as MapGrid2DCallback
+from yarp._map_port import TypedReaderMap2DArea as TypedReaderMap2DArea
+from yarp._map_port import TypedReaderMap2DLocation as TypedReaderMap2DLocation
+from yarp._map_port import TypedReaderMap2DPath as TypedReaderMap2DPath
+from yarp._map_port import TypedReaderMapGrid2D as TypedReaderMapGrid2D
 from yarp._matrix import Matrix as Matrix
+from yarp._matrix import removeCols as removeCols
+from yarp._matrix import removeRows as removeRows
+from yarp._matrix import submatrix as submatrix
 from yarp._measuring_view import IAmplifierControl as IAmplifierControl
 from yarp._measuring_view import IAxisInfo as IAxisInfo
 from yarp._measuring_view import IEncoders as IEncoders
@@ -102,6 +153,7 @@ from yarp._motion_view import IPositionControl as IPositionControl
 from yarp._motion_view import IPositionDirect as IPositionDirect
 from yarp._motion_view import ITorqueControl as ITorqueControl
 from yarp._motion_view import IVelocityControl as IVelocityControl
+from yarp._motion_view import MotorTorqueParameters as MotorTorqueParameters
 from yarp._net_int import NetInt16 as NetInt16
 from yarp._net_int import NetInt32 as NetInt32
 from yarp._net_int import NetInt64 as NetInt64
@@ -110,6 +162,7 @@ from yarp._network import NetworkBase as NetworkBase
 from yarp._numbers import BVector as BVector
 from yarp._numbers import DVector as DVector
 from yarp._numbers import IVector as IVector
+from yarp._numbers import SPairVector as SPairVector
 from yarp._numbers import SVector as SVector
 from yarp._numbers import ShortVector as ShortVector
 from yarp._pixel import PixelBgr as PixelBgr
@@ -132,11 +185,32 @@ from yarp._portable import Portable as Portable
 from yarp._property import Property as Property
 from yarp._qos import QosStyle as QosStyle
 from yarp._random import Random as Random
+from yarp._raw_view import IAmplifierControlRaw as IAmplifierControlRaw
+from yarp._raw_view import IAxisInfoRaw as IAxisInfoRaw
+from yarp._raw_view import IControlLimitsRaw as IControlLimitsRaw
+from yarp._raw_view import IControlModeRaw as IControlModeRaw
+from yarp._raw_view import ICurrentControlRaw as ICurrentControlRaw
+from yarp._raw_view import IEncodersRaw as IEncodersRaw
+from yarp._raw_view import IEncodersTimedRaw as IEncodersTimedRaw
+from yarp._raw_view import IImpedanceControlRaw as IImpedanceControlRaw
+from yarp._raw_view import IInteractionModeRaw as IInteractionModeRaw
+from yarp._raw_view import IJointFaultRaw as IJointFaultRaw
+from yarp._raw_view import IMotorEncodersRaw as IMotorEncodersRaw
+from yarp._raw_view import IMotorRaw as IMotorRaw
+from yarp._raw_view import IPWMControlRaw as IPWMControlRaw
+from yarp._raw_view import IPidControlRaw as IPidControlRaw
+from yarp._raw_view import IPositionControlRaw as IPositionControlRaw
+from yarp._raw_view import IPositionDirectRaw as IPositionDirectRaw
+from yarp._raw_view import IRemoteVariablesRaw as IRemoteVariablesRaw
+from yarp._raw_view import ITorqueControlRaw as ITorqueControlRaw
+from yarp._raw_view import IVelocityControlRaw as IVelocityControlRaw
 from yarp._resource_finder import ResourceFinder as ResourceFinder
 from yarp._return_value import ReturnValue as ReturnValue
 from yarp._rf_module import RFModule as RFModule
 from yarp._rpc import RpcClient as RpcClient
 from yarp._rpc import RpcServer as RpcServer
+from yarp._searchable import SearchMonitor as SearchMonitor
+from yarp._searchable import SearchReport as SearchReport
 from yarp._searchable import Searchable as Searchable
 from yarp._sensor_view import IContactLoadCellArrays as IContactLoadCellArrays
 from yarp._sensor_view import IEncoderArrays as IEncoderArrays
@@ -151,17 +225,25 @@ from yarp._sensor_view import IThreeAxisGyroscopes as IThreeAxisGyroscopes
 from yarp._sensor_view import IThreeAxisLinearAccelerometers as IThreeAxisLinearAccelerometers
 from yarp._sensor_view import IThreeAxisMagnetometers as IThreeAxisMagnetometers
 from yarp._sound import Sound as Sound
+from yarp._sound_tools import SoundMarker as SoundMarker
+from yarp._sound_tools import makeSawTooth as makeSawTooth
+from yarp._sound_tools import makeSquareWave as makeSquareWave
+from yarp._sound_tools import makeTone as makeTone
+from yarp._sound_tools import mix as mix
 from yarp._stamp import Stamp as Stamp
 from yarp._struct import ColorRGB as ColorRGB
 from yarp._struct import LLMVector as LLMVector
 from yarp._struct import LLM_Message as LLM_Message
-from yarp._struct import Map2DArea as Map2DArea
-from yarp._struct import Map2DLocation as Map2DLocation
+from yarp._struct import Map2DAreaData as Map2DAreaData
+from yarp._struct import Map2DLocationData as Map2DLocationData
 from yarp._struct import Map2DLocationVector as Map2DLocationVector
 from yarp._struct import Map2DObject as Map2DObject
-from yarp._struct import Map2DPath as Map2DPath
+from yarp._struct import Map2DObjectData as Map2DObjectData
+from yarp._struct import Map2DPathData as Map2DPathData
 from yarp._struct import OdometryData as OdometryData
 from yarp._struct import Pose6D as Pose6D
+from yarp._things import DummyConnector as DummyConnector
+from yarp._things import Things as Things
 from yarp._thread import PeriodicThread as PeriodicThread
 from yarp._thread import RateThread as RateThread
 from yarp._thread import Semaphore as Semaphore
@@ -172,6 +254,7 @@ from yarp._time import YARP_CLOCK_DEFAULT as YARP_CLOCK_DEFAULT
 from yarp._time import YARP_CLOCK_NETWORK as YARP_CLOCK_NETWORK
 from yarp._time import YARP_CLOCK_SYSTEM as YARP_CLOCK_SYSTEM
 from yarp._time import YARP_CLOCK_UNINITIALIZED as YARP_CLOCK_UNINITIALIZED
+from yarp._time import clockTypeToString as clockTypeToString
 from yarp._time import delay as delay
 from yarp._time import getClockType as getClockType
 from yarp._time import isClockInitialized as isClockInitialized
@@ -185,6 +268,20 @@ from yarp._time import useCustomClock as useCustomClock
 from yarp._time import useNetworkClock as useNetworkClock
 from yarp._time import useSystemClock as useSystemClock
 from yarp._time import yield_c as yield_c
+from yarp._type import Type as Type
+from yarp._typed_reader import TypedReaderBottle as TypedReaderBottle
+from yarp._typed_reader import TypedReaderImageFloat as TypedReaderImageFloat
+from yarp._typed_reader import TypedReaderImageInt as TypedReaderImageInt
+from yarp._typed_reader import TypedReaderImageMono as TypedReaderImageMono
+from yarp._typed_reader import TypedReaderImageMono16 as TypedReaderImageMono16
+from yarp._typed_reader import TypedReaderImageRgb as TypedReaderImageRgb
+from yarp._typed_reader import TypedReaderImageRgbFloat as TypedReaderImageRgbFloat
+from yarp._typed_reader import TypedReaderImageRgba as TypedReaderImageRgba
+from yarp._typed_reader import TypedReaderMatrix as TypedReaderMatrix
+from yarp._typed_reader import TypedReaderProperty as TypedReaderProperty
+from yarp._typed_reader import TypedReaderSound as TypedReaderSound
+from yarp._typed_reader import TypedReaderVector as TypedReaderVector
+from yarp._typed_reader import TypedReaderVectorInt as TypedReaderVectorInt
 from yarp._value import Value as Value
 from yarp._vector import Vector as Vector
 from yarp._vector import VectorBase as VectorBase
@@ -197,14 +294,18 @@ from yarp._vocab import VOCAB4 as VOCAB4
 from yarp._vocab import Vocab as Vocab
 from yarp._vocab import createVocab as createVocab
 from yarp._vocab import createVocab32 as createVocab32
+from yarp._vocab import createVocab64 as createVocab64
 from yarp._vocab import decode as decode
+from yarp._vocab import decode64 as decode64
 from yarp._vocab import encode as encode
+from yarp._vocab import encode64 as encode64
 
 YARP_VERSION: str
 YARP_VERSION_SHORT: str
 YARP_VERSION_MAJOR: int
 YARP_VERSION_MINOR: int
 YARP_VERSION_PATCH: int
+ALLOW_OLD_CONTROL_MODE_INTERFACE: int
 BOTTLE_TAG_BLOB: int
 BOTTLE_TAG_DICT: int
 BOTTLE_TAG_DOUBLE: int
@@ -528,6 +629,8 @@ YARP_FEATURE_TRIGGER_DELAY: int
 YARP_FEATURE_WHITE_BALANCE: int
 YARP_FEATURE_WHITE_SHADING: int
 YARP_FEATURE_ZOOM: int
+YARP_RETURNVALUE_DISABLE_BOOL_INPUT: int
+YARP_RETURNVALUE_DISABLE_BOOL_OUTPUT: int
 cameraFeature_id_t_YARP_FEATURE_BRIGHTNESS: int
 cameraFeature_id_t_YARP_FEATURE_CAPTURE_QUALITY: int
 cameraFeature_id_t_YARP_FEATURE_CAPTURE_SIZE: int
@@ -575,6 +678,7 @@ Bottle_copyPortable = Bottle.copyPortable
 Bottle_describeBottleCode = Bottle.describeBottleCode
 Bottle_getNullBottle = Bottle.getNullBottle
 ColorRGB_copyPortable = ColorRGB.copyPortable
+ConnectionWriter_createBufferedConnectionWriter = ConnectionWriter.createBufferedConnectionWriter
 Contact_convertHostToIp = Contact.convertHostToIp
 Contact_fromConfig = Contact.fromConfig
 Contact_fromString = Contact.fromString
@@ -590,16 +694,32 @@ ImageRgbFloat_copyPortable = ImageRgbFloat.copyPortable
 ImageRgba_copyPortable = ImageRgba.copyPortable
 LLM_Message_copyPortable = LLM_Message.copyPortable
 Log_debug = Log.debug
+Log_defaultForwardCallback = Log.defaultForwardCallback
+Log_defaultMinimumForwardLevel = Log.defaultMinimumForwardLevel
+Log_defaultMinimumPrintLevel = Log.defaultMinimumPrintLevel
+Log_defaultPrintCallback = Log.defaultPrintCallback
 Log_error = Log.error
 Log_fatal = Log.fatal
+Log_forwardCallback = Log.forwardCallback
 Log_info = Log.info
+Log_minimumForwardLevel = Log.minimumForwardLevel
+Log_minimumPrintLevel = Log.minimumPrintLevel
 Log_nolog = Log.nolog
+Log_printCallback = Log.printCallback
+Log_setForwardCallback = Log.setForwardCallback
+Log_setMinimumForwardLevel = Log.setMinimumForwardLevel
+Log_setMinimumPrintLevel = Log.setMinimumPrintLevel
+Log_setPrintCallback = Log.setPrintCallback
 Log_trace = Log.trace
 Log_warning = Log.warning
 Map2DArea_copyPortable = Map2DArea.copyPortable
+Map2DAreaData_copyPortable = Map2DAreaData.copyPortable
 Map2DLocation_copyPortable = Map2DLocation.copyPortable
+Map2DLocationData_copyPortable = Map2DLocationData.copyPortable
 Map2DObject_copyPortable = Map2DObject.copyPortable
+Map2DObjectData_copyPortable = Map2DObjectData.copyPortable
 Map2DPath_copyPortable = Map2DPath.copyPortable
+Map2DPathData_copyPortable = Map2DPathData.copyPortable
 MapGrid2D_copyPortable = MapGrid2D.copyPortable
 Matrix_copyPortable = Matrix.copyPortable
 Network_assertion = Network.assertion
@@ -634,9 +754,12 @@ Network_poll = Network.poll
 Network_queryName = Network.queryName
 Network_registerContact = Network.registerContact
 Network_registerName = Network.registerName
+Network_sendMessage = Network.sendMessage
 Network_setConnectionQos = Network.setConnectionQos
 Network_setEnvironment = Network.setEnvironment
 Network_setLocalMode = Network.setLocalMode
+Network_setNameServerContact = Network.setNameServerContact
+Network_setNameServerName = Network.setNameServerName
 Network_setProperty = Network.setProperty
 Network_setVerbosity = Network.setVerbosity
 Network_sync = Network.sync
@@ -647,6 +770,7 @@ Network_unsetEnvironment = Network.unsetEnvironment
 Network_waitConnection = Network.waitConnection
 Network_waitPort = Network.waitPort
 Network_write = Network.write
+Network_writeToNameServer = Network.writeToNameServer
 Network_yarpClockInit = Network.yarpClockInit
 NetworkBase_assertion = NetworkBase.assertion
 NetworkBase_autoInitMinimum = NetworkBase.autoInitMinimum
@@ -678,9 +802,12 @@ NetworkBase_poll = NetworkBase.poll
 NetworkBase_queryName = NetworkBase.queryName
 NetworkBase_registerContact = NetworkBase.registerContact
 NetworkBase_registerName = NetworkBase.registerName
+NetworkBase_sendMessage = NetworkBase.sendMessage
 NetworkBase_setConnectionQos = NetworkBase.setConnectionQos
 NetworkBase_setEnvironment = NetworkBase.setEnvironment
 NetworkBase_setLocalMode = NetworkBase.setLocalMode
+NetworkBase_setNameServerContact = NetworkBase.setNameServerContact
+NetworkBase_setNameServerName = NetworkBase.setNameServerName
 NetworkBase_setProperty = NetworkBase.setProperty
 NetworkBase_setVerbosity = NetworkBase.setVerbosity
 NetworkBase_sync = NetworkBase.sync
@@ -691,6 +818,7 @@ NetworkBase_unsetEnvironment = NetworkBase.unsetEnvironment
 NetworkBase_waitConnection = NetworkBase.waitConnection
 NetworkBase_waitPort = NetworkBase.waitPort
 NetworkBase_write = NetworkBase.write
+NetworkBase_writeToNameServer = NetworkBase.writeToNameServer
 NetworkBase_yarpClockInit = NetworkBase.yarpClockInit
 OdometryData_copyPortable = OdometryData.copyPortable
 PeriodicThread_getCount = PeriodicThread.getCount
@@ -737,6 +865,9 @@ Time_useCustomClock = Time.useCustomClock
 Time_useNetworkClock = Time.useNetworkClock
 Time_useSystemClock = Time.useSystemClock
 Time_yield_c = Time.yield_c
+Type_anon = Type.anon
+Type_byName = Type.byName
+Type_byNameOnWire = Type.byNameOnWire
 Value_copyPortable = Value.copyPortable
 Value_getNullValue = Value.getNullValue
 Value_makeBlob = Value.makeBlob

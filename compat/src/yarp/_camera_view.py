@@ -18,13 +18,13 @@ _MODES = {"manual": 1, "auto": 2}
 class CameraDescriptor:
     """How a camera is connected, and which one it is."""
 
-    def __init__(self, busType: int, deviceDescription: str) -> None:
+    def __init__(self, busType: int = 0, deviceDescription: str = "") -> None:
         self.busType = busType
         self.deviceDescription = deviceDescription
 
 
-class IFrameGrabberImage(View):
-    """Pictures."""
+class IFrameGrabberImageBase(View):
+    """The size of pictures."""
 
     def height(self) -> int:
         return int(self._board.resolution[1])
@@ -32,13 +32,35 @@ class IFrameGrabberImage(View):
     def width(self) -> int:
         return int(self._board.resolution[0])
 
-    def getImage(self, image: Any) -> bool:
-        """Wait for the next picture."""
-        return self._tell(lambda: image._fill(self._picture()))
-
     def _picture(self) -> yarpy.Image:
         found = self._board.image()
         return found if isinstance(found, yarpy.Image) else yarpy.Image(found)
+
+
+class IFrameGrabber(IFrameGrabberImageBase):
+    """Pictures as the camera has them, of YARP 3."""
+
+    def getRawBuffer(self, buffer: Any) -> bool:
+        """The next picture's bytes, row by row, into a bytearray or an array."""
+
+        def read() -> None:
+            memoryview(buffer).cast("B")[:] = self._picture().array.tobytes()
+
+        return self._tell(read)
+
+    def getRawBufferSize(self) -> int:
+        """How many bytes that are; 0 if no picture comes."""
+        size = [0]
+        self._tell(lambda: store(size, [self._picture().array.nbytes]))
+        return size[0]
+
+
+class IFrameGrabberImage(IFrameGrabberImageBase):
+    """Pictures."""
+
+    def getImage(self, image: Any) -> bool:
+        """Wait for the next picture."""
+        return self._tell(lambda: image._fill(self._picture()))
 
     def getImageCrop(self, cropType: int, vertices: Any, image: Any) -> bool:
         """A rectangle of the next picture; `vertices` are two pairs of x and y."""

@@ -29,6 +29,14 @@ class ConnectionWriter:
     def _empty(self) -> bool:
         return self._object is None and not self._bytes
 
+    @staticmethod
+    def createBufferedConnectionWriter() -> ConnectionWriter:
+        """Return one that collects."""
+        return ConnectionWriter()
+
+    def declareSizes(self, argc: int, argv: Any) -> None:
+        """Say how large the next blocks are; a hint, of which nothing follows here."""
+
     def appendInt8(self, data: int) -> None:
         self._bytes += struct.pack("<b", data)
 
@@ -108,6 +116,7 @@ class ConnectionReader:
         self._at = 0
         self._error = False
         self._writer: ConnectionWriter | None = None
+        self._pushed: int | None = None
 
     def _fill(self, reader: Any) -> bool:
         try:
@@ -143,7 +152,8 @@ class ConnectionReader:
         return int(self._read("<h"))
 
     def expectInt32(self) -> int:
-        return int(self._read("<i"))
+        pushed, self._pushed = self._pushed, None
+        return int(self._read("<i")) if pushed is None else pushed
 
     def expectInt64(self) -> int:
         return int(self._read("<q"))
@@ -160,7 +170,8 @@ class ConnectionReader:
 
     def expectText(self, terminatingChar: str = "\n") -> str:
         """The text up to its end."""
-        data = bytes(self._message.to_bytes())[self._at :]
+        message = self._message
+        data = bytes(message.payload if self.isTextMode() else message.to_bytes())[self._at :]
         line, found, _ = data.partition(terminatingChar.encode())
         self._at += len(line) + len(found)
         return line.decode("utf-8", "surrogateescape")
@@ -182,6 +193,21 @@ class ConnectionReader:
                 self._message.reply(writer._outgoing())
             except yarpy.YarpError:
                 self._error = True
+
+    def expectBlock(self, data: Any, len: int | None = None) -> bool:
+        """Fill a bytearray, or its first `len` bytes."""
+        into = memoryview(data).cast("B")
+        count = into.nbytes if len is None else len
+        found = self._block(count)
+        into[:count] = found.ljust(count, b"\0")
+        return not self._error
+
+    def pushInt(self, x: int) -> bool:
+        """Put a number back, which `expectInt32` returns next; False if one waits already."""
+        if self._pushed is not None:
+            return False
+        self._pushed = int(x)
+        return True
 
     def getSize(self) -> int:
         """The bytes that were not read yet."""

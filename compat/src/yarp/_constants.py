@@ -223,6 +223,7 @@ _WORDS = {
     "navigation_status_waiting_obstacle": "wait",
 }
 _NUMBERS = {
+    "ALLOW_OLD_CONTROL_MODE_INTERFACE": 1,
     "BOTTLE_TAG_BLOB": 12,
     "BOTTLE_TAG_DICT": 512,
     "BOTTLE_TAG_DOUBLE": 10,
@@ -272,6 +273,8 @@ _NUMBERS = {
     "ThreeAxisLinearAccelerometer_EXTENDED_INTERFACE": 1,
     "ThreeAxisMagnetometer_EXTENDED_INTERFACE": 1,
     "VOCAB_PIXEL_INVALID": 0,
+    "YARP_RETURNVALUE_DISABLE_BOOL_INPUT": 1,
+    "YARP_RETURNVALUE_DISABLE_BOOL_OUTPUT": 0,
     "YARP_CROP_LIST": 1,
     "YARP_CROP_RECT": 0,
     "YARP_FEATURE_BRIGHTNESS": 0,

@@ -19,6 +19,7 @@ from yarp._contact import Contact
 from yarp._log import say
 from yarp._memory import encoded
 from yarp._property import Property
+from yarp._type import Type
 
 # Ports that a program leaves open are closed when it ends, as C++ does.
 _open: weakref.WeakSet[Contactable] = weakref.WeakSet()
@@ -44,6 +45,7 @@ class Contactable:
         self._resumed.set()
         self._properties = Property()
         self._reporter: Any = None
+        self._type = Type.anon()
         self._locals = 0  # connections over which objects go as they are
 
     def _make(self, name: str, tcp_port: int) -> Any:
@@ -239,11 +241,13 @@ class Contactable:
     def releaseProperties(self, prop: Property) -> None:
         """Done with them."""
 
-    def promiseType(self, typ: Any) -> None:
-        """Types are told by what is sent."""
+    def promiseType(self, typ: Type) -> None:
+        """Say what the port carries. Readers are told by what is sent."""
+        self._type = typ
 
-    def getType(self) -> Any:
-        return None
+    def getType(self) -> Type:
+        """Return what was promised, or a type without a name."""
+        return self._type
 
     def setInputMode(self, expectInput: bool) -> None:
         """Both directions work."""

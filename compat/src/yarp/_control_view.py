@@ -3,12 +3,16 @@ IPidControl."""
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 import yarpy
 from yarp._numbers import StdVector, store
-from yarp._view import View
+from yarp._view import FAILURES, View
 from yarpy.kits.devices import Gains
+
+#: the kinds of controllers: of positions, torques, velocities and currents
+PIDS = ("pos", "trq", "vel", "cur")
 
 
 def _word(code: Any) -> str:
@@ -184,6 +188,21 @@ def _pid(value: Any) -> Pid:
     return value
 
 
+class PidExtraInfo:
+    """What a driver says of a controller besides its gains, of YARP 4."""
+
+    def __init__(self) -> None:
+        self.description = ""
+
+
+class PidWithExtraInfo:
+    """A controller, and what its driver says of it."""
+
+    def __init__(self) -> None:
+        self.pid = Pid()
+        self.pidExtraInfo = PidExtraInfo()
+
+
 class PidVector(StdVector[Pid]):
     _kind = staticmethod(_pid)
 
@@ -277,6 +296,36 @@ class IPidControl(View):
 
     def setPidErrorLimits(self, pidtype: int, limits: Any) -> bool:
         return self._tell(lambda: self._kind(pidtype)._change("error_limits", (limits,)))
+
+    def getPidOffset(self, pidtype: int, j: int, v: Any) -> bool:
+        """What is added to the output."""
+        return self._tell(lambda: self._kind(pidtype)._get("offsets", (j, v)))
+
+    def getPidFeedforward(self, pidtype: int, j: int, v: Any) -> bool:
+        """The gain of what is known in advance, that of `Pid.kff`."""
+        return self._tell(lambda: store(v, [self._gains(pidtype, j).feed_forward]))
+
+    def setPidFeedforward(self, pidtype: int, j: int, v: float) -> bool:
+        def change() -> None:
+            gains = self._gains(pidtype, j)._replace(feed_forward=float(v))
+            self._kind(pidtype)._change("gains", (j, gains))
+
+        return self._tell(change)
+
+    def _gains(self, pidtype: int, j: int) -> Gains:
+        return Gains(*self._board.pids[_word(pidtype)].gains[j])
+
+    def getAvailablePids(self, j: int, avail: Any) -> bool:
+        """Store which kinds of controllers a joint has, in an IVector."""
+        found = []
+        for word in PIDS:
+            with contextlib.suppress(*FAILURES):
+                self._gains(yarpy.Vocab(word).code, j)
+                found.append(yarpy.Vocab(word).code)
+        avail.assign(0, 0)
+        for code in found:
+            avail.push_back(code)
+        return bool(found)
 
     def setPidOffset(self, pidtype: int, j: int, v: float) -> bool:
         return self._tell(lambda: self._kind(pidtype)._change("offsets", (j, v)))

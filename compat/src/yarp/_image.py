@@ -24,6 +24,7 @@ _warned: set[tuple[int, str]] = set()
 class Image(Portable):
     """The common part. Subclasses say which pixels they have."""
 
+    _type = "yarp/image"
     _code: ClassVar[int] = 0
     _pixel: ClassVar[type[Pixel] | None] = None
 
@@ -338,3 +339,8 @@ class ImageFloat(Image):
 
 class FlexImage(Image):
     """Takes the pixels of what is read into it."""
+
+
+def PAD_BYTES(len: int, pad: int) -> int:
+    """How many bytes fill a row of `len` bytes up to a multiple of `pad`."""
+    return -len % pad

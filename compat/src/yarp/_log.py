@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable
-from typing import Final
+from collections.abc import Callable, Iterable
+from typing import Any, Final
 
 from yarpy.log import readable
 
@@ -17,13 +17,34 @@ _NUMBERS: Final = {
 }  # fmt: skip
 
 
+class _Taste:
+    """What this program wants of its log."""
+
+    least_printed = 1  # the numbers of Log
+    least_forwarded = 1
+    printer: Any = None
+    forwarder: Any = None
+
+
+_ORDER: Final = [*_NUMBERS]
+
+
 def say(level: str, text: str) -> None:
     """Print a line of that level."""
+    number = _ORDER.index(level) + 1
+    if number >= _Taste.least_printed:
+        (_Taste.printer or _print)(level, text)
+    if number >= _Taste.least_forwarded:
+        if _Taste.forwarder is not None:
+            _Taste.forwarder(level, text)
+        elif os.environ.get("YARP_FORWARD_LOG_ENABLE"):
+            _forward(level, text)
+
+
+def _print(level: str, text: str) -> None:
     stream = sys.stderr if level in ("WARNING", "ERROR", "FATAL") else sys.stdout
     stream.write(f"[{level}] {readable(text)}\n")
     stream.flush()
-    if os.environ.get("YARP_FORWARD_LOG_ENABLE"):
-        _forward(level, text)
 
 
 def _forward(level: str, text: str) -> None:
@@ -56,9 +77,66 @@ class Log:
     WarningType = 4
     ErrorType = 5
     FatalType = 6
+    LogTypeReserved = 7
 
     def __init__(self, file: str = "", line: int = 0, func: str = "") -> None:
         """The place in the program is not printed."""
+
+    @staticmethod
+    def setMinimumPrintLevel(level: int) -> None:
+        """Print what is of this level, or worse: `Log.WarningType`."""
+        _Taste.least_printed = level
+
+    @staticmethod
+    def minimumPrintLevel() -> int:
+        return _Taste.least_printed
+
+    @staticmethod
+    def defaultMinimumPrintLevel() -> int:
+        return Log.TraceType
+
+    @staticmethod
+    def setMinimumForwardLevel(level: int) -> None:
+        """Forward what is of this level, or worse."""
+        _Taste.least_forwarded = level
+
+    @staticmethod
+    def minimumForwardLevel() -> int:
+        return _Taste.least_forwarded
+
+    @staticmethod
+    def defaultMinimumForwardLevel() -> int:
+        return Log.TraceType
+
+    @staticmethod
+    def setPrintCallback(cb: Callable[[str, str], object] | None) -> None:
+        """Call `cb(level, text)` instead of printing; None prints again."""
+        _Taste.printer = cb
+
+    @staticmethod
+    def printCallback() -> Callable[[str, str], object]:
+        """Return what prints."""
+        found: Callable[[str, str], object] = _Taste.printer or _print
+        return found
+
+    @staticmethod
+    def defaultPrintCallback() -> Callable[[str, str], object]:
+        return _print
+
+    @staticmethod
+    def setForwardCallback(cb: Callable[[str, str], object] | None) -> None:
+        """Call `cb(level, text)` instead of forwarding; None forwards again."""
+        _Taste.forwarder = cb
+
+    @staticmethod
+    def forwardCallback() -> Callable[[str, str], object]:
+        """Return what forwards."""
+        found: Callable[[str, str], object] = _Taste.forwarder or _forward
+        return found
+
+    @staticmethod
+    def defaultForwardCallback() -> Callable[[str, str], object]:
+        return _forward
 
     @staticmethod
     def trace(msg: str = "") -> None:

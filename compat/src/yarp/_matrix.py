@@ -167,3 +167,30 @@ class Matrix(Portable):
 
     def __repr__(self) -> str:
         return f"Matrix({self._rows!r})"
+
+
+def removeCols(in_: Matrix, out: Matrix, first_col: int, how_many: int) -> bool:
+    """Store the matrix without some columns; False if some are outside."""
+    inside = first_col >= 0 and how_many >= 0 and first_col + how_many <= in_.cols()
+    if inside:
+        out._rows, out._cols = [[*one] for one in in_._rows], in_._cols
+        out.removeCols(first_col, how_many)
+    return inside
+
+
+def removeRows(in_: Matrix, out: Matrix, first_row: int, how_many: int) -> bool:
+    """Store the matrix without some rows; False if some are outside."""
+    inside = first_row >= 0 and how_many >= 0 and first_row + how_many <= in_.rows()
+    if inside:
+        out._rows, out._cols = [[*one] for one in in_._rows], in_._cols
+        out.removeRows(first_row, how_many)
+    return inside
+
+
+def submatrix(in_: Matrix, out: Matrix, r1: int, r2: int, c1: int, c2: int) -> bool:
+    """Store rows and columns from one index to another, both included; False if not inside."""
+    inside = 0 <= r1 <= r2 < in_.rows() and 0 <= c1 <= c2 < in_.cols()
+    if inside:
+        found = in_.submatrix(r1, r2, c1, c2)
+        out._rows, out._cols = found._rows, found._cols
+    return inside

@@ -6,6 +6,7 @@ from typing import Any
 
 from yarp._numbers import store
 from yarp._view import View
+from yarpy.kits import devices
 
 
 class _Referenced(View):
@@ -116,6 +117,21 @@ class IVelocityControl(_Referenced):
     getTargetVelocities = getRefVelocities
 
 
+class MotorTorqueParameters:
+    """How a motor produces torque."""
+
+    #: in the order of the protocol
+    NAMES = (
+        *("bemf", "bemf_scale", "ktau", "ktau_scale", "viscousPos", "viscousNeg"),
+        *("coulombPos", "coulombNeg", "velocityThres"),
+    )
+
+    def __init__(self) -> None:
+        self.bemf = self.bemf_scale = self.ktau = self.ktau_scale = 0.0
+        self.viscousPos = self.viscousNeg = self.coulombPos = self.coulombNeg = 0.0
+        self.velocityThres = 0.0
+
+
 class ITorqueControl(View):
     """Exerts torques."""
 
@@ -142,6 +158,20 @@ class ITorqueControl(View):
 
     def getTorqueRanges(self, min: Any, max: Any) -> bool:
         return self._get("torque_ranges", (min,), 0) and self._get("torque_ranges", (max,), 1)
+
+    def getMotorTorqueParams(self, j: int, params: MotorTorqueParameters) -> bool:
+        """Store how a motor produces torque."""
+        found: list[Any] = []
+        if not self._get("motor_torque_parameters", (j, found)):
+            return False
+        for name, value in zip(MotorTorqueParameters.NAMES, found[0], strict=True):
+            setattr(params, name, float(value))
+        return True
+
+    def setMotorTorqueParams(self, j: int, params: MotorTorqueParameters) -> bool:
+        """Change how a motor produces torque."""
+        values = [float(getattr(params, name)) for name in MotorTorqueParameters.NAMES]
+        return self._change("motor_torque_parameters", (j, devices.MotorTorqueParameters(*values)))
 
 
 class ICurrentControl(View):

@@ -13,6 +13,11 @@ import yarpy
 from yarp import _names
 from yarp._contact import Contact, ContactStyle
 from yarp._log import say
+from yarp._name_server import (
+    set_name_server_contact,
+    set_name_server_name,
+    write_to_name_server,
+)
 from yarp._qos import get_connection_qos, set_connection_qos
 from yarp._value import Value
 from yarpy.data.text import plain_text
@@ -159,6 +164,18 @@ class NetworkBase:
             return _failed(error, quiet)
         return True
 
+    @staticmethod
+    def sendMessage(port: str, writer: Any, silent: bool = False) -> bool:
+        """Send one message to a port without having one."""
+        try:
+            with yarpy.Port("", names=_names.names()) as out:
+                out.connect(port)
+                out.write(writer._outgoing())
+                out.flush(10.0)
+        except yarpy.YarpError as error:
+            return _failed(error, silent)
+        return True
+
     # -- names --------------------------------------------------------------------------------
 
     @staticmethod
@@ -172,6 +189,10 @@ class NetworkBase:
 
     setConnectionQos = staticmethod(set_connection_qos)
     getConnectionQos = staticmethod(get_connection_qos)
+
+    setNameServerName = staticmethod(set_name_server_name)
+    setNameServerContact = staticmethod(set_name_server_contact)
+    writeToNameServer = staticmethod(write_to_name_server)
 
     @staticmethod
     def queryName(name: str) -> Contact:
@@ -327,9 +348,7 @@ class NetworkBase:
     def lock() -> None:
         """Nothing to do: everything may be called from any thread."""
 
-    @staticmethod
-    def unlock() -> None:
-        """Nothing to do."""
+    unlock = lock
 
 
 class Network(NetworkBase):

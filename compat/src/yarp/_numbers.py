@@ -1,4 +1,5 @@
-"""DVector, IVector, BVector, SVector and ShortVector: lists of one kind, also where results go.
+"""DVector, IVector, BVector, SVector, SPairVector and ShortVector: lists of one
+kind, also where results go.
 
 Rules: what C++ calls an out-parameter is one of these, or the `data()` of a Vector; `store` fills
 it.
@@ -6,9 +7,11 @@ it.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable, Iterator
-from typing import Any, ClassVar, Generic, Self, TypeVar, overload
+from typing import Any, ClassVar, Generic, Self, SupportsIndex, TypeVar, overload
 
+from yarp._iterator import SwigPyIterator
 from yarp._value import int32, number, text
 
 T = TypeVar("T")
@@ -105,22 +108,34 @@ class StdVector(Generic[T]):
         """Where results go."""
         return self
 
-    def insert(self, index: int, x: T) -> None:
-        """Put an element in front of that one."""
-        self._items.insert(index, self._kind(x))
+    def insert(self, index: SupportsIndex, *more: Any) -> SwigPyIterator | None:
+        """Put an element in front of that one; `(place, number, x)`: as many."""
+        at = operator.index(index)
+        count, x = more if len(more) == 2 else (1, more[0])
+        self._items[at:at] = [self._kind(x) for _ in range(count)]
+        return None if len(more) == 2 else SwigPyIterator(self, at)
 
-    def erase(self, index: int, last: int | None = None) -> int:
-        """Remove an element, or those from one up to another; return the index of what follows."""
-        del self._items[index : index + 1 if last is None else last]
-        return index
+    def erase(self, index: SupportsIndex, last: SupportsIndex | None = None) -> SwigPyIterator:
+        """Remove an element, or those from one up to another; return the place of what follows."""
+        at = operator.index(index)
+        del self._items[at : at + 1 if last is None else operator.index(last)]
+        return SwigPyIterator(self, at)
 
-    def begin(self) -> int:
-        """Return the index of the first element."""
-        return 0
+    def begin(self) -> SwigPyIterator:
+        """Return the place of the first element."""
+        return SwigPyIterator(self, 0)
 
-    def end(self) -> int:
-        """Return the index behind the last element."""
-        return len(self._items)
+    def end(self) -> SwigPyIterator:
+        """Return the place behind the last element."""
+        return SwigPyIterator(self, len(self._items))
+
+    def rbegin(self) -> SwigPyIterator:
+        """Return the place of the last element, from where one goes backwards."""
+        return SwigPyIterator(self, 0, -1)
+
+    def rend(self) -> SwigPyIterator:
+        """Return the place in front of the first element."""
+        return SwigPyIterator(self, len(self._items), -1)
 
     def iterator(self) -> Iterator[T]:
         return iter(self._items)
@@ -159,6 +174,17 @@ class BVector(StdVector[bool]):
 class SVector(StdVector[str]):
     _zero = ""
     _kind = staticmethod(text)
+
+
+class SPairVector(StdVector[tuple[str, str]]):
+    """Pairs of words."""
+
+    _zero = ("", "")
+
+    @staticmethod
+    def _kind(value: Any) -> tuple[str, str]:
+        first, second = value
+        return text(first), text(second)
 
 
 def store(target: Any, values: Iterable[Any]) -> None:

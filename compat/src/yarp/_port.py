@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import yarpy
+from yarp._abstract_contactable import UnbufferedContactable
 from yarp._contact import Contact
-from yarp._contactable import Contactable
 from yarp._log import say
 from yarp._portable import PortReader, PortWriter
 
 
-class Port(Contactable):
+class Port(UnbufferedContactable):
     """A plain port."""
 
     _answerable: bool = False

@@ -7,9 +7,10 @@ itself in `_take`; that may raise DecodeError, which means that something else c
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import yarpy
+from yarp._type import Type
 
 if TYPE_CHECKING:
     from yarp._connection import ConnectionReader, ConnectionWriter
@@ -30,6 +31,10 @@ class PortWriter:
         """Write to a connection."""
         writer._put(self)
         return True
+
+    def getWriteType(self) -> Type:
+        """Return the type of what is written."""
+        return Type.anon()
 
     def onCommencement(self) -> None:
         """Called before a message leaves in the background."""
@@ -67,9 +72,26 @@ class PortReader:
         """Read from a connection."""
         return reader._fill(self)
 
+    def getReadType(self) -> Type:
+        """Return the type of what is read."""
+        return Type.anon()
+
 
 class Portable(PortReader, PortWriter):
     """An object that can be written and read."""
+
+    #: how C++ calls its type; "" for those that have no name
+    _type: ClassVar[str] = ""
+
+    def getType(self) -> Type:
+        """Return the type of the object."""
+        return Type.byName(self._type) if self._type else Type.anon()
+
+    def getReadType(self) -> Type:
+        return self.getType()
+
+    def getWriteType(self) -> Type:
+        return self.getType()
 
     @staticmethod
     def copyPortable(writer: PortWriter, reader: PortReader) -> bool:
@@ -88,5 +110,9 @@ def message_of(writer: PortWriter) -> yarpy.Message:
     return yarpy.Message("D", encoded(writer._outgoing()))
 
 
-# Parts of other languages' interfaces, for programs that name them.
-PortReaderCreator = PortReader
+class PortReaderCreator:
+    """Makes a reader (`Port.setReaderCreator`): subclasses define `create`."""
+
+    def create(self) -> PortReader:
+        """Return a reader."""
+        raise NotImplementedError(f"{type(self).__name__} has to define create")

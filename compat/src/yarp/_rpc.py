@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import yarpy
-from yarp._contactable import Contactable
+from yarp._abstract_contactable import AbstractContactable
 from yarp._log import say
 from yarp._port import Port
 
 
-class RpcServer(Port):
+class RpcServer(Port, AbstractContactable):
     """Reads questions and answers them."""
 
     def read(self, reader: Any, willReply: bool = True) -> bool:
@@ -30,7 +30,7 @@ class RpcServer(Port):
         return False
 
 
-class RpcClient(Contactable):
+class RpcClient(AbstractContactable):
     """Asks the port that it is connected to."""
 
     def __init__(self) -> None:
@@ -42,16 +42,16 @@ class RpcClient(Contactable):
             name=name, tcp_port=tcp_port, names=self._names(), on_connection=self._event
         )
 
-    def write(self, data1: Any, data2: Any = None) -> bool:
+    def write(self, writer: Any, reader: Any = None, callback: Any = None) -> bool:
         """Ask, and read the answer into the second argument; False if there is none."""
         if self._port is None:
             return False
         try:
-            answer = self._port.ask(data1._outgoing(), self._timeout)
+            answer = self._port.ask(writer._outgoing(), self._timeout)
             if answer is None:
                 return False
-            if data2 is not None:
-                data2._take(answer)
+            if reader is not None:
+                reader._take(answer)
         except yarpy.YarpError:
             return False
         return True

@@ -6,7 +6,8 @@ from array import array
 from typing import Any
 
 import yarpy
-from yarp._numbers import ShortVector
+from yarp._log import say
+from yarp._numbers import ShortVector, store
 from yarp._portable import Portable
 from yarp._value import whole
 
@@ -136,6 +137,42 @@ class Sound(Portable):
         peak = max((abs(value) for value in self._channels[channel]), default=0)
         if peak:
             self.amplifyChannel(channel, 0x7FFF / peak)
+
+    def findPeakInChannel(self, channelId: int, sampleId: Any, sampleValue: Any) -> None:
+        """Store where the largest sample of a channel is, and its value."""
+        one = self._channels[channelId]
+        value = max(one, default=0)
+        found = (one.index(value), value) if value > 0 else (0, 0)
+        store(sampleId, [found[0]])
+        store(sampleValue, [found[1]])
+
+    def findPeak(self, channelId: Any, sampleId: Any, sampleValue: Any) -> None:
+        """Store in which channel and where the largest sample is, and its value."""
+        largest = [max(one, default=0) for one in self._channels]
+        channel = largest.index(max(largest)) if largest else 0
+        store(channelId, [channel])
+        if largest:
+            self.findPeakInChannel(channel, sampleId, sampleValue)
+
+    def getChannel(self, channel_id: int) -> ShortVector:
+        """The samples of a channel; a copy, where C++ hands out references."""
+        return ShortVector(self._channels[channel_id])
+
+    def getInterleavedAudioRawData(self) -> ShortVector:
+        return self.sound2VecInterleaved()
+
+    def getNonInterleavedAudioRawData(self) -> ShortVector:
+        return self.sound2VecNonInterleaved()
+
+    def overwrite(self, alt: Sound, offset: int = 0, len: int = 0) -> None:
+        """Put another sound, or its first `len` samples, over this one from a sample on."""
+        if (alt.getChannels(), alt._frequency) != (self.getChannels(), self._frequency):
+            say("ERROR", "|yarp.sig.Sound| both sounds need the same channels and frequency")
+            return
+        room = max(self.getSamples() - offset, 0)
+        count = min(len or alt.getSamples(), alt.getSamples(), room)
+        for mine, other in zip(self._channels, alt._channels, strict=True):
+            mine[offset : offset + count] = other[:count]
 
     def sample2timestamp(self, sampleid: int) -> float:
         return sampleid / self._frequency if self._frequency else 0.0

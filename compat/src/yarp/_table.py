@@ -6,16 +6,24 @@ _MODULES = {
     "_value": "Value",
     "_bottle": "Bottle",
     "_property": "Property",
-    "_searchable": "Searchable",
+    "_searchable": "Searchable SearchMonitor SearchReport",
+    "_type": "Type",
+    "_things": "Things DummyConnector",
+    "_iterator": "SwigPyIterator",
+    "_environment": "path_separator get_string get_path get_bool is_set set_string set_path "
+    "set_bool unset getEnvironment setEnvironment unsetEnvironment home tempdir datahome datadirs "
+    "confighome configdirs cachehome runtimedir yarpdatahome yarpdatadirs yarpconfighome "
+    "yarpconfigdirs yarpcachehome yarpruntimedir",
     "_portable": "Portable PortReader PortWriter PortReaderCreator",
     "_connection": "ConnectionReader ConnectionWriter",
     "_contact": "Contact ContactStyle",
     "_contactable": "Contactable PortReport PortInfo",
+    "_abstract_contactable": "UnbufferedContactable AbstractContactable",
     "_stamp": "Stamp",
     "_time": "Time delay now yield_c turboBoost isValid useSystemClock useNetworkClock "
     "useCustomClock isSystemClock isNetworkClock isCustomClock isClockInitialized getClockType "
-    "YARP_CLOCK_UNINITIALIZED "
-    "YARP_CLOCK_DEFAULT YARP_CLOCK_SYSTEM YARP_CLOCK_NETWORK YARP_CLOCK_CUSTOM",
+    "clockTypeToString YARP_CLOCK_UNINITIALIZED YARP_CLOCK_DEFAULT YARP_CLOCK_SYSTEM "
+    "YARP_CLOCK_NETWORK YARP_CLOCK_CUSTOM",
     "_log": "Log yTrace yDebug yInfo yWarning yError",
     "_network": "Network NetworkBase",
     "_port": "Port",
@@ -30,10 +38,19 @@ _MODULES = {
     "TypedReaderCallbackSound TypedReaderCallbackImageRgb TypedReaderCallbackImageRgba "
     "TypedReaderCallbackImageMono TypedReaderCallbackImageMono16 TypedReaderCallbackImageInt "
     "TypedReaderCallbackImageFloat TypedReaderCallbackImageRgbFloat",
-    "_numbers": "DVector IVector BVector SVector ShortVector",
+    "_typed_reader": "TypedReaderBottle TypedReaderProperty TypedReaderVector "
+    "TypedReaderVectorInt TypedReaderMatrix TypedReaderSound TypedReaderImageRgb "
+    "TypedReaderImageRgba TypedReaderImageMono TypedReaderImageMono16 TypedReaderImageInt "
+    "TypedReaderImageFloat TypedReaderImageRgbFloat",
+    "_raw_view": "IAmplifierControlRaw IAxisInfoRaw IControlLimitsRaw IControlModeRaw "
+    "ICurrentControlRaw IEncodersRaw IEncodersTimedRaw IImpedanceControlRaw IInteractionModeRaw "
+    "IJointFaultRaw IMotorEncodersRaw IMotorRaw IPWMControlRaw IPidControlRaw IPositionControlRaw "
+    "IPositionDirectRaw IRemoteVariablesRaw ITorqueControlRaw IVelocityControlRaw",
+    "_numbers": "DVector IVector BVector SVector SPairVector ShortVector",
     "_vector": "Vector VectorInt VectorBase",
-    "_matrix": "Matrix",
+    "_matrix": "Matrix removeCols removeRows submatrix",
     "_sound": "Sound",
+    "_sound_tools": "SoundMarker makeTone makeSquareWave makeSawTooth mix",
     "_pixel": "PixelRgb PixelRgba PixelRgbFloat PixelBgr PixelBgra PixelHsv PixelHsvFloat "
     "PixelRgbSigned PixelRgbInt",
     "_net_int": "NetInt16 NetInt32 NetInt64",
@@ -42,11 +59,17 @@ _MODULES = {
     "_return_value": "ReturnValue",
     "_map_grid": "MapGrid2D",
     "_image": "Image ImageRgb ImageRgba ImageRgbFloat ImageMono ImageMono16 ImageInt ImageFloat "
-    "FlexImage",
+    "FlexImage PAD_BYTES",
     "_file": "read write",
-    "_vocab": "encode decode createVocab createVocab32 VOCAB VOCAB1 VOCAB2 VOCAB3 VOCAB4 Vocab",
-    "_struct": "Map2DLocation Map2DLocationVector Map2DPath Map2DArea Map2DObject OdometryData "
-    "Pose6D ColorRGB LLM_Message LLMVector",
+    "_vocab": "encode decode createVocab createVocab32 VOCAB VOCAB1 VOCAB2 VOCAB3 VOCAB4 Vocab "
+    "createVocab64 encode64 decode64",
+    "_map_place": "Map2DLocation Map2DPath Map2DArea",
+    "_struct": "Map2DLocationVector Map2DObject OdometryData Pose6D ColorRGB LLM_Message "
+    "LLMVector Map2DLocationData Map2DPathData Map2DAreaData Map2DObjectData",
+    "_map_port": "BufferedPortMap2DLocation BufferedPortMap2DArea BufferedPortMap2DPath "
+    "BufferedPortMapGrid2D TypedReaderMap2DLocation TypedReaderMap2DArea TypedReaderMap2DPath "
+    "TypedReaderMapGrid2D Map2DLocationCallback Map2DAreaCallback Map2DPathCallback "
+    "MapGrid2DCallback",
     "_place_view": "IBattery IFrameTransform",
     "_mirror": "ILocalization2D IMap2D INavigation2D IOdometry2D ILLM ISimulatedWorld "
     "ISpeechSynthesizer ISpeechTranscription IRGBDSensor",
@@ -56,15 +79,17 @@ _MODULES = {
     "_random": "Random",
     "_poly_driver": "PolyDriver",
     "_motion_view": "IPositionControl IPositionDirect IVelocityControl ITorqueControl "
-    "ICurrentControl IPWMControl IImpedanceControl",
-    "_measuring_view": "IEncoders IEncodersTimed IMotorEncoders IMotor IAmplifierControl IAxisInfo "
-    "IJointFault IRemoteVariables",
-    "_control_view": "IControlMode IInteractionMode IControlLimits IPidControl Pid PidVector",
+    "ICurrentControl IPWMControl IImpedanceControl MotorTorqueParameters",
+    "_measuring_view": "IEncoders IEncodersTimed IMotorEncoders IMotor IAmplifierControl "
+    "IAxisInfo IJointFault IRemoteVariables",
+    "_control_view": "IControlMode IInteractionMode IControlLimits IPidControl Pid PidVector "
+    "PidWithExtraInfo",
     "_sensor_view": "IThreeAxisGyroscopes IThreeAxisLinearAccelerometers IThreeAxisMagnetometers "
     "IOrientationSensors ITemperatureSensors ISixAxisForceTorqueSensors IPositionSensors "
     "IContactLoadCellArrays IEncoderArrays ISkinPatches ILinearVelocitySensors "
     "IThreeAxisAngularAccelerometers",
-    "_camera_view": "IFrameGrabberImage IFrameGrabberRgb IFrameGrabberControls CameraDescriptor",
+    "_camera_view": "IFrameGrabberImageBase IFrameGrabber IFrameGrabberImage IFrameGrabberRgb "
+    "IFrameGrabberControls CameraDescriptor",
 }
 WHERE = {name: module for module, names in _MODULES.items() for name in names.split()}
 

@@ -143,3 +143,13 @@ class Time:
     isCustomClock = staticmethod(isCustomClock)
     isClockInitialized = staticmethod(isClockInitialized)
     getClockType = staticmethod(getClockType)
+
+
+def clockTypeToString(type: int = -1) -> str:
+    """The name of a clock; without an argument, of the one in use."""
+    names = {
+        YARP_CLOCK_SYSTEM: "System clock",
+        YARP_CLOCK_NETWORK: "Network clock",
+        YARP_CLOCK_CUSTOM: "Custom clock",
+    }
+    return names.get(getClockType() if type == -1 else type, "Clock not initialized")

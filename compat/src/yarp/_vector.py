@@ -5,10 +5,12 @@ Rules: `data()` stands for the memory of the vector: what is stored there is sto
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable, Iterator
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Self, SupportsIndex
 
 import yarpy
+from yarp._iterator import SwigPyIterator
 from yarp._portable import Portable
 from yarp._value import int32, number
 
@@ -16,6 +18,7 @@ from yarp._value import int32, number
 class VectorBase(Portable):
     """The common part."""
 
+    _type = "yarp/vector"
     _dtype: ClassVar[str]
     _tag: ClassVar[int]
     _size: ClassVar[int]
@@ -128,6 +131,27 @@ class VectorBase(Portable):
 
     def isEqual(self, r: Any) -> bool:
         return bool(self._items == r._items)
+
+    def begin(self) -> SwigPyIterator:
+        """Return the place of the first number."""
+        return SwigPyIterator(self, 0)
+
+    def end(self) -> SwigPyIterator:
+        """Return the place behind the last number."""
+        return SwigPyIterator(self, len(self._items))
+
+    cbegin = begin
+    cend = end
+
+    def erase(self, place: SupportsIndex, last: SupportsIndex | None = None) -> SwigPyIterator:
+        """Remove a number, or those from one up to another; return the place of what follows."""
+        at = operator.index(place)
+        del self._items[at : at + 1 if last is None else operator.index(last)]
+        return SwigPyIterator(self, at)
+
+    def getMemoryBlock(self) -> bytes:
+        """The numbers as they lie in memory, little endian."""
+        return self._memory()
 
     def getBottleTag(self) -> int:
         return self._tag

@@ -36,6 +36,23 @@ def decode(code: int) -> str:
     return str(yarpy.Vocab.from_code(int32(code)))
 
 
+def createVocab64(a: Any, *more: Any) -> int:
+    """The number of a word of up to eight letters, or of these one by one."""
+    letters = "".join(map(text, (a, *more))).encode("latin-1", "replace")[:8]
+    return int.from_bytes(letters.ljust(8, b"\0"), "little", signed=True)
+
+
+def encode64(str: str) -> int:
+    """The number of a word of up to eight letters."""
+    return createVocab64(str)
+
+
+def decode64(code: int) -> str:
+    """The word of such a number."""
+    letters = (code & 0xFFFFFFFFFFFFFFFF).to_bytes(8, "little")
+    return letters.rstrip(b"\0").decode("latin-1")
+
+
 class Vocab:
     """The same two under the names of older versions: `Vocab.encode`, `Vocab_encode`."""
 
