@@ -183,6 +183,7 @@ _COMMANDS: Final[Mapping[str, Row]] = _table(
     Row("cut", f"{_KITS}.record.verbs.cut:command"),
     Row("dash", f"{_KITS}.views.verbs.dash:command"),
     Row("demo", f"{_KITS}.sim.verbs.demo:command"),
+    Row("dev", f"{_KITS}.launch.verbs.dev:command"),
     Row("doctor", f"{_KITS}.doctor.verbs.doctor:command"),
     Row("down", f"{_KITS}.launch.verbs.down:command"),
     Row("filter", f"{_KITS}.record.verbs.filter:command"),
@@ -212,6 +213,29 @@ _COMMANDS: Final[Mapping[str, Row]] = _table(
 _FINDINGS: Final = (
     *("server", "name", "address", "program", "connection", "flowing", "monitor"),
     *("carrier", "content", "dialect", "priority", "kernel"),
+)
+
+# Devices of robots, by the names of C++: without hardware, served, and those of other programs.
+_SIMULATED: Final = (
+    *("fakeBattery", "fakeChatBotDevice", "fakeJoypad", "fakeLLMDevice", "fakeLocalizer"),
+    *("fakeMicrophone", "fakeNavigation", "fakeOdometry2D", "fakeSerialPort"),
+    *("fakeSimulatedWorld", "fakeSpeaker", "fakeSpeechSynthesizer", "fakeSpeechTranscription"),
+    *("map2DStorage", "robotDescriptionStorage"),
+)
+_KINDS: Final = (
+    *("LLM", "RGBDSensor", "audioRecorder", "chatBot", "joypadControl", "localization2D", "map2D"),
+    *("mobileBaseVelocityControl", "navigation2D", "odometry2D", "robotDescription"),
+    *("serialPort", "simulatedWorld", "speechSynthesizer", "speechTranscription"),
+)
+_SERVERS: Final = (
+    *(f"{kind}_nws_yarp" for kind in _KINDS),
+    *("AudioPlayerWrapper", "JoypadControlServer", "audioPlayerWrapper"),
+)
+_CLIENTS: Final = (
+    *(f"{kind}_nwc_yarp" for kind in _KINDS),
+    *("battery_nwc_yarp", "controlBoard_nwc_yarp", "frameGrabber_nwc_yarp"),
+    *("rangefinder2D_nwc_yarp", "JoypadControlClient", "RGBDSensorClient", "RemoteFrameGrabber"),
+    *("clientcontrolboard", "multipleanalogsensorsclient", "remote_controlboard", "remote_grabber"),
 )
 
 SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
@@ -285,9 +309,21 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
             (
                 ("battery_nws_yarp", "wrapper:Battery"),
                 ("controlBoard_nws_yarp", "wrapper:ControlBoard"),
+                ("controlboardremapper", "control_board.remapper:Remapper"),
+                ("controlboardwrapper2", "wrapper:ControlBoard"),
+                ("fakeDepthCamera", "simulated.plugin:depth_camera"),
+                ("fakeFrameGrabber", "simulated.plugin:camera"),
+                ("fakeMotionControl", "simulated.plugin:joints"),
                 ("frameGrabber_nws_yarp", "wrapper:FrameGrabber"),
+                ("frameTransformClient", "remote:transforms"),
+                ("frameTransformServer", "remote:transform_server"),
                 ("multipleanalogsensorsserver", "wrapper:MultiSensor"),
                 ("rangefinder2D_nws_yarp", "wrapper:Laser"),
+                ("remotecontrolboardremapper", "control_board.remapper:remote_remapper"),
+                ("test_grabber", "simulated.plugin:camera"),
+                *((name, "simulated.plugin:simulated") for name in _SIMULATED),
+                *((name, "wrapper:Served") for name in _SERVERS),
+                *((name, "remote:remote") for name in _CLIENTS),
             ),
         ),
         *_rows(

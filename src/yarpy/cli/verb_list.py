@@ -59,6 +59,7 @@ GROUPS: Final[dict[str, dict[str, Verb]]] = {
         "restart": Verb("end one of its programs and start it again", "restart camera"),
         "new": Verb("write a project that runs and is tested", "new ball_tracker"),
         "robot": Verb("open and join the devices of a robot", "robot icub.xml --check"),
+        "dev": Verb("open one device and serve it", "dev --device fakeFrameGrabber --name /cam"),
     },
     "A robot to try things with": {
         "demo": Verb("see and move a simulated robot in a browser", "demo"),

@@ -4,6 +4,7 @@ import pytest
 
 import yarpy
 from yarpy import Property
+from yarpy.kits import devices
 from yarpy.kits.devices import wrapper
 
 
@@ -78,3 +79,34 @@ def test_only_that_of_sensors_counts_milliseconds() -> None:
     assert wrapper.MultiSensor(Property(name="/x", period=20))._values == {"period": 0.02}
     assert wrapper.Laser(Property(name="/x", period=20))._values == {"period": 20.0}
     assert wrapper.Laser(Property(name="/x"))._values == {}
+
+
+def test_servers_of_one_class_are_told_by_their_type() -> None:
+    names = yarpy.LocalNames()
+    for kind, device, port in (
+        ("odometry2D_nws_yarp", devices.SimulatedBase(), "/y/rpc"),
+        ("JoypadControlServer", devices.SimulatedJoypad(), "/y/rpc:i"),
+        ("map2D_nws_yarp", devices.MapStorage(), "/y/rpc"),
+    ):
+        name = "/y/rpc" if kind == "map2D_nws_yarp" else "/y"
+        opened = wrapper.Served(Property(device=kind, name=name), names=names)
+        opened.attach({"...": device})
+        assert names.query(port) is not None, kind
+        opened.detach()
+        assert names.query(port) is None, kind
+    with pytest.raises(LookupError):
+        wrapper.Served(Property(device="none_nws_yarp", name="/y"), names=names)
+
+
+def test_the_server_that_a_device_wants() -> None:
+    assert wrapper.server_of(Joints()) == "controlBoard_nws_yarp"
+    assert wrapper.server_of(Laser()) == "rangefinder2D_nws_yarp"
+    assert wrapper.server_of(Camera()) == "frameGrabber_nws_yarp"
+    assert wrapper.server_of(Battery()) == "battery_nws_yarp"
+    assert wrapper.server_of(Sensor()) == "multipleanalogsensorsserver"
+    assert wrapper.server_of(devices.SimulatedJoypad()) == "joypadControl_nws_yarp"
+    # It localizes, navigates and measures: its type says what for.
+    base = devices.SimulatedBase()
+    assert wrapper.server_of(base, "fakeLocalizer") == "localization2D_nws_yarp"
+    assert wrapper.server_of(base, "fakeOdometry2D") == "odometry2D_nws_yarp"
+    assert wrapper.server_of(object()) == ""

@@ -8,17 +8,27 @@
 
 Rules: `name` is that of the ports, `period` the seconds between messages (milliseconds for
 `multipleanalogsensorsserver`, as in C++). The ports are open while a device is attached;
-whatever has the interface of its kind can be, one at a time.
+whatever has the interface of its kind can be, one at a time. Those of `interfaces` are all
+`Served`, which is told by the type that is opened.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from yarpy.data.bottle import Property
 from yarpy.kits.devices.closeable import Closeable
 from yarpy.names.base import NameClient
+
+if TYPE_CHECKING:
+    from yarpy.kits.devices.network.model import Interface
+
+#: What some servers were called before.
+_OLDER: Final = {
+    "AudioPlayerWrapper": "audioPlayerWrapper",
+    "JoypadControlServer": "joypadControl_nws_yarp",
+}
 
 
 class Wrapper:
@@ -112,3 +122,49 @@ class Battery(Wrapper):
         from yarpy.kits.devices.battery.server import BatteryServer
 
         return BatteryServer(name, device, **values)
+
+
+class Served(Wrapper):
+    """The servers of `interfaces`, such as `speechSynthesizer_nws_yarp`. Raises LookupError for a
+    type that is none of them."""
+
+    def __init__(self, options: Property, *, names: NameClient | None = None) -> None:
+        super().__init__(options, names=names)
+        self._kind = served(str(options.find("device", "")))
+        # A server of maps is named by its port.
+        if self._kind.__name__ == "Map2D":
+            self._name = self._name.removesuffix("/rpc")
+
+    def serve(self, name: str, device: Any, **values: Any) -> Closeable:
+        """Return a server for a device."""
+        return self._kind.serve(name, device, **values)
+
+
+def served(kind: str) -> type[Interface]:
+    """Return the interface that a type of servers serves. Raises LookupError."""
+    from yarpy.kits.devices.interfaces import interfaces
+
+    names = {each.NWS: each for each in interfaces().values()}
+    return names[_OLDER.get(kind, kind)]
+
+
+def server_of(device: object, kind: str = "") -> str:
+    """Return the type of the server that a device wants, by its own type or its members; "" where
+    none fits, or several do."""
+    from yarpy.kits.devices.interfaces import interfaces
+    from yarpy.kits.devices.multi_sensor.interface import KINDS
+
+    known = [*interfaces().values()]
+    # What each needs; a class may be more than that.
+    for server, members in (
+        ("controlBoard_nws_yarp", ("axis_names",)),
+        ("frameGrabber_nws_yarp", ("image",)),
+        ("rangefinder2D_nws_yarp", ("ranges",)),
+        ("battery_nws_yarp", ("charge",)),
+        ("multipleanalogsensorsserver", KINDS),
+        *((each.NWS, ()) for each in known if kind and kind == each.FAKE),
+    ):
+        if not members or any(hasattr(device, one) for one in members):
+            return server
+    fitting = [each.NWS for each in known if all(hasattr(device, one) for one in each.members)]
+    return fitting[0] if len(fitting) == 1 else ""

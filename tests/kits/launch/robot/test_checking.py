@@ -13,7 +13,7 @@ from yarpy.kits.launch.robot.robot_file import load
     [
         ("simulatedHead", None),
         ("simulatedHaed", 'is installed: did you mean "simulatedHead"?'),
-        ("controlboardremapper2", "is installed"),  # like controlBoard_nws_yarp, and no slip
+        ("controlboardcoupling", "is installed"),  # like others, and no slip
     ],
 )
 def test_types(tmp_path: Path, type_: str, said: str | None) -> None:

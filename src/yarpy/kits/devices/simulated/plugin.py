@@ -1,0 +1,91 @@
+"""Devices without hardware as devices of a robot's file, under the names that they have in C++.
+
+    <device name="eye" type="fakeFrameGrabber"><param name="width">640</param></device>
+    <device name="arm" type="fakeMotionControl">
+      <group name="GENERAL"><param name="Joints">6</param></group>
+    </device>
+
+Rules: cameras take `width` and `height`, joints the group GENERAL with `Joints` and `AxisName`; the
+others take nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+from yarpy.data.bottle import Bottle, Property
+from yarpy.names.base import NameClient
+
+#: What each is in `yarpy.kits.devices`.
+_WITHOUT_OPTIONS: Final = {
+    "fakeBattery": "SimulatedBattery",
+    "fakeChatBotDevice": "SimulatedChatBot",
+    "fakeJoypad": "SimulatedJoypad",
+    "fakeLLMDevice": "SimulatedLanguageModel",
+    "fakeLocalizer": "SimulatedBase",
+    "fakeMicrophone": "SimulatedMicrophone",
+    "fakeNavigation": "SimulatedBase",
+    "fakeOdometry2D": "SimulatedBase",
+    "fakeSerialPort": "SimulatedSerialPort",
+    "fakeSimulatedWorld": "SimulatedWorld",
+    "fakeSpeaker": "SimulatedSpeaker",
+    "fakeSpeechSynthesizer": "SimulatedSynthesizer",
+    "fakeSpeechTranscription": "SimulatedTranscription",
+    "map2DStorage": "MapStorage",
+    "robotDescriptionStorage": "DescriptionStorage",
+}
+_JOINTS: Final = 1000  # more than any robot has
+
+
+def simulated(options: Property, *, names: NameClient | None = None) -> object:
+    """Return the device of the type in `options`. Raises LookupError for none of these."""
+    from yarpy.kits import devices
+
+    make: Callable[[], object] = getattr(devices, _WITHOUT_OPTIONS[str(options.find("device", ""))])
+    return make()
+
+
+def camera(options: Property, *, names: NameClient | None = None) -> object:
+    """Return `fakeFrameGrabber`. Raises ValueError for a size that is too large."""
+    from yarpy.kits.devices import SimulatedCamera
+
+    return SimulatedCamera(*_size(options))
+
+
+def depth_camera(options: Property, *, names: NameClient | None = None) -> object:
+    """Return `fakeDepthCamera`. Raises ValueError for a size that is too large."""
+    from yarpy.kits.devices import SimulatedDepthCamera
+
+    return SimulatedDepthCamera(*_size(options))
+
+
+def joints(options: Property, *, names: NameClient | None = None) -> object:
+    """Return `fakeMotionControl`. Raises ValueError for a number of joints that is none."""
+    from yarpy.kits.devices import SimulatedJoints
+
+    general = Property.from_bottle(options.group("GENERAL") or ())
+    many = general.find("Joints", 4)
+    if not isinstance(many, int) or isinstance(many, bool) or not 0 < many <= _JOINTS:
+        raise ValueError(f"GENERAL Joints {many}: there are 1 to {_JOINTS}")
+    called = [str(one) for one in values(general, "AxisName")]
+    if called and len(called) != many:
+        raise ValueError(f"GENERAL AxisName has {len(called)} names for {many} joints")
+    return SimulatedJoints(called or [f"joint{number}" for number in range(many)])
+
+
+def values(options: Property, key: str) -> list[Any]:
+    """Return the values of a parameter, given as a list or one after the other.
+
+    >>> values(Property(a=Bottle([1, 2])), "a")
+    [1, 2]
+    """
+    group = options.group(key) or Bottle([key])
+    return [*(group[1] if len(group) == 2 and isinstance(group[1], list) else group[1:])]
+
+
+def _size(options: Property) -> tuple[int, int]:
+    size = options.find("width", 320), options.find("height", 240)
+    if not all(isinstance(one, int) and 1 <= one <= 8192 for one in size):
+        raise ValueError(f"{size[0]} x {size[1]}: each side must be 1 to 8192")
+    return size

@@ -1,0 +1,49 @@
+"""Devices without hardware as devices of a robot's file."""
+
+import pytest
+
+from yarpy import Bottle, Property
+from yarpy.kits import devices
+from yarpy.kits.devices.simulated import plugin
+from yarpy.registry import devices as plugins
+
+
+def test_every_type_of_the_table_opens() -> None:
+    opened = {
+        name: plugins.load(name)(Property(device=name))
+        for name in plugins.names()
+        if plugins.load(name) is plugin.simulated
+    }
+    assert isinstance(opened["fakeBattery"], devices.SimulatedBattery)
+    assert {*opened} == {*plugin._WITHOUT_OPTIONS}
+
+
+def test_cameras_have_the_size_that_is_asked_for() -> None:
+    eye = plugin.camera(Property(width=32, height=16))
+    assert eye.image().shape == (16, 32, 3)  # type: ignore[attr-defined]
+    deep = plugin.depth_camera(Property(width=32, height=16))
+    assert deep.depth().array.shape == (16, 32)  # type: ignore[attr-defined]
+    for width in (0, "wide", 100_000):
+        with pytest.raises(ValueError, match="each side must be"):
+            plugin.camera(Property(width=width))
+
+
+def test_joints_have_names() -> None:
+    def board(text: str) -> devices.SimulatedJoints:
+        return plugin.joints(Property.from_text(text))  # type: ignore[return-value]
+
+    assert board("").axis_names == ["joint0", "joint1", "joint2", "joint3"]
+    assert board("(GENERAL (Joints 2))").axis_names == ["joint0", "joint1"]
+    assert board("(GENERAL (Joints 2) (AxisName a b))").axis_names == ["a", "b"]
+    assert board("(GENERAL (Joints 2) (AxisName (a b)))").axis_names == ["a", "b"]
+    with pytest.raises(ValueError, match="1 names for 2 joints"):
+        board("(GENERAL (Joints 2) (AxisName a))")
+    for joints in ("0", "many", "1.5"):
+        with pytest.raises(ValueError, match="there are 1 to"):
+            board(f"(GENERAL (Joints {joints}))")
+
+
+def test_values_are_a_list_or_stand_side_by_side() -> None:
+    assert plugin.values(Property.from_text("(a 1 2)"), "a") == [1, 2]
+    assert plugin.values(Property.from_text("(a (1 2))"), "a") == [1, 2]
+    assert plugin.values(Property(a=Bottle([1])), "b") == []
