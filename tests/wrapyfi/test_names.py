@@ -19,14 +19,12 @@ from support.process import Process
 from support.wait import wait_until
 from support.wrapyfi_venv import prepare
 
+import yarpy
+
 SOURCE = Path(__file__).parents[2] / "compat" / "wrapyfi" / "src"
 
 #: what is not here, and why
 WHY = {
-    "clients": "the classes are in wrapyfi.middlewares, which registers them",
-    "listeners": "... as those",
-    "publishers": "... as those",
-    "servers": "... as those",
     "plugins": "what they read is unpickled; tensors come without, see utils/_tensors.py",
     "standalone.zeromq_param_server": "parameters over ZeroMQ are not shared",
 }
@@ -46,11 +44,19 @@ PARTS = {
 }
 
 
+SIDES = ("publishers", "listeners", "servers", "clients")
+
+
 @pytest.fixture(scope="module")
 @brings("wrapyfi")
 def original() -> Path:
     (found,) = (prepare() / "lib").glob("python3*/site-packages/wrapyfi")
     return found
+
+
+def is_setting(module: str, name: str) -> bool:
+    """Return whether it is a constant of the environment, which here is read when it is needed."""
+    return name.isupper() and module.partition(".")[0] in SIDES
 
 
 def names_of(path: Path) -> Iterator[str]:
@@ -77,10 +83,53 @@ def test_names_of_the_original(original: Path) -> None:
             continue
         found = importlib.import_module(f"wrapyfi.{module}".rstrip("."))
         for name in names_of(path):
-            if name not in PARTS and not name.startswith("__") and not hasattr(found, name):
+            if name in PARTS or name.startswith("__") or is_setting(module, name):
+                continue
+            if not hasattr(found, name):
                 missing.add(f"{module}.{name}")
     programs = "zeromq_proxy_broker", "zeromq_pubsub_topic_monitor"
     assert missing <= {f"standalone.{name}.args" for name in programs}  # there when they run
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_classes_by_their_names(side: str) -> None:
+    """They are those that the decorators take, and derive from that of their middleware."""
+    word = side.title().removesuffix("s")
+    module = importlib.import_module(f"wrapyfi.{side}.yarp")
+    registry = getattr(module, f"{word}s").registry
+    for kind in ("NativeObject", "Image", "AudioChunk"):
+        found = getattr(module, f"Yarp{kind}{word}")
+        assert found is registry[f"{kind}:yarp"]
+        assert issubclass(found, getattr(module, f"Yarp{word}"))
+        assert issubclass(found, getattr(module, word))
+    package = importlib.import_module(f"wrapyfi.{side}")
+    assert issubclass(getattr(package, f"Fallback{word}"), getattr(package, word))
+
+
+def test_a_publisher_and_a_listener_by_hand() -> None:
+    """As a program does that takes the classes without the decorators."""
+    from wrapyfi.listeners.yarp import YarpNativeObjectListener  # type: ignore[import-not-found]
+    from wrapyfi.publishers.yarp import YarpNativeObjectPublisher  # type: ignore[import-not-found]
+
+    with yarpy.NameServer(free_block(10)) as server, pytest.MonkeyPatch.context() as patch:
+        patch.setenv("YARPY_SERVER", f"127.0.0.1:{server.port}")
+        publisher = YarpNativeObjectPublisher("sender", "/by/hand", should_wait=False)
+        listener = YarpNativeObjectListener("hearer", "/by/hand", should_wait=False)
+        try:
+            assert publisher.establish()
+            wait_until(listener.establish, what="the listener is connected")
+            found = []
+
+            def came() -> bool:
+                publisher.publish({"a": (1, 2)})
+                found.append(listener.listen())
+                return found[-1] is not None
+
+            wait_until(came, what="a value has come")
+            assert found[-1] == {"a": (1, 2)}
+        finally:
+            listener.close()
+            publisher.close()
 
 
 def test_helpers() -> None:

@@ -300,8 +300,13 @@ class _NoProperties:
     def value(self, came: Any) -> Any: ...
 
 
+#: how names of classes begin, where it is not the middleware's own name
+SPELLED = {"yarp": "Yarp", "zeromq": "ZeroMQ", "ros": "ROS", "ros2": "ROS2", "mqtt": "Mqtt"}
+SPELLED |= {"zenoh": "Zenoh", "websocket": "WebSocket"}
+
+
 def offer(medium: Medium) -> None:
-    """Register the classes of a middleware."""
+    """Make the classes of a middleware, one for each side and type, and register them."""
     topics = {"Properties": _NoProperties, **medium.topics}
     medium = replace(medium, topics=topics)
     sides: list[tuple[Any, Any, str, Any]] = [
@@ -310,10 +315,14 @@ def offer(medium: Medium) -> None:
         (Servers, _Serving, "Server", medium.answers),
         (Clients, _Asking, "Client", medium.answers),
     ]
-    for registry, base, word, forms in sides:
+    start = SPELLED.get(medium.name, medium.name.title())
+    for registry, side, word, forms in sides:
+        if not forms:
+            continue
+        base = type(f"{start}{word}", (side,), {"medium": medium})
         for kind in forms:
-            made = type(f"{kind}{word}", (base,), {"medium": medium, "kind": kind})
-            registry.register(kind, medium.name)(made)
+            name = f"{start}{kind.removeprefix(start)}{word}"
+            registry.register(kind, medium.name)(type(name, (base,), {"kind": kind}))
 
 
 class Arrivals:

@@ -1,0 +1,10 @@
+"""Listeners over WebSocket: WebSocketListener, and one of each type."""
+
+from __future__ import annotations
+
+from wrapyfi.connect._named import classes
+from wrapyfi.connect.listeners import Listener, Listeners
+
+globals().update(classes(Listeners, "websocket"))
+
+__all__ = ["Listener", "Listeners", *classes(Listeners, "websocket")]

@@ -1,0 +1,10 @@
+"""Publishers over WebSocket: WebSocketPublisher, and one of each type."""
+
+from __future__ import annotations
+
+from wrapyfi.connect._named import classes
+from wrapyfi.connect.publishers import Publisher, Publishers
+
+globals().update(classes(Publishers, "websocket"))
+
+__all__ = ["Publisher", "Publishers", *classes(Publishers, "websocket")]

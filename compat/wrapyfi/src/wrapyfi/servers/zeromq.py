@@ -1,0 +1,10 @@
+"""Servers over ZeroMQ: ZeroMQServer, and one of each type."""
+
+from __future__ import annotations
+
+from wrapyfi.connect._named import classes
+from wrapyfi.connect.servers import Server, Servers
+
+globals().update(classes(Servers, "zeromq"))
+
+__all__ = ["Server", "Servers", *classes(Servers, "zeromq")]
