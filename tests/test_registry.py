@@ -15,8 +15,8 @@ from support.guest import is_here
 from yarpy import registry
 from yarpy.carriers.base import Carrier
 from yarpy.errors import UnknownPlugin
-from yarpy.facts import CarrierRow, Row
-from yarpy.registry import CarrierRegistry, Registry
+from yarpy.facts import Call, CarrierRow, Row
+from yarpy.registry import CarrierRegistry, GraphRegistry, Registry
 from yarpy.shipped import CARRIERS, SHIPPED
 
 
@@ -215,3 +215,26 @@ def test_modules_of_ours_are_imported_where_no_signal_handler_can_cut_that(
     assert importing[-1] is not threading.main_thread()
     with pytest.raises(UnknownPlugin, match="cannot be loaded"):
         found.load("lost")
+
+
+def test_calls_of_nodes_are_known_before_their_graph_is_imported() -> None:
+    graphs = GraphRegistry()
+    for request in ("publisherUpdate", "rpup", "rpupdate"):
+        found = graphs.call(request)
+        assert found is not None
+        assert (found[0], found[1].name, found[1].changes) == ("ros", "publisherUpdate", True)
+    assert [graphs.call(one) for one in ("publisher", "list", "")] == [None] * 3
+    assert not graphs._loaded
+
+
+def test_a_graph_of_strangers_has_calls_of_its_own() -> None:
+    class Ants:
+        calls = (Call("smell", "smel"),)
+
+    graphs = GraphRegistry()
+    assert graphs.call("smell") is None
+    graphs.add("ants", Ants)
+    graphs.add("broken", object())
+    assert graphs.call("smel") == graphs.call("smell") == ("ants", Ants.calls[0])
+    graphs.remove("ants")
+    assert graphs.call("smell") is None

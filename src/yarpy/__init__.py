@@ -7,8 +7,8 @@
             print(message.value)
 
 Everything public is here; nothing is imported before it is used. A name stands here three times:
-for people and type checkers in `__all__` and among the imports, for Python in `_WHERE`. A test
-compares them.
+for people and type checkers in `__all__` and among the imports, for Python in `_WHERE`. Packages of
+peers and kits are found in `shipped.py`. A test compares them.
 """
 
 from __future__ import annotations
@@ -228,12 +228,6 @@ else:
         "aio": "yarpy.aio",
         "clock": "yarpy.clock",
         "idl": "yarpy.idl",
-        "ros": "yarpy.peers.ros",
-        "ros2": "yarpy.peers.ros2",
-        "zenoh": "yarpy.peers.zenoh",
-        "devices": "yarpy.kits.devices",
-        "record": "yarpy.kits.record",
-        "wrap": "yarpy.kits.wrap",
     }
 
     def __getattr__(name):
@@ -242,9 +236,12 @@ else:
         if name in _ROOMS:
             return import_module(_ROOMS[name])
         if name not in _WHERE:
+            packages = import_module("yarpy.shipped").PACKAGES
+            if name in packages:
+                return import_module(packages[name].target)
             from difflib import get_close_matches
 
-            near = get_close_matches(name, [*_WHERE, *_ROOMS], 1)
+            near = get_close_matches(name, [*_WHERE, *_ROOMS, *packages], 1)
             hint = f': did you mean "{near[0]}"?' if near else ""
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
         # The package first: a thread that begins with a part may get it half done.

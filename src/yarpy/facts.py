@@ -17,7 +17,7 @@ _ANY: Final = (1 << 8 * MAGIC_SIZE) - 1
 class Reach:
     """The kind of peer that a carrier leads to.
 
-    `what`: a port of YARP; a server, which may know nothing of YARP, as a camera or a node of ROS;
+    `what`: a port of YARP; a server, which may know nothing of YARP, such as a camera;
     a socket, which besides has no name; a topic of a broker, at the host of that; a topic without
     any address. `number`, `number_tls`: the TCP port number of brokers that say none. `cpp`: what
     happens to such a connection with a port of C++ YARP, if it is of no use. `tells`: the initiator
@@ -124,15 +124,17 @@ class CarrierRow(Row):
 class TransportRow(Row):
     """A transport.
 
-    `hosts`: what the hosts end in that it alone leads to, such as `.zenoh`. `title`: what people
-    call it. `prefers`: the carrier for such hosts, where none was named. `no_tls`: why there is no
-    TLS on it. `proves`: a peer's address is its own, not what it says. `meets`: of a connection
-    over it the two ends can meet elsewhere. `stays`: what it carries does not leave the computer.
-    `datagrams`: it carries these, which may be lost.
+    `hosts`: what the hosts end in that it alone leads to. `title`: what people call it. `setting`:
+    the variable that has to be `yes` before a peer is met over it. `prefers`: the carrier for such
+    hosts, where none was named. `no_tls`: why there is no TLS on it. `proves`: a peer's address is
+    its own, not what it says. `meets`: of a connection over it the two ends can meet elsewhere.
+    `stays`: what it carries does not leave the computer. `datagrams`: it carries these, which may
+    be lost.
     """
 
     hosts: str = ""
     title: str = ""
+    setting: str = ""
     prefers: str = ""
     no_tls: str = ""
     proves: bool = True
@@ -148,3 +150,22 @@ class TransportRow(Row):
 
 
 _PLACES: Final = len(fields(Row))
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """What nodes of a graph call each other with, and the `word` for it among administrative
+    requests. `changes`: it tells the node something, others only ask. `everywhere`: ports that
+    belong to no node answer it too."""
+
+    name: str
+    word: str = ""
+    changes: bool = False
+    everywhere: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class GraphRow(Row):
+    """The graph of another system, of whose nodes ports may be part."""
+
+    calls: tuple[Call, ...] = ()

@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib import import_module
 from typing import Any, Final, Generic, TypeVar
 
 from yarpy import fork
 from yarpy.errors import UnknownPlugin
-from yarpy.facts import MAGIC_SIZE, CarrierRow, Row, TransportRow
-from yarpy.shipped import CARRIERS, ELSEWHERE, SHIPPED, TRANSPORTS
+from yarpy.facts import MAGIC_SIZE, Call, CarrierRow, GraphRow, Row, TransportRow
+from yarpy.shipped import CARRIERS, ELSEWHERE, GRAPHS, SHIPPED, TRANSPORTS
 
 R = TypeVar("R", bound=Row)
 
@@ -202,6 +202,53 @@ class TransportRegistry(Registry[TransportRow]):
         return self._plain
 
 
+class GraphRegistry(Registry[GraphRow]):
+    """The graphs of other systems: what their nodes call each other with is known before one is
+    imported."""
+
+    def __init__(self, shipped: Mapping[str, GraphRow] = GRAPHS) -> None:
+        super().__init__("graphs", shipped)
+        self._ours = _calls((name, row.calls) for name, row in shipped.items())
+        self._others: dict[str, tuple[str, Call]] | None = None
+
+    def add(self, name: str, plugin: Any) -> None:
+        super().add(name, plugin)
+        self._others = None
+
+    def remove(self, name: str) -> None:
+        super().remove(name)
+        self._others = None
+
+    def call(self, request: str) -> tuple[str, Call] | None:
+        """Return the graph whose nodes call each other so, and the call, by its name or its word,
+        of which four letters count; None for any other request."""
+        found = self._ours.get(request) or self._ours.get(request[:4])
+        if found is None:
+            if self._others is None:
+                self._others = _calls(self._strangers())
+            found = self._others.get(request) or self._others.get(request[:4])
+        return found
+
+    def _strangers(self) -> Iterator[tuple[str, tuple[Call, ...]]]:
+        for name in self.names():
+            if name not in self._shipped:
+                try:
+                    yield name, self.load(name).calls
+                except (UnknownPlugin, AttributeError):  # whoever asks for it by name is told
+                    continue
+
+
+def _calls(graphs: Iterable[tuple[str, tuple[Call, ...]]]) -> dict[str, tuple[str, Call]]:
+    """Return calls with their graphs, by their names and words."""
+    return {
+        said: (name, call)
+        for name, calls in graphs
+        for call in calls
+        for said in (call.name, call.word)
+        if said
+    }
+
+
 def _resolve(row: Row) -> Any:
     module, _, attribute = row.target.partition(":")
     try:
@@ -247,7 +294,7 @@ types: Final = Registry("types", SHIPPED["types"])
 monitors: Final = Registry("monitors", SHIPPED["monitors"])
 commands: Final = Registry("commands", SHIPPED["commands"])
 findings: Final = Registry("findings", SHIPPED["findings"])
-graphs: Final = Registry("graphs", SHIPPED["graphs"])
+graphs: Final = GraphRegistry()
 clients: Final = Registry("clients", SHIPPED["clients"])
 middlewares: Final = Registry("middlewares", SHIPPED["middlewares"])
 names: Final = Registry("names", SHIPPED["names"])

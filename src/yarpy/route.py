@@ -164,7 +164,7 @@ class Declared:
     """The description that our port gives of itself where a protocol asks for it: the node that it
     belongs to, its topic or service, the name of its type, and the class of that, as far as it is
     known. `latched`: who comes late gets the last message. `clock` gives the time for messages
-    without a stamp, in seconds."""
+    without a stamp, in seconds. `graph`: the name of the graph that its node belongs to."""
 
     node: str = ""
     topic: str = ""
@@ -172,6 +172,7 @@ class Declared:
     kind: Any = None
     latched: bool = False
     clock: Callable[[], float] | None = None
+    graph: str = ""
 
 
 UNDECLARED: Final = Declared()

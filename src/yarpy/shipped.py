@@ -8,9 +8,21 @@ from a bare source tree. The facts of a row are those of its class.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
-from yarpy.facts import BROKER, PORT, SERVER, SOCKET, TOPIC, CarrierRow, Reach, Row, TransportRow
+from yarpy.facts import (
+    BROKER,
+    PORT,
+    SERVER,
+    SOCKET,
+    TOPIC,
+    Call,
+    CarrierRow,
+    GraphRow,
+    Reach,
+    Row,
+    TransportRow,
+)
 
 R = TypeVar("R", bound=Row)
 
@@ -109,7 +121,7 @@ CARRIERS: Final[Mapping[str, CarrierRow]] = _table(
     CarrierRow("zmq", f"{_PEERS}.zmq.carrier:Zmq", magic=(b"\xff" + bytes(7),), reaches=SOCKET),
 )
 
-# Carriers that other programs have, and what names of ROS are registered as.
+# Carriers that other programs have, and what names of topics are registered as.
 ELSEWHERE: Final[Mapping[str, CarrierRow]] = _table(
     CarrierRow("h264", push=False, reaches=SERVER),
     CarrierRow("topic", reaches=PORT),
@@ -121,6 +133,8 @@ _NO_TLS: Final = (
     "but there is no TLS through them: take tcp"
 )
 
+_MPI: Final[Any] = {"title": "MPI", "setting": "YARPY_MPI", "meets": False}
+
 TRANSPORTS: Final[Mapping[str, TransportRow]] = _table(
     TransportRow("tcp", f"{_MOVES}.tcp:Tcp"),
     TransportRow("tls", f"{_MOVES}.tls:Tls"),
@@ -130,8 +144,8 @@ TRANSPORTS: Final[Mapping[str, TransportRow]] = _table(
     TransportRow("inproc", f"{_MOVES}.inproc:Inproc", meets=False, stays=True),
     TransportRow("memory", f"{_MOVES}.shared.memory:Memory", meets=False, stays=True),
     TransportRow("shmem", f"{_MOVES}.shared.shmem:Shmem", meets=False, stays=True),
-    TransportRow("mpi", f"{_PEERS}.mpi.bcast:MpiOpener", "mpi", meets=False),
-    TransportRow("bcast", f"{_PEERS}.mpi.bcast:BcastOpener", "mpi", meets=False),
+    TransportRow("mpi", f"{_PEERS}.mpi.bcast:MpiOpener", "mpi", **_MPI),
+    TransportRow("bcast", f"{_PEERS}.mpi.bcast:BcastOpener", "mpi", **_MPI),
     TransportRow("ros2", f"{_PEERS}.ros2.medium:Ros2Opener", "ros2", meets=False, proves=False),
     TransportRow(
         "zenoh",
@@ -144,6 +158,35 @@ TRANSPORTS: Final[Mapping[str, TransportRow]] = _table(
         proves=False,
         meets=False,
     ),
+)
+
+GRAPHS: Final[Mapping[str, GraphRow]] = _table(
+    GraphRow(
+        "ros",
+        f"{_PEERS}.ros.port_graph:RosGraph",
+        calls=(
+            Call("getPid", "pid", everywhere=True),
+            Call("getBusInfo", "bus", everywhere=True),
+            Call("requestTopic", "rtop", everywhere=True),
+            Call("publisherUpdate", "rpup", changes=True, everywhere=True),
+            Call("getBusStats"),
+            Call("getMasterUri"),
+            Call("getPublications"),
+            Call("getSubscriptions"),
+            Call("paramUpdate", changes=True),
+            Call("shutdown", changes=True),
+        ),
+    ),
+)
+
+# Packages that are attributes of `yarpy`, so that one import is enough.
+PACKAGES: Final[Mapping[str, Row]] = _table(
+    Row("devices", f"{_KITS}.devices"),
+    Row("record", f"{_KITS}.record"),
+    Row("ros", f"{_PEERS}.ros"),
+    Row("ros2", f"{_PEERS}.ros2"),
+    Row("wrap", f"{_KITS}.wrap"),
+    Row("zenoh", f"{_PEERS}.zenoh"),
 )
 
 _MONITORS: Final[Mapping[str, Row]] = _table(
@@ -338,7 +381,7 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     # Graphs in which a simulated robot is shown, too (`kits/sim/guest.py`).
     "robots": _table(Row("ros", f"{_PEERS}.ros.robot:RosGuest")),
     # What ports may be part of beside their connections; it has ports of its own, too.
-    "graphs": _table(Row("ros", f"{_PEERS}.ros.role:RosGraph")),
+    "graphs": GRAPHS,
     # What typed clients call with: `yarpy.idl` is pure, and so below all ports.
     "clients": _table(
         Row("rpc", "yarpy.port.rpc:RpcClient"), Row("aio", "yarpy.aio.rpc:RpcClient")

@@ -38,7 +38,7 @@ SET = [
     ("WEB_ORIGINS", "*", 1, "everything"),
     ("WEB_ORIGINS", "*", 2, "everything"),
     ("SCRIPTS", "network", 3, "run, from a context's folder"),
-    ("MPI", "yes", 4, "are met, each in a process of its own"),
+    ("MPI", "yes", 4, "are met"),
     ("TLS", "require", 5, "are TLS alone"),
     ("TLS", "mutual", 5, "certificates of both sides"),
     ("ACCESS", "/nowhere/access.toml", 0, "nothing, since no port opens"),

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from yarpy.errors import AddressError
 from yarpy.names import node_name
-from yarpy.names.node_name import NodeName, check_graph_name, master_type, parse_node_name
+from yarpy.names.node_name import NodeName, parse_node_name
 
 SPELLINGS = [
     ("/t1+@/n1~std_msgs/String", "/n1", "/t1", "+", "std_msgs/String"),
@@ -68,21 +68,6 @@ def test_what_is_written_is_read_again(text: str) -> None:
         and not (found.topic + "x").rstrip("1x").endswith(("+", "-"))
     ):
         assert parse_node_name(str(found)) == NodeName(found.node, found.topic, found.category)
-
-
-def test_types_for_the_master() -> None:
-    assert [master_type(item) for item in ("", "*", "yarp/vector", "std_msgs/String")] == [
-        *("*", "*", "yarp/vector", "std_msgs/String")
-    ]
-    assert master_type("std_msgs/msg/String") == "std_msgs/String"
-    for refused in ("a/b/c", "bad~x/Type", "two words", "/x", "x/", "std_msgs/String\n", "é/Type"):
-        assert master_type(refused) == "*", refused
-
-
-@pytest.mark.parametrize("name", ["/", "chatter", "/1st", "/a-b", "/a/", "//a", "/a b", "/a/\n"])
-def test_what_ros_cannot_spell_is_refused(name: str) -> None:
-    with pytest.raises(AddressError, match="ROS has no names like"):
-        check_graph_name(name)
 
 
 def test_examples() -> None:

@@ -176,7 +176,7 @@ def test_a_liar_about_others_is_passed_over(names: yarpy.LocalNames) -> None:
     with yarpy.Port("/liar", names=names) as liar:
         lie = [["source", "/x"], ["target", "/y"], ["messages", 5]]
         odd = [["source", "/liar"], ["target", "/y"], ["messages", "many"], ["rate", "fast"]]
-        liar._hub.callbacks.slave = lambda request: (
+        liar._hub.callbacks.node = lambda request: (
             yarpy.Bottle([lie, odd, 7, [["policy", 99]]]) if request[0] == Vocab("stat") else None
         )
         [found] = flows(names)

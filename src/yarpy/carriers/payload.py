@@ -1,4 +1,4 @@
-"""Payloads for programs that know nothing of YARP, as those of ZeroMQ and MQTT.
+"""Payloads for programs that know nothing of YARP, such as those at a broker.
 
     what a port writes               what they get
     a picture of 8 bits a channel    a JPEG file

@@ -8,8 +8,8 @@ process it runs in. Nothing is printed.
     _name.conf            the same for namespace /name
 
 `YARPY_SERVER=HOST:PORT` takes precedence over every file and may list several, separated by commas.
-Name services of other systems are there by their plug-in's name and a place, such as
-`zenoh+tcp://ROUTER:7447`; in a file they are the mode.
+Name services of other systems are there by their plug-in's name and a place, `NAME+PLACE`; in a
+file the name is the mode.
 """
 
 from __future__ import annotations
@@ -267,7 +267,8 @@ def _parse_host_port(text: str, environment: Mapping[str, str]) -> Server:
     host = host.strip("[]")
     if not host or not number:
         raise AddressError(
-            f'YARPY_SERVER="{text}": give HOST:PORT, for example 127.0.0.1:10000, or zenoh'
+            f'YARPY_SERVER="{text}": give HOST:PORT, for example 127.0.0.1:10000, or one '
+            f"of {', '.join(names.names())}"
         )
     return Server(host, number)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from yarpy.config import access_file
 from yarpy.errors import YarpError
 from yarpy.link.begin.admission import SCRIPT
+from yarpy.shipped import TRANSPORTS
 from yarpy.transports.bind import SETTING as BIND
 from yarpy.transports.bind import reach
 
@@ -32,7 +33,7 @@ def doors() -> list[Entry]:
 
     words = said("YARPY_SCRIPTS").replace(",", " ").split()
     origins = said("YARPY_WEB_ORIGINS")
-    mpi = said("YARPY_MPI") == "yes"
+    guarded = {row.setting: row.title for row in TRANSPORTS.values() if row.setting}
     every_page = "*" in origins.split()
     named = origins not in ("", "none")
     here = reach()
@@ -63,10 +64,13 @@ def doors() -> list[Entry]:
             _scripts("network" in words),
             "`YARPY_SCRIPTS=network`, `yarpy access allow script FROM`",
         ),
-        Entry(
-            "peers that come by MPI",
-            "are met, each in a process of its own" if mpi else "are refused",
-            "`YARPY_MPI=yes`",
+        *(
+            Entry(
+                f"peers that come by {title}",
+                "are met" if said(setting) == "yes" else "are refused",
+                f"`{setting}=yes`",
+            )
+            for setting, title in guarded.items()
         ),
         Entry("connections", _connections(said("YARPY_TLS")), "`YARPY_TLS`"),
     ]

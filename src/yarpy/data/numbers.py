@@ -32,7 +32,6 @@ from yarpy.errors import DecodeError
 from yarpy.limit import limits
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 #: tag -> numpy's name of the numbers
@@ -123,14 +122,6 @@ class Packed(list[Any]):
             except OverflowError:
                 pass  # something larger was put there
         return np.array(list(self))
-
-    def __array__(
-        self, dtype: np.dtype[Any] | None = None, copy: bool | None = None
-    ) -> NDArray[Any]:
-        array = self.array
-        if dtype is not None and dtype != array.dtype:
-            return array.astype(dtype)
-        return array.copy() if copy else array
 
     def __len__(self) -> int:
         view = self._view

@@ -50,7 +50,7 @@ def encode_call(message: object) -> bytes:
 
 def encode_answer(value: object, terse: bool = False) -> bytes:
     """The answer with one value. A list of one element is that element, an empty one an empty
-    string. `terse`: empty lists inside are left out, as ROS expects it of YARP."""
+    string. `terse`: empty lists inside are left out, as nodes expect it of YARP."""
     if isinstance(value, Plain):
         from xmlrpc.client import dumps
 
@@ -97,11 +97,14 @@ def decode_answer(data: bytes | memoryview) -> Bottle | None:
     return value if isinstance(value, Bottle) else Bottle([value])
 
 
-class Plain(Bottle):
-    """An answer of a node of ROS, which is spelled as it is: lists are arrays, dicts structs, and
-    nothing is left out. The connection ends behind it."""
+class Last(Bottle):
+    """An answer behind which the connection ends."""
 
     is_last = True
+
+
+class Plain(Last):
+    """An answer that is spelled as it is: lists are arrays, dicts structs, nothing is left out."""
 
 
 def encode_plain_call(name: str, arguments: Sequence[Any]) -> bytes:

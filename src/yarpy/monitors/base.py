@@ -54,7 +54,7 @@ class _Drop:
 DROP: Final = _Drop()
 
 FAILURES: Final = (Exception, SystemExit)
-"""What a monitor may raise without ending the program or one of our threads."""
+"""A monitor may raise these without ending the program or one of our threads."""
 
 
 class Group:

@@ -1,4 +1,4 @@
-"""Names of ports that are topics or services of a ROS node.
+"""Names of ports that are topics or services of a node, in the graph of another system.
 
     /camera+@/robot                 the node /robot publishes the topic /camera
     /camera-@/viewer                /viewer subscribes to it
@@ -36,9 +36,6 @@ SUBSCRIBER: Final = "-"
 CLIENT: Final = "+1"
 SERVER: Final = "-1"
 
-#: what is written where no type is known
-ANY_TYPE: Final = "*"
-
 _PREFIX: Final = re.compile(r"[A-Za-z0-9_]*:/(?=/)")
 _CATEGORY: Final = re.compile(r"[+-]1?\Z")
 _EQUALS: Final = re.compile(r"([^=]*)=([+-]1?)?(/.*)")
@@ -69,7 +66,7 @@ class NodeName:
 
 
 def parse_node_name(text: str) -> NodeName | None:
-    """Parse the name of a port that belongs to a node of ROS; None for that of an ordinary port.
+    """Parse the name of a port that belongs to a node; None for that of an ordinary port.
 
     Raises AddressError for a topic or node that does not begin with a slash.
     """
@@ -104,57 +101,3 @@ def node_of(name: str) -> str:
     except AddressError:
         return name
     return name if found is None or not found.node else found.node
-
-
-def ros_name(name: str) -> str:
-    """A name as ROS may spell it, where a colon is forbidden.
-
-    >>> ros_name("/camera/rgb:o")
-    '/camera/rgb__o'
-    """
-    return name.replace(":", "__")
-
-
-def yarp_name(name: str) -> str:
-    """A name that comes from ROS.
-
-    >>> yarp_name("/camera/rgb__o")
-    '/camera/rgb:o'
-    """
-    return name.replace("__", ":")
-
-
-_TYPE: Final = re.compile(r"([A-Za-z]\w*+)/(?:(?:msg|srv)/)?([A-Za-z]\w*+)", re.ASCII)
-
-
-def master_type(port_type: str) -> str:
-    """The type that the master is told of: `*` for what it would not take.
-
-    >>> master_type(""), master_type("yarp/image"), master_type("thing"), master_type("a/b/c")
-    ('*', 'sensor_msgs/Image', 'yarp/thing', '*')
-    >>> master_type("std_msgs/msg/String")
-    'std_msgs/String'
-    """
-    if port_type == "yarp/image":
-        return "sensor_msgs/Image"
-    if port_type in ("", ANY_TYPE):
-        return ANY_TYPE
-    found = _TYPE.fullmatch(port_type if "/" in port_type else f"yarp/{port_type}")
-    return f"{found[1]}/{found[2]}" if found else ANY_TYPE
-
-
-def check_graph_name(name: str) -> str:
-    """`name` as a name of ROS, if it can be one: letters, digits, `_` and slashes.
-
-    Raises AddressError.
-
-    >>> check_graph_name("/motor/state:o")
-    '/motor/state__o'
-    """
-    found = ros_name(name)
-    if not re.fullmatch(r"/[A-Za-z][A-Za-z0-9_]*+(?:/[A-Za-z0-9_]++)*+", found):
-        raise AddressError(
-            f'ROS has no names like "{name[:80]}": those have letters, digits, "_" and "/" alone, '
-            "begin with a letter, and do not end with a slash"
-        )
-    return found

@@ -1,1 +1,1 @@
-"""What systems do differently: one file for each thing, with what each system has for it."""
+"""Differences of operating systems: one file for each, with what every system has for it."""

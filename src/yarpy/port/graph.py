@@ -1,7 +1,7 @@
-"""Roles: what ports play in the graph of another system, such as the topics of ROS.
+"""Graphs: other systems whose nodes have topics and services, which ports may be.
 
-Rules: contracts alone. Who plays them is looked up by name (registry kind `graphs`): it lives above
-the ports, since nodes have ports of their own.
+Rules: contracts alone. Graphs are looked up by name (registry kind `graphs`): they live above the
+ports, since nodes have ports of their own.
 """
 
 from __future__ import annotations
@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from yarpy import registry
 from yarpy.config.configuration import port_name
+from yarpy.data.bottle import Bottle
 from yarpy.errors import AddressError
+from yarpy.facts import Call
 from yarpy.names.base import NameClient
-from yarpy.names.node_name import Category, parse_node_name
+from yarpy.names.node_name import Category, NodeName, parse_node_name
 
 if TYPE_CHECKING:
     from yarpy.link.send.outbound import Outbound
@@ -58,6 +60,21 @@ class Role(Protocol):
         NoNameServer."""
 
 
+class Graph(Protocol):
+    """A graph, made without arguments. `calls`: those of its nodes."""
+
+    calls: tuple[Call, ...]
+
+    def role_of(self, name: NodeName, port_type: str, names: NameClient | None, /) -> Role:
+        """Return what a port with this name is there. Raises AddressError, NoNameServer."""
+
+    def prepare(self) -> None:
+        """Get ready for asking its services. Raises NoNameServer."""
+
+    def answer(self, call: str, hub: Any, /) -> Bottle:
+        """Return what a port that belongs to no node answers to one of the `calls`."""
+
+
 def find_role(
     name: str, category: Category, port_type: str, names: NameClient | None
 ) -> Role | None:
@@ -80,7 +97,7 @@ def find_role(
             f'"{name}": say what the port does with the topic: "{topic}+@{node}" publishes it, '
             f'"{topic}-@{node}" subscribes to it'
         )
-    for graph in registry.graphs:
-        role: Role = graph().role_of(wanted, port_type, names)
-        return role
+    for kind in registry.graphs:
+        graph: Graph = kind()
+        return graph.role_of(wanted, port_type, names)
     raise AddressError(f'"{name}": no graph with nodes is installed; `yarpy plugin` lists what is')

@@ -42,7 +42,7 @@ class Handle:
         self.effect = effect
         numbered = effect.listen and effect.kind in ("udp", "shmem")
         self.port = UDP_PORT if numbered else effect.port
-        self.program = "acceptor" if effect.listen else "initiator"  # as MPI has it
+        self.program = "acceptor" if effect.listen else "initiator"
         self.place = "" if effect.listen else "somewhere"
 
     def close(self) -> None:

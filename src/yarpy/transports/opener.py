@@ -39,6 +39,7 @@ class Opener:
     name: ClassVar[str] = ""
     hosts: ClassVar[str] = ""
     title: ClassVar[str] = ""
+    setting: ClassVar[str] = ""
     prefers: ClassVar[str] = ""
     no_tls: ClassVar[str] = ""
     proves: ClassVar[bool] = True

@@ -366,7 +366,7 @@ def two_dialects(world: World) -> Iterator[tuple[str, ...]]:
     listener = world.open("/listener", callback=lambda message: None)
     talker.connect("/listener")
     unheard = yarpy.Bottle([Vocab("fail"), "send [help] for list of valid commands"])
-    listener._hub.callbacks.slave = lambda request: (
+    listener._hub.callbacks.node = lambda request: (
         unheard if str(request[0]) in ("bus", "stat") else None
     )
     world.again(lambda: talker.write([1.5]))

@@ -10,7 +10,7 @@ from contextlib import ExitStack
 
 import pytest
 from support import held
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 from yarpy.link.begin import accept_loop, acceptor
 from yarpy.link.begin.accept_loop import AcceptLoop
@@ -35,7 +35,7 @@ def echo(sock: socket.socket) -> None:
 
 
 def ask(port: int) -> bytes:
-    with socket.create_connection(("127.0.0.1", port), 5) as sock:
+    with socket.create_connection(("127.0.0.1", port), HANG) as sock:
         sock.sendall(b"some word")
         return sock.recv(9)
 
@@ -56,7 +56,7 @@ def test_one_thread_for_all_ports(loop: AcceptLoop) -> None:
             with pytest.raises(ConnectionRefusedError):
                 ask(one.port)
         assert loop.entrances == []
-        thread.join(10)
+        thread.join(HANG)
         assert loop.thread is None
         assert many[0].thread_id == -1
         wait_until(lambda: held.threads() <= before)
@@ -95,10 +95,10 @@ def test_one_that_fails_does_not_take_others_along(
         stack.callback(bad.close)
         with monkeypatch.context() as patch:
             patch.setattr(bad, "_accept", fail)
-            sock = stack.enter_context(socket.create_connection(("127.0.0.1", bad.port), 5))
+            sock = stack.enter_context(socket.create_connection(("127.0.0.1", bad.port), HANG))
             wait_until(lambda: "/bad: a connection could not be accepted" in caplog.text)
             assert ask(good.port) == b"some word"
-        sock.settimeout(5)
+        sock.settimeout(HANG)
         sock.sendall(b"some word")
         assert sock.recv(9) == b"some word", "it goes on when the trouble is over"
 

@@ -45,7 +45,7 @@ class Foreign:
         self._client = server.client
         names = yarpy.LocalNames()
         self._port = yarpy.Port(f"/tmp/{free_port()}", names=names)
-        self._port._hub.callbacks.slave = self._slave
+        self._port._hub.callbacks.node = self._slave
         number = self._port.contact.port
         self._client.register(name, "tcp", "127.0.0.1", number, type_ or None)
         self.number = number

@@ -58,7 +58,7 @@ rospy.spin()
             assert client.call("getParam", "/me", "/answer")[2] == 42
         with (
             yarpy.Port("/strange", names=names) as port,
-            pytest.raises(UnknownName, match=r'"/rosout" is a topic of ROS.*/rosout@/NODE'),
+            pytest.raises(UnknownName, match=r'"/rosout" is a topic, not a port.*/rosout@/NODE'),
         ):
             port.connect("/rosout")
         with pytest.raises(LocalProtocolError, match="need a name server of YARP"):

@@ -4,10 +4,10 @@
 
 Rules: each message is a POST, its reply the response; without a reply the response is an empty
 string. (A C++ port whose reader does not reply sends no response: a message waits for the response
-to the previous one, with a timeout.) The calls of ROS nodes (`getPid`, `requestTopic`,
-`getBusInfo`, `publisherUpdate`) go to the administration and end the connection. Anything that is
-not XML-RPC is answered with a fault, a request that is too slow with a status. A POST to `/`
-belongs here if its body is XML, else to http. Values are encoded by `yarpy.data.xmlrpc`.
+to the previous one, with a timeout.) What nodes of a graph call each other with (`graphs` of the
+registry) goes to the administration and ends the connection. Anything that is not XML-RPC is
+answered with a fault, a request that is too slow with a status. A POST to `/` belongs here if its
+body is XML, else to http. Values are encoded by `yarpy.data.xmlrpc`.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from yarpy.errors import (
 )
 from yarpy.facts import MAGIC_SIZE, SERVER
 from yarpy.limit import HTTP_BODY, HTTP_HEAD, HTTP_LINE
+from yarpy.registry import graphs
 from yarpy.route import Route
 from yarpy.wire.effects import May, Within
 from yarpy.wire.message import ADMIN, CALL, QUIT, Message, Packet
@@ -41,7 +42,6 @@ if TYPE_CHECKING:
 
 TIME: Final = 60.0  # seconds for a call from its first byte to its last
 NOT_UNDERSTOOD: Final = -32700  # the fault for a body that is not XML-RPC
-ROS: Final = frozenset(("publisherUpdate", "requestTopic", "getPid", "getBusInfo"))
 
 _RESPONSE: Final = (
     "HTTP/1.1 {status}\r\nServer: XMLRPC++ 0.7\r\nContent-Type: text/xml\r\n"
@@ -62,7 +62,7 @@ class XmlRpc(Carrier):
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
-        self._terse = False  # the call came from a ROS node
+        self._terse = False  # the call is one of nodes
         declared = route.declared
         self._is_node = bool(declared.node) and not declared.topic  # it answers nothing else
         self._finished = False  # the dialogue is complete
@@ -114,7 +114,7 @@ class XmlRpc(Carrier):
                 self._respond(stream, xmlrpc.encode_fault(NOT_UNDERSTOOD, str(error)))
                 continue
             name = call[0] if call else ""
-            self._terse = isinstance(name, str) and (name in ROS or self._is_node)
+            self._terse = isinstance(name, str) and (self._is_node or _of_nodes(name))
             key = ADMIN if self._terse else CALL
             if key == CALL and (why := (yield May("write"))):
                 yield from refuse(stream, 403, why, error=AccessRefused)
@@ -238,6 +238,12 @@ class XmlRpc(Carrier):
         if len(size) > 9 or int(size) > min(HTTP_BODY, stream.limit):
             raise RemoteProtocolError(f"an answer of more than {HTTP_BODY} bytes")
         return (yield from stream.read_exact(int(size)))
+
+
+def _of_nodes(name: str) -> bool:
+    """Return whether nodes of a graph call any port by that name."""
+    found = graphs.call(name)
+    return found is not None and found[1].everywhere and found[1].name == name
 
 
 def _head(stream: ByteStream) -> bytes:

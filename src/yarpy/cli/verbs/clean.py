@@ -82,7 +82,7 @@ def reason_of_death(contact: yarpy.Contact, timeout: float) -> str:
     except (OSError, UnicodeError):
         return ""  # a cut cable, a host that is off: nobody knows what runs there
     if contact.carrier != "tcp":
-        return ""  # a camera or a ROS node: it listens, and speaks no YARP
+        return ""  # a camera, or another system: it listens, and speaks no YARP
     from yarpy.port.connect import probe
 
     try:

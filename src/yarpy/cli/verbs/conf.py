@@ -14,12 +14,13 @@ import os
 import click
 
 from yarpy.cli.output import print_line
+from yarpy.registry import names
 
 
 @click.command()
 @click.argument("host", required=False)
 @click.argument("port", required=False, type=click.IntRange(1, 65535))
-@click.argument("mode", default="yarp", type=click.Choice(["yarp", "ros", "local", "zenoh"]))
+@click.argument("mode", default="yarp", type=click.Choice(["yarp", "local", *names.names()]))
 @click.option("--clean", is_flag=True, help="Forget the address.")
 def command(host: str | None, port: int | None, mode: str, clean: bool) -> int:
     """Print the path of the address file, or write HOST and PORT of a name server to it."""

@@ -7,7 +7,7 @@ for somebody to connect it to a server, and replies are printed bare.
 
 When the target goes away it is asked again, up to three times, a moment apart. `help` is asked of
 control boards as they want it asked, `[help] [all]`; at a terminal Tab offers what it lists. What a
-service of ROS cannot take is said, and the next line is asked. A port of YARP 4 gets fractions as
+typed service cannot take is said, and the next line is asked. A port of YARP 4 gets fractions as
 it spells them.
 Exit codes: 0 at the end of input; 1 the target cannot be reached.
 """
@@ -56,14 +56,14 @@ class Target:
         self._port = port
         self._name = name
         self._admin = admin
-        self._foreign = False  # a node or service of ROS or ROS 2, or the master of ROS
+        self._foreign = False  # a node or service of another system
         self._contact: Contact | None = None  # where it was found
         self._yarp4: bool | None = None  # whether it is of YARP 4; None: nobody asked yet
         self._caller: Caller | None = self._dial()
 
     def ask(self, question: Any) -> Any:
         """The reply as a Bottle. Raises LinkClosed when the target stays away, DecodeError when a
-        service of ROS takes nothing like `question`."""
+        typed service takes nothing like `question`."""
         pauses = iter(PAUSES)
         while True:
             try:
@@ -206,13 +206,12 @@ def _refused(reply: Any) -> bool:
 
 
 def _ends_connection(question: Any) -> bool:
-    """Return whether ports hang up after the answer, as they do after a question that nodes of ROS
-    ask."""
+    """Return whether ports hang up after the answer, as they do after a call of nodes."""
     from yarpy.data.text import plain_text
-    from yarpy.port.answer.guard import ROS, TOLD
+    from yarpy.registry import graphs
 
     word = plain_text(question[0]) if question and isinstance(question[0], str) else ""
-    return word in ROS or word in TOLD
+    return graphs.call(word) is not None
 
 
 def talk(port: str, name: str = "", admin: bool = False) -> int:

@@ -1,5 +1,5 @@
-"""What values of Thrift are as keys of a dict and as elements of a set, where Python needs what
-does not change.
+"""Values of Thrift as keys of a dict and elements of a set, where Python needs what does not
+change.
 
 Rules: a list is a tuple, a set a frozenset, a map a Pairs; a struct is itself, and must not be
 changed while it is a key. All of these are taken wherever a list, a set, a map or a struct is.

@@ -20,9 +20,10 @@ from typing import Final
 
 from yarpy.facts import MAGIC_SIZE
 from yarpy.link.begin.accept_loop import LOOP
-from yarpy.link.begin.descriptors import Descriptors
+from yarpy.link.begin.descriptors import Descriptors, allowed
 from yarpy.link.begin.occupancy import Occupancy
 from yarpy.link.begin.pending import Pending
+from yarpy.link.cores import cores
 from yarpy.link.flapping import Flapping
 from yarpy.log import logger
 from yarpy.transports.base import MSG_DONTWAIT
@@ -68,6 +69,7 @@ class Acceptor:
         # signal handler would leave it taken, and our thread, which serves all ports, would wait.
         self._gate = threading.Lock()
         self._gate.acquire()
+        cores(), allowed()  # asked here, so that the first connection does not wait for it
         try:
             LOOP.enter(self._listener.sock, self)
         except BaseException:

@@ -330,7 +330,7 @@ class Receiver:
         elif answered is not None:
             carrier.encode_lines(stream, answered)
         if carrier.acks:
-            # As C++ does behind the words of ROS, before it hangs up.
+            # As C++ does behind an answer to a node, before it hangs up.
             carrier.encode_ack(stream, 2 if getattr(answered, "is_last", False) else 1)
         self._flush()
 

@@ -2,7 +2,7 @@
 
 Rules: a message leaves in the writer's thread as far as it goes without waiting. What cannot begin
 to waits for the connection's own thread, in order, with at most `most` others and `held` bytes;
-where there is no room the newest message is dropped. (ZeroMQ's high-water mark of a PUB.)
+where there is no room the newest message is dropped. (A high-water mark.)
 """
 
 from __future__ import annotations

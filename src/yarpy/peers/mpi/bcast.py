@@ -17,7 +17,7 @@ from typing import Final
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.peers.mpi.end import MEETING, Line, MpiEnd, explained, pieces
 from yarpy.peers.mpi.group import Group, Member, follow
-from yarpy.peers.mpi.library import Library, in_time, library
+from yarpy.peers.mpi.library import SETTING, Library, in_time, library
 from yarpy.peers.mpi.meeting import Meeting
 from yarpy.peers.mpi.transport import MpiTransport
 from yarpy.transports.base import Transport
@@ -267,6 +267,8 @@ class MpiOpener(Opener):
     """One reader by MPI."""
 
     name = "mpi"
+    title = "MPI"
+    setting = SETTING
     meets = False
 
     @classmethod

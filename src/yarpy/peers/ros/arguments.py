@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from yarpy.names.node_name import check_graph_name
+from yarpy.peers.ros.graph_name import check_graph_name
 
 NAMESPACE: Final = "ROS_NAMESPACE"
 _WORD: Final = ":="

@@ -18,8 +18,8 @@ from typing import Any, Final, Literal, Self
 
 from yarpy.data.stamp import Stamp
 from yarpy.errors import LocalProtocolError, UnknownPlugin
-from yarpy.names.node_name import check_graph_name
 from yarpy.peers.ros.bag_reader import NEEDED
+from yarpy.peers.ros.graph_name import check_graph_name
 from yarpy.peers.ros.message.library import default_library
 from yarpy.peers.ros.message.message import Message, Time
 from yarpy.peers.ros.message.native import to_message

@@ -22,17 +22,10 @@ from yarpy.errors import AddressError, NoNameServer, YarpError
 from yarpy.log import logger
 from yarpy.names.address import is_local
 from yarpy.names.default import secret
-from yarpy.names.node_name import (
-    PUBLISHER,
-    SERVER,
-    SUBSCRIBER,
-    NodeName,
-    check_graph_name,
-    master_type,
-    parse_node_name,
-)
+from yarpy.names.node_name import PUBLISHER, SERVER, SUBSCRIBER, NodeName, parse_node_name
 from yarpy.nameserver.command import NameService
 from yarpy.nameserver.delegate import Desk
+from yarpy.peers.ros.graph_name import check_graph_name, master_type
 from yarpy.peers.ros.master import (
     DEFAULT_URI,
     VARIABLE,

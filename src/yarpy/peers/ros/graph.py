@@ -24,7 +24,7 @@ from yarpy.names.base import NameClient
 from yarpy.names.node_name import CLIENT, PUBLISHER, SERVER
 from yarpy.peers.ros import slave
 from yarpy.peers.ros.master import RosMaster, advertised_host, uri_of
-from yarpy.peers.ros.membership import Membership, NodeAddress
+from yarpy.peers.ros.membership import GRAPH_NAME, Membership, NodeAddress
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Mailbox
 from yarpy.route import Declared
@@ -74,9 +74,9 @@ class GraphNode:
             Callback(lambda message: None),
             names,
             register=names is not None,
-            declared=Declared(name),
+            declared=Declared(name, graph=GRAPH_NAME),
         )
-        self.hub.callbacks.slave = self._answer
+        self.hub.callbacks.node = self._answer
         self.place = NodeAddress(name, master, uri_of(self.host, self.hub.port), self.host)
         threading.Thread(target=self._run, name=f"yarpy node {name}", daemon=True).start()
 

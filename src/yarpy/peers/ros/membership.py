@@ -23,16 +23,8 @@ from yarpy.link.begin import handshake
 from yarpy.link.receive.inbound import Inbound
 from yarpy.link.send.outbound import Outbound
 from yarpy.log import logger
-from yarpy.names.node_name import (
-    ANY_TYPE,
-    CLIENT,
-    PUBLISHER,
-    SERVER,
-    SUBSCRIBER,
-    NodeName,
-    check_graph_name,
-    master_type,
-)
+from yarpy.names.node_name import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, NodeName
+from yarpy.peers.ros.graph_name import ANY_TYPE, check_graph_name, master_type
 from yarpy.peers.ros.master import RosMaster, Uri, call, parse_uri, uri_of
 from yarpy.port.hub import Hub
 from yarpy.route import Declared, Route
@@ -40,6 +32,7 @@ from yarpy.wire.message import Packet
 
 log = logger("yarpy.ros")
 
+GRAPH_NAME: Final = "ros"  # its name in the registry
 DIALLING: Final = 10.0  # seconds for a publisher to say where its topic is
 SOON: Final = 0.5  # seconds before a publisher that did not answer is dialled again
 LONGEST: Final = 30.0
@@ -127,7 +120,9 @@ class Membership:
     @property
     def declared(self) -> Declared:
         """The facts about the port that its connections announce."""
-        return Declared(self.node, self.topic, self.type, self.kind, self.latched, clock=self.clock)
+        return Declared(
+            self.node, self.topic, self.type, self.kind, self.latched, self.clock, graph=GRAPH_NAME
+        )
 
     @property
     def shown_type(self) -> str:

@@ -16,7 +16,8 @@ from typing import Final
 from yarpy.contact import Contact
 from yarpy.errors import AddressError
 from yarpy.names.base import Contacts, Strings
-from yarpy.names.node_name import parse_node_name, ros_name, yarp_name
+from yarpy.names.node_name import parse_node_name
+from yarpy.peers.ros.graph_name import ros_name, yarp_name
 from yarpy.peers.ros.master import (
     DEFAULT_URI,
     VARIABLE,

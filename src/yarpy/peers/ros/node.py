@@ -30,19 +30,13 @@ from yarpy.errors import (
 )
 from yarpy.link.send.outbound import Outbound
 from yarpy.names.base import NameClient
-from yarpy.names.node_name import (
-    PUBLISHER,
-    SERVER,
-    SUBSCRIBER,
-    Category,
-    NodeName,
-    master_type,
-)
+from yarpy.names.node_name import PUBLISHER, SERVER, SUBSCRIBER, Category, NodeName
 from yarpy.peers.ros.arguments import expand, parse_arguments
 from yarpy.peers.ros.body import has_header
 from yarpy.peers.ros.calls import Calls
 from yarpy.peers.ros.carrier import TcpRos
 from yarpy.peers.ros.graph import GRAPH, GraphNode, join
+from yarpy.peers.ros.graph_name import master_type
 from yarpy.peers.ros.master import DEFAULT_URI, VARIABLE, RosMaster
 from yarpy.peers.ros.membership import QUEUE_SIZE, Membership
 from yarpy.peers.ros.message.library import Service, default_library

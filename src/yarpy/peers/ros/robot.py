@@ -27,7 +27,7 @@ from yarpy.kits.devices.control_board.interface import ControlMode
 from yarpy.kits.devices.publisher import Publisher
 from yarpy.kits.sim.robot import Robot
 from yarpy.names.address import is_local
-from yarpy.names.node_name import ros_name
+from yarpy.peers.ros.graph_name import ros_name
 from yarpy.peers.ros.master import VARIABLE, RosMaster, parse_uri, uri_of
 from yarpy.peers.ros.node import Node
 

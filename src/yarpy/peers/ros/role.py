@@ -51,18 +51,6 @@ class RosRole:
         join(self.member, hub, self.master, without_masters(self.names), opener)
 
 
-class RosGraph:
-    """The graph of ROS 1, as ports see it (`port/graph.py`)."""
-
-    def role_of(self, name: NodeName, port_type: str, names: NameClient | None) -> RosRole:
-        """Return what a port with this name will be there. Raises AddressError, NoNameServer."""
-        return role_of(name, port_type, names)
-
-    def prepare(self) -> None:
-        """Find the master, and with it the server of types. Raises NoNameServer."""
-        services(None)
-
-
 def role_of(name: NodeName, port_type: str, names: NameClient | None) -> RosRole:
     """The role of a port with this name. Raises AddressError, NoNameServer."""
     kind = name.type or port_type

@@ -12,8 +12,10 @@ from typing import Any, Final, Protocol
 
 from yarpy.data.text import plain_text
 from yarpy.data.xmlrpc import Plain
-from yarpy.names.node_name import PUBLISHER, SUBSCRIBER, ros_name
+from yarpy.names.node_name import PUBLISHER, SUBSCRIBER
+from yarpy.peers.ros.graph_name import ros_name
 from yarpy.peers.ros.membership import Membership
+from yarpy.registry import graphs
 
 
 class Node(Protocol):
@@ -38,10 +40,9 @@ class Node(Protocol):
 def answer(node: Node, words: Sequence[Any]) -> Plain | None:
     """The answer to a call; None for what nodes are not asked."""
     name = plain_text(words[0]) if words and isinstance(words[0], str) else ""
-    asked = CALLS.get(_SHORT.get(name, name))
-    if asked is None:
-        return None
-    return asked(node, [*words[2:]])
+    called = graphs.call(name)
+    asked = CALLS.get(called[1].name) if called is not None else None
+    return None if asked is None else asked(node, [*words[2:]])
 
 
 def _done(value: Any, text: str = "") -> Plain:
@@ -135,10 +136,4 @@ CALLS: Final[dict[str, Callable[[Node, Sequence[Any]], Plain]]] = {
     "publisherUpdate": _publisher_update,
     "requestTopic": _request_topic,
     "shutdown": _shutdown,
-}
-_SHORT: Final = {
-    "rpup": "publisherUpdate",
-    "rtop": "requestTopic",
-    "pid": "getPid",
-    "bus": "getBusInfo",
 }

@@ -22,7 +22,9 @@ from yarpy.port.answer import command
 from yarpy.port.answer.prop import get_peer, get_self, set_peer, set_self
 from yarpy.port.answer.report import report, report_one
 from yarpy.port.connect import disconnecting
+from yarpy.port.graph import Graph
 from yarpy.port.hub import Hub
+from yarpy.registry import graphs
 from yarpy.wire.message import Message
 
 log = logger("yarpy.port")
@@ -88,15 +90,17 @@ def answer(hub: Hub, message: Message) -> Bottle:
 def _answer(hub: Hub, message: Message) -> Bottle:
     request = message.as_(Bottle)
     name = plain_text(request[0]) if request and isinstance(request[0], str) else ""
-    if hub.callbacks.slave is not None:
-        answered = hub.callbacks.slave(request)
+    if hub.callbacks.node is not None:
+        answered = hub.callbacks.node(request)
         if answered is not None:
             return answered
-    if name in _ROS or word(name) in _ROS_SHORT:
-        return _ROS[_ROS_SHORT.get(word(name), name)](hub)
     handler = _HANDLERS.get(word(request[0])) if request else None
     if handler is not None:
         return handler(hub, request)
+    called = graphs.call(name)
+    if called is not None and called[1].everywhere:
+        graph: Graph = graphs.load(called[0])()
+        return graph.answer(called[1].name, hub)
     on_admin = hub.callbacks.program.on_admin
     if on_admin is not None:
         reply = on_admin(message)
@@ -273,10 +277,6 @@ def _pray(hub: Hub, request: Bottle) -> Bottle:
     )
 
 
-def _node_name(hub: Hub) -> str:
-    return hub.name.partition("@")[2] or hub.name
-
-
 _HANDLERS = {
     "help": _help,
     "ver": _version,
@@ -290,27 +290,4 @@ _HANDLERS = {
     "atch": _attach,
     "dtch": _detach,
     "pray": _pray,
-}
-
-
-class _Last(Bottle):
-    """An answer behind which the connection ends."""
-
-    is_last = True
-
-
-# What a ROS node asks of another; the connection ends behind the answer.
-_ROS = {
-    "publisherUpdate": lambda hub: _Last([1, "ok"]),
-    "requestTopic": lambda hub: _Last(
-        [1, _node_name(hub), Bottle(["TCPROS", hub.contact.host, hub.port])]
-    ),
-    "getPid": lambda hub: _Last([1, "", os.getpid()]),
-    "getBusInfo": lambda hub: _Last([1, "", Bottle([Bottle()])]),
-}
-_ROS_SHORT = {
-    "rpup": "publisherUpdate",
-    "rtop": "requestTopic",
-    "pid": "getPid",
-    "bus": "getBusInfo",
 }

@@ -53,7 +53,7 @@ class Callbacks:
         self._program = weakref.ref(self._kept)
         self._held: dict[int, list[ConnectionEvent]] = {}  # by thread, see `later`
         self.watch: Watch | None = None  # looks for silence, for `on_deadline`
-        self.slave: Callable[[Bottle], Bottle | None] | None = None  # answers as a node of ROS
+        self.node: Callable[[Bottle], Bottle | None] | None = None  # answers for that of the port
         self.lines_for_people: Callable[[], list[str]] = list  # more of them on the port's page
 
     @property

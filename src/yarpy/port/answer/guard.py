@@ -27,6 +27,7 @@ from yarpy.link.receive.inbound import Inbound, Owner
 from yarpy.link.send.outbound import Outbound
 from yarpy.names.address import is_local
 from yarpy.port.keep.registration import Registration
+from yarpy.registry import graphs
 from yarpy.route import CarrierSpec, parse_carrier
 from yarpy.wire.message import ADMIN, CALL, DATA, QUIT, Message, Refused
 
@@ -34,15 +35,6 @@ from yarpy.wire.message import ADMIN, CALL, DATA, QUIT, Message, Refused
 QUESTIONS: Final = frozenset(("help", "ver", "list", "get", "stat", "pray"))
 CHANGES: Final = frozenset(("add", "del", "set", "prop"))
 MONITORS: Final = frozenset(("atch", "dtch"))
-# What ROS nodes ask of each other, and what they are told, whole. Over XML-RPC a refusal has ROS's
-# three elements.
-ROS: Final = frozenset(
-    (
-        *("requestTopic", "getPid", "getBusInfo", "rtop", "pid", "bus", "getBusStats"),
-        *("getMasterUri", "getPublications", "getSubscriptions"),
-    )
-)
-TOLD: Final = frozenset(("publisherUpdate", "paramUpdate", "shutdown", "rpup"))
 
 
 class Inputs(Protocol):
@@ -124,8 +116,10 @@ class Guard:
             with on_behalf(link.driver.admission):
                 return link.carry_out(message)
         if message.key == ADMIN:
-            by_ros = link.carrier.reaches.foreign and _verb(message) in TOLD
-            return Plain([-1, why, 0]) if by_ros else Refused(why)
+            called = graphs.call(_words(message.as_(Bottle))[0])
+            if called is not None and called[1].changes and link.carrier.reaches.foreign:
+                return Plain([-1, why, 0])
+            return Refused(why)
         if message.key == "*":
             return [f"This is {self._hub.registration.name} at tcp://{self._address}/", why]
         return [why]
@@ -163,7 +157,7 @@ class Guard:
             return ASK  # it gets an error
         name, second, third = _words(request)
         verb = name[:4]
-        if name in ROS or verb in QUESTIONS or (verb == "prop" and second[:4] == "get"):
+        if verb in QUESTIONS or (verb == "prop" and second[:4] == "get"):
             return ASK
         if verb in MONITORS:
             return "attach"
@@ -171,7 +165,11 @@ class Guard:
             return self._right_to_add(admission, f"{third}:/{second}" if third else second)
         if verb == "del":
             return self._right_to_delete(admission.peer, second)
-        return "administer" if verb in CHANGES or name in TOLD else "write"
+        if verb in CHANGES:
+            return "administer"
+        if (called := graphs.call(name)) is not None:
+            return "administer" if called[1].changes else ASK
+        return "write"  # whatever the program itself understands
 
     def _right_to_add(self, admission: Admission, target: str) -> str:
         wanted = parse_contact(target)
@@ -232,8 +230,3 @@ def _words(request: Bottle) -> list[str]:
     if it is none, the others are whatever their text says."""
     first = plain_text(request[0]) if request and isinstance(request[0], str) else ""
     return [first, *map(plain_text, request[1:3]), "", ""][:3]
-
-
-def _verb(message: Message) -> str:
-    """The first word of a request that could be read."""
-    return _words(message.as_(Bottle))[0]

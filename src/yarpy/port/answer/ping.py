@@ -1,4 +1,4 @@
-"""Ping: the signs of life that some protocols want of whoever has dialled, such as MQTT's brokers.
+"""Ping: the signs of life that some protocols want of whoever has dialled, such as brokers.
 
 Rules: a ping goes out as often as its carrier says (`ping`), whatever else is said. It never
 waits: where something is on its way there, or the peer takes nothing, it is left out until the next

@@ -129,7 +129,7 @@ def unknown(name: str, names: object, carrier: str = "") -> UnknownName:
         known = {contact.name: contact for contact in names.list()}  # type: ignore[attr-defined]
         if name in known and known[name].carrier == "topic":
             return UnknownName(
-                f'"{name}" is a topic of ROS, not a port: a port whose name is {name}@/NODE takes '
+                f'"{name}" is a topic, not a port: a port whose name is {name}@/NODE takes '
                 "part in it"
             )
         near = get_close_matches(name, known.keys() - {name}, n=1)

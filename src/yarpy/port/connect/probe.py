@@ -218,8 +218,7 @@ def is_ours(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = 
 
 
 def is_yarp4(contact: Contact, timeout: float = TIMEOUT, secret_: bytes | None = None) -> bool:
-    """Return whether a port is of C++ YARP 4, which has no commands of ROS any more. Raises as
-    `ask`."""
+    """Return whether a port is of C++ YARP 4, which answers no node any more. Raises as `ask`."""
     reply = ask(contact, [Vocab("bus")], timeout=timeout, secret_=secret_)
     return reply == [Vocab("fail"), "send [help] for list of valid commands"]
 

@@ -22,11 +22,15 @@ from yarpy.config.configuration import flag
 from yarpy.log import logger
 from yarpy.port.keep.log_line import message_of, port_name
 from yarpy.port.keep.log_sender import LOGGER, TIMEOUT, LogSender, Open
+from yarpy.shipped import TRANSPORTS
 from yarpy.wire.message import Packet
 
 ENABLE: Final = "YARP_FORWARD_LOG_ENABLE"
 NETWORK: Final = frozenset(
-    ("access", "link", "names", "name_server", "port", "transports", "zenoh")
+    (
+        *("access", "link", "names", "name_server", "port", "transports"),
+        *(row.name for row in TRANSPORTS.values() if row.hosts),  # they lead to ports
+    )
 )
 
 log = logger("yarpy.port")

@@ -192,8 +192,8 @@ class Registration:
             "ips": [bound] if bound else local_addresses(),
             "process": [os.getpid()],
         }
-        if self.declared.node:
-            told["ros"] = ["own"]  # no name server has to tell the master of us
+        if self.declared.graph:
+            told[self.declared.graph] = ["own"]  # no name server has to tell the graph of us
         introduce(names, self.name, told)
 
     def service(self) -> NameClient | None:

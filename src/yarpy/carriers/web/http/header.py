@@ -1,4 +1,4 @@
-"""A tolerant reader of HTTP header lines from cameras, ROS programs and web pages.
+"""A tolerant reader of HTTP header lines from cameras, web pages and other programs.
 
 Rules: line ends are CR LF or LF, order and case do not matter, later lines win, except that login
 challenges accumulate; number and length of lines are limited. (The carrier http, which must be

@@ -1,4 +1,4 @@
-"""What travels between the carrier and those who know the service: calls and their answers.
+"""Calls and answers, as they travel between the carrier and those who know the service.
 
     Call      a call that has come: the head, and the struct of its arguments
     Asked     a call to make

@@ -1,4 +1,4 @@
-"""What both protocols have: sorts of values, messages, and what is said of a call that failed.
+"""Values of both protocols: sorts of values, heads of messages, and why a call failed.
 
     sort        the byte that TBinaryProtocol has for a type
     Head        of a message: its kind, the method, the number by which its answer is known
