@@ -35,6 +35,7 @@ from yarpy.port.keep.life import Life
 from yarpy.port.keep.registration import Registration
 from yarpy.port.mailbox import Mailbox
 from yarpy.port.outputs import Outputs
+from yarpy.qos import NOTHING_ASKED
 from yarpy.route import Route
 from yarpy.wire.message import Message
 
@@ -169,6 +170,7 @@ class Inputs:
         if any(_lives(old) for old in older):
             self._rivals.replaced(source)
         for old in older:
+            old.replaced = not old.closing
             old.close()
             if old.thread is not threading.current_thread():
                 self._let_end(old)
@@ -273,9 +275,20 @@ class Inputs:
         if not self._forget(link):
             return
         hub.callbacks.report(link, created=False, reason=reason)
-        if not (quit_ or link.closing or hub.life.closing):
+        if quit_ or hub.life.closing:
+            return
+        if link.replaced:  # it has broken: its sender has dialled again before we saw that
+            hub.saved_qos.keep(link)
+            self._inherit(link.route.source)
+        elif not link.closing:
             hub.saved_qos.keep(link)
             hub.input_lost(link.route)
+
+    def _inherit(self, source: str) -> None:
+        """Give the connection of a sender what was asked for the one before it."""
+        for link in self.links:
+            if link.route.source == source and link.asked == NOTHING_ASKED and link.wanted is None:
+                self._hub.saved_qos.give(link)
 
     def _forget(self, link: Inbound) -> bool:
         with self.lock:

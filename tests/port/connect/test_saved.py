@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import socket
+
 import pytest
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.link.send.outbound import Outbound
@@ -38,6 +40,28 @@ def test_a_connection_that_breaks_has_them_again(carrier: str) -> None:
         assert (found.packets, found.deadline, found.late) == ("AF42", 5, "drop")
         assert not in_._hub.saved_qos._asked
         assert not out._hub.saved_qos._asked
+
+
+def test_one_whose_end_was_not_seen_before_the_next_came() -> None:
+    """A cable that was pulled tells nothing: the sender dials again, and the old one is there."""
+    names = yarpy.LocalNames()
+    with (
+        yarpy.Port("/in", names=names) as in_,
+        socket.create_connection(("127.0.0.1", in_.contact.port)) as first,
+        socket.create_connection(("127.0.0.1", in_.contact.port)) as second,
+    ):
+        first.sendall(b"CONNECT /sender\r\n")
+        assert in_.wait_for_inputs(timeout=HANG)
+        in_.inputs[0].qos = Qos(packets="LOW", rate=50)
+        before = in_._hub.inputs.links
+        second.sendall(b"CONNECT /sender\r\n")
+        wait_until(lambda: in_._hub.inputs.links != before)
+        wait_until(lambda: in_.inputs[0].qos.rate == 50)
+        assert in_.inputs[0].qos.packets == "AF11"
+        # In good order: nobody wants it any more.
+        second.sendall(b"q\r\n")
+        wait_until(lambda: not in_.inputs)
+        assert not in_._hub.saved_qos._asked
 
 
 def test_one_that_was_ended_begins_without() -> None:

@@ -104,6 +104,7 @@ class Inbound:
         self.chain: Chain | None = None  # all of these
         self.vouched = False  # the sending port knows of this connection, as it was asked
         self.failure = ""  # why the program could not use a message, the last time
+        self.replaced = False  # by the next one of the same sender, before its own end was seen
         self._closing = False
         self._quit = False
         self._reversed = False
