@@ -13,7 +13,7 @@ import pytest
 from support.moments import Cut, cut, elsewhere, moments
 from support.port import free_port
 from support.process import Process
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.port.connect import connecting, disconnecting, identity, probe, reconnect
@@ -273,6 +273,34 @@ def test_what_was_disconnected_stays_disconnected() -> None:
         time.sleep(1.2)
         assert not writer.outputs
         assert not reader.inputs
+
+
+def test_what_is_found_dead_while_it_is_disconnected_stays_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its sender, who is told first, knows nothing of it any more: that is no failure."""
+    with (
+        yarpy.NameServer(),
+        yarpy.BufferedPort("/again/out") as writer,
+        yarpy.BufferedPort("/again/in") as reader,
+    ):
+        writer.connect("/again/in", "udp")
+        assert reader.wait_for_inputs(timeout=HANG)
+        (link,) = reader._hub.inputs.links
+        ask_to_leave = disconnecting.goodbye.ask_to_leave
+
+        wanted: list[object] = []
+
+        def slowly(*arguments: Any) -> None:
+            # The watch finds it out before the sender, on a busy machine, has answered.
+            reconnect.RECONNECTOR._died(reader._hub, link)
+            wanted.extend(item for item in reconnect.RECONNECTOR._lost if item.hub is reader._hub)
+            ask_to_leave(*arguments)
+
+        monkeypatch.setattr(disconnecting.goodbye, "ask_to_leave", slowly)
+        probe.ask(reader.contact, ["del", "/again/out"])
+        assert not reader.inputs
+        assert not wanted
 
 
 @pytest.mark.parametrize("carrier", ["tcp", "fast_tcp", "text", "udp"])

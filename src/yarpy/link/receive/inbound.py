@@ -112,7 +112,7 @@ class Inbound:
 
     @property
     def closing(self) -> bool:
-        """Return whether our side ends the connection."""
+        """Return whether our side ends the connection, or is about to."""
         return self._closing
 
     # -- what messages pass through ----------------------------------------------------------------
@@ -404,6 +404,11 @@ class Inbound:
     def answering(self) -> bool:
         """Return whether a question is open, or another thread carries out a command."""
         return self.receiver.question is not None or not (self._asker == 0 or self.asking)
+
+    def foresee_end(self) -> None:
+        """Our side ends it when its sender has been told: what it meets until then is no failure,
+        and nobody has it made again."""
+        self._closing = True
 
     def close(self) -> None:
         """End the connection from our side; its thread notices. Any thread may call.

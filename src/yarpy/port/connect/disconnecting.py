@@ -133,14 +133,18 @@ def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bo
     found = [link for link in hub.inputs.links if link.route.source == source]
     if by_sender and not tried:  # it may be ending by itself just now
         hub.actions.reconnect.over(hub, source)
-    if any(
-        _dials_again(link)
-        for link in found
-        if not (by_sender and link.carrier.delivery.connectionless)
-    ):
-        _tell_sender(hub, source)
     for link in found:
-        link.close()
+        link.foresee_end()
+    try:
+        if any(
+            _dials_again(link)
+            for link in found
+            if not (by_sender and link.carrier.delivery.connectionless)
+        ):
+            _tell_sender(hub, source)
+    finally:
+        for link in found:
+            link.close()
     for link in found:
         if link.thread is not None and not link.asking:
             link.thread.join(min(2.0, scope.remaining()))
@@ -160,9 +164,12 @@ def close_input(hub: Hub, link: Inbound) -> None:
 
 
 def _end_input(hub: Hub, link: Inbound) -> None:
-    if _dials_again(link):
-        _tell_sender(hub, link.route.source)
-    link.close()
+    link.foresee_end()
+    try:
+        if _dials_again(link):
+            _tell_sender(hub, link.route.source)
+    finally:
+        link.close()
 
 
 def _dials_again(link: Inbound) -> bool:

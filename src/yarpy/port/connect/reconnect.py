@@ -229,10 +229,12 @@ class Reconnector:
             hub.outputs.drop(link, "the receiver is gone", lost=True)
             link.close(quit_=False)
             return
+        foreseen = link.closing  # its sender has left because we have asked for that
         link.close()
         if link.thread is not None:
             link.thread.join(2.0)
-        input_lost(hub, link.route, gone=True)
+        if not foreseen:
+            input_lost(hub, link.route, gone=True)
 
     # -- one connection ---------------------------------------------------------------------------
 
