@@ -337,6 +337,8 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     "contents": _table(Row("application/x-thrift", f"{_KITS}.thrift.apache.body:Body")),
     # What `yarpy check FILE` asks.
     "checks": _table(Row("check_file", f"{_KITS}.launch.verbs.check_file:command")),
+    # What `yarpy connect --of` and `yarpy disconnect --of` ask.
+    "applications": _table(Row("join", f"{_KITS}.launch.verbs.join:command")),
     # What `yarpy idl` can do with them.
     "idl_commands": _table(
         Row("rosmsg", f"{_PEERS}.ros.verbs.rosmsg:command", "ros"),

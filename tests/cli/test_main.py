@@ -21,6 +21,7 @@ def test_every_verb_has_a_module_and_every_module_is_a_verb():
     asks are, too."""
     found = [path.stem for path in SOURCE.rglob("verbs/*.py") if path.stem != "__init__"]
     others = [*registry.idl_commands.names(), *registry.checks.names()]
+    others += registry.applications.names()
     assert sorted(found) == sorted([*VERBS, *others])
 
 

@@ -6,6 +6,7 @@
     connect --persist-from | --persist-to ...    the same, until SOURCE | TARGET is unregistered
     connect [--persist] [PORT]                   list persistent connections (of PORT)
     connect --file FILE                          the connections of a file, with their priorities
+    connect --of NAME [SOURCE TARGET]            those of a running application (`yarpy up`)
     connect --list-carriers                      the protocols there are
 
 A carrier may have modifiers (`fast_tcp+recv.priority`); `topic://t` stands for a topic.
@@ -33,6 +34,8 @@ from yarpy.cli.output import print_line
 @click.option("--persist-to", "mode", flag_value="to", help="... until TARGET goes away.")
 @click.option("--file", "path", type=click.Path(exists=True, dir_okay=False), metavar="FILE",
               help="Make the connections of FILE (see `yarpy help connect`).")  # fmt: skip
+@click.option("--of", "application", metavar="NAME",
+              help="Make the connections of a running application, or this one.")  # fmt: skip
 @click.option("--list-carriers", is_flag=True, help="List the carriers that are installed.")
 def command(
     source: str | None,
@@ -40,11 +43,14 @@ def command(
     carrier: str | None,
     mode: str | None,
     path: str | None,
+    application: str | None,
     list_carriers: bool,
 ) -> int:
     """Have the port SOURCE send to the port TARGET over CARRIER (tcp)."""
     if path is not None:
         return _wire(path)
+    if application is not None:
+        return of_application("connect", application, source, target)
     if list_carriers:
         from yarpy.registry import carriers
 
@@ -62,6 +68,16 @@ def command(
         print_line(f"Connection found between {source} and {target} using carrier {existing}")
     print_line(f"Success: {made.reply}")
     return 0
+
+
+def of_application(word: str, name: str, source: str | None, target: str | None) -> int:
+    """Connect or disconnect what an application has. Raises UnknownPlugin without that kit."""
+    from yarpy.registry import applications
+
+    joining: click.Command = applications.load("join")
+    ends = {"source": source or "", "target": target or ""}
+    code: int = click.get_current_context().invoke(joining, word=word, name=name, **ends)
+    return code
 
 
 def _wire(path: str) -> int:

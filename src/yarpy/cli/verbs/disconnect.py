@@ -1,5 +1,7 @@
 """`yarpy disconnect [--persist] SOURCE TARGET`: end a connection of two ports.
 
+    disconnect --of NAME [SOURCE TARGET]    those of a running application, which leaves them so
+
 `--persist` forgets a persistent connection; what is connected now stays so.
 Exit codes: 0 done; 1 they were not connected, or cannot be asked.
 """
@@ -13,12 +15,21 @@ from yarpy.cli.stderr import complain
 
 
 @click.command()
-@click.argument("source")
-@click.argument("target")
+@click.argument("source", required=False)
+@click.argument("target", required=False)
 @click.option("--persist", is_flag=True, help="Forget the persistent connection.")
-def command(source: str, target: str, persist: bool) -> int:
+@click.option("--of", "application", metavar="NAME",
+              help="End the connections of a running application, or this one.")  # fmt: skip
+def command(source: str | None, target: str | None, persist: bool, application: str | None) -> int:
     """Have the port SOURCE no longer send to the port TARGET."""
     from yarpy.network.connection import ask_server, disconnect
+
+    if application is not None:
+        from yarpy.cli.verbs.connect import of_application
+
+        return of_application("disconnect", application, source, target)
+    if source is None or target is None:
+        raise click.UsageError("name both ports, SOURCE and TARGET")
 
     if persist:
         ask_server(None, ["unsubscribe", source, target])
