@@ -123,10 +123,7 @@ def scores() -> list[str]:
         names, members, missing = score(version)
         lines.append(f"| YARP {version} | {names:.1%} | {members:.1%} |")
         absent |= dict.fromkeys(missing)
-    raw = sorted(name for name in absent if name.endswith("Raw"))
-    rest = sorted(name for name in absent if name not in raw)
-    lines += ["", f"Not here: {', '.join(f'`{name}`' for name in rest)}, and the {len(raw)}"]
-    lines += ["interfaces `I...Raw`, which drivers of boards in C++ have towards each other.", ""]
+    lines += ["", f"Not here: {', '.join(f'`{name}`' for name in sorted(absent))}.", ""]
     return lines
 
 
@@ -138,8 +135,8 @@ def table() -> str:
     names, uses, missing = coverage()
     lines = [
         f"Of the {len(ranked())} names that stand in public programs most often (`ranked.txt`),",
-        f"{names:.1%} are here, and {uses:.1%} of the times that they are used. Not here:",
-        f"{', '.join(f'`{name}`' for name in missing)}.",
+        f"{names:.1%} are here, and {uses:.1%} of the times that they are used.",
+        *([f"Not here: {', '.join(f'`{name}`' for name in missing)}."] if missing else []),
         "",
         *scores(),
         "| | |",

@@ -277,8 +277,8 @@ def test_what_cannot_be_opened(capfd: pytest.CaptureFixture[str]) -> None:
             yarp.PolyDriver(3)
         assert not yarp.PolyDriver("(device controlBoard_nws_yarp)").isValid()
         assert yarp.PolyDriver().viewIEncoders() is None
-        with pytest.raises(AttributeError, match=r"no device of yarpy-compat has .*viewIGaze"):
-            _ = yarp.PolyDriver().viewIGazeControl
+        with pytest.raises(AttributeError, match=r"no device of yarpy-compat has .*viewIVisual"):
+            _ = yarp.PolyDriver().viewIVisualServoing
     finally:
         yarp.Network.setLocalMode(False)
 

@@ -78,6 +78,14 @@ OWN: Final = (
         "",
         "IFrameTransform IFrameTransformStorage",
     ),
+    (
+        "CartesianController",
+        "cartesiancontrollerserver",
+        "cartesiancontrollerclient",
+        "",
+        "ICartesianControl",
+    ),
+    ("GazeController", "iKinGazeCtrl", "gazecontrollerclient", "", "IGazeControl"),
 )
 
 #: What C++ 4.0 was recorded to say, in tests/golden.
@@ -104,7 +112,6 @@ WHY: Final = {
     "IAudioVisualGrabber": _ALONE,
     "IAudioVisualStream": _ALONE,
     "ICalibrator": _ALONE,
-    "ICartesianControl": "asks a solver of the iCub in C++, whose protocol yarpy does not speak",
     "IControlDebug": _ALONE,
     "IDeviceDriverParams": "options of devices of C++: here they are arguments of classes",
     "IFrameGrabber": _OLD,
@@ -113,7 +120,6 @@ WHY: Final = {
     "IFrameTransformClientControl": "starts what C++ connects later; here it is connected at once",
     "IFrameWriterAudioVisual": _ALONE,
     "IFrameWriterImage": "not yet: `frameWriter_nws_yarp` is not served; a port of images does it",
-    "IGazeControl": "asks iKinGazeCtrl of the iCub in C++, whose protocol yarpy does not speak",
     "IGenericSensor": _ALONE,
     "IHapticDevice": _ALONE,
     "IJacobianCoupling": _ALONE,

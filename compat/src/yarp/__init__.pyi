@@ -60,6 +60,10 @@ from yarp._control_view import IPidControl as IPidControl
 from yarp._control_view import Pid as Pid
 from yarp._control_view import PidVector as PidVector
 from yarp._control_view import PidWithExtraInfo as PidWithExtraInfo
+from yarp._controller_view import CartesianEvent as CartesianEvent
+from yarp._controller_view import CartesianEventParameters as CartesianEventParameters
+from yarp._controller_view import CartesianEventVariables as CartesianEventVariables
+from yarp._controller_view import ICartesianControl as ICartesianControl
 from yarp._device import DeviceDriver as DeviceDriver
 from yarp._device import DeviceResponder as DeviceResponder
 from yarp._device import Drivers as Drivers
@@ -92,6 +96,10 @@ from yarp._environment import yarpdatahome as yarpdatahome
 from yarp._environment import yarpruntimedir as yarpruntimedir
 from yarp._file import read as read
 from yarp._file import write as write
+from yarp._gaze_view import GazeEvent as GazeEvent
+from yarp._gaze_view import GazeEventParameters as GazeEventParameters
+from yarp._gaze_view import GazeEventVariables as GazeEventVariables
+from yarp._gaze_view import IGazeControl as IGazeControl
 from yarp._image import FlexImage as FlexImage
 from yarp._image import Image as Image
 from yarp._image import ImageFloat as ImageFloat

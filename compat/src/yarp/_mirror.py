@@ -14,6 +14,8 @@ from collections.abc import Callable, Sequence
 from typing import Annotated, Any, get_args, get_origin
 
 import yarpy
+from yarp._controller_view import ICartesianControl
+from yarp._gaze_view import IGazeControl
 from yarp._log import say
 from yarp._memory import encoded
 from yarp._numbers import StdVector, store
@@ -225,6 +227,14 @@ class MirrorViews:
 
     def _view(self, kind: Any, member: str) -> Any:
         raise NotImplementedError
+
+    def viewICartesianControl(self) -> ICartesianControl | None:
+        found: ICartesianControl | None = self._view(ICartesianControl, "solve")
+        return found
+
+    def viewIGazeControl(self) -> IGazeControl | None:
+        found: IGazeControl | None = self._view(IGazeControl, "look_at_pixel")
+        return found
 
     def viewILocalization2D(self) -> ILocalization2D | None:
         found: ILocalization2D | None = self._view(ILocalization2D, "localization_status")

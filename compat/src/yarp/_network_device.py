@@ -25,6 +25,8 @@ SERVED |= {"JoypadControlServer": devices.Joypad, "AudioPlayerWrapper": devices.
 OWN: dict[str, Any] = {
     "battery_nwc_yarp": devices.Battery,
     "rangefinder2D_nwc_yarp": devices.Laser,
+    "cartesiancontrollerclient": devices.CartesianController,
+    "gazecontrollerclient": devices.GazeController,
 }
 #: Devices without a network.
 LOCAL: dict[str, Callable[[], Any]] = {

@@ -63,6 +63,9 @@ _MODULES = {
     "_file": "read write",
     "_vocab": "encode decode createVocab createVocab32 VOCAB VOCAB1 VOCAB2 VOCAB3 VOCAB4 Vocab "
     "createVocab64 encode64 decode64",
+    "_controller_view": "ICartesianControl CartesianEvent CartesianEventParameters "
+    "CartesianEventVariables",
+    "_gaze_view": "IGazeControl GazeEvent GazeEventParameters GazeEventVariables",
     "_map_place": "Map2DLocation Map2DPath Map2DArea",
     "_struct": "Map2DLocationVector Map2DObject OdometryData Pose6D ColorRGB LLM_Message "
     "LLMVector Map2DLocationData Map2DPathData Map2DAreaData Map2DObjectData",
@@ -98,9 +101,14 @@ CLASSES = frozenset(name for name in WHERE if name[0].isupper() and not name.isu
 
 #: What the bindings of C++ have and this does not, and why.
 NOT_HERE: dict[str, str] = {
-    "ICartesianControl": "it asks a solver of the iCub in C++, whose protocol yarpy does not "
-    "speak: joints are moved by viewIPositionControl and viewIPositionDirect",
-    "IGazeControl": "it asks iKinGazeCtrl of the iCub in C++, whose protocol yarpy does not speak: "
-    "the head and the eyes are moved by viewIPositionControl, and iKinGazeCtrl takes angles and "
-    "points at its own ports",
+    "IFrameGrabberControlsDC1394": "it sets registers of FireWire cameras, which nobody has here: "
+    "viewIFrameGrabberControls has brightness, gain and the rest",
+    "NameStore": "a program that answers for names in C++; yarpy has name clients, see "
+    "CONTRIBUTING.md",
+    "Wire": "the base of C++ code that is made of Thrift files: yarpidl_thrift makes Python",
+    "WireLink": "as Wire",
+    "DriverCreator": "a class of Python is a device without a factory: PolyDriver.attach serves it",
+    "StubDriverCreator": "as DriverCreator",
+    "LogStream": "the << of C++: yarp.Log().info(text)",
+    "get_allocator": "where the memory of a vector of C++ comes from",
 }

@@ -6,6 +6,7 @@
     battery             batteries
     laser               laser scanners
     transforms          frames, and where they are
+    controllers         where a hand is, and where a head looks
 
     interfaces          all others: bases, navigation, maps ...
     simulated           devices without hardware
@@ -28,6 +29,8 @@ _WHERE = {
     "BATTERY": "battery.interface",
     "Battery": "battery.client",
     "BatteryServer": "battery.server",
+    "CartesianController": "controllers.cartesian",
+    "CartesianServer": "controllers.cartesian_server",
     "ChatBot": "interfaces.talk",
     "Colour": "interfaces.world",
     "ControlBoard": "control_board.client",
@@ -41,6 +44,8 @@ _WHERE = {
     "FrameGrabber": "frame_grabber.client",
     "FrameGrabberServer": "frame_grabber.server",
     "Gains": "control_board.interface",
+    "GazeController": "controllers.gaze",
+    "GazeServer": "controllers.gaze_server",
     "Grid": "interfaces.grid",
     "InteractionMode": "control_board.interface",
     "Interface": "network.model",
@@ -66,11 +71,13 @@ _WHERE = {
     "Refused": "refusal",
     "Scan": "laser.interface",
     "SerialPort": "interfaces.serial",
+    "SimulatedArm": "simulated.arm",
     "SimulatedBase": "simulated.base",
     "SimulatedBattery": "simulated.battery",
     "SimulatedCamera": "simulated.camera",
     "SimulatedChatBot": "simulated.talk",
     "SimulatedDepthCamera": "simulated.depth_camera",
+    "SimulatedHead": "simulated.head",
     "SimulatedJoints": "simulated.joints",
     "SimulatedJoypad": "simulated.joypad",
     "SimulatedLanguageModel": "simulated.talk",
@@ -98,6 +105,8 @@ __all__ = [
     "AudioRecorder",
     "Battery",
     "BatteryServer",
+    "CartesianController",
+    "CartesianServer",
     "ChatBot",
     "Colour",
     "ControlBoard",
@@ -110,6 +119,8 @@ __all__ = [
     "FrameGrabber",
     "FrameGrabberServer",
     "Gains",
+    "GazeController",
+    "GazeServer",
     "Grid",
     "InteractionMode",
     "Interface",
@@ -135,11 +146,13 @@ __all__ = [
     "Refused",
     "Scan",
     "SerialPort",
+    "SimulatedArm",
     "SimulatedBase",
     "SimulatedBattery",
     "SimulatedCamera",
     "SimulatedChatBot",
     "SimulatedDepthCamera",
+    "SimulatedHead",
     "SimulatedJoints",
     "SimulatedJoypad",
     "SimulatedLanguageModel",
@@ -173,6 +186,10 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.control_board.remap import remap as remap
     from yarpy.kits.devices.control_board.remap import remap_remote as remap_remote
     from yarpy.kits.devices.control_board.server import ControlBoardServer as ControlBoardServer
+    from yarpy.kits.devices.controllers.cartesian import CartesianController as CartesianController
+    from yarpy.kits.devices.controllers.cartesian_server import CartesianServer as CartesianServer
+    from yarpy.kits.devices.controllers.gaze import GazeController as GazeController
+    from yarpy.kits.devices.controllers.gaze_server import GazeServer as GazeServer
     from yarpy.kits.devices.frame_grabber.client import FrameGrabber as FrameGrabber
     from yarpy.kits.devices.frame_grabber.interface import FEATURES as FEATURES
     from yarpy.kits.devices.frame_grabber.server import FrameGrabberServer as FrameGrabberServer
@@ -210,6 +227,7 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.multi_sensor.server import MultiSensorServer as MultiSensorServer
     from yarpy.kits.devices.network.model import Interface as Interface
     from yarpy.kits.devices.refusal import Refused as Refused
+    from yarpy.kits.devices.simulated.arm import SimulatedArm as SimulatedArm
     from yarpy.kits.devices.simulated.audio import SimulatedMicrophone as SimulatedMicrophone
     from yarpy.kits.devices.simulated.audio import SimulatedSpeaker as SimulatedSpeaker
     from yarpy.kits.devices.simulated.base import SimulatedBase as SimulatedBase
@@ -218,6 +236,7 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.simulated.depth_camera import (
         SimulatedDepthCamera as SimulatedDepthCamera,
     )
+    from yarpy.kits.devices.simulated.head import SimulatedHead as SimulatedHead
     from yarpy.kits.devices.simulated.joints import SimulatedJoints as SimulatedJoints
     from yarpy.kits.devices.simulated.joypad import SimulatedJoypad as SimulatedJoypad
     from yarpy.kits.devices.simulated.map_storage import MapStorage as MapStorage
