@@ -335,6 +335,11 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     ),
     # What bodies of POST requests are read as, by their Content-Type.
     "contents": _table(Row("application/x-thrift", f"{_KITS}.thrift.apache.body:Body")),
+    # What messages of other systems are in recordings, by the encoding of their channel in MCAP.
+    "encodings": _table(
+        Row("ros1", f"{_PEERS}.ros.recorded:reader"),
+        Row("cdr", f"{_PEERS}.ros2.recorded:reader"),
+    ),
     # What `yarpy check FILE` asks.
     "checks": _table(Row("check_file", f"{_KITS}.launch.verbs.check_file:command")),
     # What `yarpy connect --of` and `yarpy disconnect --of` ask.

@@ -213,6 +213,26 @@ def test_message_by_message(names, recording) -> None:
     assert sorted(numbers(got)) == sorted(int(one.envelope.split()[0]) for one in recording)
 
 
+def test_a_range_again_and_again(names, recording) -> None:
+    with Player(recording, rate=20.0, names=names) as player, reader(names, "/a") as got:
+        assert player.range is None
+        with pytest.raises(LocalProtocolError, match=r"nothing lies between 0\.5 and 0\.5 s"):
+            player.loop_range(0.5, 0.5)
+        player.loop_range(0.2, 0.29)
+        assert player.range == (pytest.approx(0.2), pytest.approx(0.29))
+        thread = threading.Thread(target=player.play)
+        thread.start()
+        wait_until(lambda: numbers(got).count(28) >= 3)
+        player.end_range()
+        assert player.range is None
+        thread.join(HANG)
+        assert not thread.is_alive()
+        wait_until(lambda: numbers(got)[-1] == 98)
+    found = numbers(got)
+    assert found[:15] == [20, 22, 24, 26, 28] * 3
+    assert found[-34:] == [*range(32, 100, 2)]
+
+
 def test_from_a_mark_on(names, tmp_path) -> None:
     with McapWriter(tmp_path / "y.mcap") as writer:
         for n in range(3):

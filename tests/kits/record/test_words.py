@@ -61,7 +61,10 @@ def test_a_player(names, tmp_path: Path) -> None:
         assert found_ == [["ok"], ["ok"], ["ok", 2.0], ["ok", "paused"], ["ok", 50.0]]
         assert player.position == pytest.approx(0.5)
         (told,) = ask(names, words, ["status"])
-        assert ["length", 1.0] in told
+        assert ["length", 1.0] in told and ["loop", []] in told
+        assert ask(names, words, ["loop", 0.25, 0.5], ["loop", 0.75]) == [["ok"], ["ok"]]
+        assert player.range == (0.75, 1.0) and player.position == 0.75
+        assert ask(names, words, ["loop"]) == [["ok"]] and player.range is None
         assert ask(names, words, ["play"]) == [["ok"]] and not player.paused
         assert ask(names, words, ["pause"]) == [["ok"]] and player.paused
         assert ask(names, words, ["quit"]) == [["ok"]] and not player.play()
@@ -74,9 +77,9 @@ def test_what_is_no_word(names, tmp_path: Path) -> None:
     ):
         answers = ask(
             names, player_words(player), ["fly"], ["seek"], ["seek", 1, 2], ["rate", 0], [],
-            ["seek", "far"], ["seek", [1]], ["seek", float("nan")],
+            ["seek", "far"], ["seek", [1]], ["seek", float("nan")], ["loop", 1, 1], ["loop", "x"],
         )  # fmt: skip
-        assert [answer[0] for answer in answers] == ["fail"] * 8
+        assert [answer[0] for answer in answers] == ["fail"] * 10
         assert answers[0][1].startswith("no word 'fly': there are getProgress")
         assert answers[1][1] == "seek SECONDS"
         (told,) = ask(names, player_words(player), ["help"])

@@ -15,11 +15,12 @@ import threading
 import time
 from collections.abc import Callable, Collection, Mapping
 from contextlib import ExitStack, suppress
-from typing import Final, Self
+from typing import Any, Final, Self
 
 from yarpy.clock import spelled
-from yarpy.errors import AddressError, LocalProtocolError, PortClosed, UnknownName
+from yarpy.errors import AddressError, DecodeError, LocalProtocolError, PortClosed, UnknownName
 from yarpy.kits.record.ahead import Ahead
+from yarpy.kits.record.bag.foreign import ForeignMessage, with_foreign
 from yarpy.kits.record.envelope import SECOND
 from yarpy.kits.record.mcap.tape import FOREVER
 from yarpy.kits.record.recorded import Recorded
@@ -40,6 +41,7 @@ class Player:
     ports: which of them, None for all. rate: 2 plays twice as fast. loop: begin again at the end.
     start: seconds of the recording that are left out; duration: how many are played, None for all.
     rename: other names for ports; prefix: what is put before those that are not renamed.
+    node: a node of ROS, whose topics the ports are, by the names that they have then; "" for none.
     clock: a port that sends the time of the recording, for programs with YARP_CLOCK; "" for none.
     taken: called with a port of the recording whose name lives, and why: it is played to nobody;
     None: that is an error. `loop`, `muted` (ports that are not sent) and `patience` may be changed.
@@ -58,12 +60,14 @@ class Player:
         duration: float | None = None,
         rename: Mapping[str, str] | None = None,
         prefix: str = "",
+        node: str = "",
         clock: str = "",
         names: NameClient | None = None,
         taken: Callable[[str, AddressError], object] | None = None,
     ) -> None:
-        self._recording = recording
+        self._recording = recording = with_foreign(recording)
         self._names = names
+        self._node = node
         self.loop = loop
         self.muted: set[str] = set()
         self.patience = PATIENCE
@@ -80,6 +84,7 @@ class Player:
         self._steps = 0  # messages that are to be sent while time stands still
         self._jumped = False
         self._target = self.begin  # where to go on from
+        self._range: tuple[int, int] | None = None  # what is played again and again
         self._changed = threading.Event()
         self._closed = threading.Event()
         self._lock = threading.Lock()  # of the time line, which other threads change
@@ -91,6 +96,7 @@ class Player:
             stack.callback(self._close_ports)
             for name in self._chosen:
                 new = (rename or {}).get(name, f"{prefix}{name}")
+                new = f"{new}+@{node}" if node else new
                 try:
                     self._ports[name] = Port(new, callback=_ignore, names=names)
                 except AddressError as error:
@@ -200,6 +206,32 @@ class Player:
         first = min((one.begin for one in self._recording.tapes if one.end), default=0)
         self.seek(self._recording.mark(text) - (self.begin - first) / SECOND)
 
+    @property
+    def range(self) -> tuple[float, float] | None:
+        """Return what is played again and again, in seconds from the beginning of what is played;
+        None if there is no such range."""
+        found = self._range
+        if found is None:
+            return None
+        return (found[0] - self.begin) / SECOND, (found[1] - self.begin) / SECOND
+
+    def loop_range(self, begin: float, end: float) -> None:
+        """Play what lies between these seconds again and again, until `end_range`. Raises
+        LocalProtocolError if nothing does."""
+        first, last = (
+            self.begin + round(min(max(one, 0.0), self.length) * SECOND) for one in (begin, end)
+        )
+        if first >= last:
+            raise LocalProtocolError(f"nothing lies between {begin} and {end} s")
+        self._range = first, last
+        self.seek((first - self.begin) / SECOND)
+
+    def end_range(self) -> None:
+        """Go on behind the end of a range."""
+        if self._range is not None:
+            self._range = None
+            self.seek(self.position)
+
     def step(self) -> None:
         """Send the next message, and let time stand still there."""
         with self._lock:
@@ -231,24 +263,27 @@ class Player:
         while not self._stopped:
             with self._lock:
                 moment, self._jumped = self._target, False
-            ended = self._play_from(moment)
+                chosen = self._range
+                first, last = chosen or (self.begin, self.end)
+            ended = self._play_from(moment, last)
             if self._stopped:
                 return False
-            if not ended:
-                continue
-            if not self.loop or self.end <= self.begin:
-                return True
             with self._lock:
+                if not ended or self._jumped:
+                    continue
+                if chosen is None and (not self.loop or self.end <= self.begin):
+                    return True
                 # The next round begins where this one ends, by the clock, however late it was.
-                over = self._timeline.due(self.end) if self._timeline.running else time.monotonic()
-                self._timeline.jump(self.begin, over)
-                self._target, self._passed = self.begin, {}
+                going = self._timeline.running and moment < last
+                over = self._timeline.due(last) if going else time.monotonic()
+                self._timeline.jump(first, over)
+                self._target, self._passed = first, {}
         return False
 
-    def _play_from(self, moment: int) -> bool:
-        """Play from a moment on; return False if somebody wants another one."""
-        last = self.end + 1 if self.end < FOREVER else FOREVER
-        messages = Ahead(self._recording.between(self._chosen, moment, last))
+    def _play_from(self, moment: int, last: int) -> bool:
+        """Play from a moment until the last one; return False if somebody wants another one."""
+        until = last + 1 if last < FOREVER else FOREVER
+        messages = Ahead(self._recording.between(self._chosen, moment, until))
         try:
             for recorded in messages:
                 if not self._wait_until(recorded.received_ns):
@@ -256,7 +291,7 @@ class Player:
                 self._send(recorded)
         finally:
             messages.close()
-        return self._wait_until(self.end)
+        return self._wait_until(last)
 
     def _wait_until(self, moment: int) -> bool:
         """Wait until a message is due; return False if it is not wanted any more."""
@@ -278,21 +313,29 @@ class Player:
             if changed.wait(left):
                 changed.clear()
 
+    def _value(self, recorded: Recorded) -> Any:
+        """Return what is written: for a topic of ROS the object, which says the type; else its
+        bytes. Raises DecodeError."""
+        if not self._node:
+            return Payload(recorded.parts)
+        return recorded.foreign if isinstance(recorded, ForeignMessage) else recorded.value
+
     def _send(self, recorded: Recorded) -> None:
         with self._lock:
             if not self._jumped:
                 self._passed[recorded.port] = recorded.received_ns
         port = self._ports.get(recorded.port)
         readers = 0 if port is None or recorded.port in self.muted else len(port.outputs)
-        if port is None or not readers:
+        if port is None or recorded.port in self.muted or not (readers or self._node):
             self.played += 1
             return
         patience = 0 if recorded.port in self._slow else self.patience
-        took = port.write(
-            Payload(recorded.parts),
-            recorded.envelope or None,
-            timeout=patience,
-        )
+        try:
+            value = self._value(recorded)
+        except DecodeError:
+            took = 0
+        else:
+            took = port.write(value, recorded.envelope or None, timeout=patience)
         if took < readers:
             self._slow.add(recorded.port)
             self.dropped += readers - took

@@ -1,7 +1,8 @@
 """The words that a recorder and a player are told over a port, and what belongs to each.
 
     record   pause  resume  split  snapshot  mark [TEXT]  status  stop  help
-    play     play  pause  resume  step  seek SECONDS  mark TEXT  rate N  stop  status  help
+    play     play  pause  resume  step  seek SECONDS  mark TEXT  rate N  loop [BEGIN END]  stop
+             status  help
 
 and, of C++ yarpdataplayer, `getStatus`, `getProgress`, `getSpeed`, `setSpeed N`, `quit`.
 
@@ -107,6 +108,12 @@ def player_words(player: Player) -> Words:
     def mark(text: object) -> None:
         player.seek_mark(plain_text(text))
 
+    def loop(begin: float | None = None, end: float | None = None) -> None:
+        if begin is None:
+            player.end_range()
+        else:
+            player.loop_range(float(begin), player.length if end is None else float(end))
+
     def state() -> str:
         return "paused" if player.paused else "playing"
 
@@ -116,6 +123,7 @@ def player_words(player: Player) -> Words:
             ["position", player.position],
             ["length", player.length],
             ["rate", player.rate],
+            ["loop", [*(player.range or ())]],
             ["played", player.played],
             ["dropped", player.dropped],
         ]
@@ -128,6 +136,7 @@ def player_words(player: Player) -> Words:
             "step": player.step,
             "seek": seek,
             "mark": mark,
+            "loop": loop,
             "rate": rate,
             "setSpeed": rate,
             "getSpeed": lambda: player.rate,

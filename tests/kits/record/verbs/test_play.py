@@ -10,7 +10,7 @@ import yarpy
 from yarpy import record
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.player import Player
-from yarpy.kits.record.verbs.play import parse_rename, press, progress, summary
+from yarpy.kits.record.verbs.play import Keys, parse_node, parse_rename, progress, summary
 
 
 def test_from_the_command_line(cli, names, tmp_path) -> None:
@@ -65,27 +65,57 @@ def test_names_of_ports() -> None:
             parse_rename(text)
 
 
+def test_names_of_nodes() -> None:
+    assert parse_node("/robot/player") == "/robot/player"
+    for text in ("player", "/", "/a//b", "/a b", "/a+@/b"):
+        with pytest.raises(LocalProtocolError, match="no name of a node"):
+            parse_node(text)
+
+
 def test_keys(names, tmp_path) -> None:
     with (
         record.open(recorded(tmp_path / "x.mcap", 1001)) as found,
         Player(found, names=names) as player,
     ):
+        press = Keys(player).press
         assert player.paused
-        press(player, "\x1b[C")
+        press("\x1b[C")
         assert player.position == pytest.approx(5.0)
-        press(player, "\x1b[D")
+        press("\x1b[D")
         assert player.position == 0.0
-        press(player, "+")
-        press(player, "+")
-        press(player, "-")
+        press("+")
+        press("+")
+        press("-")
         assert progress(player).startswith("paused 0.0 of 10.0 s  x2  0 messages")
-        press(player, " ")
+        press("l")
+        press("l")  # nothing lies between
+        assert player.range is None
+        press("\x1b[C")
+        press("l")
+        press("\x1b[D")
+        press("l")
+        assert player.range == (0.0, pytest.approx(5.0)) and player.position == 0.0
+        assert "0.0 to 5.0 s again and again" in progress(player)
+        press("l")
+        assert player.range is None
+        press(" ")
         assert not player.paused
-        press(player, " ")
-        press(player, "?")
-        press(player, "q")
+        press(" ")
+        press("?")
+        press("q")
         assert not player.play()
         assert summary(player, False).startswith("stopped at ")
+
+
+def test_a_key_sends_the_next_message(names, tmp_path) -> None:
+    with (
+        record.open(recorded(tmp_path / "x.mcap", 3)) as found,
+        Player(found, names=names) as player,
+    ):
+        for _ in range(3):
+            Keys(player).press("s")
+        Keys(player).press("s")  # to the end
+        assert player.play(paused=True) and player.played == 3
 
 
 def test_it_is_told_what_to_do(cli, names, tmp_path) -> None:

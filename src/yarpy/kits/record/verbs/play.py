@@ -4,9 +4,11 @@
     yarpy play walk.mcap --prefix /replay --start 10 --duration 5 -l
 
 Names that live are never taken: --prefix or --rename plays beside them. On a terminal keys pause
-(space), jump (arrows: 5 s), change the rate (+ and -) and stop (q). Several files are played on one
-time axis. The port /play/rpc:i takes the words play, pause, seek SECONDS, rate N, status, stop, and
-some of those of C++ yarpdataplayer (`yarpy rpc`).
+(space), send the next message (s), jump (arrows: 5 s), change the rate (+ and -), play a range
+again and again (l at its beginning, at its end, and to go on) and stop (q). Several files are
+played on one time axis, bags of ROS among them. The port /play/rpc:i takes the words play, pause,
+step, seek SECONDS, loop BEGIN END, rate N, status, stop, and some of those of C++ yarpdataplayer
+(`yarpy rpc`).
 
 Exit codes: 0 the end was reached, or somebody stopped it; 1 it cannot be played.
 """
@@ -15,6 +17,7 @@ from __future__ import annotations
 
 import os
 import queue
+import re
 import sys
 import threading
 from typing import TYPE_CHECKING, Final
@@ -36,6 +39,7 @@ if TYPE_CHECKING:
 RPC: Final = "/play/rpc:i"
 SWITCH: Final = 0.0005  # seconds that a thread of this program keeps others waiting, at most
 JUMP: Final = 5.0  # seconds
+NODE: Final = re.compile(r"(/[A-Za-z][A-Za-z0-9_]*+)++")
 PERIOD: Final = 0.2  # seconds between looks at the keys, and lines of progress
 
 
@@ -51,6 +55,8 @@ PERIOD: Final = 0.2  # seconds between looks at the keys, and lines of progress
 @click.option("--rename", "renamed", multiple=True, metavar="OLD=NEW", help="Another name.")
 @click.option("--prefix", default="", show_default=False, metavar="/P",
               help="Put this before the other names.")  # fmt: skip
+@click.option("--as-node", "node", metavar="NODE",
+              help="Publish the topics of ROS 1 with these names, as the node NODE.")  # fmt: skip
 @click.option("--clock", is_flag=False, flag_value="/clock", default="", show_default=False,
               metavar="[PORT]", help="Send its time, from /clock or PORT.")  # fmt: skip
 @click.option("--from", "mark", metavar="MARK", help="Begin at the mark with this note.")
@@ -67,6 +73,7 @@ def command(
     ports: str | None,
     renamed: tuple[str, ...],
     prefix: str,
+    node: str | None,
     clock: str,
     mark: str | None,
     wait: bool,
@@ -94,6 +101,7 @@ def command(
                 duration=duration,
                 rename=dict(map(parse_rename, renamed)),
                 prefix=prefix,
+                node="" if node is None else parse_node(node),
                 clock=clock,
             )
             with player, open_rpc(name, player_words(player)):
@@ -125,6 +133,13 @@ def parse_rename(text: str) -> tuple[str, str]:
     return old, new
 
 
+def parse_node(text: str) -> str:
+    """Return the name of a node. Raises LocalProtocolError."""
+    if not NODE.fullmatch(text):
+        raise LocalProtocolError(f'"{text}" is no name of a node: /player')
+    return text
+
+
 def summary(player: Player, ended: bool) -> str:
     """Return the last line: how it ended, and what was played."""
     found = "the end" if ended else f"stopped at {player.position:.1f} s"
@@ -138,7 +153,7 @@ def _steered(player: Player, paused: bool) -> bool:
     """Play with keys and a line of progress on a terminal."""
     from yarpy.cli.verbs.top import keys
 
-    over = threading.Event()
+    over, steering = threading.Event(), Keys(player)
     with keys() as pressed:
 
         def steer() -> None:
@@ -151,7 +166,7 @@ def _steered(player: Player, paused: bool) -> bool:
                         key += pressed.get(timeout=PERIOD) + pressed.get(timeout=PERIOD)
                 except queue.Empty:
                     continue
-                press(player, key)
+                steering.press(key)
 
         thread = threading.Thread(target=steer, name="yarpy play keys", daemon=True)
         thread.start()
@@ -167,24 +182,50 @@ def _steered(player: Player, paused: bool) -> bool:
 def progress(player: Player) -> str:
     """Return the line of progress."""
     state = "paused " if player.paused else ""
+    chosen = player.range
+    between = f", {chosen[0]:.1f} to {chosen[1]:.1f} s again and again" if chosen else ""
     return (
         f"{state}{player.position:.1f} of {player.length:.1f} s  x{player.rate:g}  "
-        f"{player.played} messages   space arrows + - q"
+        f"{player.played} messages{between}   space s arrows l + - q"
     )
 
 
-def press(player: Player, key: str) -> None:
-    """Do what a key stands for."""
-    if key == " ":
-        if player.paused:
-            player.resume()
+class Keys:
+    """What keys stand for. `l` is pressed at the beginning of a range, at its end, and to go on."""
+
+    def __init__(self, player: Player) -> None:
+        self._player = player
+        self._begin: float | None = None  # of a range whose end is not known yet
+
+    def press(self, key: str) -> None:
+        """Do what a key stands for."""
+        player = self._player
+        if key == " ":
+            if player.paused:
+                player.resume()
+            else:
+                player.pause()
+        elif key == "s":
+            player.step()
+        elif key == "l":
+            self._loop()
+        elif key in ("\x1b[C", "\x1b[D"):
+            player.seek(player.position + (JUMP if key == "\x1b[C" else -JUMP))
+        elif key in ("+", "="):
+            player.rate = min(player.rate * 2, 1000.0)
+        elif key == "-":
+            player.rate = max(player.rate / 2, 0.001)
+        elif key in ("q", "\x03", "\x04"):
+            player.stop()
+
+    def _loop(self) -> None:
+        player = self._player
+        if player.range is not None:
+            player.end_range()
+        elif self._begin is None:
+            self._begin = player.position
         else:
-            player.pause()
-    elif key in ("\x1b[C", "\x1b[D"):
-        player.seek(player.position + (JUMP if key == "\x1b[C" else -JUMP))
-    elif key in ("+", "="):
-        player.rate = min(player.rate * 2, 1000.0)
-    elif key == "-":
-        player.rate = max(player.rate / 2, 0.001)
-    elif key in ("q", "\x03", "\x04"):
-        player.stop()
+            begin, end = sorted((self._begin, player.position))
+            self._begin = None
+            if begin < end:
+                player.loop_range(begin, end)

@@ -18,6 +18,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from yarpy.data import codec
+from yarpy.data.bottle import Bottle
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.matrix import Matrix
 from yarpy.data.sig.pointcloud import PointCloud
@@ -47,6 +48,12 @@ TYPES: Final = {
     bool: "std_msgs/Bool",
     int: "std_msgs/Int32",
     float: "std_msgs/Float64",
+}
+
+_NATIVE: Final = {
+    "sensor_msgs/Image": Image,
+    "sensor_msgs/CompressedImage": Image,
+    "sensor_msgs/PointCloud2": PointCloud,
 }
 
 #: of sound that says nothing about itself: what ROS's audio_capture sends unless told otherwise
@@ -128,6 +135,22 @@ def to_value(message: Any, kind: Any = object) -> Any:
         if found is not None:
             return found
     return codec.decode_as(message.to_bottle().to_bytes(), kind)
+
+
+def to_native(message: Any) -> Any:
+    """Return a value of YARP's own type for a message, where there is one that keeps all that it
+    says of itself: an Image, a PointCloud, a Vector. Else its only field if that is a number or
+    text, or a Bottle. Raises DecodeError."""
+    name = message._type
+    if name in _NATIVE:
+        return to_value(message, _NATIVE[name])
+    if _is_multi_array(type(message)) and not message.layout.dim:
+        return _vector(message.data)
+    found = to_value(message)
+    alone = (
+        isinstance(found, Bottle) and len(found) == 1 and isinstance(found[0], str | int | float)
+    )
+    return found[0] if alone else found
 
 
 def are_numbers(value: object) -> bool:
