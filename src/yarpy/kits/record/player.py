@@ -228,9 +228,10 @@ class Player:
 
     def end_range(self) -> None:
         """Go on behind the end of a range."""
-        if self._range is not None:
+        chosen = self.range
+        if chosen is not None:
             self._range = None
-            self.seek(self.position)
+            self.seek(min(self.position, chosen[1]))  # time may be ahead of what is late
 
     def step(self) -> None:
         """Send the next message, and let time stand still there."""

@@ -44,6 +44,21 @@ def walk(tmp_path: Path) -> Iterator[View]:
         yield found
 
 
+@pytest.fixture
+def sensors(tmp_path: Path) -> Iterator[View]:
+    """Two clouds of points and two sounds, a second apart."""
+    with McapWriter(tmp_path / "sensors.mcap") as writer:
+        for n in range(2):
+            time = START + n * SECOND
+            points = np.random.default_rng(n).normal(size=(300, 3)) * (1, 1, 0.3)
+            writer.add("/depth", f"{n} 1", time, payload_of(yarpy.PointCloud(points)))
+            tone = 9000 * np.sin(np.arange(4000) * (0.05 + 0.2 * n))
+            writer.add("/ear", "", time, payload_of(yarpy.Sound(tone[None].astype("i2"), 8000)))
+    with FileSource([tmp_path / "sensors.mcap"]) as source, View(source, port=0) as found:
+        wait_until(lambda: source.seen == 1)
+        yield found
+
+
 def card(page: Page, name: str) -> str:
     found: str = page.locator("figure", has_text=name).inner_text()
     return found
@@ -145,3 +160,34 @@ def test_live(browser: Browser) -> None:
         wait_until(lambda: "18" in card(page, "/a"))
         port.write([19])
         wait_until(lambda: "19" in card(page, "/a") and "live" in state(page))
+
+
+def painted(page: Page, canvas: str) -> str:
+    """What a canvas shows, "" while there is nothing."""
+    found: str = page.evaluate(
+        """(name) => {
+          const canvas = document.querySelector(`${name}:not([hidden])`);
+          if (!canvas) return "";
+          const {data} = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          return data.some((byte) => byte) ? canvas.toDataURL() : "";
+        }""",
+        canvas,
+    )
+    return found
+
+
+def test_points_and_sounds(browser: Browser, sensors: View) -> None:
+    page = browser.open(sensors.url)
+    wait_until(lambda: painted(page, ".space") and painted(page, ".wave"))
+    before, heard = painted(page, ".space"), painted(page, ".wave")
+    page.focus(".space")
+    page.keyboard.press("ArrowLeft")
+    wait_until(lambda: painted(page, ".space") != before, what="the points are turned")
+    assert "0.000 of 1.0 s" in state(page)  # the key was not for the time line
+    page.dblclick(".space")
+    wait_until(lambda: painted(page, ".space") == before)
+    page.click("#forth")
+    wait_until(lambda: painted(page, ".space") != before and painted(page, ".wave") != heard)
+    page.locator("figure", has_text="/ear").get_by_text("Hear").click()
+    assert page.get_attribute("figure:has-text('/ear') .hear", "aria-pressed") == "true"
+    assert "300 points of /depth" in (page.get_attribute(".space", "aria-label") or "")

@@ -41,6 +41,8 @@ def test_json() -> None:
     broken = Recorded("/a", START, START, "", b"\x00\x01\x00\x00\x05\x00\x00\x00x")
     assert "cannot be read" in json.loads(spelled(broken, "yarp/bottle"))["text"]
     assert channel_of(3, "/a", "yarp/bottle").encoding == "json"
+    points = json.loads(spelled(recorded(yarpy.PointCloud([[1.0, 2, 3]])), "yarp/pointcloud"))
+    assert points["text"].startswith("PointCloud(") and points["cloud"]["of"] == 1
 
 
 def test_pictures() -> None:

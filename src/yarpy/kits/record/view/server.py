@@ -46,8 +46,9 @@ from yarpy.log import logger
 log = logger("yarpy.view")
 
 _KINDS: Final = {"html": "text/html", "css": "text/css", "js": "text/javascript"}
+_PARTS: Final = ("card", "cloud", "link", "sound", "time")
 _FILES: Final = frozenset(
-    ("look.html", "look.css", "look.js", "look_card.js", "look_link.js", "look_time.js")
+    ["look.html", "look.css", "look.js", *(f"look_{part}.js" for part in _PARTS)]
 )
 _SENDING: Final = struct.pack("ll", int(VIEW_SECONDS), 0)
 _PIECE: Final = 1 << 20  # bytes of a file that are taken within VIEW_SECONDS

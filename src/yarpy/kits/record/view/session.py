@@ -188,7 +188,8 @@ class Session:
             foxglove.playback_state(state, known, speed, jumped, request)
             for request in (requests or [""] if tell else [])
         ]
-        if not over:
+        # A jump is told first: what was shown before it is of another time.
+        if jumped or not over:
             self._send_all(told)
         if fresh:
             for recorded in source.before(recording, sorted(fresh), known):
@@ -197,7 +198,7 @@ class Session:
             left_out = set() if jumped else fresh
             self._send_until(recording, sorted(ports), moment, left_out)
         self._past = max(self._past, moment)
-        if over:  # who is told of the end has got everything
+        if over and not jumped:  # who is told of the end has got everything
             self._send_all(told)
         self._send(foxglove.time_data(moment))
         return running

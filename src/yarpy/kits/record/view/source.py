@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Final, Protocol, Self
 
 from yarpy.errors import YarpError
+from yarpy.kits.record.bag.foreign import with_foreign
 from yarpy.kits.record.kind import BOTTLE
 from yarpy.kits.record.mcap.tape import FOREVER
 from yarpy.kits.record.recorded import Recorded
@@ -90,7 +91,7 @@ class FileSource:
 
     def __init__(self, paths: Sequence[str | Path]) -> None:
         self._paths = [*paths]
-        with open_recording(*self._paths) as recording:
+        with self.open() as recording:
             tapes = [tape for tape in recording.tapes if tape.end]
             begin = min((tape.begin for tape in tapes), default=0)
             self._overview = Overview(begin, max((tape.end for tape in tapes), default=0))
@@ -123,7 +124,7 @@ class FileSource:
 
     def open(self) -> Recording:
         """Return the messages, to be read by one thread."""
-        return open_recording(*self._paths)
+        return with_foreign(open_recording(*self._paths))
 
     def _look(self) -> None:
         """Count the messages of all ports."""

@@ -1,8 +1,9 @@
 """How the messages of ports are spelled for clients: pictures as JPEG, all others as JSON.
 
 Rules: a picture is a `foxglove.CompressedImage` in protobuf, which every client shows; everything
-else `{"t": seconds, "kind": "yarp/vector", "v": [numbers], "text": "..."}`, in JSON. What cannot be
-read becomes a text that says so: a client is never sent nothing. Long texts are cut.
+else `{"t": seconds, "kind": "yarp/vector", "v": [numbers], "text": "..."}`, in JSON, clouds of
+points and sounds with what is shown and heard of them (`media.py`). What cannot be read becomes a
+text that says so: a client is never sent nothing. Long texts are cut.
 """
 
 from __future__ import annotations
@@ -16,12 +17,14 @@ from typing import Any, Final
 from yarpy.data.bottle import Bottle
 from yarpy.data.sig import jpeg
 from yarpy.data.sig.image import Image
+from yarpy.data.sig.pointcloud import PointCloud
 from yarpy.data.sig.vector import Vector
 from yarpy.errors import YarpError
 from yarpy.kits.record.form.protobuf import descriptor_set, encode, timestamp
 from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.recorded import Recorded
 from yarpy.kits.record.view.foxglove import Channel
+from yarpy.kits.record.view.media import media_of
 
 PICTURE: Final = "yarp/image"
 NUMBERS: Final = 64  # of a message that are shown as curves
@@ -52,7 +55,8 @@ def spelled(recorded: Recorded, kind: str) -> bytes:
                 "frame_id": recorded.port,
             },
         )
-    found: dict[str, Any] = {"t": recorded.sent, "kind": kind_of(recorded.payload)}
+    there = kind_of(recorded.payload)
+    found: dict[str, Any] = {"t": recorded.sent, "kind": there, **media_of(recorded, there)}
     values = numbers_of(recorded)
     if values:
         found["v"] = [value if math.isfinite(value) else None for value in values]
@@ -116,7 +120,9 @@ def text_of(recorded: Recorded) -> str:
     """Return a message as YARP spells it for people, or why it cannot be read."""
     kind = kind_of(recorded.payload)
     try:
-        if kind in (PICTURE, "yarp/sound", "yarp/pointcloud"):
+        if kind == "yarp/pointcloud":  # which does not say itself that it is one
+            text = repr(recorded.as_(PointCloud))
+        elif kind in (PICTURE, "yarp/sound"):
             text = repr(recorded.value)
         else:
             text = recorded.as_(Bottle).to_text()

@@ -1,8 +1,11 @@
-// What a port said at the cursor: its picture, its numbers as curves, the message as text.
+// What a port said at the cursor: its picture, its points in space, its sound, its numbers as curves,
+// the message as text.
 
 import {ask, copyOf, fileName, part, save, say} from "/*/common.js";
 import {Plot} from "/*/plot.js";
+import {Cloud} from "/look_cloud.js";
 import {pictureOf} from "/look_link.js";
+import {Voice} from "/look_sound.js";
 
 const WAIT = 120; // ms until curves are asked for again
 
@@ -46,6 +49,25 @@ export class Card {
     const number = said.envelope ? `number ${said.envelope.split(" ")[0]}, ` : "";
     say(part(this.figure, "facts"), `${number}${time.toFixed(3)} s`);
     say(part(this.figure, "text"), said.text);
+    this.points(said.cloud);
+    this.sounds(said.sound);
+  }
+
+  points(found) {
+    const canvas = part(this.figure, "space");
+    canvas.hidden = !found;
+    if (!found) return;
+    this.cloud ??= new Cloud(canvas);
+    canvas.setAttribute("aria-label", `${found.of} points of ${this.port.name}: a drag turns them, the wheel zooms`);
+    this.cloud.take(found);
+  }
+
+  sounds(found) {
+    const [canvas, button] = [part(this.figure, "wave"), part(this.figure, "hear")];
+    canvas.hidden = button.hidden = !found;
+    if (!found) return;
+    this.voice ??= new Voice(canvas, button);
+    this.voice.take(found);
   }
 
   // Nothing came before the cursor.
@@ -53,6 +75,7 @@ export class Card {
     this.stale = false;
     this.jpeg = null;
     this.image.hidden = part(this.figure, "save").hidden = true;
+    for (const name of ["space", "wave", "hear"]) part(this.figure, name).hidden = true;
     say(part(this.figure, "facts"), "nothing came until here");
     say(part(this.figure, "text"), "");
   }

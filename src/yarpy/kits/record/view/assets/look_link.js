@@ -83,6 +83,9 @@ export class Link {
 export const since = (time, origin) => Number(time - origin) / SECOND;
 export const after = (origin, seconds) => origin + BigInt(Math.round(seconds * SECOND));
 
+// The bytes of a text in base64.
+export const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+
 // The picture in a foxglove.CompressedImage: field 2 of a message of protobuf, null if there is none.
 export function pictureOf(bytes) {
   let at = 0;
