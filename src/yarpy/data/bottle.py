@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, Self
 
+from yarpy.data.array_export import ArrayExport
 from yarpy.data.numbers import Packed
 from yarpy.data.reader import read_list
 from yarpy.data.text import Groups, parse_text, plain_text, print_text, text_of
@@ -22,11 +23,10 @@ from yarpy.data.value import Buffer
 from yarpy.data.writer import dict_elements, list_blocks
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
-class Bottle(list[Any]):
+class Bottle(ArrayExport, list[Any]):
     """A list of numbers, strings, vocabs, booleans, blobs, dicts and further lists.
 
     `Bottle(["set", "pos", 3, 10.5])`, or in YARP's own notation
@@ -94,14 +94,6 @@ class Bottle(list[Any]):
                 flat: NDArray[Any] = np.asarray(numbers, "f8")
                 return flat.reshape(rows, cols)
         return np.array(list(self))
-
-    def __array__(
-        self, dtype: np.dtype[Any] | None = None, copy: bool | None = None
-    ) -> NDArray[Any]:
-        array = self.array
-        if dtype is not None and dtype != array.dtype:
-            return array.astype(dtype)
-        return array.copy() if copy else array
 
     def __repr__(self) -> str:
         return f"Bottle({super().__repr__()})"

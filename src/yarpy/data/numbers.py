@@ -12,6 +12,7 @@ from collections.abc import Callable
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Final
 
+from yarpy.data.array_export import ArrayExport
 from yarpy.data.value import (
     BIG,
     FIXED,
@@ -54,7 +55,7 @@ _KINDS: Final[dict[int, frozenset[type]]] = {
 _HEAD = Struct("<ii")
 
 
-class Packed(list[Any]):
+class Packed(ArrayExport, list[Any]):
     """Numbers of one kind over the bytes of a message."""
 
     __slots__ = ("_becomes", "_room", "_view", "tag")

@@ -17,7 +17,7 @@ from yarpy.data.walker import Walk, Walker
 from yarpy.data.writer import list_blocks
 from yarpy.errors import AccessRefused, LinkClosed, RemoteProtocolError
 from yarpy.log import readable
-from yarpy.wire.message import Message, Packet
+from yarpy.wire.message import Message, Packet, mark_unsent
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import CUT_OFF, LARGE, Buffer, ByteStream
 
@@ -85,10 +85,14 @@ def encode(packet: Packet) -> list[Buffer]:
         blocks = packet._blocks
         if blocks is None:  # spelled out: each step of it would be a call for every message
             value: Any = packet.value
-            if type(value) in LISTS:
-                blocks = packet._blocks = list_blocks(value, any_list)
-            else:
-                blocks = packet._blocks = encode_value(value)
+            try:
+                if type(value) in LISTS:
+                    blocks = packet._blocks = list_blocks(value, any_list)
+                else:
+                    blocks = packet._blocks = encode_value(value)
+            except Exception as error:
+                mark_unsent(error)
+                raise
         if len(blocks) == 1:
             # The common case, kept short: two blocks, the second is the payload.
             payload = blocks[0]

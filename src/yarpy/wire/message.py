@@ -128,7 +128,11 @@ class Packet:
     def blocks(self) -> tuple[Buffer, ...]:
         """The binary spelling, in pieces; large arrays are views of the user's memory."""
         if self._blocks is None:
-            self._blocks = codec.encode(self.value)
+            try:
+                self._blocks = codec.encode(self.value)
+            except Exception as error:
+                mark_unsent(error)
+                raise
         return self._blocks
 
     def snapshot(self, spelling: Spelling) -> None:
@@ -164,10 +168,24 @@ class Packet:
         """The text spelling, without a line end."""
         if self._line is None:
             if codec.has_own_text(self.value):
-                self._line = codec.encode_text(self.value)
+                try:
+                    self._line = codec.encode_text(self.value)
+                except Exception as error:
+                    mark_unsent(error)
+                    raise
             else:
                 self._line = codec.encode_as_text(b"".join(self.blocks))
         return self._line
+
+
+def mark_unsent(error: Exception) -> None:
+    """Note at `error` that a method of the value raised it, such as its `to_wire`, so that nothing
+    has left. UNSENDABLE say so by themselves."""
+    if not isinstance(error, UNSENDABLE):
+        try:
+            error.yarpy_unsent = True  # type: ignore[attr-defined]
+        except AttributeError:
+            pass  # it takes no attributes, and so ends the connection
 
 
 class Answer:

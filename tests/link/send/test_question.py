@@ -177,12 +177,20 @@ def test_interrupted_question_does_not_leave_its_answer_to_the_next() -> None:
             link.call(Packet([2], key=CALL))
 
 
+class Missing:
+    """A value whose own method fails."""
+
+    def to_wire(self) -> tuple[bytes]:
+        raise KeyError("no such joint")
+
+
 def test_question_that_cannot_be_sent_is_the_error_of_its_asker() -> None:
     with connected() as (link, far):
-        for value in (object(), 2**70):
-            with pytest.raises((TypeError, OverflowError)):
+        refused = (TypeError, OverflowError, KeyError)
+        for value in (object(), 2**70, Missing()):
+            with pytest.raises(refused):
                 link.call(Packet(value, key=CALL))
-            with pytest.raises((TypeError, OverflowError)):
+            with pytest.raises(refused):
                 link.send(Packet(value))
         assert not link.broken
         link.send(Packet([2]))

@@ -21,6 +21,7 @@ from support.wait import wait_until
 
 from yarpy.carriers.base import Carrier
 from yarpy.carriers.own.tcp import FastTcp, Tcp
+from yarpy.carriers.own.text import Text
 from yarpy.carriers.own.unix_stream import UnixStream
 from yarpy.data.value import Vocab
 from yarpy.errors import LinkClosed
@@ -115,6 +116,25 @@ def test_value_that_cannot_be_sent_is_the_writers_error() -> None:
     link, transport = open_link(Tcp, ACK)
     with pytest.raises(TypeError, match="cannot be sent"):
         link.send(Packet(object()))
+    assert not link.broken
+    assert transport.said == b""
+    link.send(Packet([1]))
+    assert link.counter.messages == 1
+
+
+@pytest.mark.parametrize("carrier", [Tcp, Text])
+@pytest.mark.parametrize("error", [RuntimeError, KeyError, OSError, AssertionError])
+def test_whatever_a_value_raises_is_the_writers_error(
+    error: type[Exception], carrier: type[Carrier]
+) -> None:
+    class Value:
+        def to_wire(self) -> tuple[bytes]:
+            raise error("oh")
+
+    link, transport = open_link(carrier, ACK)
+    for value in (Value(), [1, Value()]):
+        with pytest.raises(error, match="oh"):
+            link.send(Packet(value))
     assert not link.broken
     assert transport.said == b""
     link.send(Packet([1]))

@@ -145,7 +145,8 @@ def memory(array: NDArray[Any]) -> memoryview:
 
 def array_of(value: Any) -> NDArray[Any] | None:
     """An array of another library (torch, jax, cupy ...), or anything with memory to share, as one
-    of numpy; None for the rest. Only what lies in another device's memory is copied."""
+    of numpy; None for the rest. Only what lies in another device's memory is copied, or what
+    another tensor's numbers have to be computed from. TypeError for what is no array of numpy."""
     if isinstance(value, type):
         return None
     shared = hasattr(value, "__array__") or hasattr(value, "__array_interface__")
@@ -154,10 +155,10 @@ def array_of(value: Any) -> NDArray[Any] | None:
             memoryview(value)
         except TypeError:
             return None
+    if hasattr(value, "detach"):
+        return _array_of_tensor(value)
     import numpy as np
 
-    if hasattr(value, "detach"):
-        value = value.detach()
     if hasattr(value, "cpu"):
         value = value.cpu()
     elif hasattr(value, "get") and type(value).__module__.startswith("cupy"):
@@ -167,6 +168,23 @@ def array_of(value: Any) -> NDArray[Any] | None:
         found: NDArray[Any] = np.from_dlpack(value)
         return found
     return np.asarray(value)
+
+
+def _array_of_tensor(tensor: Any) -> NDArray[Any]:
+    """The numbers of a tensor of torch. Its views may be lazily conjugated or negated."""
+    import numpy as np
+
+    try:
+        plain = tensor.detach().cpu()
+        if hasattr(plain, "resolve_conj"):
+            plain = plain.resolve_conj().resolve_neg()
+        return np.asarray(plain)
+    except (TypeError, RuntimeError) as error:  # bfloat16, sparse, quantized, without memory ...
+        kind = getattr(tensor, "dtype", "unknown type")
+        raise TypeError(
+            f"a tensor of {kind} cannot be sent as it is: {str(error).rstrip('.')} "
+            "(tensor.float(), .to_dense() or .dequantize() may make one that can)"
+        ) from error
 
 
 def is_array(value: Any) -> TypeGuard[NDArray[Any]]:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Self
 
+from yarpy.data.array_export import ArrayExport
 from yarpy.data.pickling import Wired
 from yarpy.data.sig.pixel import NATURAL, Pixel, pixel, pixel_of
 from yarpy.data.value import Vocab
@@ -20,7 +21,6 @@ from yarpy.errors import DecodeError, Truncated
 from yarpy.limit import EMPTY_IMAGE
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 _HEAD = Struct("<10ihh4i")
@@ -31,7 +31,7 @@ _BEGINNING = (256, 4, 9, _MAT, 9)
 QUANTUM = 8
 
 
-class Image(Wired):
+class Image(Wired, ArrayExport):
     """Width, height, a pixel code and the pixels.
 
     `Image(array)` takes an array of shape (height, width) or (height, width, channels); the code
@@ -180,13 +180,6 @@ class Image(Wired):
             return self
         array = convert(self.array, pixel_of(self.code.code), kind)
         return Image(array, kind.code, rows, top_down=self.top_down)
-
-    def __array__(
-        self, dtype: np.dtype[Any] | None = None, copy: bool | None = None
-    ) -> NDArray[Any]:
-        if dtype is not None and dtype != self.array.dtype:
-            return self.array.astype(dtype)
-        return self.array.copy() if copy else self.array
 
     def __eq__(self, other: object) -> bool:
         """The same pixels, however the rows are stored."""

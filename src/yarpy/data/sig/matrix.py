@@ -10,18 +10,18 @@ from __future__ import annotations
 from struct import Struct
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from yarpy.data.array_export import ArrayExport
 from yarpy.data.pickling import Wired
 from yarpy.data.value import BIG
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
 _HEAD = Struct("<8i")
 
 
-class Matrix(Wired):
+class Matrix(Wired, ArrayExport):
     """Rows and columns of float64. `Matrix(array)` takes anything numpy makes two-dimensional;
     `Matrix()` has no rows and no columns."""
 
@@ -81,13 +81,6 @@ class Matrix(Wired):
 
             self._array = np.frombuffer(self._data, "<f8").reshape(self.rows, self.cols)
         return self._array
-
-    def __array__(
-        self, dtype: np.dtype[Any] | None = None, copy: bool | None = None
-    ) -> NDArray[Any]:
-        if dtype is not None and dtype != self.array.dtype:
-            return self.array.astype(dtype)
-        return self.array.copy() if copy else self.array
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Matrix):

@@ -13,12 +13,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from struct import Struct, error
 from typing import TYPE_CHECKING, Any, Final, Self
 
+from yarpy.data.array_export import ArrayExport
 from yarpy.data.pickling import Wired
 from yarpy.data.value import BIG, FLOAT32, FLOAT64, INT8, INT16, INT32, INT64, UNIT_MASK
 from yarpy.errors import DecodeError, Truncated
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import DTypeLike, NDArray
 
 #: name of the kind -> tag, struct character, bytes
@@ -35,7 +35,7 @@ _NAMES: Final = {tag: name for name, (tag, _, _) in KINDS.items()}
 _HEAD = Struct("<ii")
 
 
-class Vector(Wired, Sequence[Any]):
+class Vector(Wired, ArrayExport, Sequence[Any]):
     """A list of numbers with a numpy array inside.
 
     `Vector([1, 2.5])`, `Vector(numpy_array)`, `Vector([1, 2], dtype="int32")`. It has a length, can
@@ -152,13 +152,6 @@ class Vector(Wired, Sequence[Any]):
         return NotImplemented
 
     __hash__ = None  # type: ignore[assignment]
-
-    def __array__(
-        self, dtype: np.dtype[Any] | None = None, copy: bool | None = None
-    ) -> NDArray[Any]:
-        if dtype is not None and dtype != self.array.dtype:
-            return self.array.astype(dtype)
-        return self.array.copy() if copy else self.array
 
     def __repr__(self) -> str:
         kind = "" if self.kind == "float64" else f", dtype={self.kind!r}"

@@ -533,5 +533,7 @@ def mute(carrier: Carrier) -> bool:
 
 def interrupts(error: BaseException) -> bool:
     """Return whether a dialogue that met `error` is left half way, such as by Ctrl-C; a value that
-    could not be encoded has not begun one."""
-    return isinstance(error, YarpError) or not isinstance(error, UNSENDABLE)
+    could not be encoded has not begun one, whatever its own methods raised."""
+    if isinstance(error, YarpError):
+        return True
+    return not (isinstance(error, UNSENDABLE) or getattr(error, "yarpy_unsent", False))
