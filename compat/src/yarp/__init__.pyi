@@ -148,7 +148,6 @@ from yarp._measuring_view import IRemoteVariables as IRemoteVariables
 from yarp._mirror import ILLM as ILLM
 from yarp._mirror import ILocalization2D as ILocalization2D
 from yarp._mirror import IMap2D as IMap2D
-from yarp._mirror import INavigation2D as INavigation2D
 from yarp._mirror import IOdometry2D as IOdometry2D
 from yarp._mirror import IRGBDSensor as IRGBDSensor
 from yarp._mirror import ISimulatedWorld as ISimulatedWorld
@@ -162,6 +161,13 @@ from yarp._motion_view import IPositionDirect as IPositionDirect
 from yarp._motion_view import ITorqueControl as ITorqueControl
 from yarp._motion_view import IVelocityControl as IVelocityControl
 from yarp._motion_view import MotorTorqueParameters as MotorTorqueParameters
+from yarp._navigation_view import INavigation2D as INavigation2D
+from yarp._navigation_view import INavigation2DControlActions as INavigation2DControlActions
+from yarp._navigation_view import INavigation2DExtraActions as INavigation2DExtraActions
+from yarp._navigation_view import INavigation2DTargetActions as INavigation2DTargetActions
+from yarp._navigation_view import INavigation2DVelocityActions as INavigation2DVelocityActions
+from yarp._navigation_view import statusToString as statusToString
+from yarp._navigation_view import stringToStatus as stringToStatus
 from yarp._net_int import NetInt16 as NetInt16
 from yarp._net_int import NetInt32 as NetInt32
 from yarp._net_int import NetInt64 as NetInt64

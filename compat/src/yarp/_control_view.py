@@ -11,6 +11,15 @@ from yarp._numbers import StdVector, store
 from yarp._view import FAILURES, View
 from yarpy.kits.devices import Gains
 
+#: modes -> what a device has that can be put into them
+SELECTABLE = {
+    "pos": "position_move",
+    "posd": "position_direct",
+    "vel": "velocity_move",
+    "torq": "apply_torques",
+    "ipwm": "apply_duty_cycles",
+    "icur": "apply_currents",
+}
 #: the kinds of controllers: of positions, torques, velocities and currents
 PIDS = ("pos", "trq", "vel", "cur")
 
@@ -58,6 +67,17 @@ class IControlMode(_Modes):
 
     def getControlModes(self, *modes: Any) -> bool:
         return self._get_modes(modes)
+
+    def getAvailableControlModes(self, j: int, avail: Any) -> bool:
+        """Store the modes that a joint can be put into, in an IVector."""
+        board = self._board
+        if not 0 <= j < self.getAxes():
+            return False
+        found = [word for word, member in SELECTABLE.items() if hasattr(board, member)]
+        avail.assign(0, 0)
+        for code in _codes([*found, "idl", "fidl"]):
+            avail.push_back(code)
+        return True
 
     def setControlMode(self, j: int, mode: int) -> bool:
         return self._set_modes((j, mode))

@@ -14,12 +14,9 @@ from collections.abc import Callable, Sequence
 from typing import Annotated, Any, get_args, get_origin
 
 import yarpy
-from yarp._controller_view import ICartesianControl
-from yarp._gaze_view import IGazeControl
 from yarp._log import say
 from yarp._memory import encoded
 from yarp._numbers import StdVector, store
-from yarp._place_view import IBattery, IFrameTransform
 from yarp._portable import PortReader, PortWriter
 from yarp._view import FAILURES, View
 from yarpy.kits import devices, thrift
@@ -167,18 +164,6 @@ class IMap2D(Mirror, of=("Map2D",)):
     """Maps, and what has a name in them."""
 
 
-class INavigation2D(Mirror, of=("Navigation2D", "Localization2D", "Map2D")):
-    """A robot that goes to places."""
-
-    def gotoTargetByLocationName(self, name: str) -> bool:
-        """Go to a place that the server of maps knows."""
-        return self._tell(lambda: self._board.go_named(self._board.location(name), name))
-
-    def storeCurrentPosition(self, name: str) -> bool:
-        """Give the place where the robot is a name."""
-        return self._tell(lambda: self._board.store_location(name, self._board.position()))
-
-
 class IOdometry2D(Mirror, of=("Odometry2D",)):
     """How a base has moved."""
 
@@ -220,62 +205,3 @@ class IRGBDSensor(Mirror, of=("DepthCamera",)):
     def getDepthImage(self, depthImage: Any, timeStamp: Any = None) -> bool:
         """Read the newest distances, in metres; they come with no stamp."""
         return self._tell(lambda: _fill(depthImage, yarpy.Image, self._board.depth()))
-
-
-class MirrorViews:
-    """The views that a PolyDriver has."""
-
-    def _view(self, kind: Any, member: str) -> Any:
-        raise NotImplementedError
-
-    def viewICartesianControl(self) -> ICartesianControl | None:
-        found: ICartesianControl | None = self._view(ICartesianControl, "solve")
-        return found
-
-    def viewIGazeControl(self) -> IGazeControl | None:
-        found: IGazeControl | None = self._view(IGazeControl, "look_at_pixel")
-        return found
-
-    def viewILocalization2D(self) -> ILocalization2D | None:
-        found: ILocalization2D | None = self._view(ILocalization2D, "localization_status")
-        return found
-
-    def viewIMap2D(self) -> IMap2D | None:
-        found: IMap2D | None = self._view(IMap2D, "map_names")
-        return found
-
-    def viewINavigation2D(self) -> INavigation2D | None:
-        found: INavigation2D | None = self._view(INavigation2D, "go")
-        return found
-
-    def viewIOdometry2D(self) -> IOdometry2D | None:
-        found: IOdometry2D | None = self._view(IOdometry2D, "odometry")
-        return found
-
-    def viewISpeechSynthesizer(self) -> ISpeechSynthesizer | None:
-        found: ISpeechSynthesizer | None = self._view(ISpeechSynthesizer, "synthesize")
-        return found
-
-    def viewISpeechTranscription(self) -> ISpeechTranscription | None:
-        found: ISpeechTranscription | None = self._view(ISpeechTranscription, "transcribe")
-        return found
-
-    def viewIRGBDSensor(self) -> IRGBDSensor | None:
-        found: IRGBDSensor | None = self._view(IRGBDSensor, "depth")
-        return found
-
-    def viewILLM(self) -> ILLM | None:
-        found: ILLM | None = self._view(ILLM, "conversation")
-        return found
-
-    def viewISimulatedWorld(self) -> ISimulatedWorld | None:
-        found: ISimulatedWorld | None = self._view(ISimulatedWorld, "make_box")
-        return found
-
-    def viewIBattery(self) -> IBattery | None:
-        found: IBattery | None = self._view(IBattery, "charge")
-        return found
-
-    def viewIFrameTransform(self) -> IFrameTransform | None:
-        found: IFrameTransform | None = self._view(IFrameTransform, "place")
-        return found if self._view(IFrameTransform, "frames") is not None else None

@@ -7,6 +7,7 @@ where there is none.
 from __future__ import annotations
 
 import contextlib
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -66,6 +67,8 @@ class IBattery(View):
 class IFrameTransform(View):
     """Frames, and where they are. A transform is where `target` is, seen from `source`."""
 
+    TRANSFORM_OK, TRANSFORM_GENERAL_ERROR, TRANSFORM_TIMEOUT = range(3)
+
     def allFramesAsString(self) -> str:
         """The names of all frames."""
         return " ".join(self.getAllFrameIds())
@@ -111,6 +114,34 @@ class IFrameTransform(View):
     ) -> bool:
         """Tell where the target is, 4 x 4, for good."""
         return self._place(target_frame_id, source_frame_id, transform, True)
+
+    def waitForTransform(self, target_frame_id: str, source_frame_id: str, timeout: float) -> bool:
+        """Wait until it is known where one is, seen from the other, so many seconds at most."""
+        until = time.monotonic() + timeout
+        while not self.canTransform(target_frame_id, source_frame_id):
+            if time.monotonic() >= until:
+                return False
+            time.sleep(0.02)
+        return True
+
+    def transformPoint(
+        self,
+        target_frame_id: str,
+        source_frame_id: str,
+        input_point: Any,
+        transformed_point: Any,
+    ) -> bool:
+        """Multiply a point, three numbers, by where the target is, seen from the source."""
+        matrix, point = Matrix(), [*input_point]
+        if len(point) != 3 or not self.getTransform(target_frame_id, source_frame_id, matrix):
+            return False
+        found = [
+            sum(a * b for a, b in zip(row, (*point, 1.0), strict=True)) for row in matrix._rows
+        ]
+        transformed_point.resize(3)
+        for index, value in enumerate(found[:3]):
+            transformed_point[index] = value
+        return True
 
     def deleteTransform(self, target_frame_id: str, source_frame_id: str) -> bool:
         """Forget where the target is."""

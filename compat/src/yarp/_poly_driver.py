@@ -24,7 +24,7 @@ from yarp._measuring_view import (
     IMotorEncoders,
     IRemoteVariables,
 )
-from yarp._mirror import MirrorViews
+from yarp._mirror_views import MirrorViews
 from yarp._motion_view import (
     ICurrentControl,
     IImpedanceControl,

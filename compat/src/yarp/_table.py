@@ -63,6 +63,8 @@ _MODULES = {
     "_file": "read write",
     "_vocab": "encode decode createVocab createVocab32 VOCAB VOCAB1 VOCAB2 VOCAB3 VOCAB4 Vocab "
     "createVocab64 encode64 decode64",
+    "_navigation_view": "INavigation2D INavigation2DTargetActions INavigation2DControlActions "
+    "INavigation2DVelocityActions INavigation2DExtraActions statusToString stringToStatus",
     "_controller_view": "ICartesianControl CartesianEvent CartesianEventParameters "
     "CartesianEventVariables",
     "_gaze_view": "IGazeControl GazeEvent GazeEventParameters GazeEventVariables",
@@ -74,7 +76,7 @@ _MODULES = {
     "TypedReaderMapGrid2D Map2DLocationCallback Map2DAreaCallback Map2DPathCallback "
     "MapGrid2DCallback",
     "_place_view": "IBattery IFrameTransform",
-    "_mirror": "ILocalization2D IMap2D INavigation2D IOdometry2D ILLM ISimulatedWorld "
+    "_mirror": "ILocalization2D IMap2D IOdometry2D ILLM ISimulatedWorld "
     "ISpeechSynthesizer ISpeechTranscription IRGBDSensor",
     "_resource_finder": "ResourceFinder",
     "_rf_module": "RFModule",
