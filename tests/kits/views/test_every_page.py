@@ -27,6 +27,7 @@ from yarpy.carriers.web.http.asset import KINDS, PREFIX
 from yarpy.carriers.web.http.page import Site
 from yarpy.carriers.web.http.request import MAY, READS
 from yarpy.kits.devices.multi_sensor.server import MultiSensorServer
+from yarpy.kits.launch.page.log_page import LogPage
 from yarpy.kits.launch.page.owner import Owners
 from yarpy.kits.launch.page.page import ApplicationPage
 from yarpy.kits.views.dash import Dash
@@ -35,6 +36,7 @@ from yarpy.kits.views.picture import Picture
 from yarpy.kits.views.scope import Scope
 from yarpy.kits.views.viewer import Viewer
 from yarpy.port.hub import Hub
+from yarpy.port.keep.log_line import LogLine
 
 SOURCE = Path(yarpy.__file__).parent
 SECRET = "s3cret"
@@ -67,6 +69,13 @@ def dash() -> Iterator[Any]:
 def panel() -> Iterator[Any]:
     with opened(yarpy.Port) as port:
         Panel(port, f"/{SECRET}", yarpy.LocalNames())
+        yield port
+
+
+@contextmanager
+def log_page() -> Iterator[Any]:
+    with opened(yarpy.Port) as port:
+        LogPage(port).add([LogLine(f"/log/{SECRET}/p/1", "INFO", SECRET)])
         yield port
 
 
@@ -136,6 +145,7 @@ SERVERS: dict[str, Callable[[], Any]] = {
     "kits/views/viewer.py": viewer,
     "kits/views/scope.py": scope,
     "kits/launch/page/page.py": application,
+    "kits/launch/page/log_page.py": log_page,
     "kits/devices/multi_sensor/server.py": sensors,
     "nameserver/serving.py": name_server,
     "the port itself": camera,

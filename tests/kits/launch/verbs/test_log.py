@@ -3,10 +3,12 @@
 import json
 import signal
 from functools import partial
+from urllib.request import urlopen
 
 import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.port.assembly import open_hub
@@ -93,3 +95,21 @@ def test_no_follow_ends_when_all_is_told(cli, names):
     sender.close()
     assert done.returncode == 0 and "[\x1b[1;34mINFO\x1b[0m] last" in done.stdout
     assert "no regular expression" in cli.run("log", "--grep", "(").stderr
+
+
+def test_the_page_shows_all_of_it(cli, names):
+    with (
+        yarpy.Port("/log/vm/shown/1", names=names) as one,
+        cli.start("log", "--page", "--quiet", "/log/*/shown/*") as process,
+    ):
+        url = process.wait_line(r"is shown at (http://127\.0\.0\.1:\d+/)", stream="out")[1]
+        assert one.wait_for_outputs(1, timeout=HANG)
+        one.write(line("/log/vm/shown/1", "hello"))
+
+        def shown() -> list[str]:
+            with urlopen(f"{url}lines?most=9", timeout=HANG) as reply:
+                return [each[-1] for each in json.load(reply)["lines"]]
+
+        wait_until(lambda: shown() == ["hello"])
+        process.signal(signal.SIGINT)
+        assert process.wait() == 0

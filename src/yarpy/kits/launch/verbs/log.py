@@ -6,6 +6,7 @@
     log --level WARNING          what is at least as bad
     log --program arm* --grep "joint [23]"
     log -o today.log -o today.mcap
+    log --page -q                in a browser, with search and filters; this computer alone sees it
 
 A program of yarpy or C++ YARP forwards its log if YARP_FORWARD_LOG_ENABLE=1 is in its environment;
 so do those that `yarpy run --log` starts. This command is /yarplogger, to which such programs
@@ -16,6 +17,7 @@ is lost is counted. Exit codes: 0 when interrupted, or done; 1 no name server.
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from contextlib import ExitStack
@@ -25,19 +27,22 @@ import click
 
 import yarpy
 from yarpy.cli.output import jsonable
-from yarpy.cli.ports import ANY, open_port
+from yarpy.cli.ports import ANY, open_another, open_port
 from yarpy.cli.signals import Interrupted, held
 from yarpy.cli.stderr import warn
 from yarpy.limit import LOG_MESSAGE
 from yarpy.log import readable
 from yarpy.port.keep.log_line import LEVELS
 from yarpy.port.keep.log_sender import LOGGER
+from yarpy.transports.bind import SETTING
 
 if TYPE_CHECKING:
     from yarpy.kits.launch.log.intake import Intake
     from yarpy.kits.launch.log.kept import Kept
+    from yarpy.kits.launch.page.log_page import LogPage
     from yarpy.port.keep.log_line import LogLine
 
+PAGE: Final = "/logger"  # the port that serves the page
 ENDING: Final = 1.0  # seconds for what has come when it is interrupted
 QUIET: Final = 1.5  # seconds without a line, after which --no-follow ends
 
@@ -56,6 +61,7 @@ QUIET: Final = 1.5  # seconds without a line, after which --no-follow ends
 @click.option("-o", "--output", "paths", multiple=True, metavar="FILE",
               help="Keep what is shown in FILE: .log, .txt, .json or .mcap.")  # fmt: skip
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing.")
+@click.option("--page", is_flag=True, help="Show all of it in a browser, too.")
 @click.option("--no-follow", is_flag=True, help="End when programs have told what they kept.")
 @click.option("--name", default="", show_default=False, metavar="PORT",
               help="Be that port instead of /yarplogger.")  # fmt: skip
@@ -69,6 +75,7 @@ def command(
     as_json: bool,
     paths: tuple[str, ...],
     quiet: bool,
+    page: bool,
     no_follow: bool,
     name: str,
     colour: bool | None,
@@ -85,6 +92,7 @@ def command(
         for path in paths:
             files.append(open_kept(path))
             open_.callback(files[-1].close)
+        shown = _page(open_) if page else None
         intake = Intake(port, pattern)
         open_.callback(intake.close)
         screen = _Screen(as_json, _coloured(colour))
@@ -94,6 +102,9 @@ def command(
             nonlocal lost
             pairs = intake.read(0.0)
             lost = _tell_lost(intake, lost)
+            if shown is not None:
+                shown.lost = lost
+                shown.add([line for line, _ in pairs])
             taken = [pair for pair in pairs if wanted.takes(pair[0])]
             if not quiet:
                 screen.show([line for line, _ in taken])
@@ -126,6 +137,25 @@ def _open(name: str) -> yarpy.BufferedPort:
         return open_port(yarpy.BufferedPort, ANY, strict=True, limit=LOG_MESSAGE)
 
 
+def _page(open_: ExitStack) -> LogPage:
+    """The page, at a port that this computer alone reaches, whatever the one for programs is."""
+    from yarpy.cli.browser import show_page
+    from yarpy.kits.launch.page.log_page import LogPage
+
+    before = os.environ.get(SETTING)
+    os.environ[SETTING] = "local"  # ports read it when they open
+    try:
+        port = open_.enter_context(open_another(yarpy.Port, PAGE, callback=lambda message: None))
+    finally:
+        if before is None:
+            del os.environ[SETTING]
+        else:
+            os.environ[SETTING] = before
+    shown = LogPage(port)
+    show_page(port)
+    return shown
+
+
 def _tell_lost(intake: Intake, before: int) -> int:
     lost = intake.lost
     if lost > before:
@@ -141,8 +171,6 @@ def _keep(files: list[Kept], pairs: list[Any]) -> None:
 
 
 def _coloured(asked: bool | None) -> bool:
-    import os
-
     from yarpy.config.configuration import flag
 
     if asked is not None:
