@@ -9,7 +9,7 @@ from support.message import bottles, texts
 from support.vectors import rows
 
 from yarpy.data.bottle import Bottle
-from yarpy.data.text import Balance, balanced, parse_text, plain_text, print_text, tokens
+from yarpy.data.text import Balance, parse_text, plain_text, print_text, tokens
 from yarpy.data.value import Float32, Int8, Int64, Vocab
 from yarpy.errors import DecodeError
 
@@ -260,8 +260,7 @@ def test_unknown_objects_cannot_be_printed():
     ],
 )
 def test_balanced(text, complete):
-    assert balanced(text) is complete
-    assert balanced(text.encode()) is complete
+    assert Balance().feed(text.encode()) is complete
 
 
 def slow_balanced(text):
@@ -286,7 +285,7 @@ def test_balance_of_pieces(pieces):
     whole = b""
     for piece in pieces:
         whole += piece
-        assert balance.feed(piece) is balanced(whole) is slow_balanced(whole)
+        assert balance.feed(piece) is Balance().feed(whole) is slow_balanced(whole)
 
 
 def test_balance_is_not_quadratic():

@@ -23,7 +23,7 @@ from yarpy.data import xmlrpc
 from yarpy.data.bottle import Property
 from yarpy.data.json import from_json
 from yarpy.data.stamp import Stamp
-from yarpy.data.text import balanced, parse_text
+from yarpy.data.text import Balance, parse_text
 from yarpy.errors import (
     AddressError,
     DecodeError,
@@ -258,7 +258,10 @@ GRAMMARS = {
     "property": Grammar(
         Property.from_text, ((b"", b"(a 1) ", b""), (b"", b"(a ", b"")), _TEXT_PIECES
     ),
-    "balance": Grammar(balanced, ((b"", b"(", b""), (b"", b'"', b""), (b"", b"\\", b""))),
+    "balance": Grammar(
+        lambda text: Balance().feed(text),
+        ((b"", b"(", b""), (b"", b'"', b""), (b"", b"\\", b"")),
+    ),
     "json": Grammar(
         from_json,
         (

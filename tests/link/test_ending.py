@@ -8,7 +8,7 @@ import time
 import pytest
 
 from yarpy.errors import PortClosed
-from yarpy.link.ending import NEVER, SLICE, Ending, held_here, left, moment
+from yarpy.link.ending import NEVER, SLICE, Ending, left, moment
 from yarpy.scope import Scope
 
 
@@ -86,13 +86,3 @@ def test_moments() -> None:
     until = moment(10.0)
     assert until is not None and 9.0 < until - time.monotonic() <= 10.0
     assert left(time.monotonic() - 1) == 0.0
-
-
-def test_lock_of_the_frame_beneath() -> None:
-    lock = threading.RLock()
-    assert not held_here(lock)
-    with lock:
-        assert held_here(lock)
-        elsewhere: list[bool] = []
-        in_thread(lambda: elsewhere.append(held_here(lock))).join(5)
-        assert elsewhere == [False]

@@ -77,14 +77,9 @@ def parse_text(text: str | bytes, make_list: type[list[Any]] = list) -> list[Any
     return _parse(data, [max(_FREE_WORK, 8 * len(data)), most], make_list)
 
 
-def balanced(text: str | bytes) -> bool:
-    """Are all quotes and brackets of this text closed? If not, a text peer sends more lines."""
-    data = text.encode("utf-8", "surrogateescape") if isinstance(text, str) else bytes(text)
-    return Balance().feed(data)
-
-
 class Balance:
-    """`balanced` for a text that comes piece by piece; every byte is read once.
+    """Tells whether the quotes and brackets of a text that comes piece by piece are closed; if not,
+    a text peer sends more lines. Every byte is read once.
 
     `feed(first_line)`, then `feed(b"\\n" + next_line)` and so on until it says True.
     """
@@ -96,7 +91,7 @@ class Balance:
         self._round = self._curly = 0
 
     def feed(self, piece: bytes) -> bool:
-        """Take the next piece of the text. Is everything closed at its end?"""
+        """Take the next piece of the text; return whether everything is closed at its end."""
         at = 1 if self._escaped and piece else 0
         for mark in _MARK.finditer(piece, at):
             char = mark.group()

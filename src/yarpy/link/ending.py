@@ -4,9 +4,9 @@ Rules: nothing waits in one piece. Who waits for a lock, a condition, bytes or r
 seconds at a time and then asks the port's Ending whether to go on; for an ended port every time
 limit is over, as it is in a call whose `scope` was ended or has no time left. So a wait ends within
 SLICE, whoever ends it (another thread, a signal handler, a callback), on every system, and needs no
-descriptor to be woken by. A lock that the frame beneath a signal handler may hold is an RLock:
-`held_here` tells, and then nobody waits for it. Time limits are moments of `time.monotonic`, made
-once from a caller's `timeout` by `moment`; None: no limit.
+descriptor to be woken by. A lock that the frame beneath a signal handler, or beneath a callback,
+may hold is an RLock: its `_is_owned` tells, and then nobody waits for it. Time limits are moments
+of `time.monotonic`, made once from a caller's `timeout` by `moment`; None: no limit.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from typing import Any, Final, Protocol
+from typing import Final, Protocol
 
 from yarpy import scope
 from yarpy.errors import PortClosed
@@ -97,10 +97,3 @@ def moment(timeout: float | None) -> float | None:
 def left(until: float | None) -> float | None:
     """Return the seconds until that moment, at least 0.0; None: no limit."""
     return None if until is None else max(0.0, until - time.monotonic())
-
-
-def held_here(lock: Any) -> bool:
-    """Return whether this thread holds an RLock already: the frame beneath a signal handler, or
-    beneath a callback, is at work under it and cannot let it go."""
-    held: bool = lock._is_owned()
-    return held

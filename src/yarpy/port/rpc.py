@@ -176,7 +176,7 @@ class RpcClient(BasePort, Generic[T]):
             self._timeout = timeout
             turn: Any = threading.RLock()
             self._turn = turn  # one question at a time
-            self._asking: Callable[[], bool] = turn._is_owned  # this thread; see `held_here`
+            self._asking: Callable[[], bool] = turn._is_owned  # this thread; see `link/ending.py`
             self._last: Route | None = None  # of the last call; the next has to reach the same port
             if target:
                 try:

@@ -27,8 +27,8 @@ from yarpy.wire.stream import DEFAULT_LIMIT, ByteStream, ObjectStream
 
 T = TypeVar("T")
 
-#: Of a sending port at an address of ours: its multicast group, as `(address, port)`.
-GroupOf = Callable[[str], tuple[str, int]]
+#: Of a sending port: its multicast group, as `(address, port)`.
+GroupOf = Callable[[], tuple[str, int]]
 
 # C++ hangs up before it comes to the meeting place of the two ends.
 LATE: Final = 0.5  # seconds for it to come after that
@@ -96,7 +96,7 @@ class Greeting:
     def _find_group(self) -> tuple[str, int]:
         if self._group is None:
             raise LocalProtocolError("this connection cannot choose a multicast group")
-        return self._group(self.driver.transport.local[0])
+        return self._group()
 
     def _move(self, move: Switch) -> None:
         """Go on over another transport."""

@@ -67,7 +67,7 @@ class Sender:
         self.late = 0  # messages that were not sent since their deadline had come
         lock: Any = threading.RLock()
         self.lock = lock  # one message at a time on the wire
-        self.held: Callable[[], bool] = lock._is_owned  # by this thread; see `ending.held_here`
+        self.held: Callable[[], bool] = lock._is_owned  # by this thread; see `ending`
         self.ending: Ending = NEVER  # of the port; what nobody waits for in person sets NEVER
         self.slow = SlowReader(carrier.route, limit)
         self._pause = threading.Lock()  # of `listens`, so that a ping ends before a message begins

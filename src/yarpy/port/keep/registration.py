@@ -213,7 +213,7 @@ class Registration:
         names = self.service() if wanted.name.startswith("/") else None
         return None if names is None else names.query(wanted.name)
 
-    def group(self, local_host: str) -> tuple[str, int]:
+    def group(self) -> tuple[str, int]:
         """The multicast group of this port: one for all its connections."""
         names = self.service()
         if names is None:
