@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo alone test peers pure links compiled wheel stress steady fuzz life rows chaos soak check bench pictures windows clean
+.PHONY: demo lowest alone test peers pure links compiled wheel stress steady fuzz life rows chaos soak check bench pictures windows clean
 .NOTPARALLEL:
 
 # Tests start many programs; each would compile all of yarpy anew.
@@ -43,6 +43,15 @@ pure links: $(VENV)/.ready
 # The core in a copy without any guest or kit; GUESTS="zenoh ros" deletes one after another.
 alone: $(VENV)/.ready
 	$(BIN)/python tests/support/alone.py -n$(WORKERS) $(GUESTS)
+
+# With the oldest version that each library may have.
+lowest:
+	$(PYTHON) -m venv .venv-lowest
+	.venv-lowest/bin/python -m pip install --quiet --disable-pip-version-check \
+	    $$($(PYTHON) tests/support/lowest.py) pytest pytest-timeout hypothesis
+	.venv-lowest/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
+	.venv-lowest/bin/python -m pytest -m "not peer" tests/wire tests/data tests/carriers \
+	    tests/cli/test_main.py tests/cli/test_completion.py
 
 # Two wheels: pure Python, and one with a compiled core for this Python and computer.
 wheel: $(VENV)/.ready

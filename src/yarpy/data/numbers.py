@@ -118,10 +118,10 @@ class Packed(ArrayExport, list[Any]):
         if self._view is not None:
             return np.frombuffer(self._view, DTYPES[self.tag])
         if self.tag and _KINDS[self.tag].issuperset(map(type, self)):
-            try:
-                return np.array(list(self), DTYPES[self.tag])
-            except OverflowError:
-                pass  # something larger was put there
+            kind = np.dtype(DTYPES[self.tag])
+            # Something larger may have been put there, which numpy 1 cuts off and tells nobody.
+            if kind.kind == "f" or not self or _hold(np.iinfo(kind), self):
+                return np.array(list(self), kind)
         return np.array(list(self))
 
     def __len__(self) -> int:
@@ -174,3 +174,7 @@ def _added(self: Packed, other: Any) -> Any:
 
 for _name, _method in [("__radd__", _added), *((name, _unpacking(name)) for name in _UNPACKING)]:
     setattr(Packed, _name, _method)
+
+
+def _hold(limits: np.iinfo[Any], values: list[Any]) -> bool:
+    return bool(limits.min <= min(values) and max(values) <= limits.max)

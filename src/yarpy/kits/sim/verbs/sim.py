@@ -12,6 +12,7 @@ Exit codes: 0 ended by a signal; 1 the names are in use, the file is no model, M
 from __future__ import annotations
 
 import threading
+from typing import TYPE_CHECKING
 
 import click
 
@@ -21,7 +22,13 @@ from yarpy.cli.stderr import warn
 from yarpy.registry import robots
 
 
-class Size(click.ParamType[tuple[int, int]]):
+if TYPE_CHECKING:
+    _Type = click.ParamType[tuple[int, int]]
+else:
+    _Type = click.ParamType  # older ones of click have no type parameter
+
+
+class Size(_Type):
     """`320x240`: width and height in pixels."""
 
     name = "size"
