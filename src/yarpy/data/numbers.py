@@ -33,6 +33,7 @@ from yarpy.errors import DecodeError
 from yarpy.limit import limits
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
 #: tag -> numpy's name of the numbers

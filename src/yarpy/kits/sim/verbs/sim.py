@@ -21,7 +21,6 @@ from yarpy.cli.output import print_line
 from yarpy.cli.stderr import warn
 from yarpy.registry import robots
 
-
 if TYPE_CHECKING:
     _Type = click.ParamType[tuple[int, int]]
 else:
