@@ -273,3 +273,14 @@ def test_scalars(value: Any, plain: object) -> None:
 def test_scalars_that_are_nothing_here() -> None:
     with pytest.raises(TypeError):
         array.scalar(np.complex128(1))
+
+
+@pytest.mark.parametrize("kind", ["u4", "u1", "?", "f2", "c8"])
+@pytest.mark.parametrize("shape", [(6,), (2, 3), (0,), (2, 1, 3, 1)])
+def test_a_blob_of_numbers_is_read_in_place(kind: str, shape: tuple[int, ...]) -> None:
+    array = np.arange(np.prod(shape)).reshape(shape).astype(kind)
+    message = bytearray(sent(array))
+    found = np.asarray(codec.decode(message))
+    assert found.dtype == array.dtype and found.shape == shape and (found == array).all()
+    if array.size:
+        assert np.shares_memory(found, np.frombuffer(message, "u1"))

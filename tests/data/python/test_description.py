@@ -34,3 +34,24 @@ def test_a_size_that_lies(size: int) -> None:
 def test_short_messages() -> None:
     for size in range(60):
         assert description.place(b"\1" * size) == 0
+
+
+@pytest.mark.parametrize(
+    ("dtype", "shape"), [("<u4", (7,)), ("|u1", (3, 0, 2)), ("<c16", ()), ("<f4", (2, 1 << 30))]
+)
+def test_the_type_of_an_array(dtype: str, shape: tuple[int, ...]) -> None:
+    said = description.of_array(dtype, shape)
+    assert description.array_type(said) == (dtype, shape)
+    for cut in range(len(said)):
+        assert description.array_type(said[:cut]) is None
+    assert description.array_type(said + struct.pack("<ii", 1, 5)) is None, "one size too many"
+
+
+def test_what_describes_no_array_or_one_in_another_way() -> None:
+    said = description.of_array("<u4", (7,))
+    for other in (said.replace(b"array", b"arroy"), said.replace(b"<u4", b"\xffu4")):
+        assert description.array_type(other) is None
+    assert description.array_type(description.of_array("<u4", (-7,))) is None
+    for at in range(len(said)):
+        damaged = said[:at] + bytes([said[at] ^ 0x80]) + said[at + 1 :]
+        assert description.array_type(damaged) is None or at > len(said) - 5, "the size alone"

@@ -57,6 +57,7 @@ if TYPE_CHECKING:
 
 _I32 = Struct("<i")
 _PAIR = Struct("<ii")
+_HEAD = Struct("<4i")
 _MAT: Final = 0x0074616D
 
 #: what comes back equal by itself
@@ -272,13 +273,32 @@ class _Spelling:
 def restore(view: Buffer, start: int) -> Any:
     """The value of a message whose description begins at `start`. Raises DecodeError."""
     try:
-        return _Reading(view, start).whole()
+        array = _lone_blob(view, start)
+        return _Reading(view, start).whole() if array is None else array
     except YarpError:
         raise
     except struct_error:
         raise Truncated(f"the message goes on beyond its {len(view)} bytes") from None
     except (ValueError, TypeError, OverflowError, LookupError, MemoryError) as error:
         raise DecodeError(f"a message that its description does not fit: {error}") from error
+
+
+def _lone_blob(view: Buffer, start: int) -> NDArray[Any] | None:
+    """The array of a message that is its memory and nothing else, as most are, with many steps
+    less; None for any other message."""
+    code, count, tag, length = _HEAD.unpack_from(view)
+    if code != LIST or count != 2 or tag != BLOB or start != _HEAD.size + length:
+        return None
+    said = description.array_type(bytes(description.content(view, start)))
+    if said is None or said[0] not in NUMBERS or len(said[1]) > ARRAY_DIMENSIONS:
+        return None
+    import numpy as np
+
+    dtype, shape = said
+    if prod(shape) * np.dtype(dtype).itemsize != length:
+        return None
+    array: NDArray[Any] = np.frombuffer(memoryview(view)[_HEAD.size : start], dtype)
+    return array.reshape(shape)
 
 
 def restore_text(bottle: Bottle) -> Any:

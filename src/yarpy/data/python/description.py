@@ -9,6 +9,7 @@ the end first. Numbers, words and lists alone are in it: nothing in it names cod
 
 from __future__ import annotations
 
+from functools import lru_cache
 from struct import Struct
 from typing import Final
 
@@ -57,5 +58,26 @@ def of_array(dtype: str, shape: tuple[int, ...]) -> bytes:
     return b"".join(pieces)
 
 
+@lru_cache(maxsize=64)
+def array_type(content: bytes) -> tuple[str, tuple[int, ...]] | None:
+    """Return type and shape of what `of_array` wrote; None for any other description. A program
+    reads the same one again and again."""
+    start = 8 + len(_ARRAY) + 8
+    if len(content) < start or content[8 : 8 + len(_ARRAY)] != _ARRAY:
+        return None
+    end = start + max(0, _PAIR.unpack_from(content, start - 8)[1])
+    sizes = content[end:]
+    if len(sizes) % _PAIR.size:
+        return None
+    dtype = content[start:end].decode("latin-1")
+    shape = tuple(size for _, size in _PAIR.iter_unpack(sizes))
+    if min(shape, default=0) < 0 or not dtype.isascii() or of_array(dtype, shape) != content:
+        return None
+    return dtype, shape
+
+
 def _word(text: str) -> bytes:
     return _PAIR.pack(STRING, len(text)) + text.encode()
+
+
+_ARRAY: Final = _word("array")
