@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
 PAUSES: Final = (0.2, 0.6, 1.2)  # seconds before each attempt to reach a target that went away
 COMMANDS: Final = "*** Available commands:"
+LATER: Final = "; `yarpy rpc --client /me` waits until /me is connected to a server"
 HELP: Final = ["help"]
 HELP_ALL: Final = [yarpy.Vocab("help"), yarpy.Vocab("all")]
 
@@ -220,9 +221,8 @@ def talk(port: str, name: str = "", admin: bool = False) -> int:
     try:
         target = Target(port, name, admin)
     except YarpError as error:
-        complain(f"Cannot make connection: {error}")
-        if not (admin or isinstance(error, NoNameServer)):
-            click.echo("Alternative method: precede port name with --client", err=True)
+        later = "" if admin or isinstance(error, NoNameServer) else LATER
+        complain(f"Cannot make connection: {error}{later}")
         return 1
     try:
         converse(target.ask, f"rpc_{port}", port="" if admin else port)
