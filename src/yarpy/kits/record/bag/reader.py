@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.errors import DecodeError, MissingFile, UnknownPlugin
+from yarpy.kits.record.bag.bounded import BoundedFile
 from yarpy.kits.record.mcap.layout import Channel, Damaged, Other, Schema
 from yarpy.kits.record.mcap.tape import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
@@ -44,11 +45,18 @@ class BagTape:
         self.damages: list[Damaged] = []
         self.complete = True
         self._reader: Any
+        self._file = None if self.path.is_dir() else BoundedFile(self.path)
+        file: Any = self._file  # it has what is asked of a path
         try:
-            self._reader = (Reader2 if self.path.is_dir() else Reader1)(self.path)
+            self._reader = Reader2(self.path) if file is None else Reader1(file)
             self._reader.open()
+            if file is not None:
+                file.opened(self._reader)
         except Exception as error:  # whatever the library raises for what a stranger wrote
-            raise DecodeError(f"{path}: {error}") from error
+            where = "" if file is None else f" byte {file.place}:"
+            if file is not None:
+                file.close()
+            raise DecodeError(f"{path}:{where} {error or type(error).__name__}") from error
         kind = "ROS 2" if self.path.is_dir() else "ROS 1"
         self.facts = {"bag": kind}
         self._ros2 = self.path.is_dir()
@@ -121,7 +129,9 @@ class BagTape:
             except StopIteration:
                 return
             except Exception as error:
-                self.damages.append(Damaged(0, f"the bag cannot be read on: {error}"))
+                place = 0 if self._file is None else self._file.place
+                why = str(error) or type(error).__name__
+                self.damages.append(Damaged(place, f"the bag cannot be read on: {why}"))
                 return
             number = counts.get(one.id, 0)
             counts[one.id] = number + 1
@@ -132,8 +142,11 @@ class BagTape:
         return []
 
     def close(self) -> None:
-        """Close it."""
-        self._reader.close()
+        """Close it. Idempotent."""
+        if self._file is not None:
+            self._file.close()
+        elif self._reader.is_open:
+            self._reader.close()
 
 
 def _qos_text(ext: Any) -> str:
