@@ -27,7 +27,7 @@ def test_it_looks_at_a_point(gaze):
     gaze.look_at(point, confirmed=True)
     assert gaze.wait_motion_done(0.01)
     wait_until(lambda: near(gaze.fixation_point(), point))
-    assert near(gaze.direction(point), gaze.angles(), 0.01)
+    wait_until(lambda: near(gaze.direction(point), gaze.angles(), 0.01))
     gaze.look_at((-1.0, 0.0, 0.3))
     wait_until(lambda: near(gaze.fixation_point(), (-1.0, 0.0, 0.3)))
     assert gaze.wait_saccade_done(0.01) and gaze.state_time("x") > 0
@@ -36,6 +36,7 @@ def test_it_looks_at_a_point(gaze):
 def test_it_turns(gaze):
     gaze.turn_to((10.0, -5.0, 4.0))
     wait_until(lambda: near(gaze.angles(), (10.0, -5.0, 4.0)))
+    assert gaze.wait_motion_done(0.01)  # a turn further begins where it is
     gaze.turn_to((5.0, 5.0, 0.0), relative=True, confirmed=True)
     wait_until(lambda: near(gaze.angles(), (15.0, 0.0, 4.0)))
     assert near(gaze.desired_joints(), (0.0, 0.0, -15.0, 0.0, 0.0, 4.0))
@@ -109,6 +110,11 @@ def test_contexts_and_what_is_refused(gaze):
 def test_events(gaze):
     heard = []
     gaze.on_event("motion-done", heard.append)
-    wait_until(lambda: gaze.look_at((-1.0, 0.1, 0.3), confirmed=True) or bool(heard))
+
+    def looked():
+        gaze.look_at((-1.0, 0.1, 0.3), confirmed=True)
+        return gaze.wait_motion_done(0.01) and bool(heard)
+
+    wait_until(looked)
     assert heard[0].kind == "motion-done" and heard[0].share is None
     gaze.off_event("motion-done")
