@@ -154,7 +154,7 @@ _PLACES: Final = len(fields(Row))
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """What nodes of a graph call each other with, and the `word` for it among administrative
+    """A call that nodes of a graph make to each other, and the `word` for it among administrative
     requests. `changes`: it tells the node something, others only ask. `everywhere`: ports that
     belong to no node answer it too."""
 
