@@ -161,3 +161,15 @@ def test_a_text_that_explodes_is_refused_with_its_place() -> None:
     lines += [f"<var name='v{n}'>${{v{n - 1}}}${{v{n - 1}}}</var>" for n in range(1, 60)]
     with pytest.raises(DecodeError, match=r"a.xml:\d+:1: with its variables"):
         document(app(*lines))
+
+
+@pytest.mark.parametrize(
+    ("node", "many"), [("", 1), ("<node>pc1</node>", 0), ("<node>localhost</node>", 0)]
+)
+def test_nobody_looks_for_a_computer_that_has_enough(node: str, many: int) -> None:
+    found = problems(
+        f"<application><name>a</name>\n<module><name>sleep</name>{node}<dependencies>\n"
+        "<computer><memory>1</memory></computer></dependencies></module></application>"
+    )
+    said = 'a.xml:3:1: warning: <computer> chooses none: "sleep" runs on this one, or where'
+    assert len(found) == many and all(one.startswith(said) for one in found)

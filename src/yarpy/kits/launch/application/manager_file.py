@@ -150,16 +150,22 @@ class _Reading:
             return
         starts, stops = self._ensure(element)
         first = next(element.all("dependencies"), None)
+        node = self._single(element, "node")
         computer: dict[str, str] = {}
         for child in first.children if first is not None else ():
             if child.tag.lower() == "computer":
                 computer |= {one.tag: self._text(one) for one in child.children}
+                if not node:
+                    self._warn(
+                        child.where,
+                        f'<computer> chooses none: "{name}" runs on this one, or where <node> says',
+                    )
         self.found.modules.append(
             Module(
                 label=name,
                 name=name,
                 parameters=self._single(element, "parameters"),
-                node=node_name(self._single(element, "node")),
+                node=node_name(node),
                 prefix=self._single(element, "prefix"),
                 workdir=self._single(element, "workdir"),
                 stdio=self._single(element, "stdio"),
