@@ -14,6 +14,7 @@ on the command line of the program holds for all its nodes.
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 import time
@@ -43,6 +44,7 @@ from yarpy.peers.ros.message.library import Service, default_library
 from yarpy.peers.ros.message.message import Message as RosMessage
 from yarpy.peers.ros.message.message import Time
 from yarpy.peers.ros.role import RosRole, services, without_masters
+from yarpy.peers.ros.rosout import Rosout
 from yarpy.peers.ros.type_server import ask_type_server
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort
@@ -204,6 +206,7 @@ class Node:
         plain = without_masters(self._names)
         self._node: GraphNode = GRAPH.use(self.name, self.master, plain, open_hub)
         self._closed = False
+        self._rosout = Rosout()
         for key, value in self._said.parameters.items():
             self.set_param(f"~{key}", value)
         self._simulated: float | None = None  # seconds, where the time is simulated
@@ -356,6 +359,11 @@ class Node:
 
     def _set_time(self, message: Any) -> None:
         self._simulated = message.clock.to_sec()
+
+    @property
+    def logger(self) -> logging.Logger:
+        """The log of the node, which comes to /rosout; other nodes may set its level."""
+        return self._rosout.of(self)
 
     # -- names, and the end -----------------------------------------------------------------------
 
