@@ -11,6 +11,7 @@ ROBOT = Path(__file__).parents[4] / "examples/simulated_robot.xml"
 def test_the_simulated_robot_runs_until_it_is_asked_to_end(
     cli, server: yarpy.NameServer, names
 ) -> None:
+    cli.environment["YARPY_LINGER"] = "20"  # a busy machine takes longer to take names off
     with cli.start("robot", str(ROBOT), "--width", "32", "--height", "24", "--odd", "1") as robot:
         robot.wait_line("icubSim runs: 8 of 8 devices")
         robot.wait_line('no parameter has extern-name="odd"', stream="err")
@@ -24,6 +25,7 @@ def test_the_simulated_robot_runs_until_it_is_asked_to_end(
 
 
 def test_a_signal_ends_it(cli, names) -> None:
+    cli.environment["YARPY_LINGER"] = "20"
     with cli.start("robot", str(ROBOT), "--width", "32", "--height", "24") as robot:
         robot.wait_line("icubSim runs")
         robot.signal(signal.SIGINT)
