@@ -31,7 +31,7 @@ from yarpy.kits.record.sink import ENDING
 
 @dataclass
 class Converted:
-    """What was written: `path`, how many `messages`, and those that the new form does not take."""
+    """The outcome: `path`, how many `messages`, and those that the new form does not take."""
 
     path: Path
     messages: int = 0

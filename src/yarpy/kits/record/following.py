@@ -76,7 +76,7 @@ def compiled(pattern: str) -> re.Pattern[str] | None:
 
 
 class _Try:
-    """What is known of a port that is to be connected."""
+    """A port that is to be connected, and what is known of it."""
 
     __slots__ = ("address", "after", "dialled", "pause", "running", "unfit")
 

@@ -38,7 +38,7 @@ class Taken(NamedTuple):
 
 @dataclass(slots=True)
 class Count:
-    """What came from a port: `messages` and `bytes` that were taken, `lost` for want of memory,
+    """The counts of a port: `messages` and `bytes` that were taken, `lost` for want of memory,
     `left_out` to keep to a rate, `missed` that the counts of its envelopes say did not arrive."""
 
     messages: int = 0

@@ -15,7 +15,7 @@ _Numbers: TypeAlias = tuple[int, int, int]  # lost, missed, left out
 
 
 class Losses:
-    """What is lost of what is counted in `counts`, by ports."""
+    """The losses of what is counted in `counts`, by ports."""
 
     def __init__(self, counts: Mapping[str, Count]) -> None:
         self._counts = counts

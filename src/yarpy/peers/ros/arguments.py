@@ -23,7 +23,7 @@ _TRUTH: Final = {"true": True, "false": False, "yes": True, "no": False, "null":
 
 @dataclass(frozen=True)
 class Arguments:
-    """What was said: `special` words (`__name` without the lines), `remaps` of names as they were
+    """The arguments: `special` words (`__name` without the lines), `remaps` of names as they were
     written, and `parameters` of the node; `rest` is the program's own."""
 
     special: Mapping[str, str] = field(default_factory=dict)

@@ -36,7 +36,7 @@ LEVELS: Final = {
 
 
 class Speaker(Protocol):
-    """What a node offers."""
+    """The part of a node that its log needs."""
 
     name: str
 

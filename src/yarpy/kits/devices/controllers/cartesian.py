@@ -32,7 +32,7 @@ class HandPose(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """What comes nearest to a wish: metres; axis and angle; the joints, degrees."""
+    """The pose nearest to a wish: metres; axis and angle; the joints, degrees."""
 
     position: tuple[float, ...]
     orientation: tuple[float, ...]
@@ -190,7 +190,7 @@ class CartesianController(ControllerClient):
 
     @property
     def priority(self) -> str:
-        """What counts more, `position` or `orientation`."""
+        """Return which counts more, `position` or `orientation`."""
         found = self.ask(*self._words("get", "prio"))
         return str(found[0]) if found else ""
 
@@ -240,7 +240,7 @@ class CartesianController(ControllerClient):
 
     @property
     def tip(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """What is moved, seen from the hand: metres, and axis and angle."""
+        """Return the point that is moved, seen from the hand: metres, and axis and angle."""
         found = self.ask_numbers(*self._words("get", "tip"), least=7)
         return found[:3], found[3:]
 

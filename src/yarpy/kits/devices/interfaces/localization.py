@@ -19,7 +19,7 @@ Covariance = Annotated[yarpy.Matrix, External("yarp::sig::Matrix", python="yarpy
 
 
 class Localization2D(Interface):
-    """Who knows where the robot is."""
+    """The interface of a device that knows where the robot is."""
 
     NWS, NWC = "localization2D_nws_yarp", "localization2D_nwc_yarp"
     FAKE = "fakeLocalizer"

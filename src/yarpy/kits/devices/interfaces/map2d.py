@@ -12,7 +12,7 @@ from yarpy.kits.thrift.kind import Nested
 
 
 class Map2D(Interface):
-    """Who keeps maps."""
+    """The interface of a device that keeps maps."""
 
     NWS, NWC = "map2D_nws_yarp", "map2D_nwc_yarp"
     FAKE = "map2DStorage"

@@ -21,7 +21,8 @@ STATUS: Final = (
 
 
 class Navigation2D(Interface):
-    """Who drives the robot to places. `which`: `glob` or `loca`, of the map or around the robot."""
+    """The interface of what drives the robot to places. `which`: `glob` or `loca`, of the map or
+    around the robot."""
 
     NWS, NWC = "navigation2D_nws_yarp", "navigation2D_nwc_yarp"
     FAKE = "fakeNavigation"

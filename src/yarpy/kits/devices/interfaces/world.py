@@ -165,7 +165,7 @@ class World(Interface):
 
 
 class Descriptions(Interface):
-    """Who knows which devices a robot has."""
+    """The interface of a device that knows which devices a robot has."""
 
     NWS, NWC = "robotDescription_nws_yarp", "robotDescription_nwc_yarp"
     FAKE = "robotDescriptionStorage"

@@ -21,7 +21,7 @@ _TEMPORARY: Final = (CELLS.index("temporary obstacle"), CELLS.index("enlarged ob
 
 
 class _Shelf(Generic[T]):
-    """What has a name, of one kind."""
+    """The named things of one kind."""
 
     def __init__(self, what: str, most: int) -> None:
         self._what, self._most = what, most

@@ -112,7 +112,7 @@ def command(
 
 @dataclass(frozen=True, slots=True)
 class _Wish:
-    """What the options say."""
+    """The options, as the command line gives them."""
 
     policy: str
     patience: float

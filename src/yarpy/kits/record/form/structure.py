@@ -122,7 +122,7 @@ class _Walk:
 
 
 class Structures:
-    """What the messages of a port were last like."""
+    """The structure of the last messages of each port."""
 
     def __init__(self) -> None:
         self._known: Structure | None = None

@@ -328,7 +328,7 @@ class _Walk:
             run[:] = place, whole, received, received
 
     def end_run(self) -> None:
-        """What comes next is no message."""
+        """End the run: what comes next is no message."""
         if self._run:
             place, length, first, last = self._run
             self._index.add(place, length, first, last, bare=True)

@@ -57,7 +57,7 @@ class Record(NamedTuple):
 
 
 class Schema(NamedTuple):
-    """What messages are: the name of their type, and its description in some language."""
+    """The type of messages: its name, and its description in some language."""
 
     name: str = ""
     encoding: str = ""
@@ -84,7 +84,7 @@ class Other(NamedTuple):
 
 
 class ChunkHead(NamedTuple):
-    """What stands in front of the records of a chunk: `start` is where these begin in it."""
+    """The head of a chunk: `start` is where these begin in it."""
 
     first: int
     last: int

@@ -191,7 +191,7 @@ def progress(player: Player) -> str:
 
 
 class Keys:
-    """What keys stand for. `l` is pressed at the beginning of a range, at its end, and to go on."""
+    """The keys. `l` is pressed at the beginning of a range, at its end, and to go on."""
 
     def __init__(self, player: Player) -> None:
         self._player = player

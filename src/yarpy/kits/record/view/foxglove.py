@@ -29,7 +29,7 @@ _SECOND: Final = 1_000_000_000
 
 @dataclass(frozen=True)
 class Channel:
-    """What a port is to a client: `schema` describes messages in `encoding`."""
+    """A port as clients see it: `schema` describes messages in `encoding`."""
 
     id: int
     topic: str
@@ -41,7 +41,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Control:
-    """What a client wants of the time: to stand still or not, how fast to go, where from (`seek`,
+    """A client's wish about the time: to stand still or not, how fast to go, where from (`seek`,
     in nanoseconds; None: from where it is). `request` names the wish."""
 
     paused: bool

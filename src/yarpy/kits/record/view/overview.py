@@ -17,7 +17,7 @@ _LEAST: Final = 1.0  # seconds
 
 
 class Row:
-    """What is known of a port: `bins`, how many messages came in each; `silences`, the longest."""
+    """A port in the overview: `bins`, how many messages came in each; `silences`, the longest."""
 
     def __init__(self) -> None:
         self.bins = [0] * BINS

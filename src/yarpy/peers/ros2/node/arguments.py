@@ -55,7 +55,7 @@ class Given(NamedTuple):
 
 @dataclass(frozen=True)
 class Arguments:
-    """What was said; `rest` is the program's own. `log_level` is a name of rcutils, or ""."""
+    """The arguments; `rest` is the program's own. `log_level` is a name of rcutils, or ""."""
 
     rules: tuple[Rule, ...] = ()
     parameters: tuple[Given, ...] = ()

@@ -306,8 +306,8 @@ class Node:
 
 
 def chosen(said: str | None, environment: Mapping[str, str] = os.environ) -> Callable[..., Rmw]:
-    """What makes the layer for a node: the one that is said, else that of RMW_IMPLEMENTATION, else
-    Zenoh. Raises AddressError."""
+    """Return what makes the layer for a node: the one that is said, else that of
+    RMW_IMPLEMENTATION, else Zenoh. Raises AddressError."""
     name = said or environment.get("RMW_IMPLEMENTATION") or "zenoh"
     if name in ("zenoh", "rmw_zenoh_cpp"):
         from yarpy.peers.ros2.zenoh.rmw import ZenohRmw
