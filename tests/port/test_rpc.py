@@ -185,8 +185,21 @@ def test_message_that_cannot_be_decoded_is_refused(names: LocalNames) -> None:
         assert client.call(Stamp(5, 1.0), timeout=5) == [5]
 
 
+class Missing:
+    """A value whose own method fails."""
+
+    def to_wire(self) -> tuple[bytes]:
+        raise KeyError("no such joint")
+
+
 @pytest.mark.parametrize(
-    ("odd", "why"), [(object(), "cannot be sent"), (2**70, "64 bits"), ("\ud800", "surrogates")]
+    ("odd", "why"),
+    [
+        (object(), "cannot be sent"),
+        (2**70, "64 bits"),
+        ("\ud800", "surrogates"),
+        (Missing(), "no such joint"),
+    ],
 )
 def test_answer_that_cannot_be_sent_is_an_answer_too(
     odd: object, why: str, names: LocalNames

@@ -32,7 +32,7 @@ from yarpy.port.options import PortOptions
 from yarpy.port.typed import of_type
 from yarpy.route import Route
 from yarpy.scope import CONNECTING, Flag, Scope, apart, moment
-from yarpy.wire.message import CALL, UNSENDABLE, Malformed, Message, Packet, T
+from yarpy.wire.message import CALL, Malformed, Message, Packet, T, is_unsent
 
 log = logger("yarpy.port")
 
@@ -115,7 +115,9 @@ class RpcServer(BasePort):
         if way is not None and (reply is not None or way.open):
             try:
                 (way.give if way.open else message.reply)(answer)
-            except UNSENDABLE as error:
+            except Exception as error:
+                if not is_unsent(error):
+                    raise
                 log.error("%s: the answer of the handler: %s", self.name, error)
                 message.reply(answer_of(error))
 

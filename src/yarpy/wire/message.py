@@ -188,6 +188,11 @@ def mark_unsent(error: Exception) -> None:
             pass  # it takes no attributes, and so ends the connection
 
 
+def is_unsent(error: Exception) -> bool:
+    """Return whether a value could not be encoded, so that nothing of it has left."""
+    return isinstance(error, UNSENDABLE) or getattr(error, "yarpy_unsent", False)
+
+
 class Answer:
     """The way back of one question: a holder of the message may answer, once, from any thread.
 
@@ -211,8 +216,8 @@ class Answer:
         self.open = False
         try:
             self._send(value)
-        except UNSENDABLE:
-            self.open = True
+        except Exception as error:
+            self.open = is_unsent(error)
             raise
         finally:
             if self.then is not None and not self.open:

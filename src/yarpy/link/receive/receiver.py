@@ -27,7 +27,7 @@ from yarpy.link.send.slow_reader import STRANGERS
 from yarpy.log import logger
 from yarpy.wire.aside_stream import AsideStream
 from yarpy.wire.effects import Claim, Flush, May, Show, Within
-from yarpy.wire.message import CALL, DATA, Answer, Message
+from yarpy.wire.message import CALL, DATA, Answer, Message, mark_unsent
 from yarpy.wire.stream import LARGE, ByteStream
 
 if TYPE_CHECKING:
@@ -338,7 +338,11 @@ class Receiver:
         driver, stream = self.driver, self.driver.stream
         if self._unsent_acks:
             self._owe_acks()
-        self.carrier.encode_reply(stream, value)  # a TypeError leaves the question open
+        try:
+            self.carrier.encode_reply(stream, value)
+        except Exception as error:
+            mark_unsent(error)  # which leaves the question open
+            raise
         try:
             if self.carrier.acks:
                 self.carrier.encode_ack(stream, 1)

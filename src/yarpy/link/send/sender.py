@@ -23,7 +23,7 @@ from yarpy.link.send.confirmation import Confirmation, Fate
 from yarpy.link.send.slow_reader import SlowReader
 from yarpy.link.send.sweeper import GATHER_SECONDS, Sweeper
 from yarpy.link.send.window import ASK_EVERY, Window
-from yarpy.wire.message import UNSENDABLE, Packet
+from yarpy.wire.message import Packet, is_unsent
 
 if TYPE_CHECKING:
     from yarpy.carriers.base import Carrier
@@ -534,6 +534,6 @@ def mute(carrier: Carrier) -> bool:
 def interrupts(error: BaseException) -> bool:
     """Return whether a dialogue that met `error` is left half way, such as by Ctrl-C; a value that
     could not be encoded has not begun one, whatever its own methods raised."""
-    if isinstance(error, YarpError):
+    if isinstance(error, YarpError) or not isinstance(error, Exception):
         return True
-    return not (isinstance(error, UNSENDABLE) or getattr(error, "yarpy_unsent", False))
+    return not is_unsent(error)
