@@ -286,7 +286,7 @@ def test_what_is_found_dead_while_it_is_disconnected_stays_so(
     ):
         writer.connect("/again/in", "udp")
         assert reader.wait_for_inputs(timeout=HANG)
-        (link,) = reader._hub.inputs.links
+        (link,) = reader._hub.inputs.connections  # others ask how much has come
         ask_to_leave = disconnecting.goodbye.ask_to_leave
 
         wanted: list[object] = []
