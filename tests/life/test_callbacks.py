@@ -31,9 +31,9 @@ def _methods_of_no_service(client: RpcClient[Any]) -> None:
 # What is called, for each public name of a port.
 CALLS: dict[str, Callable[[Any], object]] = {
     "address": lambda port: port.address,
-    "ask": lambda port: port.ask("question", timeout=0.2),
+    "ask": lambda port: port.ask("question", timeout=4.0),
     "attach": lambda port: port.attach("in", {"monitor": "throttleDown"}),
-    "call": lambda port: port.call("question", timeout=0.2),
+    "call": lambda port: port.call("question", timeout=4.0),
     "close": lambda port: port.close(),
     "closed": lambda port: port.closed,
     "connect": lambda port: port.connect("/sink", "tcp"),
@@ -58,11 +58,11 @@ CALLS: dict[str, Callable[[Any], object]] = {
     "resume": lambda port: port.resume(),
     "stats": lambda port: port.stats,
     "strict": lambda port: port.strict,
-    "tell": lambda port: port.tell("news", timeout=0.2),
+    "tell": lambda port: port.tell("news", timeout=4.0),
     "wait_for_inputs": lambda port: port.wait_for_inputs(2, timeout=0.05),
     "wait_for_outputs": lambda port: port.wait_for_outputs(2, timeout=0.05),
     "waiting": lambda port: port.waiting,
-    "write": lambda port: port.write([1], timeout=1.0),
+    "write": lambda port: port.write([1], timeout=4.0),
 }
 
 
