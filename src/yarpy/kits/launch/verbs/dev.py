@@ -135,11 +135,11 @@ def _run(opened: Alone) -> int:
         return [yarpy.Vocab("ok")]
 
     with opened, yarpy.RpcServer(f"{opened.name.rstrip('/')}/quit", answer):
-        if opened.server:
-            print_line(f"{opened.device} is served as {opened.name} ({opened.server})")
-        else:
-            print_line(f"{opened.device} is open")
         try:
+            if opened.server:
+                print_line(f"{opened.device} is served as {opened.name} ({opened.server})")
+            else:
+                print_line(f"{opened.device} is open")
             over.wait()
         except Interrupted:
             pass

@@ -86,8 +86,8 @@ def command(
             if others[system]:
                 shown = robots.load(system)().show(opened)
                 click.get_current_context().with_resource(shown)
-    print_line(f"{opened.name} is ready: {' '.join(opened.ports)}")
     try:
+        print_line(f"{opened.name} is ready: {' '.join(opened.ports)}")
         threading.Event().wait()
     except signals.Interrupted:
         pass
