@@ -63,17 +63,22 @@ def test_played_as_a_node(graph: RosGraph, tmp_path: Path) -> None:
             at = START + n * 10_000_000
             writer.add_other(Other(arm, n, at, at, data))
             writer.add("/eye", f"{n} 1.5", at, payload_of(picture))
+    types = {"/arm": "sensor_msgs/JointState", "/eye": "sensor_msgs/Image"}
     with (
         record.open(tmp_path / "x.mcap") as found,
         record.Player(found, node="/player", loop=True) as player,
-        graph.run("rostopic", "echo", "/arm") as arm_echo,
-        graph.run("rostopic", "echo", "/eye/encoding") as eye_echo,
     ):
         assert player.ports == {"/arm": "/arm+@/player", "/eye": "/eye+@/player"}
         playing = threading.Thread(target=player.play)
         playing.start()
-        wait_until(lambda: "elbow" in arm_echo.stdout and "mono8" in eye_echo.stdout)
-        assert dict(graph.master.call("getTopicTypes", "/test"))["/arm"] == "sensor_msgs/JointState"
+        # Before that, rostopic takes what it is to echo of a topic for a part of its name.
+        wait_until(lambda: types.items() <= dict(graph.master.call("getTopicTypes", "/x")).items())
+        with (
+            graph.run("rostopic", "echo", "/arm") as arm_echo,
+            graph.run("rostopic", "echo", "/eye/encoding") as eye_echo,
+        ):
+            wait_until(lambda: "elbow" in arm_echo.stdout)
+            wait_until(lambda: "mono8" in eye_echo.stdout)
         player.stop()
         playing.join(HANG)
         assert not playing.is_alive()
