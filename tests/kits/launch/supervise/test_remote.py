@@ -59,8 +59,9 @@ class Started:
 
 
 @pytest.fixture
-def runner(network: yarpy.LocalNames) -> RemoteRunner:
-    return RemoteRunner("/node", "app one", grace=0.3, names=network)
+def runner(network: yarpy.LocalNames) -> Iterator[RemoteRunner]:
+    with RemoteRunner("/node", "app one", grace=0.3, names=network) as runner:
+        yield runner
 
 
 def test_lines_come_before_the_end_and_its_code(serve: Serve, runner: RemoteRunner) -> None:
@@ -117,12 +118,27 @@ def test_what_an_earlier_up_has_left_is_not_started_twice(
     first = Started(runner, "sleep", "600")
     with pytest.raises(LocalProtocolError, match="app_one:p runs at /node already: --replace"):
         Started(runner, "sleep", "600")
-    replacing = RemoteRunner("/node", "app one", grace=5.0, replace=True, names=network)
-    second = Started(replacing, "sleep", "600")
-    assert second.handle.pid != first.handle.pid
-    wait_until(lambda: len(server.programs) == 1)  # it looks for those that have ended
-    second.handle.terminate()
-    assert second.end() == -signal.SIGTERM
+    with RemoteRunner("/node", "app one", grace=5.0, replace=True, names=network) as replacing:
+        second = Started(replacing, "sleep", "600")
+        assert second.handle.pid != first.handle.pid
+        wait_until(lambda: len(server.programs) == 1)  # it looks for those that have ended
+        second.handle.terminate()
+        assert second.end() == -signal.SIGTERM
+
+
+def test_one_that_is_closed_asks_its_server_no_more(
+    serve: Serve, network: yarpy.LocalNames
+) -> None:
+    server = serve()
+    with RemoteRunner("/node", "app one", grace=0.3, names=network) as runner:
+        started = Started(runner, "sleep", "600")
+        server.close()
+        wait_until(lambda: started.handle.state == "unknown")
+        started.handle.terminate()  # waits for the server
+        assert network.list("/up/node")
+    assert network.list("/up/node") == []
+    words = ("programs at /node", "ends app_one:p")
+    wait_until(lambda: not [one for one in threading.enumerate() if one.name.endswith(words)])
 
 
 def test_what_is_not_started_is_an_error(serve: Serve, runner: RemoteRunner) -> None:

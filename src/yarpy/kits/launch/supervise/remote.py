@@ -42,6 +42,7 @@ class RemoteRunner:
     """Starts programs of the application `application` at the server called `server`.
 
     `grace` is how long one may take to end; `replace` ends what an earlier `up` has left there.
+    Close it: it asks the server until then.
     """
 
     def __init__(
@@ -61,7 +62,27 @@ class RemoteRunner:
         self._lock = threading.Lock()  # of the table of handles
         self._handles: dict[str, RemoteHandle] = {}
         self._wake = threading.Event()
+        self.closing = threading.Event()
         self._thread: threading.Thread | None = None
+
+    def __enter__(self) -> RemoteRunner:
+        return self
+
+    def __exit__(self, *exc: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ask the server nothing any more. Programs that still run there go on, and whatever they
+        print is lost."""
+        self.closing.set()
+        self._wake.set()
+        with self._lock:
+            handles = [*self._handles.values()]
+            thread = self._thread
+        for handle in handles:
+            handle.port.close(0.0)
+        if thread is not None:
+            thread.join(ANSWER)
 
     def tag(self, name: str) -> str:
         """Return what a program is called there."""
@@ -126,20 +147,20 @@ class RemoteRunner:
 
         def follow() -> None:
             until = time.monotonic() + _ABANDONED
-            while time.monotonic() < until:
+            while time.monotonic() < until and not self.closing.is_set():
                 try:
                     with self.client() as node:
                         if node.is_running(tag):
                             node.signal(tag, _KILL)
                         return
                 except YarpError:
-                    time.sleep(AGAIN)
+                    self.closing.wait(AGAIN)
 
         threading.Thread(target=follow, name=f"yarpy abandons {tag}", daemon=True).start()
 
     def _watch(self) -> None:
         """Look at the programs until none is left, and again when there are new ones."""
-        while True:
+        while not self.closing.is_set():
             with self._lock:
                 handles = dict(self._handles)
             if not handles:
@@ -150,13 +171,14 @@ class RemoteRunner:
                 with self.client() as node:
                     while handles:
                         self._look(node, handles)
-                        time.sleep(PERIOD)
+                        if self.closing.wait(PERIOD):
+                            return
                         with self._lock:
                             handles = dict(self._handles)
             except YarpError as error:
                 for handle in handles.values():
                     handle.lose(str(error))
-                time.sleep(AGAIN)
+                self.closing.wait(AGAIN)
 
     def _look(self, node: RunClient, handles: dict[str, RemoteHandle]) -> None:
         there = {one.tag for one in node.running()}
@@ -253,7 +275,7 @@ class RemoteHandle:
 
     def _send(self, number: int) -> None:
         """Send a signal, as soon as the server answers."""
-        while not self._ended.is_set():
+        while not (self._ended.is_set() or self._runner.closing.is_set()):
             try:
                 with self._runner.client() as node:
                     node.signal(self._tag, number)

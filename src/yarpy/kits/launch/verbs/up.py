@@ -23,6 +23,7 @@ import signal
 import sys
 import threading
 import time
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -174,9 +175,12 @@ def _run(application: Application, file: Path, wish: _Wish) -> int:
     stream = LogStream(application) if wish.log else None
     printer = _Printer(live, stream)
 
+    remote = ExitStack()
+
     @functools.cache
     def runners(node: str) -> RemoteRunner:
-        return RemoteRunner(node, application.name, grace=wish.grace, replace=wish.replace)
+        runner = RemoteRunner(node, application.name, grace=wish.grace, replace=wish.replace)
+        return remote.enter_context(runner)
 
     supervisor = Supervisor(
         application,
@@ -231,6 +235,7 @@ def _run(application: Application, file: Path, wish: _Wish) -> int:
     finally:
         control.close()
         serving.close()
+        remote.close()
         if stream is not None:
             stream.close()
         record.close()
