@@ -5,6 +5,7 @@ import threading
 import time
 
 import pytest
+from support.lasted import lasted
 from support.wait import wait_until
 
 import yarpy
@@ -150,7 +151,7 @@ def test_loop_ends_though_a_write_was_cancelled_and_nothing_was_closed():
 
     started = time.monotonic()
     writer, reader = asyncio.run(main())
-    assert time.monotonic() - started < 10
+    assert lasted(started) < 10
     writer.port.close()
     reader.port.close()
 

@@ -6,6 +6,7 @@ import time
 from urllib.request import urlopen
 
 import pytest
+from support.lasted import lasted
 
 import yarpy
 from yarpy import aio
@@ -135,7 +136,7 @@ def test_loop_ends_though_a_call_was_cancelled_and_nothing_was_closed():
 
     started = time.monotonic()
     server, client = asyncio.run(main())
-    assert time.monotonic() - started < 10
+    assert lasted(started) < 10
     client.port.close()
     server.port.close()
 

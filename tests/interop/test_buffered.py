@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pytest
 from support.cpp import CppYarp
 from support.cpp_program import CppProgram
+from support.lasted import lasted
 from support.wait import wait_until
 
 import yarpy
@@ -92,7 +93,7 @@ def test_a_slow_reader_of_theirs_does_not_hold_us_up(peer: CppProgram, carrier: 
         port.connect("/cpp", carrier)
         began = time.monotonic()
         sent = [number for number in range(COUNT) if port.write([number])]
-        assert time.monotonic() - began < 10
+        assert lasted(began) < 10
         seen = peer.do(
             f"seen = []\nfor _ in range({len(sent)}):\n"
             "    port.read(bottle); seen.append(bottle.get(0).asInt32())\nseen"

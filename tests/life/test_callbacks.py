@@ -11,6 +11,7 @@ from functools import partial
 from typing import Any
 
 import pytest
+from support.lasted import lasted
 from support.wait import HANG
 
 from yarpy import network
@@ -111,7 +112,7 @@ class World:
             self._act(self.port)
         except BaseException as error:
             self.error = error
-        self.took = time.monotonic() - begun
+        self.took = lasted(begun)
         self.done.set()
         return None
 

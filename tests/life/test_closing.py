@@ -8,6 +8,7 @@ import threading
 import time
 
 import pytest
+from support.lasted import lasted
 from support.wait import wait_until
 
 import yarpy
@@ -43,7 +44,7 @@ def test_a_reader_that_takes_nothing(
                 break
         begun = time.monotonic()
         out.close(timeout=LIMIT)
-        assert time.monotonic() - begun < LIMIT + SLACK
+        assert lasted(begun) < LIMIT + SLACK
         found = books(out)
         assert sum(found.values()) == written
         [(target, lost, unsure)] = LINE.findall(caplog.text)
@@ -72,7 +73,7 @@ def test_a_write_that_waits_for_such_a_reader_ends(carrier: str) -> None:
         wait_until(lambda: out.stats.outputs[0].messages > 0)
         begun = time.monotonic()
         out.close(timeout=LIMIT)
-        assert time.monotonic() - begun < LIMIT + SLACK
+        assert lasted(begun) < LIMIT + SLACK
         thread.join(HANG)
         assert ended == ['"/out" is closed']
 

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support import held
 from support.capture import load_capture
+from support.lasted import lasted
 from support.multicast import needs_multicast
 from support.name_line import new_service
 from support.port import free_port
@@ -120,7 +121,7 @@ def test_search_finds_the_right_one_among_noise(port: int) -> None:
 def test_search_gives_up(port: int) -> None:
     start = time.monotonic()
     assert search("/root", port, timeout=0.05, tries=2, group=GROUP) is None
-    assert 0.09 < time.monotonic() - start < 2
+    assert time.monotonic() - start > 0.09 and lasted(start) < 2
 
 
 def test_a_server_that_does_not_know_the_name(port: int) -> None:
@@ -154,7 +155,7 @@ def test_close_ends_the_thread(port: int) -> None:
     responder.close()
     responder.close()
     assert held.threads() <= before
-    assert time.monotonic() - start < 5
+    assert lasted(start) < 5
     responder.start()
     assert search("/again", port, group=GROUP) is not None
     responder.close()

@@ -14,6 +14,7 @@ from http.client import HTTPConnection, HTTPResponse
 
 import numpy as np
 import pytest
+from support.lasted import lasted
 from support.peer import program
 from support.wait import wait_until
 
@@ -189,10 +190,10 @@ def test_stalled_browser_costs_the_port_nothing(names: LocalNames) -> None:
             for _ in range(200):
                 port.write(["x" * 100_000])
             port.flush()
-            assert time.monotonic() - started < FAST
+            assert lasted(started) < FAST
             assert port.outputs[0].stats.replaced > 50
         started = time.monotonic()
-    assert time.monotonic() - started < FAST
+    assert lasted(started) < FAST
 
 
 def test_browser_on_a_client_is_not_asked(names: LocalNames, echo: yarpy.RpcServer) -> None:

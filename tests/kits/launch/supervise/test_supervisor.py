@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+from support.lasted import lasted
 from support.wait import HANG, wait_until
 
 import yarpy
@@ -156,7 +157,7 @@ def test_a_hundred_programs(network: yarpy.LocalNames) -> None:
     wait_until(lambda: all_in(running, "running"))
     began = time.monotonic()
     assert running.stop() == [] and left(running) == {}
-    assert time.monotonic() - began < HANG
+    assert lasted(began) < HANG
 
 
 def test_what_is_ended_by_hand_can_be_started_again(network: yarpy.LocalNames) -> None:
