@@ -278,7 +278,8 @@ _CLIENTS: Final = (
     *(f"{kind}_nwc_yarp" for kind in _KINDS),
     *("battery_nwc_yarp", "controlBoard_nwc_yarp", "frameGrabber_nwc_yarp"),
     *("rangefinder2D_nwc_yarp", "JoypadControlClient", "RGBDSensorClient", "RemoteFrameGrabber"),
-    *("clientcontrolboard", "multipleanalogsensorsclient", "remote_controlboard", "remote_grabber"),
+    *("cartesiancontrollerclient", "clientcontrolboard", "gazecontrollerclient"),
+    *("multipleanalogsensorsclient", "remote_controlboard", "remote_grabber"),
 )
 
 SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {

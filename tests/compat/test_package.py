@@ -30,14 +30,18 @@ ALLOWED = {
     "yarpy.idl",
     "yarpy.kits",
     "yarpy.kits.devices",
+    "yarpy.kits.devices.catalogue",
     "yarpy.kits.devices.interfaces",
     "yarpy.kits.devices.status",
+    "yarpy.kits.devices.wrapper",
     "yarpy.kits.launch.manager",
+    "yarpy.kits.launch.robot.alone",
     "yarpy.log",
     "yarpy.names.default",
     "yarpy.network.connection",
     "yarpy.network.qos",
     "yarpy.qos",
+    "yarpy.registry",
 }
 
 

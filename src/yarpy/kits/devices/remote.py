@@ -21,9 +21,11 @@ from yarpy.names.base import NameClient
 #: What each is in `yarpy.kits.devices`; those of `interfaces` say it themselves.
 _CLASSES: Final = {
     "battery_nwc_yarp": "Battery",
+    "cartesiancontrollerclient": "CartesianController",
     "clientcontrolboard": "ControlBoard",
     "controlBoard_nwc_yarp": "ControlBoard",
     "frameGrabber_nwc_yarp": "FrameGrabber",
+    "gazecontrollerclient": "GazeController",
     "multipleanalogsensorsclient": "MultiSensor",
     "rangefinder2D_nwc_yarp": "Laser",
     "RemoteFrameGrabber": "FrameGrabber",

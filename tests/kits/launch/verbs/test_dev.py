@@ -1,10 +1,13 @@
 """`yarpy dev`: a device that is served until it is asked to end."""
 
+import re
 import signal
 
 import pytest
+from click.testing import CliRunner
 
 import yarpy
+from yarpy.kits.launch.verbs.dev import command
 
 
 def test_a_camera_is_served_until_it_is_asked_to_end(cli, names: yarpy.YarpNameClient) -> None:
@@ -55,8 +58,6 @@ def test_it_waits_for_what_is_not_there_yet(cli, names: yarpy.YarpNameClient) ->
 
 
 def test_what_cannot_be_opened_is_said_in_one_line(cli) -> None:
-    done = cli.run("dev")
-    assert done.returncode == 0 and "\n  fakeMotionControl\n" in done.stdout
     done = cli.run("dev", "--device", "fakeFrameGraber")
     assert done.returncode == 1
     assert done.stderr == (
@@ -64,7 +65,9 @@ def test_what_cannot_be_opened_is_said_in_one_line(cli) -> None:
         'did you mean "fakeFrameGrabber"?\n'
     )
     done = cli.run("dev", "controlBoard_nws_yarp", "--subdevice", "nothing")
-    assert done.returncode == 1 and 'type "nothing" is installed: see yarpy dev' in done.stderr
+    assert (
+        done.returncode == 1 and 'type "nothing" is installed: see yarpy dev --list' in done.stderr
+    )
     done = cli.run("dev", "controlBoard_nws_yarp", "--name", "/dev/bare")
     assert done.returncode == 1 and "--subdevice TYPE" in done.stderr.splitlines()[-1]
     done = cli.run("dev", "remote_controlboard", "--remote", "/nobody/here")
@@ -74,3 +77,10 @@ def test_what_cannot_be_opened_is_said_in_one_line(cli) -> None:
     done = cli.run("dev", "a", "--device", "b")
     assert done.returncode == 1 and '"a" is no option' in done.stderr
     assert cli.run("dev", "--from", "none.ini").returncode == 1
+
+
+@pytest.mark.parametrize("words", [[], ["--list"], ["fakeBattery", "--list"]])
+def test_the_types_are_listed_with_their_purposes(words: list[str]) -> None:
+    done = CliRunner().invoke(command, words, standalone_mode=False)
+    assert done.return_value == 0
+    assert re.search(r"^  fakeMotionControl +simulated joints of a robot: ", done.output, re.M)

@@ -3,7 +3,7 @@
     yarpy dev --device fakeFrameGrabber --name /cam --width 640
     yarpy dev --device controlBoard_nws_yarp --subdevice myArm --name /arm --period 0.02
     yarpy dev --from arm.ini                        options in a file, groups as [GENERAL]
-    yarpy dev                                       the types that are installed
+    yarpy dev --list                                the types that are installed, and what they are
 
 Rules: the options are those of C++ yarpdev. A device that comes without a server gets the one for
 its kind. ^C and SIGTERM end it, and so does `quit` at the port NAME/quit (`yarpy terminate NAME`).
@@ -39,6 +39,7 @@ _AGAIN: Final = 0.5  # seconds until a device that does not open is tried once m
 @click.option("--from", "--file", "source", metavar="FILE", help="Options in a file.")
 @click.option("--context", metavar="C", help="Where that file is looked for.")
 @click.option("--nested", "--lispy", "nested", metavar="TEXT", help='"(device TYPE) (KEY VALUE)".')
+@click.option("--list", "listed", is_flag=True, help="Print the types that can be opened.")
 @click.option("--wait", type=float, default=0.0, metavar="S", help="Try for S seconds to open it.")
 def command(
     given: tuple[str, ...],
@@ -48,6 +49,7 @@ def command(
     source: str | None,
     context: str | None,
     nested: str | None,
+    listed: bool,
     wait: float,
 ) -> int:
     """Open a device and serve it."""
@@ -69,7 +71,7 @@ def command(
     words = [word for key, value in named.items() if value for word in (f"--{key}", value)]
     options = yarpy.Property.from_text(nested or "")
     options.update(yarpy.ResourceFinder([*given, *words]).values)
-    if not options.get("device"):
+    if listed or not options.get("device"):
         return _types()
     log.show()
     server, kind = types(options)
@@ -83,11 +85,11 @@ def command(
 
 def _types() -> int:
     """Print the types that are installed."""
-    from yarpy.registry import devices
+    from yarpy.kits.devices.catalogue import lines
 
     print_line("types of devices, for yarpy dev --device TYPE:")
-    for one in devices.names():
-        print_line(f"  {one}")
+    for one in lines():
+        print_line(one)
     return 0
 
 
@@ -99,7 +101,9 @@ def _unknown(kind: str) -> str:
     known = devices.names()
     if kind in known:
         return ""
-    return f'no device of type "{kind}" is installed{advice(kind, known) or ": see yarpy dev"}'
+    return (
+        f'no device of type "{kind}" is installed{advice(kind, known) or ": see yarpy dev --list"}'
+    )
 
 
 def _opened(options: yarpy.Property, wait: float) -> Alone | None:
