@@ -11,7 +11,7 @@ import math
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from yarpy import linger, scope
 from yarpy.contact import Contact
@@ -44,6 +44,8 @@ from yarpy.wire.message import Message
 from yarpy.wire.stream import DEFAULT_LIMIT
 
 log = logger("yarpy.port")
+
+GIVING_BACK: Final = 0.5  # seconds for the name of a port that closes on a busy computer
 
 
 class Reconnect(Protocol):
@@ -256,7 +258,8 @@ class Hub:
 
     def close(self, seconds: float | None = None) -> None:
         """Close every connection in good order, then the port; the name is given back. All of it
-        takes so many seconds at most, or what `linger` says."""
+        takes so many seconds at most; where none are given, what `linger` says, and GIVING_BACK for
+        the name if all of that was needed for the rest."""
         with self.inputs.lock:
             self.life.closing = True
         self.life.calls.end(f'"{self.name}" is closed', last=True)
@@ -264,6 +267,7 @@ class Hub:
         own = [link.thread for link in (*self.inputs.links, *self.inputs.leaving)]
         self._ender.run(
             linger.seconds() if seconds is None else seconds,
+            last=GIVING_BACK if seconds is None and self.registration.answered else 0.0,
             wait=threading.current_thread() not in own,  # which are waited for
         )
 

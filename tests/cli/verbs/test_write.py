@@ -1,11 +1,12 @@
 """`yarpy write`."""
 
 import signal
+from typing import NamedTuple
 
 import pytest
 
 import yarpy
-from yarpy.cli.verbs.write import value_of
+from yarpy.cli.verbs.write import taken, value_of
 
 
 @pytest.fixture
@@ -116,3 +117,37 @@ def test_value_of():
     assert value_of("1 x", verbatim=True) == [0, "1 x"]
     with pytest.raises(yarpy.DecodeError):
         value_of("(" * 500 + ")" * 500, verbatim=False)
+
+
+class Outputs:
+    """A port of whose messages so many are still on their way, one time after the other."""
+
+    def __init__(self, *unacknowledged):
+        self.left = list(unacknowledged)
+        self.stats = self
+
+    def flush(self, timeout):
+        return not self.left
+
+    @property
+    def outputs(self):
+        return [Output("/reader", 9, self.left.pop(0))]
+
+
+class Output(NamedTuple):
+    target: str
+    messages: int
+    unacknowledged: int
+
+
+def test_a_slow_reader_is_waited_for():
+    assert taken(Outputs(9, 7, 2), standstill=0.0)
+
+
+def test_a_reader_that_was_stopped_is_not_waited_for_for_ever(capsys):
+    assert not taken(Outputs(9, 2, 2, 2), standstill=0.0)
+    assert "nothing was taken for 0 s by /reader" in capsys.readouterr().err
+
+
+def test_a_connection_that_broke_is_not_waited_for():
+    assert taken(Outputs(9, 9), standstill=3600.0)

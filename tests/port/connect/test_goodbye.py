@@ -47,6 +47,28 @@ def test_a_name_service_that_does_not_answer_is_asked_once(names: yarpy.LocalNam
             registration.names = names
 
 
+class Slow(yarpy.LocalNames):
+    """A name service that becomes too slow to tell where others are."""
+
+    slow = False
+
+    def query(self, name: str) -> yarpy.Contact | None:
+        if self.slow and name == "/out":
+            raise yarpy.NoNameServer("silent for a moment") from TimeoutError()
+        return super().query(name)
+
+
+def test_a_name_goes_back_to_a_name_service_that_was_silent_for_a_moment() -> None:
+    names = Slow()
+    with yarpy.Port("/out", names=names) as out, yarpy.BufferedPort("/in", names=names) as in_:
+        out.connect(f"/{in_.address}")
+        wait_until(lambda: in_.inputs)
+        names.slow = True
+        in_.close()
+        names.slow = False
+        assert "/in" not in [one.name for one in names.list()]
+
+
 def test_who_asked_for_a_connection_is_answered_by_a_port_that_closes(
     names: yarpy.LocalNames,
 ) -> None:

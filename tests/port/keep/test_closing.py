@@ -130,3 +130,22 @@ def test_the_frame_beneath_goes_on():
     end.run(1.0)
     assert depth == [1, 2]
     assert end.done
+
+
+def test_the_last_step_has_time_of_its_own():
+    left = []
+    look = lambda: left.append(scope.remaining())  # noqa: E731
+    closing((look, 0.5), (look, 1.0)).run(0.0, last=60.0)
+    assert left[0] == 0.0
+    assert 59.0 < left[1] <= 60.0
+
+
+def test_but_none_after_ctrl_c():
+    left = []
+
+    def cut():
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        closing((cut, 1.0), (lambda: left.append(scope.left()), 1.0)).run(60.0, last=60.0)
+    assert left[0] <= HURRY

@@ -13,8 +13,9 @@ from support.lasted import lasted
 from support.port import free_port
 from support.wait import HANG, wait_until
 
+from yarpy import scope
 from yarpy.contact import Contact
-from yarpy.errors import AddressError, NoNameServer
+from yarpy.errors import AddressError, NoNameServer, Timeout
 from yarpy.link.begin.accept_loop import LOOP
 from yarpy.names.client import YarpNameClient
 from yarpy.names.fallback_client import SeveralNames
@@ -239,6 +240,43 @@ def test_port_that_cannot_be_opened_leaves_nothing_behind(call: str) -> None:
     assert "/here" not in [one.name for one in LOOP.entrances]
     if call == "set":
         assert names.query("/here") is None
+
+
+class Late(LocalNames):
+    """A name service that takes more time to hear what a port is than that has for opening."""
+
+    def set(self, name: str, key: str, *values: str | int | float) -> list[str]:
+        while scope.remaining():
+            pass
+        raise Timeout("the time is over")
+
+    def unregister(self, name: str) -> None:
+        scope.left()  # as what asks a server does
+        super().unregister(name)
+
+
+def test_port_whose_time_to_open_is_over_leaves_no_name_behind() -> None:
+    names = Late()
+    with pytest.raises(Timeout):
+        Port("/here", names=names, timeout=0.05)
+    assert names.query("/here") is None
+
+
+class Busy(LocalNames):
+    """A name service that has to be waited for."""
+
+    def unregister(self, name: str) -> None:
+        scope.left()
+        super().unregister(name)
+
+
+def test_port_that_had_no_time_left_to_close_gives_its_name_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("YARPY_LINGER", "0")
+    names = Busy()
+    Port("/here", names=names).close()
+    assert names.query("/here") is None
 
 
 @pytest.mark.parametrize("number", [-1, 65536])

@@ -4,14 +4,18 @@ Each line is Bottle text; an empty one is an empty message. `verbatim` sends lin
 the two elements 0 and the text, and 1 and `<EOF>` at the end: what `yarpy read` prints bare.
 
 Differs from C++: the last line counts also without a line end; what is typed is remembered.
-Exit codes: 0 at the end of input; 1 the port or a connection cannot be made, or after ^C.
+At the end of input it waits for its readers, as long as they take something.
+
+Exit codes: 0 at the end of input; 1 the port or a connection cannot be made, or a reader takes
+nothing any more, or after ^C.
 """
 
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, Final
 
 import click
 
@@ -22,6 +26,7 @@ from yarpy.cli.signals import Interrupted
 from yarpy.cli.stderr import complain
 
 EOF = (1, "<EOF>")
+STANDSTILL: Final = 10.0  # seconds in which no reader took anything: one of them is stopped
 
 
 def value_of(line: str, verbatim: bool) -> Any:
@@ -32,8 +37,9 @@ def value_of(line: str, verbatim: bool) -> Any:
 
 def feed(
     port: yarpy.Port, lines: Iterable[str], verbatim: bool = False, period: float = 0.0
-) -> None:
-    """Send `lines`; with `period`, the last one again and again, that many seconds apart."""
+) -> bool:
+    """Send `lines`; with `period`, the last one again and again, that many seconds apart. Return
+    whether all was taken."""
 
     repeater = _Repeater(port, period)
     if period:
@@ -48,7 +54,25 @@ def feed(
     repeater.stopped.set()
     if verbatim:
         port.write(EOF)
-    port.flush()
+    return taken(port)
+
+
+def taken(port: yarpy.Port, standstill: float = STANDSTILL) -> bool:
+    """Wait until the readers have taken all, as long as they take something; return whether they
+    have. One that was stopped would be waited for without end."""
+    before: object = None
+    begun = time.monotonic()
+    while not port.flush(standstill):
+        if time.monotonic() < begun + standstill:
+            return True  # a connection broke, which is logged
+        outputs = port.stats.outputs
+        now = [(one.target, one.messages, one.unacknowledged) for one in outputs]
+        if now == before:
+            names = ", ".join(one.target for one in outputs)
+            complain(f"not waiting any longer: nothing was taken for {standstill:g} s by {names}")
+            return False
+        before, begun = now, time.monotonic()
+    return True
 
 
 class _Repeater(threading.Thread):
@@ -105,13 +129,14 @@ def command(
             if wait_connect:
                 writer.wait_for_outputs()
             try:
-                feed(writer, prompt.lines(history=f"write_{port}"), verbatim, period or 0.0)
+                lines = prompt.lines(history=f"write_{port}")
+                all_taken = feed(writer, lines, verbatim, period or 0.0)
             except Interrupted:
                 click.echo("Interrupting...", err=True)
                 raise
     except Interrupted:
         return 1
-    return 0
+    return 0 if all_taken else 1
 
 
 def _ignore(message: object) -> None:

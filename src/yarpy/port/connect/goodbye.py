@@ -35,13 +35,13 @@ def ask_to_leave(registration: Registration, source: str) -> None:
 
 
 def ask_all_to_leave(registration: Registration, sources: Iterable[str]) -> bool:
-    """Ask these ports in turn. False, and no more are asked, if the name service does not answer:
-    waiting for it once is enough."""
+    """Ask these ports in turn; no more once the name service does not answer. False if there is
+    none any more. One that was silent for the moment that this may take may only be busy."""
     for source in sources:
         try:
             ask_to_leave(registration, source)
-        except NoNameServer:
-            return False
+        except NoNameServer as error:
+            return isinstance(error.__cause__, TimeoutError)
     return True
 
 

@@ -46,28 +46,31 @@ class Closing:
         self._lock = threading.RLock()  # of a thread that may not exist here
         self._closer = 0
 
-    def run(self, seconds: float, wait: bool = True) -> None:
-        """Do what is left to do, in so many seconds. With `wait` False, do nothing if another
-        thread is at it."""
+    def run(self, seconds: float, wait: bool = True, last: float = 0.0) -> None:
+        """Do what is left to do, in so many seconds; the last step has `last` seconds at least,
+        whatever the others took. With `wait` False, do nothing if another thread is at it."""
         me = threading.get_ident()
         if self._closer == me or not self._lock.acquire(blocking=wait):
             return
         try:
             self._closer = me
             if self._todo:
-                self._run(seconds)
+                self._run(seconds, last)
         finally:
             self._closer = 0
             self._lock.release()
 
-    def _run(self, seconds: float) -> None:
+    def _run(self, seconds: float, last: float) -> None:
         begun = time.monotonic()
         limit = begun + seconds
         cut: BaseException | None = None
         for step in (*self._todo,):
             act, share = step
+            until = min(begun + share * seconds, limit)
+            if cut is None and len(self._todo) == 1:
+                until = max(until, time.monotonic() + last)
             try:
-                _do(act, min(begun + share * seconds, limit))
+                _do(act, until)
             except YarpError as error:
                 log.info("%s: while closing: %s", self._name(), error)
             except BaseException as error:

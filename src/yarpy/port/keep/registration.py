@@ -24,11 +24,13 @@ from yarpy.names.fallback_client import SeveralNames
 from yarpy.port.connect.probe import who
 from yarpy.registry import carriers
 from yarpy.route import Declared
+from yarpy.scope import Scope, moment, outside
 from yarpy.transports.bind import SETTING, listening_host
 
 log = logger("yarpy.port")
 
 BUSY: Final = 3.0  # seconds for a port that lives to say so
+FORGETTING: Final = 1.0  # seconds to take out the name of a port that could not be opened
 
 _TAKEN: Final = (
     '"{}" was taken by another program at the same moment: close that one, or choose another name'
@@ -227,11 +229,13 @@ class Registration:
         return contact.host, contact.port
 
     def forget(self) -> None:
-        """Opening failed: leave no name behind."""
+        """Opening failed: leave no name behind. It may have failed because its time was over, so
+        this has some of its own."""
         if self._has_name and self.names is not None:
             try:
-                if not self.port or self._is_ours(self.names):
-                    self.names.unregister(self.name)
+                with outside(), Scope(moment(FORGETTING)):
+                    if not self.port or self._is_ours(self.names):
+                        self.names.unregister(self.name)
             except YarpError:
                 pass  # nobody to tell; a name server forgets names where nobody listens
 
