@@ -56,6 +56,15 @@ def said(path: Path) -> list[str]:
     return [str(one).removeprefix(f"{path.parent}/") for one in load(path).problems]
 
 
+@pytest.mark.parametrize("name", ["a.toml", "a.xml"])
+def test_one_with_nothing_in_it(tmp_path: Path, name: str) -> None:
+    text = "name = 'a'" if name == "a.toml" else "<application><name>a</name></application>"
+    (tmp_path / name).write_text(text)
+    assert said(tmp_path / name) == [
+        f"{name}: error: there are no programs and no connections in it"
+    ]
+
+
 def test_one_that_is_nowhere(tmp_path: Path) -> None:
     write(tmp_path, a_xml=OUTER.replace("Inner", "Iner"), b_xml=INNER)
     found = said(tmp_path / "a.xml")

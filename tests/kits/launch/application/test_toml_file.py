@@ -101,8 +101,16 @@ def test_slips(text: str, said: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "data", [b"a = ", b"\xff", b"a = " + b"[" * 100_000, b"#" + b"x" * (5 << 20)]
+    ("data", "said"),
+    [
+        (b"a = 1\n[b\n", "a.toml:2:3: this is no TOML: "),
+        (b"a = 1\nb =", "a.toml:2:4: this is no TOML: Invalid value before the end"),
+        (b"a = 1\nb = '\xff'", "a.toml:2:6: these bytes are not utf-8"),
+        (b"a = " + b"[" * 100_000, "a.toml: this is no TOML: brackets"),
+        (b"#" + b"x" * (5 << 20), "a.toml: the file has more than"),
+    ],
 )
-def test_what_is_no_file(data: bytes) -> None:
-    with pytest.raises(DecodeError, match=r"a\.toml: "):
+def test_what_is_no_file(data: bytes, said: str) -> None:
+    with pytest.raises(DecodeError) as caught:
         read(data, "a.toml", {})
+    assert str(caught.value).startswith(said)

@@ -198,6 +198,8 @@ def _check(found: Application) -> None:
     def warn(where: Where, text: str, fatal: bool = False) -> None:
         found.problems.append(Problem(where, text, fatal))
 
+    if not found.modules and not found.connections and not found.fatal:
+        warn(Where(found.files[0]), "there are no programs and no connections in it", True)
     labels = [module.label for module in found.modules]
     for module in found.modules:
         for other in module.after:

@@ -34,6 +34,7 @@ from yarpy.kits.launch.application.application import (
 from yarpy.kits.launch.application.manager_file import Document, Nested, node_name
 from yarpy.kits.launch.application.variable import expand
 from yarpy.kits.launch.document.advice import advice
+from yarpy.kits.launch.document.element import BadFile, decoded
 from yarpy.kits.launch.document.problem import Problem, Where
 from yarpy.limit import APPLICATION_FILE
 
@@ -48,6 +49,8 @@ _PROGRAM: Final = (
 _CONNECTION: Final = ("from", "to", "carrier", "id", "external", "persist", "qos")
 _NEED: Final = ("port", "timeout", "request", "reply")
 _NESTED: Final = ("file", "prefix")
+_AT: Final = re.compile(r"(.*) \(at line (\d+), column (\d+)\)", re.DOTALL)
+_AT_END: Final = " (at end of document)"
 _ARROW: Final = re.compile(r"(\S+)\s*->\s*(\S+)(?:\s+(\S+))?")
 
 
@@ -58,15 +61,28 @@ def read(
     variables: Mapping[str, str] | None = None,
 ) -> Document:
     """Return what a file says; `variables` are those of the one that it is nested in.
-    Raises DecodeError for one that is no TOML."""
+    Raises BadFile for one that is no TOML."""
     if len(data) > APPLICATION_FILE:
-        raise DecodeError(f"{file}: the file has more than {APPLICATION_FILE} bytes")
+        raise BadFile(Where(file), f"the file has more than {APPLICATION_FILE} bytes")
+    text = decoded(data, file, "utf-8")
     try:
-        text = data.decode("utf-8")
         told = tomllib.loads(text)
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
-        raise DecodeError(f"{file}: this is no TOML: {error}") from None
+    except tomllib.TOMLDecodeError as error:
+        said, line, column = _told(str(error), text)
+        raise BadFile(Where(file, line, column), f"this is no TOML: {said}") from None
+    except RecursionError:
+        raise BadFile(Where(file), "this is no TOML: brackets are too many deep") from None
     return _Reading(text, file, environment, variables or {}).document(told)
+
+
+def _told(said: str, text: str) -> tuple[str, int, int]:
+    """Return what Python's parser says, and the line and column that are in it."""
+    if found := _AT.fullmatch(said):
+        return found[1], int(found[2]), int(found[3])
+    if said.endswith(_AT_END):
+        lines = text.split("\n")
+        return said.removesuffix(_AT_END) + " before the end", len(lines), len(lines[-1]) + 1
+    return said, 0, 0
 
 
 class _Reading:

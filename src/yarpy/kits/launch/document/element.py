@@ -86,14 +86,19 @@ def _decoded(data: bytes, file: str) -> str:
         raise BadFile(
             Where(file, 1), f'the encoding "{name}" is not known: write the file in utf-8'
         )
+    text = decoded(data, file, name)
+    return _HEAD.sub(lambda head: _LETTERS.sub(" ", head[0]), text, count=1)
+
+
+def decoded(data: bytes, file: str, name: str) -> str:
+    """Return the text of bytes in the encoding `name`. Raises BadFile."""
     try:
-        text = data.decode("utf-8-sig" if name == "utf-8" else name)
+        return data.decode("utf-8-sig" if name == "utf-8" else name)
     except UnicodeDecodeError as error:
         before = data[: error.start]
         line = before.count(b"\n") + 1
         column = len(before) - (before.rfind(b"\n") + 1) + 1
         raise BadFile(Where(file, line, column), f"these bytes are not {name}") from None
-    return _HEAD.sub(lambda head: _LETTERS.sub(" ", head[0]), text, count=1)
 
 
 def _forgiven(text: str) -> str:

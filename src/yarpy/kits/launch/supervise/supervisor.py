@@ -283,21 +283,21 @@ class Supervisor:
                 self._waves.setdefault(unit.label, 0)
 
     def _sample(self) -> dict[str, tuple[float, int]]:
-        """Return the per cent of a processor and the bytes of memory of each that runs here."""
+        """Return the per cent of a processor, since the last look or its start, and the bytes of
+        memory of each that runs here."""
         now = time.monotonic()
         then, before = self._sampled
         if now - then < _SAMPLE:
             return self._usage
         found = process.usage(self.sessions())
-        self._usage = {
-            label: (
-                100 * max(seconds - before.get(label, (seconds, 0))[0], 0.0) / (now - then)
-                if then
-                else 0.0,
-                memory,
-            )
-            for label, (seconds, memory) in found.items()
-        }
+        self._usage = {}
+        for label, (seconds, memory) in found.items():
+            started = self.units[label].started
+            if started >= then:  # it was not there at the last look
+                share = seconds / max(now - started, _SAMPLE)
+            else:
+                share = max(seconds - before.get(label, (seconds, 0))[0], 0.0) / (now - then)
+            self._usage[label] = 100 * share, memory
         self._sampled = now, found
         return self._usage
 

@@ -4,6 +4,7 @@
     yarpy up robot.xml --check          say what in the file is ignored, misspelt or missing
     yarpy up robot.toml --page          show it in a browser, too
     yarpy up robot.toml -d              in the background, until `yarpy down`
+    yarpy up robot.toml --server        with a name server of its own, if none answers
     yarpy up robot.toml --watch         start again what changes on the disk
 
 On a terminal a table shows each program: its state, processors, memory and last line; elsewhere
@@ -65,6 +66,8 @@ _NEWS: Final = 100  # that are kept for the screen
 @click.option("--log", is_flag=True, help="Show what programs print in `yarpy log`, too.")
 @click.option("--watch", is_flag=True,
               help="Follow changes of the file, and of files of programs.")  # fmt: skip
+@click.option("--server", is_flag=True,
+              help="Bring a name server along, if none answers.")  # fmt: skip
 @click.option("--page", is_flag=True, help="Show a page of it, which only you can see.")
 @click.option("--lines", "as_lines", is_flag=True, help="Print lines, on a terminal too.")
 def command(
@@ -79,12 +82,14 @@ def command(
     idle: bool,
     log: bool,
     watch: bool,
+    server: bool,
     page: bool,
     as_lines: bool,
 ) -> int:
     """Start the application of FILE and keep it running."""
     from yarpy.kits.launch.application.checking import checked
     from yarpy.kits.launch.application.load import load
+    from yarpy.kits.launch.supervise.name_server import name_server
 
     application = load(file)
     if check:
@@ -102,13 +107,13 @@ def command(
         (complain if problem.fatal else warn)(f"{problem.where}: {problem.text}")
     if application.fatal:
         return 1
-    if not application.modules and not application.connections:
-        complain(f"{file}: there are no programs and no connections in it")
-        return 1
     wish = _Wish(
-        policy, patience, grace, stop_on_failure, replace, idle, log, watch, page, as_lines
+        policy, patience, grace, stop_on_failure, replace, idle, log, watch, server, page, as_lines
     )
-    return _detach(application, file, wish) if detached else _run(application, file, wish)
+    if detached:
+        return _detach(application, file, wish)
+    with name_server(application, server) as told:
+        return _run(application, file, wish, told)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,12 +128,13 @@ class _Wish:
     idle: bool
     log: bool
     watch: bool
+    server: bool
     page: bool
     as_lines: bool
 
     def words(self) -> list[str]:
         """Return the options that say the same, but for what only a terminal has."""
-        flags = ("stop_on_failure", "replace", "idle", "log", "watch")
+        flags = ("stop_on_failure", "replace", "idle", "log", "watch", "server")
         return [
             *(
                 "--restart",
@@ -160,12 +166,13 @@ def _detach(application: Application, file: Path, wish: _Wish) -> int:
     return 0
 
 
-def _run(application: Application, file: Path, wish: _Wish) -> int:
+def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
     from yarpy.kits.launch.application.load import load
     from yarpy.kits.launch.console.control import Control, Record
     from yarpy.kits.launch.console.service import answer
     from yarpy.kits.launch.page.serving import Serving
-    from yarpy.kits.launch.supervise.leftover import end_all, told
+    from yarpy.kits.launch.supervise.leftover import end_all
+    from yarpy.kits.launch.supervise.leftover import told as named
     from yarpy.kits.launch.supervise.log_stream import LogStream
     from yarpy.kits.launch.supervise.remote import RemoteRunner
     from yarpy.kits.launch.supervise.supervisor import Supervisor
@@ -195,8 +202,8 @@ def _run(application: Application, file: Path, wish: _Wish) -> int:
     found = record.left()
     if found and not wish.replace:
         complain(
-            f"programs of an earlier `yarpy up`, which was killed, are still there: {told(found)}; "
-            f"`yarpy down {application.name}` ends them, and so does --replace"
+            "programs of an earlier `yarpy up`, which was killed, are still there: "
+            f"{named(found)}; `yarpy down {application.name}` ends them, and so does --replace"
         )
         return 1
     end_all(found, wish.grace)
@@ -214,6 +221,8 @@ def _run(application: Application, file: Path, wish: _Wish) -> int:
     watch = Watch(supervisor, lambda: load(file), printer.news, note) if wish.watch else None
     left: list[str] = []
     why = ""
+    if told:
+        printer.news("", told)
     try:
         try:
             if wish.page:
