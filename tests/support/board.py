@@ -56,6 +56,7 @@ class FakeBoard:
         self.temperature_limits = [80.0] * count
         self.gearbox_ratios = [100.0] * count
         self.counts_per_revolution = [8192.0] * count
+        self.automatic_brakes = [False] * count
         self.motor_torque_parameters = [tuple(float(value) for value in range(9))] * count
         self.impedances = [(0.5, 0.25)] * count
         self.impedance_offsets = [0.0] * count
@@ -101,6 +102,15 @@ class FakeBoard:
 
     def amplifier_status(self) -> list[int]:
         return [*range(self.count)]
+
+    def braked(self) -> list[bool]:
+        return [index == 1 for index in range(self.count)]
+
+    def apply_brakes(self, joints: list[int], active: list[bool]) -> None:
+        self.note("apply_brakes", joints, active)
+
+    def velocity_direct(self, joints: list[int], speeds: list[float]) -> None:
+        self.note("velocity_direct", joints, speeds)
 
     def faults(self) -> list[tuple[int, str]]:
         return [(index, f"test{index} torque" if index else "") for index in range(self.count)]

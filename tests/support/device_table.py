@@ -50,7 +50,8 @@ OWN: Final = (
         "IAmplifierControl IAxisInfo IControlCalibration IControlLimits IControlMode "
         "ICurrentControl IEncoders IEncodersTimed IImpedanceControl IInteractionMode IJointFault "
         "IMotor IMotorEncoders IPWMControl IPidControl IPositionControl IPositionDirect "
-        "IPreciselyTimed IRemoteCalibrator IRemoteVariables ITorqueControl IVelocityControl",
+        "IPreciselyTimed IRemoteCalibrator IRemoteVariables ITorqueControl IVelocityControl "
+        "IJointBrake IVelocityDirect",
     ),
     (
         "FrameGrabber",
@@ -100,8 +101,11 @@ RECORDED: Final = {
 #: Interfaces that another one has in itself.
 ALSO: Final = {"IRGBDSensor": "IDepthVisualParams"}
 
-#: Sensors that no C++ here has.
-_SINCE_3_11: Final = ("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers")
+#: What no C++ here has, or was not asked for when it was recorded.
+_SINCE: Final = (
+    *("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers"),
+    *("IJointBrake", "IVelocityDirect"),
+)
 
 _ALONE: Final = "C++ has no server or client of it: it stays within a program"
 _OLD: Final = "C++ has none of it any more"
@@ -123,10 +127,8 @@ WHY: Final = {
     "IGenericSensor": _ALONE,
     "IHapticDevice": _ALONE,
     "IJacobianCoupling": _ALONE,
-    "IJointBrake": "not yet: brakes of 4.0",
     "IJointCoupling": _ALONE,
     "IMultipleWrapper": "how devices are attached in C++: here they are arguments of servers",
-    "IVelocityDirect": "not yet: velocities of 4.0 without a trajectory",
     "IVirtualAnalogSensor": "not yet",
     "IVisualParams": _OLD,
     "IVisualServoing": _ALONE,
@@ -160,7 +162,7 @@ def table() -> str:
         view = "✔" if f"def view{each}(" in views else ""
         tried = ["C++ 3.5"] if devices[0] in tests else []
         tried += ["4.0 as recorded"] if RECORDED.get(name) in recorded else []
-        tried = [] if each in _SINCE_3_11 else tried
+        tried = [] if each in _SINCE else tried
         lines.append(f"| `{each}` | `{name}` ✔ | {there} | {view} | {', '.join(tried)} |")
     return "\n".join(lines) + "\n"
 

@@ -20,6 +20,9 @@ SENT = {
     "([vmo] 1) (8.0)": ("velocity_move", [1], [8.0]),
     "([vmos]) (1.0 2.0 3.0 4.0)": ("velocity_move", [0, 1, 2, 3], [1.0, 2.0, 3.0, 4.0]),
     "([vmog] 2 (0 2)) (1.0 2.0)": ("velocity_move", [0, 2], [1.0, 2.0]),
+    "([ived] [vdso] 1) (8.0)": ("velocity_direct", [1], [8.0]),
+    "([ived] [vdsa]) (1.0 2.0 3.0 4.0)": ("velocity_direct", [0, 1, 2, 3], [1.0, 2.0, 3.0, 4.0]),
+    "([ived] [vdsg] 2 (0 2)) (1.0 2.0)": ("velocity_direct", [0, 2], [1.0, 2.0]),
     "([dpo] 3) (-8.5)": ("position_direct", [3], [-8.5]),
     "([dpos]) (1.0 2.0 3.0 4.0)": ("position_direct", [0, 1, 2, 3], [1.0, 2.0, 3.0, 4.0]),
     "([dpog] 3 (2 1 0)) (1.0 2.0 3.0)": ("position_direct", [2, 1, 0], [1.0, 2.0, 3.0]),
@@ -83,6 +86,8 @@ def test_words_of_yarp_4():
     for data, (method, joint, value) in zip(sent, calls, strict=True):
         [message] = make(method, [joint], [value], 3, newer=True)
         assert to_yarp4(message.to_bytes()) == data
+    [message] = make("velocity_direct", [0, 2], [1.0, 2.0], 3, newer=True)
+    assert message == [["ived", "vdsg", 2, [0, 2]], [1.0, 2.0]]
     [message] = make("apply_currents", [0, 1], [1.0, 2.0], 2, newer=True)
     assert message[0] == ["icur", "refs"]
 

@@ -3,6 +3,14 @@
 from yarpy.kits.devices.simulated.joints import SimulatedJoints
 
 
+def test_what_is_braked_does_not_move() -> None:
+    joints = SimulatedJoints(["yaw", "roll"])
+    joints.apply_brakes([1], [True])
+    joints.position_move([0, 1], [5.0, 5.0])
+    joints.velocity_direct([0], [1.0])
+    assert joints.encoders() == [5.0, 0.0] and joints.braked() == [False, True]
+
+
 def test_members() -> None:
     joints = SimulatedJoints(["yaw", "roll"])
     joints.position_move([1], [5.0])

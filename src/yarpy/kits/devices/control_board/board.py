@@ -19,6 +19,7 @@ TARGETS: Final = {
     "position_targets": "position_move",
     "direct_targets": "position_direct",
     "velocity_targets": "velocity_move",
+    "direct_velocity_targets": "velocity_direct",
     "torque_targets": "apply_torques",
     "current_targets": "apply_currents",
     "duty_cycle_targets": "apply_duty_cycles",
@@ -72,7 +73,8 @@ class Board(Access):
         if targets is not None and values is not None:
             self._remember(targets, joints, values)
         elif member == "stop":
-            self._remember("velocity_targets", joints, [0.0] * len(joints))
+            for member in ("velocity_targets", "direct_velocity_targets"):
+                self._remember(member, joints, [0.0] * len(joints))
 
     def _move_by(self, joints: Sequence[int], values: Sequence[float]) -> None:
         own = self.has("relative_move")

@@ -34,9 +34,10 @@ from yarpy.errors import (
     UnknownName,
 )
 from yarpy.kits.devices.adjustable import Adjustable
-from yarpy.kits.devices.closeable import Closeable, local_prefix, prefix
+from yarpy.kits.devices.closeable import local_prefix, prefix
 from yarpy.kits.devices.control_board import command, grammar
 from yarpy.kits.devices.control_board.interface import MotorTorqueParameters
+from yarpy.kits.devices.control_board.newer import NewerMembers, Second, Values, Which
 from yarpy.kits.devices.control_board.remote_parts import Asks, RemotePids, RemoteVariables
 from yarpy.kits.devices.control_board.requests import Requests
 from yarpy.kits.devices.control_board.state import State
@@ -45,15 +46,12 @@ from yarpy.names.base import NameClient
 from yarpy.port.port import Port
 from yarpy.wire.message import Encoded
 
-#: One joint or several, by index or by name.
-Which: TypeAlias = int | str | Sequence[int | str]
-Values: TypeAlias = float | Sequence[float]
 Words: TypeAlias = str | Sequence[str]
 
 _POLL: Final = 0.02
 
 
-class ControlBoard(Closeable):
+class ControlBoard(NewerMembers):
     """The control board whose ports begin with `remote`.
 
     local: prefix of the client's own ports; generated if empty.
@@ -93,6 +91,7 @@ class ControlBoard(Closeable):
                 )
             )
             self._check_version()
+            self._second = resources.enter_context(Second(self._ask, remote, local, names))
             self.axes = self._ask.count_axes()
             self._axis_names: list[str] = []
             self._resources = resources.pop_all()

@@ -6,6 +6,7 @@
     ([icur] [ref] 2) (0.5)          interfaces with a word of their own
 
     ([ivel] [vmo] 2) (10.5)         YARP 4 has one for each: ivel, ipod, itrq, ipos
+    ([ived] [vdso] 2) (10.5)        velocity_direct, which only YARP 4 has
 
 Rules: the vector holds only float64, one for each joint in the head, all finite. Anything else is
 refused as a whole. (C++ reads past the end of vectors that are too short.)
@@ -41,6 +42,9 @@ HEADS: Final[dict[tuple[str, ...], tuple[str, Form]]] = {
     ("ipwm", "ref"): ("apply_duty_cycles", Form.ONE),
     ("ipwm", "refs"): ("apply_duty_cycles", Form.ALL),
     ("poss",): ("position_move", Form.ALL),
+    ("ived", "vdso"): ("velocity_direct", Form.ONE),
+    ("ived", "vdsa"): ("velocity_direct", Form.ALL),
+    ("ived", "vdsg"): ("velocity_direct", Form.SOME),
 }
 #: what YARP 4 has in front of the words
 _INTERFACES: Final = {

@@ -46,6 +46,7 @@ class ControlMode(StrEnum):
     POSITION = "pos"  # trajectories between targets
     POSITION_DIRECT = "posd"
     VELOCITY = "vel"
+    VELOCITY_DIRECT = "veld"  # of YARP 4
     MIXED = "mix"  # position and velocity
     TORQUE = "torq"
     PWM = "ipwm"
@@ -171,6 +172,9 @@ class ControlBoardLike(Joints, Protocol):
     def amplifier_status(self) -> Sequence[int]:
         """A number for each amplifier; its meaning depends on the robot."""
 
+    def braked(self) -> Sequence[bool]:
+        """Return for each joint whether its brake holds it. Only YARP 4 has brakes."""
+
     def faults(self) -> Sequence[tuple[int, str]]:
         """The last fault of each joint: its code and its text. `(0, "")` for none."""
 
@@ -193,6 +197,12 @@ class ControlBoardLike(Joints, Protocol):
 
     def position_direct(self, joints: Sequence[int], positions: Sequence[float]) -> object:
         """Go directly to these positions, the next points of the caller's trajectory."""
+
+    def velocity_direct(self, joints: Sequence[int], speeds: Sequence[float]) -> object:
+        """Move at these speeds at once, without an acceleration. Only YARP 4 has it."""
+
+    def apply_brakes(self, joints: Sequence[int], active: Sequence[bool]) -> object:
+        """Brake these joints, or release them."""
 
     def velocity_move(self, joints: Sequence[int], speeds: Sequence[float]) -> object:
         """Move at these speeds until told otherwise."""
@@ -260,6 +270,9 @@ class ControlBoardLike(Joints, Protocol):
     def velocity_targets(self) -> Sequence[float]:
         """The last `velocity_move`."""
 
+    def direct_velocity_targets(self) -> Sequence[float]:
+        """The last `velocity_direct`."""
+
     def torque_targets(self) -> Sequence[float]:
         """The last `apply_torques`."""
 
@@ -285,6 +298,7 @@ class ControlBoardLike(Joints, Protocol):
     temperature_limits: Sequence[float]
     gearbox_ratios: Sequence[float]
     counts_per_revolution: Sequence[float]  # of motor encoders
+    automatic_brakes: Sequence[bool]  # the robot brakes by itself
     motor_torque_parameters: Sequence[Sequence[float]]  # nine each, see `MotorTorqueParameters`
     impedances: Sequence[tuple[float, float]]  # (stiffness Nm/deg, damping Nm s/deg)
     impedance_offsets: Sequence[float]  # Nm

@@ -20,7 +20,9 @@ class SimulatedJoints:
         self.reference_accelerations = [10.0] * count
         self.position_limits = [(-180.0, 180.0)] * count
         self.velocity_limits = [(0.0, 100.0)] * count
+        self.automatic_brakes = [False] * count
         self._at = [0.0] * count
+        self._braked = [False] * count
         self._modes = ["pos"] * count
         self._stiff = ["stif"] * count
 
@@ -43,12 +45,23 @@ class SimulatedJoints:
         """Be there; not beyond the limits."""
         for joint, position in zip(joints, positions, strict=True):
             lowest, highest = self.position_limits[joint]
-            self._at[joint] = min(max(position, lowest), highest)
+            if not self._braked[joint]:
+                self._at[joint] = min(max(position, lowest), highest)
 
     position_direct = position_move
 
     def velocity_move(self, joints: Sequence[int], speeds: Sequence[float]) -> None:
         """Stay: nothing moves by itself here."""
+
+    velocity_direct = velocity_move
+
+    def braked(self) -> list[bool]:
+        return [*self._braked]
+
+    def apply_brakes(self, joints: Sequence[int], active: Sequence[bool]) -> None:
+        """Hold these joints, or release them; what is held does not move."""
+        for joint, held in zip(joints, active, strict=True):
+            self._braked[joint] = held
 
     def stop(self, joints: Sequence[int]) -> None:
         """Nothing moves."""

@@ -13,6 +13,7 @@ from yarpy.kits.devices.control_board import command
 from yarpy.kits.devices.control_board.board import Board
 from yarpy.kits.devices.control_board.yarp4.functions import ControlBoardMsgs
 from yarpy.kits.devices.control_board.yarp4.server import Functions
+from yarpy.kits.devices.simulated.joints import SimulatedJoints
 from yarpy.wire.message import CALL, Answer, Message
 
 ROWS = recorded("board")["client"]
@@ -139,8 +140,6 @@ def _zero(kind: Any) -> Any:
 def test_what_is_not_there(server: Functions) -> None:
     assert call(server, "getEncoderOne", 9) == [["err5"], 0.0]
     assert call(server, "getEncoderOne", -1) == [["err5"], 0.0]
-    assert call(server, "setRefVelocityOne", 0, 1.0) == ["err2"]
-    assert call(server, "isJointBraked", 0) == [["err2"], "fail"]
     assert call(server, "positionMoveOne", 0, float("nan")) == ["err5"]
     assert call(server, "positionMoveGroup", [0, 1], [1.0]) == ["err5"]
     assert call(server, "positionMoveAll", [1.0]) == ["err5"]
@@ -151,10 +150,29 @@ def test_what_is_not_there(server: Functions) -> None:
     )
     assert call(empty, "getTorqueRangeAll") == [["err2"], [], []]
     assert call(empty, "stopAll") == ["err2"]
+    assert call(empty, "setRefVelocityOne", 0, 1.0) == ["err2"]
+    assert call(empty, "isJointBraked", 0) == [["err2"], "fail"]
     assert call(empty, "getNumberOfMotors") == [["err2"], 0]
     assert call(empty, "getEncoderAll") == [["ok"], [1.5]]
     assert call(empty, "getJointType", 0) == [["ok"], Vocab("atrv").code]
     assert call(empty, "getAvailableControlModes", 0) == [["ok"], []]
+
+
+def test_brakes_and_velocities_at_once() -> None:
+    joints = SimulatedJoints(["a", "b"])
+    server = Functions(Board(joints, "/b"))
+    assert call(server, "setManualBrakeActive", 1, True) == ["ok"]
+    assert call(server, "isJointBraked", 1) == [["ok"], "ok"]
+    assert call(server, "isJointBraked", 0) == [["ok"], "fail"]
+    assert call(server, "setAutoBrakeEnabled", 0, True) == ["ok"]
+    assert call(server, "getAutoBrakeEnabled", 0) == [["ok"], "ok"]
+    assert call(server, "setManualBrakeActive", 2, True) == ["err5"]
+    assert call(server, "setRefVelocityGroup", [1], [2.5]) == ["ok"]
+    assert call(server, "getRefVelocityAll") == [["ok"], [0.0, 2.5]]
+    assert call(server, "stopOne", 1) == ["ok"]
+    assert call(server, "getRefVelocityOne", 1) == [["ok"], 0.0]
+    offered = dict(call(server, "getDeviceInterfaces")[1])
+    assert offered["iJointBrake"] and offered["iVelocityDirect"]
 
 
 def test_a_device_that_fails_is_logged(caplog: pytest.LogCaptureFixture) -> None:

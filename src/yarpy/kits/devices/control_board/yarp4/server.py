@@ -35,7 +35,8 @@ log = logger("yarpy.devices")
 #: what makes a mode selectable
 _MODES: Final = {
     "pos": "position_move", "posd": "position_direct", "vel": "velocity_move",
-    "torq": "apply_torques", "ipwm": "apply_duty_cycles", "icur": "apply_currents",
+    "veld": "velocity_direct", "torq": "apply_torques", "ipwm": "apply_duty_cycles",
+    "icur": "apply_currents",
 }  # fmt: skip
 
 Work = Callable[["Functions", Sequence[Any]], Sequence[Any]]

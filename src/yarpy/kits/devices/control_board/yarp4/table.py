@@ -161,6 +161,7 @@ READ: Final[tuple[Row, ...]] = (
     _row("getTargetPosition", "position_targets", some=True),
     _row("getTargetVelocity", "velocity_targets", some=True),
     _row("getRefPosition", "direct_targets", some=True),
+    _row("getRefVelocity", "direct_velocity_targets", some=True),
     _row("getRefTorque", "torque_targets", some=True),
     _row("getRefCurrent", "current_targets"),
     _row("getRefDutyCycle", "duty_cycle_targets"),
@@ -182,6 +183,7 @@ READ: Final[tuple[Row, ...]] = (
     _row("getAmpStatus", "amplifier_status", INTEGER),
     _row("getInteractionMode", "interaction_modes", MODE, some=True, s="s"),
     Row("getLastJointFault", "", "", "faults", FAULTS),
+    Row("isJointBraked", "", "", "braked", TRUTH),
     # adjusted
     _row("getCurrentRange", "current_ranges", RANGE),
     _row("getTorqueRange", "torque_ranges", RANGE),
@@ -198,6 +200,7 @@ READ: Final[tuple[Row, ...]] = (
     Row("getTemperatureLimit", "", "", "temperature_limits"),
     Row("getMotorEncoderCountsPerRevolution", "", "", "counts_per_revolution"),
     Row("getMotorTorqueParams", "", "", "motor_torque_parameters", TORQUE),
+    Row("getAutoBrakeEnabled", "", "", "automatic_brakes", TRUTH),
 )
 
 WRITE: Final[tuple[Row, ...]] = (
@@ -205,6 +208,7 @@ WRITE: Final[tuple[Row, ...]] = (
     _row("relativeMove", "relative_move", some=True),
     _row("velocityMove", "velocity_move", some=True),
     _row("setRefPosition", "position_direct", some=True),
+    _row("setRefVelocity", "velocity_direct", some=True),
     _row("setRefTorque", "apply_torques", some=True),
     _row("setRefCurrent", "apply_currents", some=True),
     _row("setRefDutyCycle", "apply_duty_cycles", some=True),
@@ -229,6 +233,8 @@ WRITE: Final[tuple[Row, ...]] = (
     Row("setTemperatureLimit", "", "", "temperature_limits"),
     Row("setMotorEncoderCountsPerRevolution", "", "", "counts_per_revolution"),
     Row("setMotorTorqueParams", "", "", "motor_torque_parameters", TORQUE),
+    Row("setManualBrakeActive", "", "", "apply_brakes", TRUTH),
+    Row("setAutoBrakeEnabled", "", "", "automatic_brakes", TRUTH),
 )
 
 #: functions whose first argument is a kind of controllers
@@ -277,7 +283,7 @@ INTERFACES: Final = {
     "iEncodersTimed": ("encoders",),
     "iImpedanceControl": ("impedances", "impedance_offsets"),
     "iInteractionMode": ("interaction_modes", "switch_interaction_modes"),
-    "iJointBrake": (),
+    "iJointBrake": ("braked", "apply_brakes", "automatic_brakes"),
     "iJointFault": ("faults",),
     "iMotor": ("motor_temperatures", "temperature_limits", "gearbox_ratios"),
     "iMotorEncoders": ("motor_encoders", "motor_speeds", "counts_per_revolution"),
@@ -291,5 +297,5 @@ INTERFACES: Final = {
     "iRemoteVariables": ("variables",),
     "iTorqueControl": ("torques", "torque_targets", "apply_torques"),
     "iVelocityControl": ("velocity_move", "velocity_targets"),
-    "iVelocityDirect": (),
+    "iVelocityDirect": ("velocity_direct", "direct_velocity_targets"),
 }
