@@ -113,6 +113,11 @@ def test_a_recording(browser: Browser, line: CommandLine, tmp_path: Path) -> Non
         command = ["rpc", "/icubSim/head/rpc:i"]
         assert line.run(*command, input="set pos 0 -25\nset pos 2 40\n").returncode == 0
         line.run("rpc", "/record/rpc:i", input='mark "it looks up"\n')
+        url = address(recorder)
+        page = open_page(browser, url)
+        page.get_by_label("Note of this moment").fill("it looks away")
+        page.wait_for_timeout(2500)  # rates are those of the last seconds
+        keep(page, "record", 420)
         assert recorder.wait(2 * HANG) == 0
     with line.start("view", f"{path}.mcap", "--no-browser") as view:
         url = address(view)

@@ -14,6 +14,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ from yarpy.kits.devices.multi_sensor.server import MultiSensorServer
 from yarpy.kits.launch.page.log_page import LogPage
 from yarpy.kits.launch.page.owner import Owners
 from yarpy.kits.launch.page.page import ApplicationPage
+from yarpy.kits.record.page.record_page import RecordPage
 from yarpy.kits.views.dash import Dash
 from yarpy.kits.views.panel import Panel
 from yarpy.kits.views.picture import Picture
@@ -76,6 +78,18 @@ def panel() -> Iterator[Any]:
 def log_page() -> Iterator[Any]:
     with opened(yarpy.Port) as port:
         LogPage(port).add([LogLine(f"/log/{SECRET}/p/1", "INFO", SECRET)])
+        yield port
+
+
+@contextmanager
+def recorder() -> Iterator[Any]:
+    """The page of a recorder that waits for a port; what it does is asked in its tests."""
+    facts = {"state": "recording", "snapshots": False, "failure": ""}
+    sizes = dict.fromkeys(("size", "held", "memory", "free"), 0)
+    ports = {"counts": {}, "connected": set(), "waiting": [f"/{SECRET}"]}
+    stand_in: Any = SimpleNamespace(name=f"/{SECRET}", files=[], **facts, **sizes, **ports)
+    with yarpy.RpcServer(f"/{SECRET}", lambda asked: [SECRET], names=yarpy.LocalNames()) as port:
+        RecordPage(port, stand_in)
         yield port
 
 
@@ -146,6 +160,7 @@ SERVERS: dict[str, Callable[[], Any]] = {
     "kits/views/scope.py": scope,
     "kits/launch/page/page.py": application,
     "kits/launch/page/log_page.py": log_page,
+    "kits/record/page/record_page.py": recorder,
     "kits/devices/multi_sensor/server.py": sensors,
     "nameserver/serving.py": name_server,
     "the port itself": camera,

@@ -6,8 +6,8 @@
 Ports may come later, and come back: they are recorded as soon as they are there. On a terminal a
 table shows how each is doing, and keys pause (space), begin a new file (s), mark a moment (m) and
 stop (q); elsewhere only what is odd is told. So do the words pause, resume, split, mark TEXT,
-status and stop at the port /record/rpc:i (`yarpy rpc`). ^C and SIGTERM finish the file; what was
-written can be read even after a kill.
+status and stop at the port /record/rpc:i (`yarpy rpc`), and its page in a browser, which --page
+opens. ^C and SIGTERM finish the file; what was written can be read even after a kill.
 
 Exit codes: 0 recorded, also when ^C or SIGTERM ends it; 1 nothing could be, or it had to stop.
 """
@@ -18,6 +18,8 @@ import queue
 import shutil
 import sys
 import time
+from collections import deque
+from collections.abc import MutableSequence, Sequence
 from typing import TYPE_CHECKING, Final, Literal
 
 import click
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
     from yarpy.kits.record.screen import Look, Rates
 
 PERIOD: Final = 0.5  # seconds between looks
+NEWS: Final = 100  # lines that are kept
 
 
 @click.command()
@@ -72,6 +75,7 @@ PERIOD: Final = 0.5  # seconds between looks
               help="How ports are connected.")  # fmt: skip
 @click.option("--name", default="", show_default=False, metavar="PORT",
               help="The recorder's own port (/record).")  # fmt: skip
+@click.option("--page", is_flag=True, help="Open the page, which is there anyway, in a browser.")
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object at the end.")
 def command(
     ports: tuple[str, ...],
@@ -92,9 +96,12 @@ def command(
     duration: float | None,
     carrier: str,
     name: str,
+    page: bool,
     as_json: bool,
 ) -> int:
     """Keep what PORTs send in a file, which yarpy play plays and Foxglove reads."""
+    from yarpy.cli.browser import open_page, url_of
+    from yarpy.kits.record.page.record_page import RecordPage
     from yarpy.kits.record.recorder import Recorder
     from yarpy.kits.record.room import parse_size, parse_split, parse_time
     from yarpy.kits.record.screen import Rates, summary
@@ -113,7 +120,13 @@ def command(
     live = sys.stdout.isatty() and not as_json
     if not live:
         log.show()
-    news: list[str] = []
+    news: deque[str] = deque(maxlen=NEWS)
+
+    def tell(line: str) -> None:
+        news.append(line)
+        if not live:
+            warn(line)
+
     try:
         recorder = Recorder(
             *ports,
@@ -132,7 +145,7 @@ def command(
             paused=paused,
             carrier=carrier,
             name=name,
-            tell=news.append if live else warn,
+            tell=tell,
         )
     except FileExistsError as error:
         complain(f"{error.filename} is there already: choose another name with -o")
@@ -140,11 +153,16 @@ def command(
     began = time.monotonic()
     seen, stop = Rates(), recorder.ended
     try:
-        with RpcServer(f"{recorder.name}/rpc:i", recorder_words(recorder, stop.set)):
+        with RpcServer(f"{recorder.name}/rpc:i", recorder_words(recorder, stop.set)) as server:
+            RecordPage(server, recorder, news)
+            shown = f"its page is at {url_of(server.address)}"
+            if page:
+                open_page(url_of(server.address))
             if live:
+                news.append(shown)
                 _live(recorder, began, duration, news)
             else:
-                warn(beginning(recorder))
+                warn(f"{beginning(recorder)}; {shown}")
                 stop.wait(duration)
     except Interrupted:
         pass  # how it ends
@@ -213,7 +231,7 @@ def recovered(file: str, path: str | None, compression: str) -> int:
     return 0
 
 
-def look_at(recorder: Recorder, began: float, seen: Rates, news: list[str]) -> Look:
+def look_at(recorder: Recorder, began: float, seen: Rates, news: Sequence[str]) -> Look:
     """Return how a recorder is doing now."""
     from yarpy.kits.record.screen import Look
 
@@ -260,7 +278,9 @@ def facts(recorder: Recorder, look: Look) -> dict[str, object]:
     }
 
 
-def _live(recorder: Recorder, began: float, duration: float | None, news: list[str]) -> None:
+def _live(
+    recorder: Recorder, began: float, duration: float | None, news: MutableSequence[str]
+) -> None:
     """On a terminal, until `q`."""
     from rich.console import Console
     from rich.live import Live
@@ -285,7 +305,7 @@ def _live(recorder: Recorder, began: float, duration: float | None, news: list[s
                     return
 
 
-def press(recorder: Recorder, key: str, news: list[str]) -> bool:
+def press(recorder: Recorder, key: str, news: MutableSequence[str]) -> bool:
     """Do what a key stands for; return whether to go on."""
     if key in ("q", "\x03", "\x04"):
         return False
