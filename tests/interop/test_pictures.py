@@ -105,21 +105,22 @@ def test_a_port(browser: Browser, line: CommandLine) -> None:
     keep(page, "port", 280)
 
 
-def test_a_recording(browser: Browser, line: CommandLine, tmp_path: Path) -> None:
+def test_a_recording(browser: Browser, line: CommandLine) -> None:
     ports = ("/icubSim/head/state:o", "/icubSim/cam/left", "/icubSim/cam/right")
-    path = str(tmp_path / "walk")
-    with line.start("record", *ports, "-o", path, "--duration", "14") as recorder:
-        wait_until(Path(f"{path}.mcap").exists, HANG)
+    with line.start("record", *ports, "-o", "walk") as recorder:
+        wait_until((line.home / "walk.mcap").exists, HANG)
         command = ["rpc", "/icubSim/head/rpc:i"]
         assert line.run(*command, input="set pos 0 -25\nset pos 2 40\n").returncode == 0
         line.run("rpc", "/record/rpc:i", input='mark "it looks up"\n')
-        url = address(recorder)
-        page = open_page(browser, url)
+        page = open_page(browser, address(recorder))
         page.get_by_label("Note of this moment").fill("it looks away")
         page.wait_for_timeout(2500)  # rates are those of the last seconds
         keep(page, "record", 420)
+        page.wait_for_timeout(9000)  # there is something to look back at
+        page.get_by_role("button", name="Stop").click()
+        page.get_by_role("button", name="Stop now?").click()
         assert recorder.wait(2 * HANG) == 0
-    with line.start("view", f"{path}.mcap", "--no-browser") as view:
+    with line.start("view", "walk.mcap", "--no-browser") as view:
         url = address(view)
         page = open_page(browser, url)
         page.wait_for_selector("#cards figure")

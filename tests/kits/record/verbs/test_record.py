@@ -60,16 +60,24 @@ def test_a_kill_costs_no_more_than_a_second(cli, out, tmp_path) -> None:
     assert got and (len(got) >= early or killed - sent[len(got)] < 5.0)
 
 
-def test_json_and_a_duration(cli, out, tmp_path) -> None:
-    words = ("-a", "--exclude", "root", "--duration", "1", "--json", "--split", "1h")
+def test_json(cli, out) -> None:
+    words = ("-a", "--exclude", "root", "--json", "--split", "1h")
     with cli.start("record", *words, "-o", "y", "--compress", "zstd") as process:
         assert out.wait_for_outputs(timeout=HANG)
         out.write([1, 2], wait=True)
+        process.signal(signal.SIGINT)
         assert process.wait() == 0
         told = json.loads(process.stdout)
     assert told["files"] == ["y-0001.mcap"] and told["failure"] == ""
     assert told["ports"]["/out"]["messages"] == 1
     assert values(cli.home / "y-0001.mcap") == [[1, 2]]
+
+
+def test_a_duration(cli, server) -> None:
+    with cli.start("record", "/none", "--duration", "0.1", "-o", "y") as process:
+        assert process.wait() == 0
+        assert "its page is at http://" in process.stderr
+    assert values(cli.home / "y.mcap") == []
 
 
 def test_what_is_used_wrongly(here, tmp_path) -> None:
