@@ -9,13 +9,16 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 HEAD = "| feature | works | test |\n|---|---|---|\n"
-PAGES = ("mqtt", "ros", "ros2", "zenoh", "zeromq")
-_LINK = re.compile(r"\[(\w+)\]\(\.\./(tests/[\w/]+\.py)\)")
+PAGES = (
+    *(f"docs/{name}.md" for name in ("mqtt", "ros", "ros2", "zenoh", "zeromq")),
+    "compat/wrapyfi/README.md",
+)
+_LINK = re.compile(r"\[(\w+)\]\((?:\.\./)+(tests/[\w/]+\.py)\)")
 
 
 def rows(page: str) -> list[list[str]]:
-    text = (ROOT / "docs" / f"{page}.md").read_text("utf-8")
-    assert text.count(HEAD) == 1, f"docs/{page}.md has one table of features"
+    text = (ROOT / page).read_text("utf-8")
+    assert text.count(HEAD) == 1, f"{page} has one table of features"
     lines = text.partition(HEAD)[2].split("\n\n")[0].splitlines()
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
 

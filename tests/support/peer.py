@@ -29,7 +29,7 @@ from pathlib import Path
 from typing import Any, Final, TypeVar
 
 import pytest
-from support import cpp_venv, namespace, thrift_venv, wrapyfi_venv
+from support import cpp_venv, namespace, thrift_venv, wrapyfi_plugins_venv, wrapyfi_venv
 from support.file_lock import hold
 from support.peer_venv import MissingPeer
 
@@ -174,6 +174,7 @@ PEERS: dict[str, Callable[[], str]] = {
     "thrift": _made(thrift_venv.prepare),
     "torch": _torch,
     "wrapyfi": _made(wrapyfi_venv.prepare),
+    "wrapyfi_plugins": _made(wrapyfi_plugins_venv.prepare),
     "wrk": _programs("wrk", package="wrk"),
     "zsh": _programs("zsh", package="zsh"),
 }

@@ -21,6 +21,7 @@ import zmq
 
 import yarpy
 from wrapyfi.middlewares._form import Native, Picture, Sound
+from wrapyfi.middlewares._parameters import ZeroMQMiddlewareParamServer
 from wrapyfi.middlewares._side import Medium, Nothing, offer
 from yarpy.kits.wrap import payload
 from yarpy.kits.wrap.middleware import Failure
@@ -50,6 +51,9 @@ def _broker(options: dict[str, Any]) -> tuple[str, str]:
     if str(wanted) != "False":
         keep_ready(host, pub, sub)
     return f"tcp://{host}:{pub}", f"tcp://{host}:{sub}"
+
+
+__all__ = ["ZeroMQMiddlewareParamServer", "ZeroMQMiddlewarePubSub", "ZeroMQMiddlewareReqRep"]
 
 
 class ZeroMQMiddlewarePubSub(Nothing):

@@ -145,8 +145,13 @@ class PluginRegistrar:
     @classmethod
     def encoder(cls, value: Any) -> type[Plugin] | None:
         """The plug-in for a value: of its class, or the nearest one above it."""
-        for kind in type(value).__mro__[:-1]:
-            found = cls.encoder_registry.get(kind)
+        return cls.nearest(type(value))
+
+    @classmethod
+    def nearest(cls, kind: type) -> type[Plugin] | None:
+        """The plug-in for values of a class: its own, or the nearest one above it."""
+        for each in kind.__mro__[:-1]:
+            found = cls.encoder_registry.get(each)
             if found is not None:
                 return found
         return None

@@ -8,9 +8,12 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from wrapyfi.utils._shipped import for_tag, for_type
 from wrapyfi.utils._tensors import gathered, planted
 from wrapyfi.utils.core_utils import PluginRegistrar
 from yarpy.kits.wrap.tree import PLAIN, TAG, Planter, untag
+
+_BUILT_IN = frozenset((*PLAIN, list, tuple, dict, set))
 
 
 class JsonEncoder(json.JSONEncoder):
@@ -35,13 +38,16 @@ class _Planter(Planter):
         self._options = options
 
     def plant(self, value: Any, depth: int = 0) -> Any:
-        plugin = PluginRegistrar.encoder(value) if PluginRegistrar.encoder_registry else None
+        kind = type(value)
+        plugin = PluginRegistrar.nearest(kind) if PluginRegistrar.encoder_registry else None
+        if plugin is None and kind not in _BUILT_IN:
+            plugin = for_type(kind)
         if plugin is not None:
             done, tree = plugin(**self._options).encode(value)
             if done:
                 tag = tree[TAG]
                 return {TAG: [tag[0], *(super(_Planter, self).plant(one) for one in tag[1:])]}
-        if type(value) not in PLAIN and hasattr(value, "shape"):
+        if kind not in PLAIN and hasattr(value, "shape"):
             found = planted(value)
             if found is not None:
                 return {TAG: found}
@@ -58,7 +64,7 @@ class JsonDecodeHook:
         """A dict with a tag as what it stands for."""
         content = obj.get(TAG) if isinstance(obj, dict) else None
         if isinstance(content, list) and content:
-            plugin = PluginRegistrar.decoder_registry.get(str(content[0]))
+            plugin = PluginRegistrar.decoder_registry.get(str(content[0])) or for_tag(content[0])
             if plugin is not None:
                 done, found = plugin(**self._options).decode(content[0], content)
                 if done:
