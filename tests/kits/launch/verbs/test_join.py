@@ -40,7 +40,7 @@ def test_one_and_all(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # As long as it takes: both ports are there.
-    monkeypatch.setattr(join, "_PATIENCE", 60.0)
+    monkeypatch.setattr(join, "_TIMEOUT", 60.0)
     sink: Callable[[object], None] = lambda message: None  # noqa: E731
     with (
         yarpy.Port("/a", names=names) as a,
@@ -62,7 +62,7 @@ def test_one_and_all(
 def test_a_port_that_is_missing_is_named(
     here, running: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(join, "_PATIENCE", 0.0)
+    monkeypatch.setattr(join, "_TIMEOUT", 0.0)
     said = here("connect", "--of", running, "/a", "/b")
     assert said.code == 1 and said.out.startswith("/a -> /b  waiting")
 

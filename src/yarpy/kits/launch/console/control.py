@@ -24,7 +24,7 @@ from yarpy.platform.file_lock import hold
 from yarpy.platform.user import user
 from yarpy.transports.unix import runtime_directory
 
-_PATIENCE: Final = 10.0  # seconds that a request may take
+_TIMEOUT: Final = 10.0  # seconds that a request may take
 _LONGEST: Final = 40  # letters of a name of a file
 
 Answer = Callable[[dict[str, Any]], dict[str, Any]]
@@ -74,7 +74,7 @@ def ask(name: str, /, **request: Any) -> dict[str, Any]:
     runs, or it refuses."""
     try:
         with _socket() as link:
-            link.settimeout(_PATIENCE)
+            link.settimeout(_TIMEOUT)
             link.connect(str(place(name, "sock")))
             link.sendall(json.dumps(request).encode() + b"\n")
             with link.makefile("rb") as file:
@@ -150,7 +150,7 @@ class Control:
         with contextlib.suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
         self._socket.close()
-        self._thread.join(_PATIENCE)
+        self._thread.join(_TIMEOUT)
 
     def _serve(self) -> None:
         while True:
@@ -159,7 +159,7 @@ class Control:
             except OSError:
                 return
             with link:
-                link.settimeout(_PATIENCE)
+                link.settimeout(_TIMEOUT)
                 with contextlib.suppress(OSError):
                     link.sendall(json.dumps(self._reply(link)).encode() + b"\n")
 

@@ -17,11 +17,11 @@ from yarpy.errors import LocalProtocolError, Timeout
 from yarpy.kits.launch.console import control
 
 _POLL: Final = 0.02  # seconds
-_PATIENCE: Final = 120.0  # seconds until it can be reached
+_TIMEOUT: Final = 120.0  # seconds until it can be reached
 _SAID: Final = 2000  # letters of what it said that are told
 
 
-def detach(name: str, words: Sequence[str], patience: float = _PATIENCE) -> Path:
+def detach(name: str, words: Sequence[str], timeout: float = _TIMEOUT) -> Path:
     """Start `yarpy up` with these words, which runs the application `name`; return the file of
     what it says. Raises LocalProtocolError with what it said if it ends at once, Timeout."""
     if name in control.running():
@@ -38,7 +38,7 @@ def detach(name: str, words: Sequence[str], patience: float = _PATIENCE) -> Path
             stderr=subprocess.STDOUT,
             start_new_session=True,
         )
-    until = time.monotonic() + patience
+    until = time.monotonic() + timeout
     while child.poll() is None:
         try:
             control.ask(name, do="status")
@@ -46,7 +46,7 @@ def detach(name: str, words: Sequence[str], patience: float = _PATIENCE) -> Path
         except LocalProtocolError:
             if time.monotonic() > until:
                 raise Timeout(
-                    f'"{name}" cannot be reached after {patience:g} s: see {path}'
+                    f'"{name}" cannot be reached after {timeout:g} s: see {path}'
                 ) from None
             time.sleep(_POLL)
     said = path.read_text("utf-8", "replace").strip()[-_SAID:]

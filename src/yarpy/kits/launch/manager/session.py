@@ -19,7 +19,7 @@ from yarpy.kits.launch.console import control
 from yarpy.kits.launch.console.detach import detach
 from yarpy.kits.launch.document.element import parse
 
-PATIENCE: Final = 10.0  # seconds in which a program comes up, beyond what its file says
+STARTUP_TIMEOUT: Final = 10.0  # seconds in which a program comes up, beyond what its file says
 STOPPING: Final = 30.0  # ... and ends
 _POLL: Final = 0.05  # seconds
 _ENDED: Final = ("ended", "failed", "stopped")
@@ -90,7 +90,7 @@ class Session:
         for label in labels:
             control.ask(self.application.name, do="start", name=label)
         modules = {one.label: one for one in self.application.modules}
-        wait = max((modules[label].delay for label in labels), default=0.0) + PATIENCE
+        wait = max((modules[label].delay for label in labels), default=0.0) + STARTUP_TIMEOUT
         needs = [need.timeout or 0.0 for label in labels for need in modules[label].needs]
 
         def missing(one: dict[str, Any]) -> bool:
@@ -115,7 +115,7 @@ class Session:
         for one in wanted:
             control.ask(self.application.name, do=word, **{"from": one.source, "to": one.target})
         good = "connected" if word == "connect" else "off"
-        until = time.monotonic() + PATIENCE
+        until = time.monotonic() + STARTUP_TIMEOUT
         while True:
             links = {(one["from"], one["to"]): one for one in self._asked()["connections"]}
             left = [one for one in wanted if links[one.source, one.target]["state"] != good]

@@ -22,7 +22,7 @@ from yarpy.kits.launch.supervise.keeper import Keeper
 from yarpy.kits.launch.supervise.local import GRACE, LocalRunner
 from yarpy.kits.launch.supervise.runner import Runner
 from yarpy.kits.launch.supervise.unit import FINAL, Unit
-from yarpy.kits.launch.supervise.waiting import USUAL, Waiting
+from yarpy.kits.launch.supervise.waiting import PORT_TIMEOUT, Waiting
 from yarpy.names.base import NameClient
 
 _KILLED: Final = 20.0  # seconds beyond the grace in which a program is gone, on a busy computer too
@@ -33,8 +33,8 @@ class Supervisor:
     """Runs an application from `start` to `stop`.
 
     `runners` gives what starts programs on another computer; `usual` is the policy of restarts
-    where a program has none, `patience` how many seconds a port is waited for, `grace` how many a
-    program may take to end; `news` gets lines for people.
+    where a program has none, `port_timeout` how many seconds a port is waited for, `grace` how many
+    a program may take to end; `news` gets lines for people.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class Supervisor:
         *,
         runners: Callable[[str], Runner] | None = None,
         usual: str = "on-failure",
-        patience: float = USUAL,
+        port_timeout: float = PORT_TIMEOUT,
         grace: float = GRACE,
         news: Callable[[str, str], None] = lambda label, text: None,
         said: Callable[[str, str], None] = lambda label, line: None,
@@ -63,7 +63,7 @@ class Supervisor:
         self._sampled: tuple[float, dict[str, tuple[float, int]]] = (0.0, {})
         self._usage: dict[str, tuple[float, int]] = {}
         self.keeper = Keeper(application.connections, names)
-        self.waiting = Waiting(self.find, patience, names)
+        self.waiting = Waiting(self.find, port_timeout, names)
         self._off: set[str] = set()  # programs that were ended by hand
         self._usual = usual
         self._number = itertools.count(1).__next__

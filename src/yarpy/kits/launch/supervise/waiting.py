@@ -1,8 +1,8 @@
 """Waiting for what a program needs: others that start first, ports, answers of ports.
 
 Rules: in the thread of the program that waits, which `stop` wakes. A need without a timeout is
-waited for `USUAL` seconds; one of 0 is looked at once. How long it is waited for, and what for, is
-in the unit meanwhile.
+waited for `PORT_TIMEOUT` seconds; one of 0 is looked at once. How long it is waited for, and what
+for, is in the unit meanwhile.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from yarpy.kits.launch.supervise.unit import FINAL, Unit
 from yarpy.names.base import NameClient
 from yarpy.network import connection
 
-USUAL: Final = 60.0  # seconds that a port is waited for
+PORT_TIMEOUT: Final = 60.0  # seconds that a port is waited for
 _PERIOD: Final = 0.1  # seconds between looks
 _ANSWER: Final = 2.0  # seconds that a port may take to answer
 
@@ -32,7 +32,7 @@ class Waiting:
     def __init__(
         self,
         find: Callable[[str], Unit],
-        usual: float = USUAL,
+        usual: float = PORT_TIMEOUT,
         names: NameClient | None = None,
     ) -> None:
         self._find = find

@@ -23,7 +23,7 @@ from yarpy.log import readable
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_PATIENCE: Final = 5.0  # seconds for what can be made now
+_TIMEOUT: Final = 5.0  # seconds for what can be made now
 _PERIOD: Final = 0.1
 
 
@@ -48,7 +48,7 @@ def command(word: str, name: str, source: str, target: str) -> int:
         control.ask(name, do=word, **dict(zip(("from", "to"), ends, strict=True)))
     if word == "disconnect":
         return 0
-    until = time.monotonic() + _PATIENCE
+    until = time.monotonic() + _TIMEOUT
     while True:
         told = control.ask(name, do="status")["connections"]
         links = [one for one in told if (one["from"], one["to"]) in wanted]

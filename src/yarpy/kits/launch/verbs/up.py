@@ -51,7 +51,7 @@ _NEWS: Final = 100  # that are kept for the screen
 @click.option("--restart", "policy", default="on-failure", metavar="WHEN",
               type=click.Choice(["no", "on-failure", "always"]),
               help="no, on-failure or always, for programs that say nothing.")  # fmt: skip
-@click.option("--wait", "patience", default=60.0, type=click.FloatRange(0), metavar="S",
+@click.option("--wait", "port_timeout", default=60.0, type=click.FloatRange(0), metavar="S",
               help="How long a program waits for a port.")  # fmt: skip
 @click.option("--grace", default=5.0, type=click.FloatRange(0, min_open=True), metavar="S",
               help="How long a program may take to end before it is killed.")  # fmt: skip
@@ -74,7 +74,7 @@ def command(
     file: Path,
     check: bool,
     policy: str,
-    patience: float,
+    port_timeout: float,
     grace: float,
     stop_on_failure: bool,
     replace: bool,
@@ -108,7 +108,17 @@ def command(
     if application.fatal:
         return 1
     wish = _Wish(
-        policy, patience, grace, stop_on_failure, replace, idle, log, watch, server, page, as_lines
+        policy,
+        port_timeout,
+        grace,
+        stop_on_failure,
+        replace,
+        idle,
+        log,
+        watch,
+        server,
+        page,
+        as_lines,
     )
     if detached:
         return _detach(application, file, wish)
@@ -121,7 +131,7 @@ class _Wish:
     """The options, as the command line gives them."""
 
     policy: str
-    patience: float
+    port_timeout: float
     grace: float
     stop_on_failure: bool
     replace: bool
@@ -140,7 +150,7 @@ class _Wish:
                 "--restart",
                 self.policy,
                 "--wait",
-                f"{self.patience:g}",
+                f"{self.port_timeout:g}",
                 "--grace",
                 f"{self.grace:g}",
             ),
@@ -193,7 +203,7 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
         application,
         runners=runners,
         usual=wish.policy,
-        patience=wish.patience,
+        port_timeout=wish.port_timeout,
         grace=wish.grace,
         news=printer.news,
         said=printer.line,
