@@ -22,7 +22,7 @@ def test_programs_and_folders(network: yarpy.LocalNames, tmp_path) -> None:
 
 
 def test_hosts_and_ports(network: yarpy.LocalNames) -> None:
-    far = [Module(one, "x", node=f"/{one}", prefix="/p") for one in ("here", "gone")]
+    far = [Module(one, "x", node=f"/{one}", prefix="/p") for one in ("here", "gone", "heer")]
     links = (
         Connection("/there", "/gone", source_external=True, target_external=True),
         Connection("/p/out", "/p/in"),
@@ -34,6 +34,7 @@ def test_hosts_and_ports(network: yarpy.LocalNames) -> None:
     ):
         assert said(network, *far, connections=links) == [
             'warning: nothing called "/gone" runs, which would start "gone"',
+            'warning: nothing called "/heer" runs, which would start "heer": did you mean "/here"?',
             'warning: the external port "/gone" is not there',
             'warning: "/p/out" is taken: it is registered already',
         ]

@@ -160,6 +160,24 @@ def test_a_hundred_programs(network: yarpy.LocalNames) -> None:
     assert lasted(began) < HANG
 
 
+def test_what_does_not_end_is_waited_for_once(network: yarpy.LocalNames) -> None:
+    """Such as a program on a computer that does not answer any more."""
+    running = supervisor(module("a"), names=network)
+    running.start()
+    wait_until(lambda: all_in(running, "running"))
+    waits: list[float] = []
+
+    def join(seconds: float) -> bool:
+        waits.append(seconds)
+        return False
+
+    unit = running.units["a"]
+    end, unit.join = unit.join, join  # type: ignore[method-assign, assignment]
+    assert running.stop() == ["a"]
+    assert len(waits) == 1
+    assert end(HANG)
+
+
 def test_what_is_ended_by_hand_can_be_started_again(network: yarpy.LocalNames) -> None:
     running = supervisor(module("a"), names=network)
     running.start()

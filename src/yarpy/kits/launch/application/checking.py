@@ -12,6 +12,7 @@ from pathlib import Path
 
 from yarpy.errors import YarpError
 from yarpy.kits.launch.application.application import Application, Module
+from yarpy.kits.launch.document.advice import advice
 from yarpy.kits.launch.document.problem import Problem, Where
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
@@ -29,7 +30,8 @@ def checked(application: Application, names: NameClient | None = None) -> Iterat
         return
     for module in application.modules:
         if module.node and module.node not in known:
-            text = f'nothing called "{module.node}" runs, which would start "{module.label}"'
+            near = advice(module.node, sorted(known))
+            text = f'nothing called "{module.node}" runs, which would start "{module.label}"{near}'
             yield Problem(module.where, text)
     own = {module.prefix for module in application.modules if module.prefix}
     for one in application.connections:

@@ -160,8 +160,7 @@ class Supervisor:
                     left.append(unit.label)
         until = time.monotonic() + self.grace + _KILLED
         for unit in self.units.values():  # what was just being started is in no wave
-            ended = unit.join(max(until - time.monotonic(), 0.0))
-            if not ended and unit.label not in left:
+            if unit.label not in left and not unit.join(max(until - time.monotonic(), 0.0)):
                 left.append(unit.label)
         self.over.set()
         return left
