@@ -78,3 +78,25 @@ def test_what_is_there_is_taken_in_without_waiting() -> None:
     transport.incoming.append(ACK)
     link.sender.window.collect(wait=False)
     assert link.sender.window.free(0.0)
+
+
+def test_an_acknowledgement_whose_end_a_signal_handler_reads_counts_once() -> None:
+    """As where it closes the port in the middle of a write that waits."""
+    link, _ = open_link(Tcp, ACK)
+    for number in range(3):
+        link.send(Packet([number]))
+    found = link.sender.window
+
+    class ReadMeanwhile:
+        def __iter__(self) -> ReadMeanwhile:
+            return self
+
+        def __next__(self) -> None:
+            if found._steps is self:  # the handler's own look
+                found._steps = None
+                found.open -= 1
+            raise StopIteration
+
+    found._steps = ReadMeanwhile()
+    found.collect(wait=False)
+    assert found.open == 1 and found._steps is None

@@ -120,13 +120,16 @@ class Window:
                 # Where nothing is there, look for it first.
                 if looked or stream.tail > stream.head or type(stream) is not ByteStream:
                     self._steps = self._carrier.expect_ack(stream)
-            if self._steps is not None:
+            steps = self._steps
+            if steps is not None:
                 written, done = len(stream.output), False
                 try:
-                    next(self._steps)
+                    next(steps)
                 except StopIteration:
-                    self._steps, done = None, True
-                    self.open -= 1
+                    done = True
+                    if self._steps is steps:  # else a signal handler has taken in its end
+                        self._steps = None
+                        self.open -= 1
                 except YarpError:
                     self._steps = None  # one that has failed looks like one that is done
                     raise
