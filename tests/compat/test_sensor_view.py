@@ -37,6 +37,17 @@ def test_unit_in_python() -> None:
     assert driver.viewIOrientationSensors() is None
 
 
+def test_unit_without_hardware() -> None:
+    import yarp
+
+    driver = yarp.PolyDriver("(device fakeIMU) (sensorName head) (constantValue 1)")
+    gyroscopes = driver.viewIThreeAxisGyroscopes()
+    assert gyroscopes.getNrOfThreeAxisGyroscopes() == 1
+    assert gyroscopes.getThreeAxisGyroscopeName(0) == "head"
+    assert driver.viewITemperatureSensors() is None
+    assert driver.close()
+
+
 def test_unit_behind_the_server() -> None:
     import yarp
 

@@ -65,13 +65,19 @@ OWN: Final = (
         "multipleanalogsensorsserver",
         "multipleanalogsensorsclient",
         "",
-        "IContactLoadCellArrays IEncoderArrays IOrientationSensors IPositionSensors "
-        "ISixAxisForceTorqueSensors ISkinPatches ITemperatureSensors IThreeAxisGyroscopes "
-        "IThreeAxisLinearAccelerometers IThreeAxisMagnetometers ILinearVelocitySensors "
-        "IThreeAxisAngularAccelerometers",
+        "IContactLoadCellArrays IEncoderArrays IPositionSensors ISixAxisForceTorqueSensors "
+        "ISkinPatches ITemperatureSensors ILinearVelocitySensors IThreeAxisAngularAccelerometers",
+    ),
+    (
+        "MultiSensor",
+        "multipleanalogsensorsserver",
+        "multipleanalogsensorsclient",
+        "fakeIMU",
+        "IOrientationSensors IThreeAxisGyroscopes IThreeAxisLinearAccelerometers "
+        "IThreeAxisMagnetometers",
     ),
     ("Battery", "battery_nws_yarp", "battery_nwc_yarp", "fakeBattery", "IBattery"),
-    ("Laser", "rangefinder2D_nws_yarp", "rangefinder2D_nwc_yarp", "", "IRangefinder2D"),
+    ("Laser", "rangefinder2D_nws_yarp", "rangefinder2D_nwc_yarp", "fakeLaser", "IRangefinder2D"),
     (
         "TransformClient",
         "frameTransformServer",

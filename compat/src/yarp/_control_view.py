@@ -209,7 +209,7 @@ def _pid(value: Any) -> Pid:
 
 
 class PidExtraInfo:
-    """What a driver says of a controller besides its gains, of YARP 4."""
+    """Values of a controller besides its gains, of YARP 4."""
 
     def __init__(self) -> None:
         self.description = ""
@@ -318,7 +318,7 @@ class IPidControl(View):
         return self._tell(lambda: self._kind(pidtype)._change("error_limits", (limits,)))
 
     def getPidOffset(self, pidtype: int, j: int, v: Any) -> bool:
-        """What is added to the output."""
+        """Return the offset, which is added to the output."""
         return self._tell(lambda: self._kind(pidtype)._get("offsets", (j, v)))
 
     def getPidFeedforward(self, pidtype: int, j: int, v: Any) -> bool:

@@ -36,7 +36,7 @@ FAIL: Final = yarpy.Vocab("fail")
 
 
 class DataPlayer:
-    """What is played, and how far it is. prefix: put before the names of ports. column: see
+    """A recording, and how far it is played. prefix: put before the names of ports. column: see
     `record.Dataset`. Methods answer as the words of the same names do."""
 
     def __init__(self, prefix: str = "", column: Literal[0, 1, 2] = 0) -> None:

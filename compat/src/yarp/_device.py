@@ -12,7 +12,7 @@ from yarp._portable import PortReader
 
 
 class IConfig:
-    """What can be opened by options, configured and closed."""
+    """An object that can be opened by options, configured and closed."""
 
     def open(self, config: Any = None) -> bool:
         """Open; a subclass says what that is."""

@@ -141,7 +141,7 @@ class IGazeControl(ControllerView):
         return self._numbers(px, lambda: self._board.pixel(_camera(camSel), [*x][:3]))
 
     def get3DPoint(self, camSel: int, px: Any, z: float, x: Any) -> bool:
-        """What a camera sees at a pixel, so many metres away."""
+        """Return the point that a camera sees at a pixel, so many metres away."""
         return self._numbers(x, lambda: self._board.point(_camera(camSel), [*px][:2], z))
 
     def get3DPointOnPlane(self, camSel: int, px: Any, plane: Any, x: Any) -> bool:
@@ -150,7 +150,7 @@ class IGazeControl(ControllerView):
         )
 
     def get3DPointFromAngles(self, mode: int, ang: Any, x: Any) -> bool:
-        """What it would look at; mode 0: absolute angles, 1: relative ones."""
+        """Return the point that it would look at; mode 0: absolute angles, 1: relative ones."""
         return self._numbers(x, lambda: self._board.point_in_direction([*ang][:3], mode != 0))
 
     def getAnglesFrom3DPoint(self, x: Any, ang: Any) -> bool:

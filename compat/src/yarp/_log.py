@@ -18,7 +18,7 @@ _NUMBERS: Final = {
 
 
 class _Taste:
-    """What this program wants of its log."""
+    """The settings of this program for its log."""
 
     least_printed = 1  # the numbers of Log
     least_forwarded = 1

@@ -200,7 +200,7 @@ class IAxisInfo(View):
 
 
 class IJointFault(View):
-    """What went wrong in a joint."""
+    """Faults of joints."""
 
     def getLastJointFault(self, j: int, fault: Any, message: Any) -> bool:
         """Store the code and the text of the last fault of a joint."""

@@ -1,4 +1,4 @@
-"""What `Network` says to a name server, and where it is: `writeToNameServer` and its like."""
+"""Messages of `Network` to a name server, and where it is: `writeToNameServer` and its like."""
 
 from __future__ import annotations
 

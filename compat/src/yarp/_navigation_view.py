@@ -22,7 +22,7 @@ class INavigation2DTargetActions(Mirror, of=("Navigation2D",)):
 
 
 class INavigation2DControlActions(Mirror, of=("Navigation2D",)):
-    """Whether it goes on."""
+    """Pausing, going on, and where it is going."""
 
 
 class INavigation2DVelocityActions(Mirror, of=("Navigation2D", "MobileBase")):

@@ -1,8 +1,8 @@
 """PolyDriver: opens a device by its name, and shows it through interfaces.
 
-Rules: the clients and servers are those of `yarpy.devices`; `DEVICES` lists their names. A Python
-object with the members that `devices.control_board.interface` describes is a device as well:
-`attach` serves it.
+Rules: the clients and servers are those of `yarpy.devices`; `DEVICES` lists their names. Types of
+devices that packages bring (entry point `yarpy.devices`) are opened, too. A Python object with the
+members that `devices.control_board.interface` describes is a device as well: `attach` serves it.
 """
 
 from __future__ import annotations
@@ -52,6 +52,7 @@ from yarp._table import NOT_HERE
 from yarp._value import Value
 from yarp._view import FAILURES, View
 from yarpy.kits import devices
+from yarpy.registry import devices as installed
 
 V = TypeVar("V", bound=View)
 
@@ -77,6 +78,8 @@ class PolyDriver(MirrorViews):
             self._options = Property(config.toString())
         name = self._options.find("device").asString()
         make = DEVICES.get(name)
+        if make is None and name in installed.names():
+            make = PolyDriver._open_installed
         if make is None:
             say("ERROR", f"|yarp.dev.PolyDriver| Could not find device <{name}>: {_known()}")
             return False
@@ -329,6 +332,14 @@ class PolyDriver(MirrorViews):
     def _open_local(self) -> None:
         self._device = _network_device.LOCAL[self._text("device")]()
 
+    def _open_installed(self) -> None:
+        name = self._text("device")
+        options = yarpy.Property.from_text(self._options.toString())
+        device = installed.load(name)(options, names=_names.names())
+        if hasattr(device, "attach"):
+            raise ValueError(f"it uses other devices: yarpdev --device {name} --subdevice TYPE")
+        self._device = getattr(device, "served", device)
+
     def _open_fake_camera(self) -> None:
         width, height = (self._options.find(key).asInt32() for key in ("width", "height"))
         self._device = devices.SimulatedCamera(width or 320, height or 240)
@@ -375,6 +386,8 @@ DEVICES = {
     "fakeFrameGrabber": PolyDriver._open_fake_camera,
     "test_grabber": PolyDriver._open_fake_camera,
     "fakeMotionControl": PolyDriver._open_fake_motors,
+    "fakeIMU": PolyDriver._open_installed,
+    "fakeLaser": PolyDriver._open_installed,
     "remote_controlboard": PolyDriver._open_board,
     "controlBoard_nwc_yarp": PolyDriver._open_board,
     "remotecontrolboardremapper": PolyDriver._open_remapper,

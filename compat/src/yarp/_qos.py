@@ -19,7 +19,7 @@ _INVALID = -1
 
 
 class QosStyle:
-    """What is asked for: `setThreadPolicy(1)`, `setPacketPriority("LEVEL:HIGH")` and so on."""
+    """Settings to ask for: `setThreadPolicy(1)`, `setPacketPriority("LEVEL:HIGH")` and so on."""
 
     PacketPriorityInvalid = DSCP_Invalid = _INVALID
     PacketPriorityUndefined = DSCP_Undefined = _UNDEFINED

@@ -77,11 +77,11 @@ class IImpedanceControlRaw(RawView, of=motion.IImpedanceControl):
 
 
 class IInteractionModeRaw(RawView, of=control.IInteractionMode):
-    """Whether joints are stiff or compliant."""
+    """Stiffness of joints: stiff or compliant."""
 
 
 class IJointFaultRaw(RawView, of=measuring.IJointFault):
-    """What is wrong with joints."""
+    """Faults of joints."""
 
 
 class IMotorEncodersRaw(RawView, of=measuring.IMotorEncoders):

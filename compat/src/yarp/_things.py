@@ -110,7 +110,7 @@ class Things:
 
 
 class DummyConnector:
-    """What is written to `getWriter()` is read from `getReader()`."""
+    """A pair of ends: the reader `getReader()` gets the values of the writer `getWriter()`."""
 
     def __init__(self) -> None:
         self._writer = ConnectionWriter()

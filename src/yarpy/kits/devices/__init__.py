@@ -78,9 +78,11 @@ _WHERE = {
     "SimulatedChatBot": "simulated.talk",
     "SimulatedDepthCamera": "simulated.depth_camera",
     "SimulatedHead": "simulated.head",
+    "SimulatedImu": "simulated.imu",
     "SimulatedJoints": "simulated.joints",
     "SimulatedJoypad": "simulated.joypad",
     "SimulatedLanguageModel": "simulated.talk",
+    "SimulatedLaser": "simulated.laser",
     "SimulatedMicrophone": "simulated.audio",
     "SimulatedSerialPort": "simulated.serial",
     "SimulatedSpeaker": "simulated.audio",
@@ -153,9 +155,11 @@ __all__ = [
     "SimulatedChatBot",
     "SimulatedDepthCamera",
     "SimulatedHead",
+    "SimulatedImu",
     "SimulatedJoints",
     "SimulatedJoypad",
     "SimulatedLanguageModel",
+    "SimulatedLaser",
     "SimulatedMicrophone",
     "SimulatedSerialPort",
     "SimulatedSpeaker",
@@ -237,8 +241,10 @@ if TYPE_CHECKING:
         SimulatedDepthCamera as SimulatedDepthCamera,
     )
     from yarpy.kits.devices.simulated.head import SimulatedHead as SimulatedHead
+    from yarpy.kits.devices.simulated.imu import SimulatedImu as SimulatedImu
     from yarpy.kits.devices.simulated.joints import SimulatedJoints as SimulatedJoints
     from yarpy.kits.devices.simulated.joypad import SimulatedJoypad as SimulatedJoypad
+    from yarpy.kits.devices.simulated.laser import SimulatedLaser as SimulatedLaser
     from yarpy.kits.devices.simulated.map_storage import MapStorage as MapStorage
     from yarpy.kits.devices.simulated.serial import SimulatedSerialPort as SimulatedSerialPort
     from yarpy.kits.devices.simulated.speech import SimulatedSynthesizer as SimulatedSynthesizer

@@ -32,7 +32,7 @@ _KINDS: Final = {
     "mobileBaseVelocityControl": ("a base that drives", ""),
     "navigation2D": ("the navigation of a robot", "fakeNavigation"),
     "odometry2D": ("the odometry of a base", "fakeOdometry2D"),
-    "rangefinder2D": ("a laser scanner", ""),
+    "rangefinder2D": ("a laser scanner", "fakeLaser"),
     "robotDescription": ("the list of a robot's devices", ""),
     "serialPort": ("a serial port", "fakeSerialPort"),
     "simulatedWorld": ("the world of a simulator", ""),
@@ -60,10 +60,12 @@ _CLIENTS: Final = {
 }
 _OTHERS: Final = {
     "controlboardremapper": "the joints of the boards that are attached, as one board",
+    "fakeIMU": "simulated inertial unit: served by multipleanalogsensorsserver",
     "fakeSimulatedWorld": "a world without a simulator: served by simulatedWorld_nws_yarp",
     "fakeSpeaker": "simulated loudspeaker: served by audioPlayerWrapper",
     "frameTransformServer": "knows where frames are, and tells who asks; serves itself",
     "map2DStorage": "maps and places, in memory: served by map2D_nws_yarp",
+    "multipleanalogsensorsremapper": "the sensors of what is attached, as one device",
     "remotecontrolboardremapper": "the joints of boards of other programs, as one board",
     "robotDescriptionStorage": "a list of devices: served by robotDescription_nws_yarp",
     "simulatedEye": "eye of the simulated iCub: attach simulatedHead",

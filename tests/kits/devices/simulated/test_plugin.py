@@ -1,5 +1,7 @@
 """Devices without hardware as devices of a robot's file."""
 
+from typing import Any
+
 import pytest
 
 from yarpy import Bottle, Property
@@ -26,6 +28,24 @@ def test_cameras_have_the_size_that_is_asked_for() -> None:
     for width in (0, "wide", 100_000):
         with pytest.raises(ValueError, match="each side must be"):
             plugin.camera(Property(width=width))
+
+
+def test_an_inertial_unit_and_a_laser() -> None:
+    unit: Any = plugin.imu(Property.from_text("(sensorName head) (constantValue true)"))
+    assert unit.gyroscopes() == {"head": (0.0, 0.0, 0.0)}
+    turning: Any = plugin.imu(Property(constantValue="false"))
+    assert turning.gyroscopes() == {"sensorName": (0.0, 100.0, 0.0)}
+    scanner: Any = plugin.laser(
+        Property.from_text(
+            "(test use_constant) (CONSTANT_MODE (const_distance 0.5)) (clip_max 1) "
+            "(SENSOR (min_angle -45) (max_angle 45) (resolution 30.0))"
+        )
+    )
+    assert scanner.ranges() == [0.5] * 3 and scanner.distances == (0.1, 1.0)
+    with pytest.raises(ValueError, match="clip_max far is no number"):
+        plugin.laser(Property(clip_max="far"))
+    with pytest.raises(ValueError, match="no scene"):
+        plugin.laser(Property(test="use_mapfile"))
 
 
 def test_joints_have_names() -> None:

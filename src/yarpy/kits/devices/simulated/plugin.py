@@ -5,7 +5,9 @@
       <group name="GENERAL"><param name="Joints">6</param></group>
     </device>
 
-Rules: cameras take `width` and `height`, joints the group GENERAL with `Joints` and `AxisName`; the
+Rules: cameras take `width` and `height`, joints the group GENERAL with `Joints` and `AxisName`, an
+inertial unit `sensorName`, `frameName` and `constantValue`, a laser `test`, `const_distance`,
+`clip_min`, `clip_max` and the group SENSOR with `min_angle`, `max_angle` and `resolution`; the
 others take nothing.
 """
 
@@ -74,6 +76,32 @@ def joints(options: Property, *, names: NameClient | None = None) -> object:
     return SimulatedJoints(called or [f"joint{number}" for number in range(many)])
 
 
+def imu(options: Property, *, names: NameClient | None = None) -> object:
+    """Return `fakeIMU`."""
+    from yarpy.kits.devices import SimulatedImu
+
+    return SimulatedImu(
+        str(options.find("sensorName", "sensorName")),
+        str(options.find("frameName", "frameName")),
+        constant=_said(options, "constantValue"),
+    )
+
+
+def laser(options: Property, *, names: NameClient | None = None) -> object:
+    """Return `fakeLaser`. Raises ValueError for settings that make no scan."""
+    from yarpy.kits.devices import SimulatedLaser
+
+    sensor = Property.from_bottle(options.group("SENSOR") or ())
+    constant = Property.from_bottle(options.group("CONSTANT_MODE") or ())
+    return SimulatedLaser(
+        str(options.find("test", "use_pattern")),
+        angles=(_number(sensor, "min_angle", 0.0), _number(sensor, "max_angle", 360.0)),
+        distances=(_number(options, "clip_min", 0.1), _number(options, "clip_max", 3.5)),
+        step=_number(sensor, "resolution", 1.0),
+        distance=_number(constant, "const_distance", _number(options, "const_distance", 1.0)),
+    )
+
+
 def values(options: Property, key: str) -> list[Any]:
     """Return the values of a parameter, given as a list or one after the other.
 
@@ -82,6 +110,19 @@ def values(options: Property, key: str) -> list[Any]:
     """
     group = options.group(key) or Bottle([key])
     return [*(group[1] if len(group) == 2 and isinstance(group[1], list) else group[1:])]
+
+
+def _number(options: Property, key: str, default: float) -> float:
+    value = options.find(key, default)
+    if not isinstance(value, (int, float)) or isinstance(value, bool):
+        raise ValueError(f"{key} {value} is no number")
+    return float(value)
+
+
+def _said(options: Property, key: str) -> bool:
+    """Return whether a parameter is there, and is not false."""
+    value = options.find(key)
+    return value is not None and str(value).lower() not in ("false", "0")
 
 
 def _size(options: Property) -> tuple[int, int]:
