@@ -174,7 +174,7 @@ PEERS: dict[str, Callable[[], str]] = {
     "thrift": _made(thrift_venv.prepare),
     "torch": _torch,
     "wrapyfi": _made(wrapyfi_venv.prepare),
-    "wrapyfi_plugins": _made(wrapyfi_plugins_venv.prepare),
+    "wrapyfi_plugins": _made(wrapyfi_plugins_venv.ready),
     "wrk": _programs("wrk", package="wrk"),
     "zsh": _programs("zsh", package="zsh"),
 }

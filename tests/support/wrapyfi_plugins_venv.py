@@ -37,6 +37,16 @@ def prepare() -> Path:
     return make_once(found, lambda: install(sys.executable, found, *PACKAGES))
 
 
+def ready() -> Path:
+    """The environment's directory, if somebody made it: half a gigabyte is not loaded by a test.
+    Or MissingPeer."""
+    if not (directory() / ".ready").exists():
+        raise MissingPeer(
+            "no libraries of Wrapyfi's plug-ins: python tests/support/wrapyfi_plugins_venv.py"
+        )
+    return directory()
+
+
 if __name__ == "__main__":
     try:
         print(f"Wrapyfi and the libraries of its plug-ins are in {prepare()}")

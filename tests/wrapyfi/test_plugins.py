@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 from support.peer import brings
 from support.process import Process
-from support.wrapyfi_plugins_venv import prepare
+from support.wrapyfi_plugins_venv import ready
 
 import yarpy
 from wrapyfi.plugins import zarr_array  # type: ignore[import-not-found]
@@ -40,7 +40,7 @@ BROKEN = {"picture", "table", "stored", "group"}
 @pytest.fixture(scope="module")
 @brings("wrapyfi_plugins")
 def python() -> Path:
-    return prepare() / "bin" / "python"
+    return ready() / "bin" / "python"
 
 
 @pytest.mark.timeout(5 * LOADING)
