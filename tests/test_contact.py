@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import yarpy
 from yarpy import contact
-from yarpy.contact import Contact, check_name, parse_contact
+from yarpy.contact import Contact, check_name, check_text, parse_contact
 from yarpy.errors import AddressError
 
 
@@ -112,3 +112,16 @@ def test_what_is_no_text(name: Any) -> None:
     for use in (parse_contact, yarpy.Port, yarpy.query, lambda name: yarpy.connect(name, "/b")):
         with pytest.raises(AddressError, match='a text such as "/arm", not '):
             use(name)
+
+
+class Named:
+    """What stands for a port that is given in place of its name."""
+
+    name = "/arm/state"
+
+
+@pytest.mark.parametrize("given", [None, 3, Named()])
+def test_a_name_that_is_no_text(given: object) -> None:
+    with pytest.raises(AddressError, match="the name of a port is a text") as caught:
+        check_text(given)
+    assert ('its name is a text: "/arm/state"' in str(caught.value)) == isinstance(given, Named)

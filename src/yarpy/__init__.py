@@ -241,8 +241,11 @@ else:
                 return import_module(packages[name].target)
             from difflib import get_close_matches
 
-            near = get_close_matches(name, [*_WHERE, *_ROOMS, *packages], 1)
-            hint = f': did you mean "{near[0]}"?' if near else ""
+            near = get_close_matches(name, [*_WHERE, *_ROOMS, *packages], 1, 0.7)
+            hint = import_module("yarpy.elsewhere").instead(name)
+            if not hint and near:
+                hint = f'did you mean "{near[0]}"?'
+            hint = f": {hint}" if hint else ""
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
         # The package first: a thread that begins with a part may get it half done.
         package, _, part = _WHERE[name].rpartition(".")

@@ -148,7 +148,9 @@ def _host_port(text: str) -> tuple[str, int] | None:
 def check_text(name: object) -> None:
     """Raise AddressError for what is not a text at all, such as None or a number."""
     if not isinstance(name, str):
-        raise AddressError(f'the name of a port is a text such as "/arm", not {name!r:.80}')
+        known = getattr(name, "name", None)  # of a port, which is taken for its name
+        mend = f'; its name is a text: "{known}"' if isinstance(known, str) and known else ""
+        raise AddressError(f'the name of a port is a text such as "/arm", not {name!r:.80}{mend}')
 
 
 def check_name(name: str) -> str:

@@ -90,3 +90,11 @@ def test_finding_something_every_time_lets_other_tasks_run():
         assert turns >= 9
 
     asyncio.run(main())
+
+
+def test_a_time_limit_that_is_no_number():
+    async def main():
+        with pytest.raises(TypeError, match="a time limit is a number of seconds or None, not '1'"):
+            await Wakeup().wait_for(lambda: None, "1")
+
+    asyncio.run(main())

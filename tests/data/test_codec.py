@@ -180,7 +180,7 @@ def test_messages_are_read_as_types():
 
 @pytest.mark.parametrize("obj", [object(), {1, 2}, int, ..., iter([])], ids=spelled)
 def test_what_cannot_be_sent(obj):
-    with pytest.raises(TypeError, match=r"cannot be sent; .*to_wire"):
+    with pytest.raises(TypeError, match=r"cannot be sent; (.*to_wire|a list can|int is the class)"):
         codec.encode(obj)
     with pytest.raises(TypeError):
         codec.encode_text(obj)

@@ -152,13 +152,22 @@ def test_what_is_no_database(tmp_path: Path) -> None:
     for kind in (PortTable, RuleTables):
         with pytest.raises(AddressError, match="out of the way"):
             kind(path)
-        with pytest.raises(AddressError, match="failed to open"):
+        with pytest.raises(AddressError, match=r"there is no folder .*missing; make it first"):
             kind(tmp_path / "missing" / "subs.db")
+        with pytest.raises(AddressError, match="that is a folder; name a file in it"):
+            kind(tmp_path)
     other = tmp_path / "other.db"
     with closing(sqlite3.connect(other)) as connection, connection:
         connection.execute("CREATE TABLE tags (something TEXT)")
     with pytest.raises(AddressError, match="failed to open"):
         PortTable(other)
+
+
+def test_where_no_file_can_be_made() -> None:
+    if not Path("/proc/self").is_dir():
+        pytest.skip("only Linux has a folder, /proc, in which nobody can make a file")
+    with pytest.raises(AddressError, match="no file can be made in /proc; name one in another"):
+        PortTable(Path("/proc/yarpy.db"))
 
 
 @pytest.fixture

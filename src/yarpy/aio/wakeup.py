@@ -10,6 +10,8 @@ import asyncio
 from collections.abc import Callable
 from typing import Final, TypeVar
 
+from yarpy.scope import moment
+
 T = TypeVar("T")
 
 LONGEST_RUN: Final = 64  # times that a task finds something at once before others may run
@@ -49,8 +51,10 @@ class Wakeup:
         if found is not None:
             self._run += 1
             return found
-        if timeout is not None and timeout <= 0:
-            return None
+        if timeout is not None:
+            moment(timeout)  # TypeError, in plain words, for what is no number
+            if timeout <= 0:
+                return None
         self._run = 0
         if timeout is None:
             return await self._wait(look)

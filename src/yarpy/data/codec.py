@@ -31,7 +31,7 @@ from typing import Any, Final, TypeVar, cast
 
 from yarpy import registry
 from yarpy.data.bottle import Bottle, Numbers, Property, read_bottle
-from yarpy.data.embedded import with_article
+from yarpy.data.embedded import instead, with_article
 from yarpy.data.python import described, description, typed
 from yarpy.data.python.array import array_of, scalar
 from yarpy.data.python.array import blocks as array_blocks
@@ -127,11 +127,11 @@ def encode(obj: Any) -> Blocks:
             raise TypeError(
                 "a received Message cannot be sent; its value can: message.value"
             ) from None
-        raise TypeError(
-            f"{with_article(kind.__name__)} cannot be sent; lists, dicts, dataclasses, int, float, "
-            "complex, str, bool, bytes, Vocab, arrays, yarpy.data objects and anything with a "
-            "method to_wire() can"
-        ) from None
+        can = instead(obj) or (
+            "lists, dicts, dataclasses, int, float, complex, str, bool, bytes, Vocab, arrays, "
+            "yarpy.data objects and anything with a method to_wire() can"
+        )
+        raise TypeError(f"{with_article(kind.__name__)} cannot be sent; {can}") from None
 
 
 def _check_blocks(blocks: object, kind: type) -> None:

@@ -7,6 +7,7 @@ is the list that its message is. numpy is not imported for it: who has an array 
 from __future__ import annotations
 
 import sys
+from enum import Enum
 from typing import Any
 
 
@@ -34,10 +35,36 @@ def message_of(value: Any) -> bytes:
     found = array_of(value)
     if found is not None and found.ndim:
         return b"".join(blocks(found))
-    raise TypeError(
-        f"{with_article(type(value).__name__)} cannot be an element of a Bottle; int, float, str, "
-        "bool, bytes, Vocab, lists, dicts, numpy arrays and yarpy.data objects can"
+    can = instead(value) or (
+        "int, float, str, bool, bytes, Vocab, lists, dicts, numpy arrays and yarpy.data objects can"
     )
+    raise TypeError(f"{with_article(type(value).__name__)} cannot be an element of a Bottle; {can}")
+
+
+def instead(value: Any) -> str:
+    """Return what can be sent of an object that cannot, as the end of an error; "" if that is not
+    known. Only types are asked, since what an object's own methods do is not known."""
+    if isinstance(value, type):
+        return f"{value.__name__} is the class itself, and an object of it is made by calling it"
+    if isinstance(value, Enum):
+        return "its .value can"
+    kind = type(value)
+    for method, can in _INSTEAD.items():
+        if hasattr(kind, method):
+            return can
+    return ""
+
+
+#: a method that tells what an object is like, and what of it can be sent
+_INSTEAD = {
+    "isoformat": "its text can: .isoformat()",  # dates and times
+    "__fspath__": "its text can: str(path)",
+    "with_traceback": "its text can: str(error)",
+    "as_integer_ratio": "a float can: float(number)",  # Decimal, Fraction
+    "__code__": "what it returns can, when it is called",
+    "keys": "a dict can: dict(it)",
+    "__iter__": "a list can: list(it)",  # sets, ranges, generators, deques
+}
 
 
 def with_article(name: str) -> str:

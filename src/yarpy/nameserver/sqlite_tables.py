@@ -282,8 +282,12 @@ def _mend(path: str | Path, error: Exception) -> str:
     folder = Path(path).parent
     if not folder.is_dir():
         return f"there is no folder {folder}; make it first"
+    if Path(path).is_dir():
+        return "that is a folder; name a file in it"
     if "full" in str(error):
         return "make room, or name a file on another disk"
+    if not Path(path).exists():
+        return f"no file can be made in {folder}; name one in another folder"
     return "move the file out of the way, or name another one"
 
 

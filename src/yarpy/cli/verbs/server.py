@@ -210,8 +210,8 @@ def _parts(text: str) -> tuple[str, str, str]:
     show_default="as stored, else one of this computer",
 )  # fmt: skip
 @click.option(
-    "--socket", type=click.IntRange(0, 65535), default=0, metavar="N", help="The port number.",
-    show_default="as stored, else 10000",
+    "--socket", "--port", "socket", type=click.IntRange(0, 65535), default=0, metavar="N",
+    help="The port number.", show_default="as stored, else 10000",
 )  # fmt: skip
 @click.option("--portdb", default=MEMORY, metavar="F", help="File that remembers registrations.")
 @click.option("--subdb", default=MEMORY, metavar="F", help="File that remembers connections.")
