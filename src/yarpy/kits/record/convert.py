@@ -22,7 +22,7 @@ from yarpy.kits.record.bag.writer import BagWriter
 from yarpy.kits.record.dumper.part import Times
 from yarpy.kits.record.dumper.writer import DumperWriter
 from yarpy.kits.record.envelope import SECOND
-from yarpy.kits.record.mcap.layout import Other
+from yarpy.kits.record.mcap.layout import Damaged, Other
 from yarpy.kits.record.mcap.tape import FOREVER, McapTape
 from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.recording import Recording
@@ -77,6 +77,8 @@ def convert(
         sink = McapWriter(where, compression, _facts(recording))
     found = Converted(sink.path)
     try:
+        if isinstance(sink, McapWriter):
+            _attach(recording, sink)
         notes = _noted(recording, ports, begin if start else 0, end)
         sent = _sent(recording, ports, begin, end)
         # C++ has the comings and goings of a port in a file of their own, by another clock perhaps.
@@ -109,6 +111,23 @@ def convert(
     finally:
         sink.close()
     return found
+
+
+def _attach(recording: Recording, sink: McapWriter) -> None:
+    """Keep the files that were given to the recording, each once; what has changed is damage."""
+    known: set[tuple[str, bytes]] = set()
+    for tape in recording.tapes:
+        if not isinstance(tape, McapTape):
+            continue
+        for found in tape.attachments:
+            try:
+                content = tape.attached(found)
+            except Damaged as damage:
+                tape.damages.append(damage)
+                continue
+            if (found.name, content) not in known:
+                known.add((found.name, content))
+                sink.attach(found.name, content, found.kind)
 
 
 class Thin:

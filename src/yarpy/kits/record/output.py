@@ -11,17 +11,20 @@ import errno
 import os
 import shutil
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.dumper.writer import DumperWriter
 from yarpy.kits.record.intake import Taken
+from yarpy.kits.record.mcap.attachment import LARGEST
 from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.room import Split
 from yarpy.kits.record.sink import ENDING, Both, Format, Nowhere, Opener, Sink
+
+_KINDS: Final = {".xml": "application/xml", ".json": "application/json"}
 
 
 class Output:
@@ -33,6 +36,7 @@ class Output:
     facts: what is known of the recording, for each file.
     ended: called before a file is finished; what it returns is kept with the file.
     waiting: write nothing before `begin`, and after `rest`.
+    attached: files that each MCAP file gets, by their names.
     Raises FileExistsError, OSError.
     """
 
@@ -46,6 +50,7 @@ class Output:
         ended: Callable[[], Mapping[str, str]] = dict,
         format: Format | Opener = "mcap",
         waiting: bool = False,
+        attached: Mapping[str, bytes] | None = None,
     ) -> None:
         self._name = name
         self._compression = compression
@@ -53,6 +58,7 @@ class Output:
         self._most = most
         self._facts = facts
         self._ended = ended
+        self._attached = dict(attached or {})
         self._format: Format | Opener = format
         self.files: list[Path] = []  # that are there
         self.removed = 0
@@ -85,6 +91,12 @@ class Output:
                 raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(folder))
             path = folder.with_name(f"{folder.name}{ENDING}")
             sink = McapWriter(path, self._compression, self._facts())
+            try:
+                for name, content in self._attached.items():
+                    sink.attach(name, content, _KINDS.get(Path(name).suffix, "text/plain"))
+            except OSError:
+                sink.close()
+                raise
             if self._format == "both":
                 sink = Both(sink, DumperWriter(folder))
         self.files.append(sink.path)
@@ -183,3 +195,16 @@ class Output:
     def close(self) -> None:
         """Finish the last file. Raises OSError."""
         self._finish(self._sink)
+
+
+def contents(paths: Iterable[str | Path]) -> dict[str, bytes]:
+    """Return what is in files, by their names without folders. Raises OSError, LocalProtocolError
+    for two of one name, and for one that is too large to be attached."""
+    found: dict[str, bytes] = {}
+    for path in map(Path, paths):
+        if path.name in found:
+            raise LocalProtocolError(f"two files are called {path.name}: rename one of them")
+        if path.stat().st_size > LARGEST:
+            raise LocalProtocolError(f"{path} is too large to be attached: {LARGEST} bytes at most")
+        found[path.name] = path.read_bytes()
+    return found

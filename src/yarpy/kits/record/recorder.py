@@ -17,7 +17,7 @@ import platform
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final, Self
@@ -30,7 +30,7 @@ from yarpy.kits.record.following import Following, Wanted
 from yarpy.kits.record.intake import MEMORY, Count, Intake
 from yarpy.kits.record.loss import Losses
 from yarpy.kits.record.opening import open_port, without_ending
-from yarpy.kits.record.output import Output
+from yarpy.kits.record.output import Output, contents
 from yarpy.kits.record.room import Room, Split, size_text
 from yarpy.kits.record.sink import Format, Opener
 from yarpy.log import logger
@@ -62,6 +62,7 @@ class Recorder:
     snapshot: write nothing but the last so many seconds, when `snapshot` is called; `memory` bounds
     them, too. triggers: regular expressions by ports: a message with a match calls it.
     paused: take nothing before `resume`.
+    attach: files that are kept within each MCAP file: the application, definitions of types.
     carrier: how the ports are connected, else as `yarpy.connect` does.
     name: of its own port. names: a name client, None for the default.
     tell: called with a line for people when something is to be known.
@@ -86,6 +87,7 @@ class Recorder:
         snapshot: float = 0.0,
         triggers: Mapping[str, str] | None = None,
         paused: bool = False,
+        attach: Sequence[str | Path] = (),
         carrier: str = "",
         name: str = "",
         names: NameClient | None = None,
@@ -102,6 +104,7 @@ class Recorder:
             memory //= 4
         elif triggers:
             raise LocalProtocolError("triggers are for snapshots: say how many seconds")
+        attached = contents(attach)
         self._intake = Intake(memory, rates, now)
         self._intake.paused = paused
         self._tell = tell
@@ -125,7 +128,7 @@ class Recorder:
         try:
             self._output = Output(
                 where, compression, split, most, lambda: self._facts, self._losses.of_file,
-                format, self._backlog is not None,
+                format, self._backlog is not None, attached,
             )  # fmt: skip
         except BaseException:
             self._port.close()

@@ -151,6 +151,16 @@ class Recording:
         found = [note for tape in self.tapes for note in tape.notes()]
         return sorted(found, key=lambda note: int(note["time_ns"]))
 
+    def attachments(self) -> dict[str, bytes]:
+        """Return the files that were given to it (`attach`), by their names. Raises DecodeError for
+        one that has changed."""
+        return {
+            found.name: tape.attached(found)
+            for tape in self.tapes
+            if isinstance(tape, McapTape)
+            for found in tape.attachments
+        }
+
     def mark(self, text: str) -> float:
         """Return when a moment was marked with that text, in seconds from the beginning. Raises
         UnknownName."""

@@ -12,6 +12,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from yarpy.kits.record.envelope import SECOND
+from yarpy.kits.record.mcap.tape import McapTape
 from yarpy.kits.record.recording import Recording
 from yarpy.kits.record.room import size_text
 from yarpy.log import readable
@@ -48,6 +49,7 @@ class Report:
     damages: list[str]
     complete: bool
     facts: dict[str, str] = field(default_factory=dict)
+    attachments: list[dict[str, Any]] = field(default_factory=list)
 
 
 def report(recording: Recording, check: bool = False) -> Report:
@@ -82,6 +84,12 @@ def report(recording: Recording, check: bool = False) -> Report:
         damages=recording.damages,
         complete=recording.complete,
         facts={key: value for tape in recording.tapes for key, value in tape.facts.items()},
+        attachments=[
+            {"name": one.name, "type": one.kind, "bytes": one.size}
+            for tape in recording.tapes
+            if isinstance(tape, McapTape)
+            for one in tape.attachments
+        ],
     )
 
 
@@ -161,6 +169,9 @@ def lines(found: Report) -> list[str]:
     wide = max((len(readable(port.name)) for port in found.ports), default=0)
     for port in found.ports:
         told.append(f"  {readable(port.name).ljust(wide)}  {_port(port, found.begin)}")
+    for one in found.attachments:
+        kind = f"{one['type']}, " if one["type"] else ""
+        told.append(f"attached:  {_text(one['name'])} ({_text(kind)}{size_text(one['bytes'])})")
     if found.marks:
         told.append("notes:")
     for mark in found.marks:

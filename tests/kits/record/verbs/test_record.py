@@ -61,7 +61,8 @@ def test_a_kill_costs_no_more_than_a_second(cli, out, tmp_path) -> None:
 
 
 def test_json(cli, out) -> None:
-    words = ("-a", "--exclude", "root", "--json", "--split", "1h")
+    (cli.home / "walk.xml").write_text("<application/>")
+    words = ("-a", "--exclude", "root", "--json", "--split", "1h", "--attach", "walk.xml")
     with cli.start("record", *words, "-o", "y", "--compress", "zstd") as process:
         assert out.wait_for_outputs(timeout=HANG)
         out.write([1, 2], wait=True)
@@ -71,6 +72,8 @@ def test_json(cli, out) -> None:
     assert told["files"] == ["y-0001.mcap"] and told["failure"] == ""
     assert told["ports"]["/out"]["messages"] == 1
     assert values(cli.home / "y-0001.mcap") == [[1, 2]]
+    with record.open(cli.home / "y-0001.mcap") as found:
+        assert found.attachments() == {"walk.xml": b"<application/>"}
 
 
 def test_a_duration(cli, server) -> None:

@@ -18,7 +18,16 @@ from typing import Final
 
 from yarpy.errors import DecodeError
 from yarpy.kits.record.mcap import layout
+from yarpy.kits.record.mcap.attachment import (
+    LARGEST,
+    MOST,
+    START,
+    Attachment,
+    content_of,
+    parse_attachment,
+)
 from yarpy.kits.record.mcap.layout import (
+    ATTACHMENT,
     CHANNEL,
     CHUNK,
     CHUNK_INDEX,
@@ -46,6 +55,7 @@ _CHUNK_START: Final = 4096  # bytes that the head of a chunk never exceeds
 _RUN: Final = 1 << 20  # bytes of messages outside chunks that are read at once
 _SIGNED: Final = Struct("<BQQQ")  # what the checksum of the summary covers of the footer
 _METADATA_INDEX: Final = 13
+_ATTACHMENT_INDEX: Final = 10
 
 
 class Window:
@@ -94,6 +104,7 @@ class Index:
         self.lasts = array("Q")
         self.bare = array("B")  # messages outside of chunks
         self.metadata: dict[str, dict[str, str]] = {}
+        self.attachments: list[Attachment] = []
         self.damages: list[Damaged] = []
         self.complete = False
 
@@ -169,7 +180,7 @@ def _summary(window: Window) -> Index | None:
         raise Damaged(start, "the summary has changed: its checksum is another one")
     index = Index()
     counted = False
-    metadata: list[int] = []
+    named: list[int] = []  # metadata and attachments
     for opcode, body, where in records_of(memoryview(data), start):
         if opcode in (SCHEMA, CHANNEL):
             index.describe(opcode, body, where)
@@ -182,15 +193,17 @@ def _summary(window: Window) -> Index | None:
         elif opcode == STATISTICS:
             counted = True
             index.counts = _counts(body, where)
-        elif opcode == _METADATA_INDEX:
-            metadata.append(Cursor(body, where).u64())
+        elif opcode in (_METADATA_INDEX, _ATTACHMENT_INDEX):
+            named.append(Cursor(body, where).u64())
     if not counted or (any(index.counts.values()) and not index.places):
         return None
-    for at in metadata:
+    for at in named:
         try:
             opcode, length = HEAD.unpack(window.at(at, HEAD.size))
             if opcode == METADATA:
                 _keep_metadata(index, window, at, length)
+            elif opcode == ATTACHMENT:
+                _keep_attachment(index, window, at, length)
         except Damaged as damage:
             index.damages.append(damage)
     index.complete = True
@@ -290,6 +303,8 @@ class _Walk:
             index.describe(opcode, window.at(body, _few(place, length)), body)
         elif opcode == METADATA:
             _keep_metadata(index, window, place, length)
+        elif opcode == ATTACHMENT:
+            _keep_attachment(index, window, place, length)
 
     def _list(self) -> None:
         """Count the messages of the chunk before, if no list of them has followed it."""
@@ -356,6 +371,22 @@ def _keep_metadata(index: Index, window: Window, place: int, length: int) -> Non
     body = place + HEAD.size
     name, values = layout.parse_metadata(window.at(body, _few(place, length)), body)
     index.metadata.setdefault(name, {}).update(values)
+
+
+def _keep_attachment(index: Index, window: Window, place: int, length: int) -> None:
+    if len(index.attachments) >= MOST:
+        raise Damaged(place, f"more than {MOST} attachments")
+    if place + HEAD.size + length > window.size:
+        raise Damaged(place, f"an attachment of {length} bytes, which the file does not have")
+    start = window.at(place + HEAD.size, min(length, START))
+    index.attachments.append(parse_attachment(start, place, length))
+
+
+def attachment_at(window: Window, found: Attachment) -> bytes:
+    """Return what is in an attachment. Raises Damaged."""
+    if found.size > LARGEST:
+        raise Damaged(found.place, f"an attachment of {found.size} bytes; {LARGEST} are read")
+    return content_of(found, bytes(window.at(found.place + HEAD.size, found.length)))
 
 
 def _few(place: int, length: int) -> int:

@@ -15,7 +15,15 @@ from pathlib import Path
 from typing import Final, Self
 
 from yarpy.errors import DecodeError, MissingFile
-from yarpy.kits.record.mcap.index import Index, Window, chunk_at, read_index, records_of
+from yarpy.kits.record.mcap.attachment import Attachment
+from yarpy.kits.record.mcap.index import (
+    Index,
+    Window,
+    attachment_at,
+    chunk_at,
+    read_index,
+    records_of,
+)
 from yarpy.kits.record.mcap.layout import MESSAGE, MESSAGE_HEAD, Channel, Damaged, Record
 from yarpy.limit import RECORDED_CHUNK
 
@@ -51,6 +59,10 @@ class McapFile:
     def size(self) -> int:
         """Return the size of the file in bytes, as it was when it was opened."""
         return self._window.size
+
+    def attached(self, found: Attachment) -> bytes:
+        """Return what is in an attachment of `index`. Raises Damaged."""
+        return attachment_at(self._window, found)
 
     @property
     def channels(self) -> dict[int, Channel]:

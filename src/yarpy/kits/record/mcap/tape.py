@@ -14,6 +14,7 @@ from typing import Any
 from yarpy.errors import DecodeError
 from yarpy.kits.record.envelope import envelope_of, stamp_text
 from yarpy.kits.record.form.form import FORM, unspelled
+from yarpy.kits.record.mcap.attachment import Attachment
 from yarpy.kits.record.mcap.layout import Channel, Damaged, Other
 from yarpy.kits.record.mcap.reader import McapFile
 from yarpy.kits.record.mcap.writer import ENCODING, NOTES
@@ -59,6 +60,15 @@ class McapTape:
     def facts(self) -> dict[str, str]:
         """Return what was known when it was begun."""
         return self._file.index.metadata.get("yarpy", {})
+
+    @property
+    def attachments(self) -> list[Attachment]:
+        """Return the files that were given to it."""
+        return self._file.index.attachments
+
+    def attached(self, found: Attachment) -> bytes:
+        """Return what is in one of them. Raises Damaged."""
+        return self._file.attached(found)
 
     @property
     def ports(self) -> dict[str, PortFacts]:

@@ -18,6 +18,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import time
 import zlib
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -86,6 +87,7 @@ class McapWriter:
         self._chunk_indexes = io.BytesIO()
         self._chunks = 0
         self._metadata: list[Any] = []
+        self._attached: list[Any] = []
         self._notes = 0
         self._begin_chunk()
         self._append([MAGIC, self._encoded(records.Header("", f"yarpy {__version__}"))])
@@ -228,6 +230,18 @@ class McapWriter:
         self._append([data])
         self._metadata.append(index)
 
+    def attach(self, name: str, content: bytes, kind: str) -> None:
+        """Write a file into this one, of the type `kind` (`text/xml`). Raises OSError."""
+        self._end_chunk()
+        now, records = time.time_ns(), self._records
+        facts = {"create_time": now, "log_time": now, "media_type": kind, "name": name}
+        data = self._encoded(records.Attachment(data=content, **facts))
+        index = records.AttachmentIndex(
+            data_size=len(content), length=len(data), offset=self.size, **facts
+        )
+        self._append([data])
+        self._attached.append(index)
+
     def flush(self) -> None:
         """Hand everything to the system: from here on a kill of this program loses nothing of it.
         Raises OSError; what could not be written is no more then."""
@@ -331,7 +345,7 @@ class McapWriter:
         schemas = [one for one in self._described if isinstance(one, records.Schema)]
         channels = [one for one in self._described if isinstance(one, records.Channel)]
         statistics = records.Statistics(
-            attachment_count=0,
+            attachment_count=len(self._attached),
             channel_count=len(channels),
             channel_message_counts=self._counts,
             chunk_count=self._chunks,
@@ -346,6 +360,7 @@ class McapWriter:
             (4, b"".join(map(encoded, channels))),
             (11, encoded(statistics)),
             (8, self._chunk_indexes.getvalue()),
+            (10, b"".join(map(encoded, self._attached))),
             (13, b"".join(map(encoded, self._metadata))),
         ]
         place, offsets = start, []

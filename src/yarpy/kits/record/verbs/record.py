@@ -68,6 +68,9 @@ NEWS: Final = 100  # lines that are kept
               help="... or when a message of PORT has a match.")  # fmt: skip
 @click.option("--recover", metavar="FILE",
               help="Record nothing: make a whole file of what is left of FILE.")  # fmt: skip
+@click.option("--attach", "attached", multiple=True, metavar="FILE",
+              type=click.Path(exists=True, dir_okay=False),
+              help="Keep an application, a .thrift, a .msg ... within, too.")  # fmt: skip
 @click.option("--start-paused", "paused", is_flag=True, help="Record nothing before the space bar.")
 @click.option("--duration", type=click.FloatRange(0, min_open=True), metavar="S",
               help="Stop after so many seconds.")  # fmt: skip
@@ -92,6 +95,7 @@ def command(
     snapshot: str | None,
     triggers: tuple[str, ...],
     recover: str | None,
+    attached: tuple[str, ...],
     paused: bool,
     duration: float | None,
     carrier: str,
@@ -143,6 +147,7 @@ def command(
             snapshot=0.0 if snapshot is None else parse_time(snapshot),
             triggers=dict(map(parse_trigger, triggers)),
             paused=paused,
+            attach=attached,
             carrier=carrier,
             name=name,
             tell=tell,
