@@ -21,6 +21,11 @@ from yarpy.transports.tls_setting import folder, mutual
 OVERRIDE: Final = "ZENOH_CONFIG_OVERRIDE"
 # How often a router that went away is looked for: milliseconds at first, at most, and the factor.
 RETRY: Final = {"period_init_ms": 500, "period_max_ms": 1000, "period_increase_factor": 1.5}
+# Microseconds that what is put waits for room on the way to its router, before it is dropped:
+# Zenoh's own thousand pass where this computer is busy for a moment. Routers keep theirs: one
+# reader that stands still would hold up the others.
+ROOM: Final = 50_000
+_WAIT: Final = "transport/link/tx/queue/congestion_control/drop/wait_before_drop"
 OPENING: Final = 4000  # milliseconds for a router to answer; one that speaks no TLS says nothing
 
 
@@ -36,6 +41,7 @@ def client(where: Place) -> Any:
             put(config, "connect/endpoints", [*where.routers])
             put(config, "connect/retry", RETRY)
             put(config, "transport/unicast/open_timeout", OPENING)
+            put(config, _WAIT, ROOM)
             secure(config, (), where.routers)
     override(config)
     return config
