@@ -397,6 +397,44 @@ def test_a_socket_with_security_is_told_no(
     assert not out.outputs
 
 
+def test_a_port_logs_in_to_a_socket(sockets: Sockets, reader: yarpy.BufferedPort) -> None:
+    with Doorkeeper(sockets.context, {b"me": b"a word"}):
+        socket, where = sockets.bound(zmq.PUB, PLAIN_SERVER=1)
+        for wrong in ("zmq+sub", "zmq+sub+user.me", "zmq+sub+user.me+password.other"):
+            with pytest.raises(yarpy.LinkClosed if wrong == "zmq+sub" else yarpy.AccessRefused):
+                reader.listen_to(f"{wrong}://{where}", timeout=HANG)
+        reader.listen_to(f"zmq+sub+user.me+password.a word://{where}")
+        wait_until(lambda: socket.send(b"hello") is None and reader.poll() is not None)
+
+
+class Doorkeeper:
+    """Says who may come in to the sockets of a context that ask for names and passwords (ZAP)."""
+
+    def __init__(self, context: Any, known: dict[bytes, bytes]) -> None:
+        self._known = known
+        self._socket = context.socket(zmq.REP)
+        self._socket.linger = 0
+        self._socket.bind("inproc://zeromq.zap.01")
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="doorkeeper")
+
+    def _run(self) -> None:
+        while not self._over.is_set():
+            if self._socket.poll(20):
+                version, number, *_, user, password = self._socket.recv_multipart()
+                admitted = self._known.get(user) == password
+                status = b"200" if admitted else b"400"
+                self._socket.send_multipart([version, number, status, b"", b"", b""])
+
+    def __enter__(self) -> None:
+        self._thread.start()
+
+    def __exit__(self, *error: object) -> None:
+        self._over.set()
+        self._thread.join(HANG)
+        self._socket.close()
+
+
 def test_a_pair_is_told_no(
     out: yarpy.Port, sockets: Sockets, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -45,6 +45,7 @@ def test_properties_are_read(size: int) -> None:
         (b"\xff" + bytes(8) + b"\x7e" + bytes(54), "does not speak ZMTP"),
         (GREETING[:10] + b"\1" + GREETING[11:], "before 3"),
         (GREETING[:12] + b"CURVE".ljust(20, b"\0") + bytes(32), "mechanism CURVE"),
+        (GREETING[:12] + b"PLAIN".ljust(20, b"\0") + bytes(32), "mechanism PLAIN"),
     ],
 )
 def test_other_greetings_are_refused(data: bytes, why: str) -> None:

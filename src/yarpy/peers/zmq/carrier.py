@@ -3,6 +3,7 @@
     zmq+pub.TOPIC    zmq+sub.TOPIC      to a SUB that is bound there, from a PUB
     zmq+push         zmq+pull           to a PULL, from a PUSH
     zmq+req          zmq+rep            questions to a REP, from a REQ
+    ... +user.NAME+password.WORD        to a socket that asks for them (PLAIN)
 
 Rules: a carrier string says what the side that dials is. Of a socket that dials us we are whatever
 fits, all at once. What PUB and SUB exchange has the topic as its first frame; the topic of a port
@@ -23,7 +24,7 @@ from yarpy.errors import AccessRefused, LinkClosed, LocalProtocolError, RemotePr
 from yarpy.facts import SOCKET
 from yarpy.limit import ZMQ_BACKLOG, ZMQ_FRAMES, ZMQ_HELD, ZMQ_PREFIX, ZMQ_SUBSCRIPTIONS
 from yarpy.log import readable
-from yarpy.peers.zmq import zmtp
+from yarpy.peers.zmq import plain, zmtp
 from yarpy.route import CarrierSpec, Route
 from yarpy.wire.effects import HEAR, May
 from yarpy.wire.message import CALL, DATA, SMALL, Message, Packet
@@ -56,6 +57,7 @@ class Zmq(Carrier):
     @classmethod
     def of(cls, spec: CarrierSpec) -> type[Carrier]:
         refuse_unknown(spec, _WORDS)
+        plain.credentials(spec)
         found = roles_of(spec)
         if len(found) != 1:
             raise LocalProtocolError(
@@ -72,10 +74,15 @@ class Zmq(Carrier):
     # -- beginning --------------------------------------------------------------------------------
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        stream.write(zmtp.GREETING)
-        self.minor = min(1, (yield from zmtp.read_greeting(stream)))
-        stream.write(self._ready())
-        properties = yield from zmtp.read_ready(stream)
+        login = plain.credentials(self.route.spec)
+        mechanism = zmtp.NULL if login is None else plain.MECHANISM
+        stream.write(zmtp.greeting(mechanism))
+        self.minor = min(1, (yield from zmtp.read_greeting(stream, mechanism, dialled=True)))
+        if login is None:
+            stream.write(zmtp.ready(self._said()))
+            properties = yield from zmtp.read_ready(stream)
+        else:
+            properties = yield from plain.log_in(stream, *login, self._said())
         kind = properties.get("socket-type", b"").upper()
         if kind not in self.partners:
             shown = readable(kind[:20].decode("latin-1")) or "a socket without a type"
@@ -86,13 +93,13 @@ class Zmq(Carrier):
             )
         self._begin(stream)
 
-    def _ready(self) -> bytes:
+    def _said(self) -> dict[str, bytes]:
         said = {"Socket-Type": self.role.upper().encode()}
         if self.role in ("req", "rep"):
             said["Identity"] = b""
-        if self.route.source.startswith("/"):
+        if self.route.source.startswith("/") and self.route.spec.value("user") is None:
             said[PORT] = self.route.specifier.encode("utf-8", "surrogateescape")
-        return zmtp.ready(said)
+        return said
 
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[Carrier | None]:
         if self._open:
@@ -126,7 +133,7 @@ class Zmq(Carrier):
         carrier = other(route)
         carrier.minor, carrier.push, carrier._open = minor, not other.push, True
         yield from carrier._admit(stream)
-        stream.write(carrier._ready())
+        stream.write(zmtp.ready(carrier._said()))
         carrier._begin(stream)
         return carrier
 
@@ -458,7 +465,10 @@ def received(key: str, frames: list[Buffer]) -> Message:
 
 #: by what a carrier string says of the side that dials
 ROLES: Final[dict[str, type[Zmq]]] = {kind.role: kind for kind in (Pub, Push, Req, Sub, Pull, Rep)}
-_WORDS: Final = ("pub.TOPIC", "push", "req", "sub.TOPIC", "pull", "rep", "raw")
+_WORDS: Final = (
+    *("pub.TOPIC", "push", "req", "sub.TOPIC", "pull", "rep"),
+    *("user.NAME", "password.WORD", "raw"),
+)
 #: by the type of a socket: what we are to it, and the role of ours that it has itself
 PARTNER: Final[dict[bytes, tuple[type[Zmq], str]]] = {
     b"SUB": (Pub, "sub"),

@@ -6,7 +6,7 @@
 
 Rules: pure. A frame's flags are 1 (more frames of this message follow), 2 (its size has eight bytes
 instead of one) and 4 (a command). Lengths are checked before memory is taken. The security
-mechanism is NULL. Source: ZeroMQ RFC 23 (3.0) and 37 (3.1).
+mechanism is NULL, or PLAIN where a port dials (`plain`). Source: ZeroMQ RFC 23 (3.0) and 37 (3.1).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from yarpy.wire.steps import Steps
 from yarpy.wire.stream import LARGE, Buffer, ByteStream
 
 MAGIC: Final = b"\xff" + bytes(7)
-GREETING: Final = MAGIC + b"\x01\x7f\x03\x01" + b"NULL".ljust(20, b"\0") + bytes(32)
+NULL: Final = b"NULL"
 
 MORE: Final = 1
 LONG: Final = 2
@@ -37,8 +37,18 @@ Frame = tuple[int, Buffer]
 # -- the greeting ---------------------------------------------------------------------------------
 
 
-def read_greeting(stream: ByteStream) -> Steps[int]:
-    """Read what the peer begins with; the minor number of its version 3."""
+def greeting(mechanism: bytes = NULL) -> bytes:
+    """Return what a side begins with that is no server of the security mechanism."""
+    return MAGIC + b"\x01\x7f\x03\x01" + mechanism.ljust(20, b"\0") + bytes(32)
+
+
+GREETING: Final = greeting()
+
+
+def read_greeting(stream: ByteStream, wanted: bytes = NULL, dialled: bool = False) -> Steps[int]:
+    """Read what the peer begins with; the minor number of its version 3. Raises RemoteProtocolError
+    for another security mechanism than the one that is `wanted`, with what to do about it on this
+    side if it was `dialled` from here."""
     start = bytes((yield from stream.read_exact(11)))
     if start[0] != 0xFF or start[9] != 0x7F:
         raise RemoteProtocolError("the peer does not speak ZMTP, the protocol of ZeroMQ")
@@ -48,11 +58,19 @@ def read_greeting(stream: ByteStream) -> Steps[int]:
         )
     rest = bytes((yield from stream.read_exact(len(GREETING) - len(start))))
     mechanism = rest[1:21].rstrip(b"\0")
-    if mechanism != b"NULL":
+    if mechanism != wanted:
         name = readable(mechanism.decode("latin-1"))
+        if dialled and mechanism == b"PLAIN":
+            raise RemoteProtocolError(
+                "the peer asks for a name and a password: say +user.NAME+password.WORD"
+            )
+        if mechanism == NULL:
+            raise RemoteProtocolError(
+                "the peer asks for no name and no password: leave +user and +password out"
+            )
         raise RemoteProtocolError(
-            f"the peer wants the security mechanism {name}, and only NULL is spoken here: leave "
-            "that option out on its socket"
+            f"the peer wants the security mechanism {name}, which is not spoken here: leave that "
+            "option out on its socket"
         )
     return rest[0] if start[10] == 3 else 1
 
@@ -196,10 +214,15 @@ def ready(properties: Mapping[str, bytes]) -> bytes:
     >>> ready({"Socket-Type": b"PUB"})[:8].hex(" ")
     '04 1c 05 52 45 41 44 59'
     """
+    return command(b"READY", properties_of(properties))
+
+
+def properties_of(properties: Mapping[str, bytes]) -> bytes:
+    """Return properties as they are said in a command."""
     body = bytearray()
     for name, value in properties.items():
         body += bytes((len(name),)) + name.encode() + len(value).to_bytes(4, "big") + value
-    return command(b"READY", bytes(body))
+    return bytes(body)
 
 
 def error(reason: str) -> bytes:
