@@ -179,3 +179,14 @@ def test_so_it_does_in_children_of_multiprocessing():
         "process.start(); process.join()",
     )
     assert done.stdout.split() == ["child", "cable"], done.stderr
+
+
+def test_names_have_a_moment_beyond_that_all_together():
+    done = run(
+        "print(linger.left_for_names())",
+        "left = lambda seconds: print(0.0 < linger.left_for_names() <= linger.NAMES)",
+        "os.environ[linger.SETTING] = '0'",
+        "linger.remove('first'), linger.remove('last')",
+        "linger.add('a', left)",
+    )
+    assert done.stdout.split() == ["0.0", "True"], done.stderr

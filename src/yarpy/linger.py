@@ -1,8 +1,9 @@
 """Linger: what is still open when the program ends is closed.
 
 Rules: a program ends normally, by an exception, by sys.exit, or by SIGTERM or SIGHUP; then all that
-is open has `seconds()` together to send what was written and to give names back. After os._exit,
-and after SIGKILL, nobody can do anything. The two signals are heard only where nobody else hears
+is open has `seconds()` together to send what was written and to give names back; and NAMES beyond
+that for names alone, where a busy computer has used up the rest. After os._exit, and after SIGKILL,
+nobody can do anything. The two signals are heard only where nobody else hears
 them and the system would end the process: a handler of ours is set when the first thing opens in
 the main thread, and taken back when the last one closes there. It closes what is open, in a thread
 of its own, since the frame beneath may hold any lock; then the signal ends the process as it would
@@ -28,7 +29,8 @@ from yarpy.log import logger
 
 SETTING: Final = "YARPY_LINGER"
 LINGER: Final = 1.0  # seconds
-MORE: Final = 0.5  # seconds beyond that for the thread that closes after a signal
+NAMES: Final = 0.5  # seconds beyond that, for what `left_for_names`
+MORE: Final = 0.5  # seconds beyond both for the thread that closes after a signal
 
 Close = Callable[[float], object]  # gets the seconds that it may take
 
@@ -36,6 +38,7 @@ log = logger("yarpy.linger")
 
 _open: dict[object, Close] = {}
 _last: list[Callable[[], object]] = []
+_until = 0.0  # when all of it is over, by time.monotonic; 0.0 before the program ends
 _begun: set[int] = set()  # the process in which the interpreter calls us at its end
 _signals: Final = tuple(
     getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)
@@ -83,8 +86,10 @@ def at_last(action: Callable[[], object]) -> None:
 
 def end() -> None:
     """Close all that is open, the last first, in `seconds()` seconds."""
+    global _until
     left = seconds()
     limit = time.monotonic() + left
+    _until = limit + NAMES
     while _open:
         thing, close = _open.popitem()
         left = max(0.0, limit - time.monotonic())
@@ -92,6 +97,12 @@ def end() -> None:
             close(left if not _open else left / 2)
         except Exception:
             log.exception("%s could not be closed at the end of the program", thing)
+
+
+def left_for_names() -> float:
+    """Return the seconds that whoever is closed by `end` has to give a name back, also when those
+    that it was told are over."""
+    return max(0.0, _until - time.monotonic())
 
 
 @atexit.register  # before anything that imports this can register, so it is called behind that
@@ -150,5 +161,5 @@ def _end_by(number: int, frame: FrameType | None) -> None:
         thread = threading.Thread(target=_end_all, name="yarpy linger", daemon=True)
         with contextlib.suppress(RuntimeError):  # there can be no more threads
             thread.start()
-            thread.join(seconds() + MORE)
+            thread.join(seconds() + NAMES + MORE)
     os.kill(os.getpid(), number)

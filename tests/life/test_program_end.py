@@ -125,6 +125,52 @@ def test_a_child_of_multiprocessing_ends_in_good_order(
     assert yarpy.query("/life/out") is None
 
 
+def test_a_name_is_given_back_when_all_the_time_was_needed_for_the_rest() -> None:
+    program = (
+        "import atexit, yarpy\nfrom yarpy import scope\n"
+        "class Busy(yarpy.LocalNames):\n"
+        "    def unregister(self, name):\n"
+        "        scope.left()  # as what asks a server does\n"
+        "        super().unregister(name)\n"
+        "names = Busy()\n"
+        "atexit.register(lambda: print(names.query('/life/out')))\n"
+        "port = yarpy.Port('/life/out', names=names, timeout=60)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "YARPY_LINGER": "0"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.stdout == "None\n", done.stderr
+
+
+def test_a_port_that_is_just_closed_by_the_collector_is_waited_for() -> None:
+    program = (
+        "import threading, time, yarpy\n"
+        "class Slow(yarpy.LocalNames):\n"
+        "    asked = threading.Event()\n"
+        "    def unregister(self, name):\n"
+        "        self.asked.set()\n"
+        "        time.sleep(0.3)  # in which the main thread comes to its end\n"
+        "        super().unregister(name)\n"
+        "        print('gone', flush=True)\n"
+        "names = Slow()\n"
+        "def work():\n    port = yarpy.Port('/life/out', names=names, timeout=60)\n"
+        "work()\n"
+        "assert names.asked.wait(60)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={**os.environ, "YARPY_LINGER": "20"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.stdout == "gone\n", done.stderr
+
+
 def test_the_program_s_own_handler_decides(server: yarpy.NameServer) -> None:
     program = (
         "import os, signal, sys\nimport yarpy\n"

@@ -16,7 +16,7 @@ from typing import Any, Final, Protocol
 from yarpy import linger, scope
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
-from yarpy.errors import AccessRefused, NoNameServer, Timeout
+from yarpy.errors import NoNameServer, YarpError
 from yarpy.link.begin.admission import Gate
 from yarpy.link.receive.budget import port_budget
 from yarpy.link.receive.inbound import Inbound
@@ -203,7 +203,7 @@ class Hub:
             self.reception.close()
             self.registration.forget()
             raise
-        linger.add(self, self.close)
+        linger.add(self, self._close_at_end)
         self.actions.reconnect.watch(self)
         where = f"tcp://{self.contact.address}/"
         log.info("Port %s active at %s, open to %s", self.name, where, reach())
@@ -260,14 +260,24 @@ class Hub:
         """Close every connection in good order, then the port; the name is given back. All of it
         takes so many seconds at most; where none are given, what `linger` says, and GIVING_BACK for
         the name if all of that was needed for the rest."""
+        if seconds is None:
+            self._close(linger.seconds(), GIVING_BACK)
+        else:
+            self._close(seconds, 0.0)
+
+    def _close_at_end(self, seconds: float) -> None:
+        """The program ends."""
+        self._close(seconds, min(GIVING_BACK, linger.left_for_names()))
+
+    def _close(self, seconds: float, giving_back: float) -> None:
         with self.inputs.lock:
             self.life.closing = True
         self.life.calls.end(f'"{self.name}" is closed', last=True)
         self.outputs.end_calls("closed")
         own = [link.thread for link in (*self.inputs.links, *self.inputs.leaving)]
         self._ender.run(
-            linger.seconds() if seconds is None else seconds,
-            last=GIVING_BACK if seconds is None and self.registration.answered else 0.0,
+            seconds,
+            last=giving_back if self.registration.answered else 0.0,
             wait=threading.current_thread() not in own,  # which are waited for
         )
 
@@ -294,13 +304,13 @@ class Hub:
         self.callbacks.close()
 
     def _give_back(self) -> None:
-        linger.remove(self)
         try:
             if not self.registration.answered:
                 raise NoNameServer("it did not answer just now")
             self.registration.give_back()
-        except (NoNameServer, Timeout, AccessRefused) as error:
+        except YarpError as error:
             log.info("%s: the name stays registered: %s", self.name, error)
+        linger.remove(self)  # not before: this may be a thread that the end of the program cuts
 
     def abandon(self, why: str) -> None:
         """In a forked process: the port is its parent's. Close our copies of its sockets."""

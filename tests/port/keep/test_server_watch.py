@@ -9,11 +9,12 @@ from types import SimpleNamespace
 import pytest
 from support.port import free_port
 from support.tls import prepare
-from support.wait import wait_until
+from support.wait import HANG, wait_until
 
 import yarpy
 from yarpy.link.begin import handshake, pending
 from yarpy.port.keep import server_watch
+from yarpy.port.keep.registration import Registration
 from yarpy.port.keep.server_watch import ServerWatch
 
 
@@ -75,6 +76,7 @@ def hub(client: Client) -> SimpleNamespace:
         registered=True,
         describe=lambda names: names.said.append("describe"),
         give_back=lambda: client.said.append("give back"),
+        again=threading.RLock(),
     )
     contact = yarpy.Contact("tcp", "/port", "127.0.0.1", 10002)
     return SimpleNamespace(
@@ -226,3 +228,47 @@ def test_a_port_that_closes_while_it_is_registered_gives_the_name_back(watch, cl
     closing.registration.describe = describe
     settle(watch, [closing])
     assert client.said == ["register /port", "describe", "give back"]
+
+
+class Slow(Client):
+    """One that takes its time for the first question."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.asked, self.answer = threading.Event(), threading.Event()
+
+    def query(self, name: str):
+        if not self.asked.is_set():
+            self.asked.set()
+            self.answer.wait(HANG)
+        return super().query(name)
+
+    def unregister(self, name: str) -> None:
+        self.known.discard(name)
+
+
+def test_a_name_that_was_given_back_is_not_told_again(watch: ServerWatch) -> None:
+    """The program may end as soon as it was: nobody would take the name out again."""
+    client = Slow()
+    client.known.clear()
+    port = hub(client)
+    registration = Registration("/port", client, "", register=True)
+    registration.port = port.port
+    registration.describe = lambda names: None  # type: ignore[method-assign]
+    port.registration = registration
+    watch.look([port])
+    assert client.asked.wait(HANG)
+    port.life.closing = True
+
+    def close() -> None:
+        registration.give_back()
+        client.said.append("given back")
+
+    closer = threading.Thread(target=close)
+    closer.start()
+    closer.join(0.2)  # in which it must not come to its end
+    client.answer.set()
+    closer.join(HANG)
+    wait_until(lambda: not watch._attempts.under_way)
+    assert client.said[-1] == "given back" and not client.known
+    client.go_away()

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import errno
 import os
+import threading
 from collections.abc import Callable
 from typing import Final
 
@@ -24,12 +25,13 @@ from yarpy.names.fallback_client import SeveralNames
 from yarpy.port.connect.probe import who
 from yarpy.registry import carriers
 from yarpy.route import Declared
-from yarpy.scope import Scope, moment, outside
+from yarpy.scope import Scope, moment, outside, remaining
 from yarpy.transports.bind import SETTING, listening_host
 
 log = logger("yarpy.port")
 
 BUSY: Final = 3.0  # seconds for a port that lives to say so
+AGAIN: Final = 10.0  # seconds at most for a thread that is just telling the name once more
 FORGETTING: Final = 1.0  # seconds to take out the name of a port that could not be opened
 
 _TAKEN: Final = (
@@ -66,6 +68,7 @@ class Registration:
             name = check_name(name if renamed else port_name(name, os.environ))
         self.name = name
         self._has_name = False  # in the name service
+        self.again = threading.RLock()  # held while a server that came back is told of us
         self.names = names
         if self.registered and names is None:
             self.names = DEFAULT.current()
@@ -243,7 +246,12 @@ class Registration:
         """The port closes. What somebody else has registered under its name meanwhile stays."""
         if not self.registered or self.names is None:
             return
-        if self.group_name:
-            self.names.unregister(self.group_name)
-        if self._is_ours(self.names):
-            self.names.unregister(self.name)
+        waited = self.again.acquire(timeout=min(remaining(), AGAIN))
+        try:
+            if self.group_name:
+                self.names.unregister(self.group_name)
+            if self._is_ours(self.names):
+                self.names.unregister(self.name)
+        finally:
+            if waited:
+                self.again.release()

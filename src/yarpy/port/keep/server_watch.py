@@ -68,20 +68,10 @@ class ServerWatch:
             registration = hub.registration
             if hub.life.closing or not registration.registered or client not in _servers(hub.names):
                 continue  # a port without a name of its own is in no list
-            try:
-                known = client.query(hub.name)
-                contact = hub.contact
-                if known is None or (known.host, known.port) != (contact.host, hub.port):
-                    client.register(
-                        hub.name, "tcp", contact.host, hub.port, registration.type or None
-                    )
-                elif not describe:
-                    continue
-                registration.describe(client)
-                if hub.life.closing:  # meanwhile: it may have given its name back before this
-                    registration.give_back()
-            except YarpError as error:
-                log.warning("%s could not be registered again: %s", hub.name, error)
+            # One that closes gives its name back behind this: the program may end then.
+            with registration.again:
+                if not hub.life.closing:
+                    _register(hub, client, describe)
 
 
 class _Watched:
@@ -139,6 +129,21 @@ class _Watched:
         connection = self._connection
         if connection is not None:
             connection.close()
+
+
+def _register(hub: Hub, client: YarpNameClient, describe: bool) -> None:
+    registration, contact = hub.registration, hub.contact
+    try:
+        known = client.query(hub.name)
+        if known is None or (known.host, known.port) != (contact.host, hub.port):
+            client.register(hub.name, "tcp", contact.host, hub.port, registration.type or None)
+        elif not describe:
+            return
+        registration.describe(client)
+        if hub.life.closing:  # meanwhile: it may have been too long for whoever closes it
+            registration.give_back()
+    except YarpError as error:
+        log.warning("%s could not be registered again: %s", hub.name, error)
 
 
 def _servers(names: NameClient | None) -> list[YarpNameClient]:
