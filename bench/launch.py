@@ -1,4 +1,4 @@
-"""What `yarpy up` costs: starting many programs, watching, starting one again; and `yarpy log`.
+"""The cost of `yarpy up`: starting many programs, watching, starting one again; and `yarpy log`.
 
 `yarpy up` is a program of its own, with a name server and a folder of sockets of its own. Its
 programs are `sleep`, so that what is measured is not theirs; starting them without it is beside.
@@ -118,6 +118,8 @@ def up(place: Path, count: int, screen: bool) -> Iterator["subprocess.Popen[byte
     os.close(writing)
     try:
         while not all(one["state"] == "running" for one in programs_of()):
+            if process.poll() is not None:
+                raise SystemExit(f"yarpy up has ended with {process.returncode}")
             time.sleep(0.01)
         yield process
     finally:

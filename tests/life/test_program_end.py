@@ -45,11 +45,14 @@ def server() -> Iterator[yarpy.NameServer]:
 
 
 def run(server: yarpy.NameServer, program: str, **more: str) -> subprocess.CompletedProcess[str]:
-    where = server.address
+    return run_alone(program, YARPY_SERVER=server.address, **more)
+
+
+def run_alone(program: str, **more: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", program],
         # What is done, not how soon: on a busy machine a second may be over before.
-        env={**os.environ, "YARPY_SERVER": where, "YARPY_LINGER": "20", **more},
+        env={**os.environ, "YARPY_LINGER": "20", **more},
         capture_output=True,
         text=True,
         timeout=60,
@@ -136,13 +139,7 @@ def test_a_name_is_given_back_when_all_the_time_was_needed_for_the_rest() -> Non
         "atexit.register(lambda: print(names.query('/life/out')))\n"
         "port = yarpy.Port('/life/out', names=names, timeout=60)\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        env={**os.environ, "YARPY_LINGER": "0"},
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
+    done = run_alone(program, YARPY_LINGER="0")
     assert done.stdout == "None\n", done.stderr
 
 
@@ -161,13 +158,7 @@ def test_a_port_that_is_just_closed_by_the_collector_is_waited_for() -> None:
         "work()\n"
         "assert names.asked.wait(60)\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        env={**os.environ, "YARPY_LINGER": "20"},
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
+    done = run_alone(program)
     assert done.stdout == "gone\n", done.stderr
 
 

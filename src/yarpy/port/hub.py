@@ -11,7 +11,7 @@ import math
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import Any, Protocol
 
 from yarpy import linger, scope
 from yarpy.contact import Contact
@@ -44,8 +44,6 @@ from yarpy.wire.message import Message
 from yarpy.wire.stream import DEFAULT_LIMIT
 
 log = logger("yarpy.port")
-
-GIVING_BACK: Final = 0.5  # seconds for the name of a port that closes on a busy computer
 
 
 class Reconnect(Protocol):
@@ -258,16 +256,16 @@ class Hub:
 
     def close(self, seconds: float | None = None) -> None:
         """Close every connection in good order, then the port; the name is given back. All of it
-        takes so many seconds at most; where none are given, what `linger` says, and GIVING_BACK for
-        the name if all of that was needed for the rest."""
+        takes so many seconds at most; where none are given, what `linger` says, and `linger.NAMES`
+        for the name if all of that was needed for the rest."""
         if seconds is None:
-            self._close(linger.seconds(), GIVING_BACK)
+            self._close(linger.seconds(), linger.NAMES)
         else:
             self._close(seconds, 0.0)
 
     def _close_at_end(self, seconds: float) -> None:
         """The program ends."""
-        self._close(seconds, min(GIVING_BACK, linger.left_for_names()))
+        self._close(seconds, linger.left_for_names())
 
     def _close(self, seconds: float, giving_back: float) -> None:
         with self.inputs.lock:

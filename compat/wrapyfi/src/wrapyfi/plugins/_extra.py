@@ -1,4 +1,4 @@
-"""What plug-ins share whose values the original sends as pickles.
+"""Common to the plug-ins whose values the original sends as pickles.
 
     [tag, pickle, buffer ..., ours]      the original reads the pickle, and leaves the rest of the
                                          buffers; here the last one is read, and never the pickle

@@ -1,4 +1,4 @@
-"""What all plug-ins for tensors do: ask `utils/_tensors.py`."""
+"""Common to all plug-ins for tensors, which ask `utils/_tensors.py`."""
 
 from __future__ import annotations
 

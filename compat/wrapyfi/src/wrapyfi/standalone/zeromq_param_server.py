@@ -29,7 +29,7 @@ _PATIENCE = 2000  # milliseconds for what is told of a parameter
 
 
 def access_nested_dict(d: Any, keys: Sequence[Any]) -> Any:
-    """What is in nested dicts under these keys, one below the other. Raises KeyError."""
+    """Return the value in nested dicts under these keys, one below the other. Raises KeyError."""
     return reduce(lambda inner, key: inner[key], keys, d)
 
 
