@@ -15,6 +15,7 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
@@ -29,6 +30,8 @@ READERS = ("strict", "plain", "buffered")
 SIZES = (100, 100_000)
 RATES = ("flood", "2000", "100")
 READ = MessagePort.read.__code__
+#: What Python runs when it collects what a set or a dictionary refers to weakly.
+WEAK = {weakref.__file__, weakref.WeakSet.__init__.__code__.co_filename}
 SILENT = 30.0  # seconds without a message after which a connection is wedged, on any machine
 
 
@@ -55,7 +58,8 @@ class Outcome:
 
 
 class Alarm:
-    """A timer whose signal raises Interrupted once, wherever `read` is, while `armed`."""
+    """A timer whose signal raises Interrupted once, wherever `read` is, while `armed`. Where Python
+    drops what is raised, when it collects garbage just then, the signal comes again."""
 
     def __init__(self) -> None:
         self.armed = False
@@ -63,9 +67,12 @@ class Alarm:
         self._before = signal.signal(signal.SIGALRM, self._ring)
 
     def _ring(self, number: int, frame: FrameType | None) -> None:
+        dropped = False
         while frame is not None and frame.f_code is not READ:
+            code = frame.f_code
+            dropped = dropped or code.co_name == "__del__" or code.co_filename in WEAK
             frame = frame.f_back
-        if frame is None:
+        if frame is None or dropped:
             self.set(1e-4)
         elif self.armed:
             self.armed = False

@@ -28,7 +28,7 @@ ROWS: Final = {
     "end-of-program": ["life/test_program_end.py"],
     "sigterm": ["life/test_program_end.py", "test_linger.py"],
     "close-in-a-handler": ["life/test_sending.py", "life/test_signals.py"],
-    "callbacks": ["life/test_callbacks.py"],
+    "callbacks": ["life/test_callbacks.py", "life/test_aio_callbacks.py"],
     "interrupt-and-close": ["life/test_closing.py", "life/test_calls.py", "-k", "end or close"],
     "time-limits": ["life/test_time_limits.py"],
     "one-client-two-threads": ["life/test_calls.py", "-k", "question"],

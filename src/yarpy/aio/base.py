@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import concurrent.futures
+import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
@@ -18,6 +19,7 @@ from typing import Any, Final, Generic, Self, TypeVar
 
 from yarpy.aio.thread import THREADS, Turn, in_thread
 from yarpy.aio.wakeup import Wakeup
+from yarpy.behalf import on_behalf
 from yarpy.contact import Contact
 from yarpy.errors import PortClosed, YarpError
 from yarpy.port import base
@@ -257,12 +259,13 @@ class BasePort(Generic[P]):
         loop = self._loop
         assert loop is not None
 
-        async def run(arguments: tuple[object, ...]) -> Any:
-            found = callback(*arguments)
-            return await found if isawaitable(found) else found
+        async def run(thread: threading.Thread, arguments: tuple[object, ...]) -> Any:
+            with on_behalf(thread):
+                found = callback(*arguments)
+                return await found if isawaitable(found) else found
 
         def ask(*arguments: object) -> Any:
-            coroutine = run(arguments)
+            coroutine = run(threading.current_thread(), arguments)
             try:
                 asked = asyncio.run_coroutine_threadsafe(coroutine, loop)
             except RuntimeError:

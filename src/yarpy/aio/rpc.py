@@ -74,8 +74,9 @@ class RpcServer(BasePort[rpc.RpcServer]):
             self._working.discard(task)
 
     async def close(self, timeout: float | None = None) -> None:
-        """Close the server; handlers that are still at work are cancelled."""
-        for task in tuple(self._working):
+        """Close the server; handlers that are still at work are cancelled, but for the one that
+        closes it."""
+        for task in self._working.difference({asyncio.current_task()}):
             task.cancel()
         await super().close(timeout)
 

@@ -8,12 +8,12 @@ them. `assembly` puts them together.
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from yarpy import linger, scope
+from yarpy.behalf import waited_by
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.errors import NoNameServer, YarpError
@@ -276,7 +276,7 @@ class Hub:
         self._ender.run(
             seconds,
             last=giving_back if self.registration.answered else 0.0,
-            wait=threading.current_thread() not in own,  # which are waited for
+            wait=waited_by() not in own,  # which are waited for
         )
 
     def _leave(self) -> None:

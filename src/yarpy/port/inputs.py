@@ -14,6 +14,7 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 from yarpy import scope
+from yarpy.behalf import waited_by
 from yarpy.carriers.base import PAGE, Carrier
 from yarpy.data.bottle import Bottle
 from yarpy.errors import AccessRefused, NoNameServer, PortClosed, RemoteProtocolError, YarpError
@@ -172,7 +173,7 @@ class Inputs:
         for old in older:
             old.replaced = not old.closing
             old.close()
-            if old.thread is not threading.current_thread():
+            if old.thread is not waited_by():
                 self._let_end(old)
 
     def _let_end(self, old: Inbound) -> None:
@@ -314,7 +315,7 @@ class Inputs:
         for link in self.links:
             link.close()
         for link in (*self.links, *self.leaving):
-            if link.thread is not None and link.thread is not threading.current_thread():
+            if link.thread is not None and link.thread is not waited_by():
                 link.thread.join(min(3.0, scope.remaining()))
 
     def abandon(self) -> None:

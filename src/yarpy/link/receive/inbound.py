@@ -14,6 +14,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
+from yarpy.behalf import waited_by
 from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
 from yarpy.errors import AccessRefused, LinkClosed, RemoteProtocolError, Timeout, YarpError
@@ -398,7 +399,7 @@ class Inbound:
     def asking(self) -> bool:
         """Return whether the caller is carrying out a command that came over this very
         connection."""
-        return self._asker == threading.get_ident()
+        return self._asker != 0 and self._asker == waited_by().ident
 
     @property
     def answering(self) -> bool:

@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import Final
 
 from yarpy import scope
+from yarpy.behalf import waited_by
 from yarpy.contact import Contact, parse_contact
 from yarpy.errors import NoNameServer, YarpError
 from yarpy.link.receive.inbound import Inbound
@@ -156,7 +157,7 @@ def disconnect_input(hub: Hub, source: str, by_sender: bool = False) -> tuple[bo
 def close_input(hub: Hub, link: Inbound) -> None:
     """End one input from our side. In a callback, that happens when it returns: the connection's
     own thread has to answer the sender's goodbye."""
-    if link.thread is threading.current_thread() and not link.asking:
+    if link.thread is waited_by() and not link.asking:
         name = f"yarpy close {link.route}"
         threading.Thread(target=_end_input, args=(hub, link), name=name, daemon=True).start()
     else:
