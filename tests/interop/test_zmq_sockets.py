@@ -18,6 +18,7 @@ import yarpy
 from yarpy.data.sig import jpeg
 
 zmq = pytest.importorskip("zmq", reason="needs pyzmq (pip install pyzmq)")
+from zmq.utils import z85  # noqa: E402
 from zmq.utils.monitor import recv_monitor_message  # noqa: E402
 
 
@@ -407,11 +408,77 @@ def test_a_port_logs_in_to_a_socket(sockets: Sockets, reader: yarpy.BufferedPort
         wait_until(lambda: socket.send(b"hello") is None and reader.poll() is not None)
 
 
+def test_a_port_dials_sockets_with_a_key(
+    names: yarpy.LocalNames, sockets: Sockets, out: yarpy.Port, reader: yarpy.BufferedPort
+) -> None:
+    if not zmq.has("curve"):
+        pytest.skip("this libzmq has no CURVE: pip install pyzmq brings one that has")
+    public, secret = zmq.curve_keypair()
+    own = {"CURVE_SERVER": 1, "CURVE_SECRETKEY": secret}
+    key, other = (z85.decode(one).hex() for one in (public, zmq.curve_keypair()[0]))
+    for kind, word in ((zmq.PUB, "sub"), (zmq.PUSH, "pull")):
+        socket, where = sockets.bound(kind, **own)
+        for wrong in (f"zmq+{word}", f"zmq+{word}+curve.{other}"):
+            with pytest.raises(yarpy.LinkClosed):
+                reader.listen_to(f"{wrong}://{where}", timeout=HANG)
+        reader.listen_to(f"zmq+{word}+curve.{key}://{where}")
+        text = word.encode()
+        wait_until(lambda socket=socket, text=text: socket.send(text) or came(reader, text))
+    for kind, word, size in ((zmq.PULL, "push", 1), (zmq.SUB, "pub", 2)):
+        socket, where = sockets.bound(kind, HEARTBEAT_IVL=20, **own)
+        if kind == zmq.SUB:
+            socket.subscribe(b"")
+        target = f"zmq+{word}+curve.{key}://{where}"
+        out.connect(target)
+        for number in range(3):
+            wait_until(lambda one=number, socket=socket: (out.write([one]), socket.poll(10))[1])
+            assert len(socket.recv_multipart()) == size
+        out.write("x" * 100_000)
+        while len(socket.recv_multipart()[-1]) < 100_000:
+            pass
+        out.disconnect(target)
+    socket, where = sockets.bound(zmq.REQ, **own)
+    with yarpy.RpcServer("/double", lambda message: [2 * message.value], names=names) as server:
+        server.connect(f"zmq+rep+curve.{key}://{where}")
+        socket.send(b"21")
+        assert socket.recv_json() == [42]
+    with yarpy.RpcClient(name="/asker", names=names) as client:
+        socket, where = sockets.bound(zmq.REP, **own)
+        client.connect(f"zmq+req+curve.{key}://{where}")
+        answering = threading.Thread(target=lambda: socket.send_json([*socket.recv_json(), 3]))
+        answering.start()
+        assert list(client.ask([1, 2], timeout=HANG).value) == [1, 2, 3]
+        answering.join(HANG)
+
+
+def came(reader: yarpy.BufferedPort, text: bytes) -> bool:
+    """Return whether the next message is this text; take it."""
+    message = reader.poll()
+    return message is not None and message.as_(bytes) == text
+
+
+def test_a_socket_with_a_key_knows_its_ports(sockets: Sockets, reader: yarpy.BufferedPort) -> None:
+    if not zmq.has("curve"):
+        pytest.skip("this libzmq has no CURVE: pip install pyzmq brings one that has")
+    public, secret = zmq.curve_keypair()
+    ours, own = zmq.curve_keypair()
+    key, password = (z85.decode(one).hex() for one in (public, own))
+    with Doorkeeper(sockets.context, keys={z85.decode(ours)}):
+        socket, where = sockets.bound(zmq.PUB, CURVE_SERVER=1, CURVE_SECRETKEY=secret)
+        with pytest.raises(yarpy.LoginRefused, match=r"\+password.KEY"):
+            reader.listen_to(f"zmq+sub+curve.{key}://{where}", timeout=HANG)
+        reader.listen_to(f"zmq+sub+curve.{key}+password.{password}://{where}")
+        wait_until(lambda: socket.send(b"hello") is None and reader.poll() is not None)
+
+
 class Doorkeeper:
     """Says who may come in to the sockets of a context that ask for names and passwords (ZAP)."""
 
-    def __init__(self, context: Any, known: dict[bytes, bytes]) -> None:
-        self._known = known
+    def __init__(
+        self, context: Any, known: dict[bytes, bytes] | None = None, keys: set[bytes] | None = None
+    ) -> None:
+        self._known = known or {}
+        self._keys = keys or set()
         self._socket = context.socket(zmq.REP)
         self._socket.linger = 0
         self._socket.bind("inproc://zeromq.zap.01")
@@ -421,8 +488,11 @@ class Doorkeeper:
     def _run(self) -> None:
         while not self._over.is_set():
             if self._socket.poll(20):
-                version, number, *_, user, password = self._socket.recv_multipart()
-                admitted = self._known.get(user) == password
+                version, number, _, _, _, mechanism, *shown = self._socket.recv_multipart()
+                if mechanism == b"CURVE":
+                    admitted = shown[0] in self._keys
+                else:
+                    admitted = self._known.get(shown[0]) == shown[1]
                 status = b"200" if admitted else b"400"
                 self._socket.send_multipart([version, number, status, b"", b"", b""])
 

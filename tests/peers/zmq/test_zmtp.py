@@ -117,8 +117,8 @@ def test_frames_that_nobody_writes_are_refused(data: bytes, why: str) -> None:
 def test_commands_are_read_and_written() -> None:
     assert zmtp.parse_command(b"\4PING\0\0") == (b"PING", b"\0\0")
     assert zmtp.command(b"SUBSCRIBE", b"cam").hex() == "040d0953554253435249424563616d"
-    assert zmtp.pong(b"\0\7context") == b"\4\x0c\4PONGcontext"
-    assert zmtp.pong(b"\0\7" + b"c" * 90) == b"\4\x15\4PONG" + b"c" * 16
+    assert zmtp.echo(b"\0\7context") == b"context"
+    assert zmtp.echo(b"\0\7" + b"c" * 90) == b"c" * 16
     for body in (b"", b"\0", b"\4PIN", b"\xff"):
         with pytest.raises(RemoteProtocolError, match="without a name"):
             zmtp.parse_command(body)

@@ -4,6 +4,7 @@
     zmq+push         zmq+pull           to a PULL, from a PUSH
     zmq+req          zmq+rep            questions to a REP, from a REQ
     ... +user.NAME+password.WORD        to a socket that asks for them (PLAIN)
+    ... +curve.KEY+password.KEY         to a socket with a key (CURVE)
 
 Rules: a carrier string says what the side that dials is. Of a socket that dials us we are whatever
 fits, all at once. What PUB and SUB exchange has the topic as its first frame; the topic of a port
@@ -24,7 +25,7 @@ from yarpy.errors import AccessRefused, LinkClosed, LocalProtocolError, RemotePr
 from yarpy.facts import SOCKET
 from yarpy.limit import ZMQ_BACKLOG, ZMQ_FRAMES, ZMQ_HELD, ZMQ_PREFIX, ZMQ_SUBSCRIPTIONS
 from yarpy.log import readable
-from yarpy.peers.zmq import plain, zmtp
+from yarpy.peers.zmq import curve, plain, zmtp
 from yarpy.route import CarrierSpec, Route
 from yarpy.wire.effects import HEAR, May
 from yarpy.wire.message import CALL, DATA, SMALL, Message, Packet
@@ -52,12 +53,13 @@ class Zmq(Carrier):
         self.minor = 1  # of the version that both speak
         self.raw = "raw" in route.spec.tokens
         self._open = False
-        self._frames: list[Buffer] = []  # of the message that is coming
+        self._sealed: curve.Sealed | None = None  # where everything is enciphered
 
     @classmethod
     def of(cls, spec: CarrierSpec) -> type[Carrier]:
         refuse_unknown(spec, _WORDS)
-        plain.credentials(spec)
+        if curve.keys_of(spec) is None:
+            plain.credentials(spec)
         found = roles_of(spec)
         if len(found) != 1:
             raise LocalProtocolError(
@@ -74,11 +76,21 @@ class Zmq(Carrier):
     # -- beginning --------------------------------------------------------------------------------
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        login = plain.credentials(self.route.spec)
-        mechanism = zmtp.NULL if login is None else plain.MECHANISM
+        keys = curve.keys_of(self.route.spec)
+        login = None if keys else plain.credentials(self.route.spec)
+        mechanism = curve.MECHANISM if keys else plain.MECHANISM if login else zmtp.NULL
         stream.write(zmtp.greeting(mechanism))
-        self.minor = min(1, (yield from zmtp.read_greeting(stream, mechanism, dialled=True)))
-        if login is None:
+        try:
+            self.minor = min(1, (yield from zmtp.read_greeting(stream, mechanism, dialled=True)))
+        except LinkClosed:
+            raise LinkClosed(
+                "the peer hangs up in the middle of its greeting, as sockets do that ask for a "
+                "name and a password (+user.NAME+password.WORD) or are known by a key (+curve.KEY)"
+            ) from None
+        if keys is not None:
+            self._sealed = curve.Sealed(*keys)
+            properties = yield from self._sealed.log_in(stream, self._said())
+        elif login is None:
             stream.write(zmtp.ready(self._said()))
             properties = yield from zmtp.read_ready(stream)
         else:
@@ -97,7 +109,9 @@ class Zmq(Carrier):
         said = {"Socket-Type": self.role.upper().encode()}
         if self.role in ("req", "rep"):
             said["Identity"] = b""
-        if self.route.source.startswith("/") and self.route.spec.value("user") is None:
+        secret = ("user", "password", "curve")
+        open_to_all = all(self.route.spec.value(word) is None for word in secret)
+        if self.route.source.startswith("/") and open_to_all:
             said[PORT] = self.route.specifier.encode("utf-8", "surrogateescape")
         return said
 
@@ -156,7 +170,11 @@ class Zmq(Carrier):
         frames: list[Buffer] = []
         left = stream.limit
         while True:
-            flags, body = yield from zmtp.read_frame(stream, left)
+            if self._sealed is None:
+                flags, body = yield from zmtp.read_frame(stream, left)
+            else:
+                found = yield from zmtp.read_frame(stream, left + curve.OVERHEAD)
+                flags, body = self._sealed.open(*found)
             if flags & zmtp.COMMAND:
                 self.obey(stream, body)
                 if not frames:
@@ -173,7 +191,7 @@ class Zmq(Carrier):
         """A command of the peer."""
         name, content = zmtp.parse_command(body)
         if name == b"PING":
-            stream.write(zmtp.pong(content))
+            stream.write(self.command(b"PONG", zmtp.echo(content)))
         elif name == b"ERROR":
             text = readable(content[1:].decode("utf-8", "replace"))
             raise RemoteProtocolError(f'the peer ends the connection: "{text}"')
@@ -184,8 +202,9 @@ class Zmq(Carrier):
     def _listen(self, stream: ByteStream) -> Steps[None]:
         """While we write: commands and subscriptions, each once it is complete."""
         while True:
-            while (found := zmtp.parse_frame(stream, ZMQ_PREFIX + 1)) is not None:
-                flags, body = found
+            most = ZMQ_PREFIX + 1 + (curve.OVERHEAD if self._sealed else 0)
+            while (found := zmtp.parse_frame(stream, most)) is not None:
+                flags, body = self._sealed.open(*found) if self._sealed else found
                 if flags & zmtp.COMMAND:
                     self.obey(stream, body)
                 else:
@@ -195,6 +214,15 @@ class Zmq(Carrier):
     def hear(self, body: Buffer) -> None:
         """A message of somebody to whom we write."""
         raise RemoteProtocolError(f"a message from a socket that only reads ({self.route.spec})")
+
+    def pieces(self, frames: list[Buffer]) -> list[Buffer]:
+        """Return a message of these frames as it goes out."""
+        return zmtp.encode(frames) if self._sealed is None else self._sealed.encode(frames)
+
+    def command(self, name: bytes, body: bytes) -> bytes:
+        """Return a command as it goes out."""
+        make = zmtp.command if self._sealed is None else self._sealed.command
+        return make(name, body)
 
     def encode_quit(self, stream: ByteStream) -> None:
         """Only closing ends the connection."""
@@ -235,7 +263,7 @@ class Push(Zmq):
             self.write(stream, [RAW + self.topic, self.raw_of(packet)])
             return
         body = to_payload(packet)
-        if len(body) < 256:  # as mostly
+        if len(body) < 256 and self._sealed is None:  # as mostly
             self._small = True
             stream.write(_HEADS[len(body)] + body)
         else:
@@ -248,7 +276,7 @@ class Push(Zmq):
 
     def write(self, stream: ByteStream, frames: list[Buffer]) -> None:
         """Write a message of these frames."""
-        pieces = zmtp.encode(frames)
+        pieces = self.pieces(frames)
         self._small = len(pieces) == 1 and len(pieces[0]) < SMALL
         stream.write(*pieces)
 
@@ -328,7 +356,7 @@ class Pub(Push):
         if self._takes:
             self.write(stream, [self._topic, to_payload(packet)])
             if self._takes_raw:
-                raw = zmtp.encode([RAW + self._topic, self.raw_of(packet)])
+                raw = self.pieces([RAW + self._topic, self.raw_of(packet)])
                 self._small = False
                 stream.write(*raw)
         elif self._takes_raw:
@@ -355,7 +383,7 @@ class Req(Zmq):
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         content = [RAW, b"".join(packet.blocks)] if self.raw else [to_payload(packet)]
-        stream.write(*zmtp.encode([b"", *content]))
+        stream.write(*self.pieces([b"", *content]))
         self._owed += 1
 
     def encode_quit(self, stream: ByteStream) -> None:
@@ -385,6 +413,8 @@ class Pull(Zmq):
     replies = False
 
     def parse(self, stream: ByteStream) -> Message | None:
+        if self._sealed is not None:
+            return None
         body = zmtp.parse_body(stream)  # of one frame, as mostly
         if body is not None:
             return message_of(DATA, (body,))
@@ -410,9 +440,9 @@ class Sub(Pull):
         if self.raw:
             topic = RAW + topic
         if self.minor:
-            stream.write(zmtp.command(b"SUBSCRIBE", topic))
+            stream.write(self.command(b"SUBSCRIBE", topic))
         else:
-            stream.write(zmtp.frame(b"\1" + topic))
+            stream.write(*self.pieces([b"\1" + topic]))
 
     def take(self, frames: list[Buffer]) -> Message:
         is_raw = len(frames) > 1 and frames[0][: len(RAW)] == RAW
@@ -442,7 +472,7 @@ class Rep(Zmq):
             answer: list[Buffer] = [RAW, b"".join(Packet(value).blocks)]
         else:
             answer = [payload_of(value)]
-        stream.write(*zmtp.encode([*self._way_back, *answer]))
+        stream.write(*self.pieces([*self._way_back, *answer]))
 
 
 def split(frames: list[Buffer]) -> tuple[list[Buffer], list[Buffer]]:
@@ -467,7 +497,7 @@ def received(key: str, frames: list[Buffer]) -> Message:
 ROLES: Final[dict[str, type[Zmq]]] = {kind.role: kind for kind in (Pub, Push, Req, Sub, Pull, Rep)}
 _WORDS: Final = (
     *("pub.TOPIC", "push", "req", "sub.TOPIC", "pull", "rep"),
-    *("user.NAME", "password.WORD", "raw"),
+    *("user.NAME", "password.WORD", "curve.KEY", "raw"),
 )
 #: by the type of a socket: what we are to it, and the role of ours that it has itself
 PARTNER: Final[dict[bytes, tuple[type[Zmq], str]]] = {

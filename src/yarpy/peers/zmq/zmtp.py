@@ -6,7 +6,8 @@
 
 Rules: pure. A frame's flags are 1 (more frames of this message follow), 2 (its size has eight bytes
 instead of one) and 4 (a command). Lengths are checked before memory is taken. The security
-mechanism is NULL, or PLAIN where a port dials (`plain`). Source: ZeroMQ RFC 23 (3.0) and 37 (3.1).
+mechanism is NULL, PLAIN (`plain`), or CURVE where a port dials (`curve`). Source: ZeroMQ RFC 23
+(3.0) and 37 (3.1).
 """
 
 from __future__ import annotations
@@ -64,9 +65,13 @@ def read_greeting(stream: ByteStream, wanted: bytes = NULL, dialled: bool = Fals
             raise RemoteProtocolError(
                 "the peer asks for a name and a password: say +user.NAME+password.WORD"
             )
+        if dialled and mechanism == b"CURVE":
+            raise RemoteProtocolError(
+                "the peer is known by its public key: say +curve.KEY, with 64 hexadecimal digits"
+            )
         if mechanism == NULL:
             raise RemoteProtocolError(
-                "the peer asks for no name and no password: leave +user and +password out"
+                "the peer asks for no name and no key: leave +user, +password and +curve out"
             )
         raise RemoteProtocolError(
             f"the peer wants the security mechanism {name}, which is not spoken here: leave that "
@@ -263,6 +268,6 @@ def parse_properties(data: bytes) -> dict[str, bytes]:
     return found
 
 
-def pong(ping: bytes) -> bytes:
-    """The answer to the content of a PING: its context comes back, without its time to live."""
-    return command(b"PONG", ping[2:18])
+def echo(ping: bytes) -> bytes:
+    """Return what a PONG says to the content of a PING: its context, without its time to live."""
+    return ping[2:18]
