@@ -25,7 +25,7 @@ from yarpy.data.text import plain_text
 from yarpy.kits import record
 
 EXIT_USAGE: Final = 1
-PATIENCE: Final = 0.5  # seconds that a reader may keep a message waiting, once
+READER_TIMEOUT: Final = 0.5  # seconds that a reader may keep a message waiting, once
 STRICT: Final = 10.0  # the same where nothing is to be lost
 STEP: Final = 5.0  # seconds for the messages of a step
 JUMP: Final = 5.0  # percent
@@ -221,7 +221,7 @@ class DataPlayer:
         """Wait for readers that are slow, or do not."""
         self._strict = _flag(on)
         with suppress(ValueError):
-            self._loaded()[1].patience = STRICT if self._strict else PATIENCE
+            self._loaded()[1].reader_timeout = STRICT if self._strict else READER_TIMEOUT
         return True
 
     def getProgress(self) -> float:

@@ -74,7 +74,7 @@ def test_several_become_one_with_their_notes(tmp_path: Path) -> None:
         convert(found, tmp_path / "c")
     with record.open(tmp_path / "c.mcap") as found:
         assert [note["text"] for note in found.notes()] == ["a", "b"] and len([*found]) == 2
-        assert found.tapes[0].facts == {"host": "b", "lost": '{"/a": 3}'}
+        assert found.storages[0].facts == {"host": "b", "lost": '{"/a": 3}'}
 
 
 def test_what_has_no_text_is_counted(tmp_path: Path) -> None:

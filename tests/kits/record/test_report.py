@@ -64,7 +64,7 @@ def test_losses_of_finished_and_unfinished_files(tmp_path: Path) -> None:
 def test_damage_is_named(tmp_path: Path) -> None:
     path = recorded(tmp_path / "x.mcap")
     with record.open(path) as found:
-        place = found.tapes[0]._file.index.places[1]  # type: ignore[attr-defined]
+        place = found.storages[0]._file.index.places[1]  # type: ignore[attr-defined]
     data = bytearray(path.read_bytes())
     data[place + 70] ^= 1
     path.write_bytes(data)

@@ -7,11 +7,11 @@ from support.recordings import START, fill, payload_of
 from yarpy import record
 from yarpy.kits.record.dumper.writer import DumperWriter
 from yarpy.kits.record.mcap.writer import McapWriter
-from yarpy.kits.record.sink import Both, Nowhere
+from yarpy.kits.record.sink import NullSink, Tee
 
 
 def test_both(tmp_path: Path) -> None:
-    sink = Both(McapWriter(tmp_path / "x.mcap"), DumperWriter(tmp_path / "x"))
+    sink = Tee(McapWriter(tmp_path / "x.mcap"), DumperWriter(tmp_path / "x"))
     fill(sink)  # type: ignore[arg-type]
     assert sink.pending > 0
     sink.note({"what": "mark"}, START)
@@ -26,7 +26,7 @@ def test_both(tmp_path: Path) -> None:
 
 
 def test_nowhere() -> None:
-    sink = Nowhere()
+    sink = NullSink()
     sink.add("/a", "", START, payload_of([1]))
     sink.note({}, START)
     sink.add_metadata("yarpy", {})

@@ -41,8 +41,8 @@ def test_types_that_are_known_by_name() -> None:
 
 
 def test_what_is_wrong() -> None:
-    with pytest.raises(UnknownType, match="no definition of the message my_msgs/Nowhere"):
-        reader("my_msgs/Nowhere", "ros1msg", "")
+    with pytest.raises(UnknownType, match="no definition of the message my_msgs/NullSink"):
+        reader("my_msgs/NullSink", "ros1msg", "")
     with pytest.raises(DecodeError):
         reader("my_msgs/Own", "ros1msg", "int32 x x\n")
     with pytest.raises(DecodeError):

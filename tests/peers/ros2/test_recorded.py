@@ -41,7 +41,7 @@ def test_types_that_are_known_by_name() -> None:
 
 def test_what_is_wrong() -> None:
     with pytest.raises(UnknownType):
-        reader("my_msgs/msg/Nowhere", "ros2msg", "")
+        reader("my_msgs/msg/NullSink", "ros2msg", "")
     with pytest.raises(DecodeError):
         reader("my_msgs/msg/Own", "ros2msg", "int32 x x\n")
     with pytest.raises(DecodeError):

@@ -14,14 +14,14 @@ bytes of YARP are kept. The extra `record` brings the library for them: pip inst
 
 from __future__ import annotations
 
+from yarpy.kits.record.capture.disk_space import Split
+from yarpy.kits.record.capture.recorder import Recorder
 from yarpy.kits.record.dumper.dataset import Dataset
 from yarpy.kits.record.dumper.single import SingleFolder, classical_folder
-from yarpy.kits.record.player import Player
+from yarpy.kits.record.playback.player import Player
 from yarpy.kits.record.recorded import PortFacts, Recorded
-from yarpy.kits.record.recorder import Recorder
 from yarpy.kits.record.recording import Recording
 from yarpy.kits.record.recording import open_recording as open
-from yarpy.kits.record.room import Split
 from yarpy.kits.record.table import frame, table
 
 __all__ = [

@@ -17,13 +17,13 @@ from pathlib import Path
 from typing import Any, Literal
 
 from yarpy.errors import LocalProtocolError, UnknownName
-from yarpy.kits.record.bag.reader import BagTape
+from yarpy.kits.record.bag.reader import BagStorage
 from yarpy.kits.record.bag.writer import BagWriter
 from yarpy.kits.record.dumper.part import Times
 from yarpy.kits.record.dumper.writer import DumperWriter
 from yarpy.kits.record.envelope import SECOND
 from yarpy.kits.record.mcap.layout import Damaged, Other
-from yarpy.kits.record.mcap.tape import FOREVER, McapTape
+from yarpy.kits.record.mcap.storage import FOREVER, McapStorage
 from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.recording import Recording
 from yarpy.kits.record.sink import ENDING
@@ -62,7 +62,7 @@ def convert(
     for name in ports or ():
         if name not in known:
             raise UnknownName(f'"{name}" was not recorded: there are {" ".join(known)}')
-    begin = min((tape.begin for tape in recording.tapes if tape.end), default=0)
+    begin = min((storage.begin for storage in recording.storages if storage.end), default=0)
     begin += round(start * SECOND)
     end = FOREVER if duration is None else begin + round(duration * SECOND)
     sink: DumperWriter | McapWriter | BagWriter
@@ -88,7 +88,7 @@ def convert(
             if form == "dumper"
             else heapq.merge(notes, sent, others)
         )
-        thin = Thin(rates or {})
+        thin = RateLimit(rates or {})
         for _, _, item in series:
             if isinstance(item, _Note):
                 sink.note({key: item[key] for key in item if key != "time_ns"}, item["time_ns"])
@@ -116,21 +116,21 @@ def convert(
 def _attach(recording: Recording, sink: McapWriter) -> None:
     """Keep the files that were given to the recording, each once; what has changed is damage."""
     known: set[tuple[str, bytes]] = set()
-    for tape in recording.tapes:
-        if not isinstance(tape, McapTape):
+    for storage in recording.storages:
+        if not isinstance(storage, McapStorage):
             continue
-        for found in tape.attachments:
+        for found in storage.attachments:
             try:
-                content = tape.attached(found)
+                content = storage.attached(found)
             except Damaged as damage:
-                tape.damages.append(damage)
+                storage.damages.append(damage)
                 continue
             if (found.name, content) not in known:
                 known.add((found.name, content))
                 sink.attach(found.name, content, found.kind)
 
 
-class Thin:
+class RateLimit:
     """Leaves out what comes more often than wanted, by the times of receipt."""
 
     def __init__(self, rates: Mapping[str, float]) -> None:
@@ -157,8 +157,8 @@ class Thin:
 def _facts(recording: Recording) -> dict[str, str]:
     """Return what is known of all files: the losses of several are added."""
     found: dict[str, str] = {}
-    for tape in recording.tapes:
-        for key, value in tape.facts.items():
+    for storage in recording.storages:
+        for key, value in storage.facts.items():
             found[key] = _added(found[key], value) if key in found else value
     return found
 
@@ -194,9 +194,9 @@ def _others(
     recording: Recording, ports: Collection[str] | None, begin: int, end: int
 ) -> Iterator[tuple[int, int, Any]]:
     series = [
-        tape.others(ports, begin, end)
-        for tape in recording.tapes
-        if isinstance(tape, McapTape | BagTape)
+        storage.others(ports, begin, end)
+        for storage in recording.storages
+        if isinstance(storage, McapStorage | BagStorage)
     ]
     one_after_the_other = heapq.merge(*series, key=lambda other: other.received_ns)
     for number, other in enumerate(one_after_the_other, start=1):

@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from yarpy.errors import DecodeError, UnknownName
-from yarpy.kits.record.bag.reader import BagTape, is_bag
-from yarpy.kits.record.dumper.reader import DumperTape
+from yarpy.kits.record.bag.reader import BagStorage, is_bag
+from yarpy.kits.record.dumper.reader import DumperStorage
 from yarpy.kits.record.envelope import SECOND
 from yarpy.kits.record.mcap.layout import Damaged
-from yarpy.kits.record.mcap.tape import FOREVER, McapTape
+from yarpy.kits.record.mcap.storage import FOREVER, McapStorage
 from yarpy.kits.record.recorded import PortFacts, Recorded
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class Tape(Protocol):
+class Storage(Protocol):
     """A file or folder of a recording."""
 
     path: Path
@@ -57,19 +57,19 @@ class Tape(Protocol):
 class Recording:
     """One or more files or folders, read together. Times are in seconds since 1970."""
 
-    def __init__(self, tapes: Sequence[Tape]) -> None:
-        self.tapes = list(tapes)
+    def __init__(self, storages: Sequence[Storage]) -> None:
+        self.storages = list(storages)
 
     def __repr__(self) -> str:
-        files = " ".join(str(tape.path) for tape in self.tapes)
+        files = " ".join(str(storage.path) for storage in self.storages)
         return f"<Recording {files}: {self.end - self.begin:.3f} s, {len(self.ports)} ports>"
 
     @property
     def ports(self) -> dict[str, PortFacts]:
         """Return the ports by their names: their types, and how many messages there are."""
         found: dict[str, PortFacts] = {}
-        for tape in self.tapes:
-            for name, facts in tape.ports.items():
+        for storage in self.storages:
+            for name, facts in storage.ports.items():
                 known = found.setdefault(name, PortFacts(name))
                 known.messages += facts.messages
                 known.kinds += [kind for kind in facts.kinds if kind not in known.kinds]
@@ -79,22 +79,24 @@ class Recording:
     @property
     def begin(self) -> float:
         """Return when the first message was received; 0 if there is none."""
-        return min((tape.begin for tape in self.tapes if tape.end), default=0) / SECOND
+        return min((storage.begin for storage in self.storages if storage.end), default=0) / SECOND
 
     @property
     def end(self) -> float:
         """Return when the last message was received; 0 if there is none."""
-        return max((tape.end for tape in self.tapes), default=0) / SECOND
+        return max((storage.end for storage in self.storages), default=0) / SECOND
 
     @property
     def complete(self) -> bool:
         """Return whether all of it was finished."""
-        return all(tape.complete for tape in self.tapes)
+        return all(storage.complete for storage in self.storages)
 
     @property
     def damages(self) -> list[str]:
         """Return what is wrong with it, as far as it was read: file, byte, and what is there."""
-        return [f"{tape.path}: {damage}" for tape in self.tapes for damage in tape.damages]
+        return [
+            f"{storage.path}: {damage}" for storage in self.storages for damage in storage.damages
+        ]
 
     def messages(
         self,
@@ -119,9 +121,9 @@ class Recording:
         self, ports: Collection[str] | None = None, begin: int = 0, end: int = FOREVER
     ) -> Iterator[Recorded]:
         """Yield messages as `messages` does, with times in nanoseconds."""
-        if len(self.tapes) == 1:
-            return self.tapes[0].messages(ports, begin, end)
-        series = [tape.messages(ports, begin, end) for tape in self.tapes]
+        if len(self.storages) == 1:
+            return self.storages[0].messages(ports, begin, end)
+        series = [storage.messages(ports, begin, end) for storage in self.storages]
         return heapq.merge(*series, key=lambda recorded: recorded.received_ns)
 
     def __iter__(self) -> Iterator[Recorded]:
@@ -148,17 +150,17 @@ class Recording:
 
     def notes(self) -> list[dict[str, Any]]:
         """Return what the recorder noted: what came and went, was lost, was marked."""
-        found = [note for tape in self.tapes for note in tape.notes()]
+        found = [note for storage in self.storages for note in storage.notes()]
         return sorted(found, key=lambda note: int(note["time_ns"]))
 
     def attachments(self) -> dict[str, bytes]:
         """Return the files that were given to it (`attach`), by their names. Raises DecodeError for
         one that has changed."""
         return {
-            found.name: tape.attached(found)
-            for tape in self.tapes
-            if isinstance(tape, McapTape)
-            for found in tape.attachments
+            found.name: storage.attached(found)
+            for storage in self.storages
+            if isinstance(storage, McapStorage)
+            for found in storage.attachments
         }
 
     def mark(self, text: str) -> float:
@@ -173,8 +175,8 @@ class Recording:
 
     def close(self) -> None:
         """Close all files."""
-        for tape in self.tapes:
-            tape.close()
+        for storage in self.storages:
+            storage.close()
 
     def __enter__(self) -> Self:
         return self
@@ -189,24 +191,24 @@ def open_recording(*paths: str | Path) -> Recording:
 
     Raises MissingFile; DecodeError for what is no recording, UnknownPlugin without a library.
     """
-    tapes: list[Tape] = []
+    storages: list[Storage] = []
     try:
         for path in paths:
-            tapes.extend(_tapes(Path(path)))
+            storages.extend(_storages(Path(path)))
     except BaseException:
-        for tape in tapes:
-            tape.close()
+        for storage in storages:
+            storage.close()
         raise
-    return Recording(tapes)
+    return Recording(storages)
 
 
-def _tapes(path: Path) -> Iterator[Tape]:
+def _storages(path: Path) -> Iterator[Storage]:
     if is_bag(path):
-        yield BagTape(path)
+        yield BagStorage(path)
     elif path.is_dir():
         files = sorted(path.glob("*.mcap"))
-        yield from map(McapTape, files)
+        yield from map(McapStorage, files)
         if not files:
-            yield DumperTape(path)
+            yield DumperStorage(path)
     else:
-        yield McapTape(path)
+        yield McapStorage(path)

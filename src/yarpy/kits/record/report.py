@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
+from yarpy.kits.record.capture.disk_space import size_text
 from yarpy.kits.record.envelope import SECOND
-from yarpy.kits.record.mcap.tape import McapTape
+from yarpy.kits.record.mcap.storage import McapStorage
 from yarpy.kits.record.recording import Recording
-from yarpy.kits.record.room import size_text
 from yarpy.log import readable
 
 
@@ -69,8 +69,8 @@ def report(recording: Recording, check: bool = False) -> Report:
         ports.append(one)
     return Report(
         files=[
-            {"path": str(tape.path), "bytes": tape.size, "finished": tape.complete}
-            for tape in recording.tapes
+            {"path": str(storage.path), "bytes": storage.size, "finished": storage.complete}
+            for storage in recording.storages
         ],
         begin=begin,
         end=end,
@@ -83,12 +83,14 @@ def report(recording: Recording, check: bool = False) -> Report:
         ],
         damages=recording.damages,
         complete=recording.complete,
-        facts={key: value for tape in recording.tapes for key, value in tape.facts.items()},
+        facts={
+            key: value for storage in recording.storages for key, value in storage.facts.items()
+        },
         attachments=[
             {"name": one.name, "type": one.kind, "bytes": one.size}
-            for tape in recording.tapes
-            if isinstance(tape, McapTape)
-            for one in tape.attachments
+            for storage in recording.storages
+            if isinstance(storage, McapStorage)
+            for one in storage.attachments
         ],
     )
 
@@ -99,10 +101,10 @@ def _losses(recording: Recording, notes: list[dict[str, Any]]) -> dict[str, tupl
     found: dict[str, list[int]] = {}
     noted = {"lost": 0, "missed": 1, "left out": 2}
     finished = False
-    for tape in recording.tapes:
+    for storage in recording.storages:
         for key, place in noted.items():
             try:
-                told = json.loads(tape.facts.get(key, "null"))
+                told = json.loads(storage.facts.get(key, "null"))
             except (ValueError, RecursionError):
                 told = None
             if isinstance(told, dict):

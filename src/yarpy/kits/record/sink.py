@@ -52,7 +52,7 @@ class Sink(Protocol):
         """Finish it."""
 
 
-class Both:
+class Tee:
     """An MCAP file, and the folders of C++ beside it."""
 
     def __init__(self, file: McapWriter, folder: DumperWriter) -> None:
@@ -102,7 +102,7 @@ class Both:
             self._file.close()
 
 
-class Nowhere:
+class NullSink:
     """Where messages go while there is no file."""
 
     path = Path()

@@ -8,7 +8,7 @@ from support.recordings import START
 
 from yarpy import record
 from yarpy.errors import DecodeError, MissingFile
-from yarpy.kits.record.bag.reader import BagTape, is_bag
+from yarpy.kits.record.bag.reader import BagStorage, is_bag
 from yarpy.kits.record.convert import convert
 
 rosbags = pytest.importorskip("rosbags", reason="bags need rosbags: pip install 'yarpy[ros]'")
@@ -87,12 +87,12 @@ def test_a_bag_a_file_and_a_bag(tmp_path: Path, version: int) -> None:
 
 def test_a_part_of_it(tmp_path: Path) -> None:
     rows = made(tmp_path / "x.bag", 1)
-    tape = BagTape(tmp_path / "x.bag")
-    found = [*tape.others({"/odd"}, START, START + 5 * 10**9)]
+    storage = BagStorage(tmp_path / "x.bag")
+    found = [*storage.others({"/odd"}, START, START + 5 * 10**9)]
     assert [bytes(one.data) for one in found] == [rows[2][3]]
-    assert (tape.begin, tape.end) == (START, START + 5 * 10**9)
-    assert [*tape.messages()] == [] and tape.notes() == [] and tape.size > 100
-    tape.close()
+    assert (storage.begin, storage.end) == (START, START + 5 * 10**9)
+    assert [*storage.messages()] == [] and storage.notes() == [] and storage.size > 100
+    storage.close()
 
 
 @pytest.mark.parametrize("keep", [0, 20, 4096, 5000])
@@ -101,10 +101,10 @@ def test_a_bag_that_is_cut_off(tmp_path: Path, keep: int) -> None:
     data = (tmp_path / "x.bag").read_bytes()
     (tmp_path / "y.bag").write_bytes(data[:keep])
     with pytest.raises(DecodeError):
-        BagTape(tmp_path / "y.bag")
+        BagStorage(tmp_path / "y.bag")
 
 
 def test_what_is_no_bag(tmp_path: Path) -> None:
     assert not is_bag(tmp_path) and is_bag(Path("x.bag"))
     with pytest.raises(MissingFile):
-        BagTape(tmp_path / "none.bag")
+        BagStorage(tmp_path / "none.bag")

@@ -8,7 +8,7 @@ import yarpy
 from yarpy import record
 from yarpy.errors import MissingFile
 from yarpy.kits.record.dumper import reader
-from yarpy.kits.record.dumper.reader import DumperTape
+from yarpy.kits.record.dumper.reader import DumperStorage
 
 GOLDEN = Path(__file__).parents[3] / "golden" / "datadumper"
 
@@ -22,23 +22,23 @@ def folder(where: Path, data: bytes, stamps: str = "rx", type_: str = "Bottle") 
 
 
 def test_all_of_one_recording() -> None:
-    tape = DumperTape(GOLDEN)
-    assert [*tape.ports] == ["/cap/out"] and len([*tape.messages()]) == 35
-    assert tape.complete and not tape.damages and tape.size > 0
-    assert tape.begin == 5_500_000_000 and tape.end == 1_795_225_117_737_058_000
-    assert len(tape.notes()) == 28 and tape.facts == {}
-    tape.close()
+    storage = DumperStorage(GOLDEN)
+    assert [*storage.ports] == ["/cap/out"] and len([*storage.messages()]) == 35
+    assert storage.complete and not storage.damages and storage.size > 0
+    assert storage.begin == 5_500_000_000 and storage.end == 1_795_225_117_737_058_000
+    assert len(storage.notes()) == 28 and storage.facts == {}
+    storage.close()
 
 
 def test_values_and_times() -> None:
-    (first, _, last) = DumperTape(GOLDEN / "bottle_rxtx").messages()
+    (first, _, last) = DumperStorage(GOLDEN / "bottle_rxtx").messages()
     assert first.value == [1, "ping", 3.14] and last.value == ["hello"]
     assert (first.envelope, first.sent) == ("1 100.25", 100.25)
     assert first.received == 1795225087.449362
-    (first, *_) = DumperTape(GOLDEN / "bottle_txtime_noenv").messages()
+    (first, *_) = DumperStorage(GOLDEN / "bottle_txtime_noenv").messages()
     assert (first.envelope, first.received_ns) == ("", 1_795_225_090_687_992_000)
     assert first.value == [1, "ping", 3.14]
-    (numbers, *_) = DumperTape(GOLDEN / "vector").messages()
+    (numbers, *_) = DumperStorage(GOLDEN / "vector").messages()
     assert numbers.as_(yarpy.Vector) == yarpy.Vector([0.5, 1.5, 2.5])
 
 
@@ -46,10 +46,10 @@ def test_values_and_times() -> None:
 def test_pictures(name: str) -> None:
     if name == "image_png":
         pytest.importorskip("cv2", reason='pictures as PNG: pip install "yarpy[vision]"')
-    tape = DumperTape(GOLDEN / name)
-    found = [one.value for one in tape.messages()]
+    storage = DumperStorage(GOLDEN / name)
+    found = [one.value for one in storage.messages()]
     assert found and all(isinstance(image, yarpy.Image) for image in found)
-    assert not tape.damages and tape.ports["/cap/out"].kinds == ["yarp/image"]
+    assert not storage.damages and storage.ports["/cap/out"].kinds == ["yarp/image"]
     if name == "image":
         assert [(str(one.code), one.width, one.height) for one in found] == [
             ("rgb", 4, 3),
@@ -60,37 +60,37 @@ def test_pictures(name: str) -> None:
 
 
 def test_a_part_of_it() -> None:
-    tape = DumperTape(GOLDEN / "bottle_rxtime")
-    times = [one.received_ns for one in tape.messages()]
-    assert [one.value for one in tape.messages(["/cap/out"], times[1], times[2])] == [
+    storage = DumperStorage(GOLDEN / "bottle_rxtime")
+    times = [one.received_ns for one in storage.messages()]
+    assert [one.value for one in storage.messages(["/cap/out"], times[1], times[2])] == [
         yarpy.Bottle.from_text('(a (1 2)) [set] "two words"')
     ]
-    assert [*tape.messages(["/x"])] == []
+    assert [*storage.messages(["/x"])] == []
 
 
 def test_what_is_spoilt_is_named_and_the_rest_read(tmp_path: Path) -> None:
     data = b"1 1.000000 a\n\nnonsense\r\n2 2.000000 b\r\n3 3.000000 c"
-    tape = DumperTape(folder(tmp_path / "x", data))
-    assert [one.value for one in tape.messages()] == [["a"], ["b"]]
-    assert [*map(str, tape.damages)] == [
+    storage = DumperStorage(folder(tmp_path / "x", data))
+    assert [one.value for one in storage.messages()] == [["a"], ["b"]]
+    assert [*map(str, storage.damages)] == [
         "byte 38: x/data.log: the last line is cut off",
         "byte 14: x/data.log: a line without a number and a time",
     ]
-    assert not tape.complete and tape.ports["/a"].messages == 2
+    assert not storage.complete and storage.ports["/a"].messages == 2
 
 
 def test_columns_of_times(tmp_path: Path) -> None:
     """One that follows a sender's time may be a number of the message."""
     data = b"1 5.000000 2.500000 x\n-1 0.000000 7.000000 8.000000 y\n"
-    tape = DumperTape(folder(tmp_path / "x", data, "tx"))
-    assert [(one.received, one.value) for one in tape.messages()] == [
+    storage = DumperStorage(folder(tmp_path / "x", data, "tx"))
+    assert [(one.received, one.value) for one in storage.messages()] == [
         (5.0, [2.5, "x"]),
         (7.0, [8.0, "y"]),
     ]
-    tape = DumperTape(folder(tmp_path / "y", data, "tx+rx"))
-    assert [(one.sent, one.received) for one in tape.messages()] == [(5.0, 2.5), (0.0, 7.0)]
-    tape = DumperTape(folder(tmp_path / "z", data, "rx"))
-    assert [one.received for one in tape.messages()] == [5.0, 0.0]
+    storage = DumperStorage(folder(tmp_path / "y", data, "tx+rx"))
+    assert [(one.sent, one.received) for one in storage.messages()] == [(5.0, 2.5), (0.0, 7.0)]
+    storage = DumperStorage(folder(tmp_path / "z", data, "rx"))
+    assert [one.received for one in storage.messages()] == [5.0, 0.0]
 
 
 @pytest.mark.parametrize(
@@ -108,8 +108,8 @@ def test_names_of_pictures_lead_nowhere_else(content: str, tmp_path: Path) -> No
     where = folder(tmp_path / "x", f"1 1.000000 {content}\n".encode(), "rx", "Image")
     (where / "short.ppm").write_bytes(b"P6\n100 100\n255\nabc")
     (where / "x.float").write_bytes(b"\xff" * 16)
-    tape = DumperTape(where)
-    assert not any(isinstance(one.value, yarpy.Image) for one in tape.messages())
+    storage = DumperStorage(where)
+    assert not any(isinstance(one.value, yarpy.Image) for one in storage.messages())
 
 
 def test_several_ports_on_one_time_axis(tmp_path: Path) -> None:
@@ -128,16 +128,18 @@ def test_several_ports_on_one_time_axis(tmp_path: Path) -> None:
 
 def test_lines_have_a_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reader, "DUMPED_LINE", 100)
-    tape = DumperTape(folder(tmp_path / "x", b"1 1.000000 a\n2 2.000000 " + b"b" * 200 + b"\n"))
-    assert [one.value for one in tape.messages()] == [["a"]]
-    assert "a line of more than 100 bytes" in str(tape.damages[0])
+    storage = DumperStorage(
+        folder(tmp_path / "x", b"1 1.000000 a\n2 2.000000 " + b"b" * 200 + b"\n")
+    )
+    assert [one.value for one in storage.messages()] == [["a"]]
+    assert "a line of more than 100 bytes" in str(storage.damages[0])
 
 
 def test_a_recorder_that_nobody_connected(tmp_path: Path) -> None:
     (tmp_path / "quiet").mkdir()
     (tmp_path / "quiet" / "info.log").write_text("Type: Bottle;\nStamp: rx;\n")
     (tmp_path / "quiet" / "data.log").write_text("")
-    tape = DumperTape(tmp_path)
-    assert [*tape.ports] == ["/quiet"] and (tape.begin, tape.end) == (0, 0)
+    storage = DumperStorage(tmp_path)
+    assert [*storage.ports] == ["/quiet"] and (storage.begin, storage.end) == (0, 0)
     with pytest.raises(MissingFile, match=r"no folder with info\.log and data\.log"):
-        DumperTape(GOLDEN.parent / "vectors")
+        DumperStorage(GOLDEN.parent / "vectors")

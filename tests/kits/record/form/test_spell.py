@@ -12,7 +12,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.kits.record.form.spell import Spell
 from yarpy.kits.record.kind import kind_of
-from yarpy.kits.record.mcap.tape import McapTape
+from yarpy.kits.record.mcap.storage import McapStorage
 from yarpy.kits.record.mcap.writer import McapWriter
 
 JOINTS = Bottle([part for _ in range(11) for part in (Bottle([1.5, 2.5]), Vocab("ok"))])
@@ -42,14 +42,14 @@ def test_every_kind_comes_back(tmp_path: Path, envelope: str) -> None:
     with McapWriter(path) as writer:
         for n, payload in enumerate(payloads):
             writer.add(f"/{n}", envelope, START + n, payload)
-    tape = McapTape(path)
-    found = [*tape.messages()]
+    storage = McapStorage(path)
+    found = [*storage.messages()]
     assert [one.payload for one in found] == payloads
     assert {one.envelope for one in found} == {envelope}
-    assert tape.damages == []
-    assert [facts.kinds for facts in tape.ports.values()] == [[kind_of(one)] for one in payloads]
-    assert all(facts.playable for facts in tape.ports.values())
-    tape.close()
+    assert storage.damages == []
+    assert [facts.kinds for facts in storage.ports.values()] == [[kind_of(one)] for one in payloads]
+    assert all(facts.playable for facts in storage.ports.values())
+    storage.close()
     with open(path, "rb") as file:
         reader = mcap.reader.make_reader(file, validate_crcs=True)
         names = {channel.topic: schema.name for schema, channel, _ in reader.iter_messages()}

@@ -8,12 +8,12 @@ from support.recordings import fill, recorded
 
 from yarpy import record
 from yarpy.errors import DecodeError, LocalProtocolError
+from yarpy.kits.record.capture.output import Output, contents
 from yarpy.kits.record.convert import convert
 from yarpy.kits.record.mcap import index
 from yarpy.kits.record.mcap.attachment import Attachment, parse_attachment
 from yarpy.kits.record.mcap.layout import Damaged
 from yarpy.kits.record.mcap.writer import McapWriter
-from yarpy.kits.record.output import Output, contents
 from yarpy.kits.record.report import lines, report
 
 XML = b"<application><name>walk</name></application>"
@@ -108,7 +108,7 @@ def test_each_file_of_a_recording_gets_them(tmp_path: Path) -> None:
     for path in output.files:
         with record.open(path) as found:
             assert found.attachments() == {"walk.xml": XML}
-            assert found.tapes[0].attachments[0].kind == "application/xml"  # type: ignore[attr-defined]
+            assert found.storages[0].attachments[0].kind == "application/xml"  # type: ignore[attr-defined]
 
 
 def test_what_cannot_be_attached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -116,7 +116,7 @@ def test_what_cannot_be_attached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     path.write_bytes(b"float64 x")
     with pytest.raises(LocalProtocolError, match=r"two files are called a\.msg"):
         contents([path, path])
-    monkeypatch.setattr("yarpy.kits.record.output.LARGEST", 3)
+    monkeypatch.setattr("yarpy.kits.record.capture.output.LARGEST", 3)
     with pytest.raises(LocalProtocolError, match="too large to be attached"):
         contents([path])
     with pytest.raises(OSError):

@@ -10,8 +10,8 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy import record
+from yarpy.kits.record.commands import recorder_commands
 from yarpy.kits.record.page.record_page import NEWS, RecordPage
-from yarpy.kits.record.words import recorder_words
 
 if TYPE_CHECKING:
     from support.browser import Browser
@@ -67,7 +67,7 @@ def test_a_person_pauses_marks_splits_and_stops(
             EVIL, "/late", path=tmp_path / "x", names=names, tell=news.append
         ) as recorder,
         yarpy.RpcServer(
-            "/rpc", recorder_words(recorder, lambda: stopped.append(True)), names=names
+            "/rpc", recorder_commands(recorder, lambda: stopped.append(True)), names=names
         ) as port,
     ):
         RecordPage(port, recorder, news)

@@ -9,7 +9,7 @@ from support.wait import HANG, wait_until
 import yarpy
 from yarpy import record
 from yarpy.errors import LocalProtocolError
-from yarpy.kits.record.player import Player
+from yarpy.kits.record.playback.player import Player
 from yarpy.kits.record.verbs.play import Keys, parse_node, parse_rename, progress, summary
 
 

@@ -14,7 +14,7 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy import record
-from yarpy.kits.record.following import Wanted
+from yarpy.kits.record.capture.subscriptions import PortSelection
 from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.view.ring import LiveSource
 from yarpy.kits.record.view.server import View
@@ -144,7 +144,7 @@ def test_live(browser: Browser) -> None:
     with (
         yarpy.NameServer() as server,
         yarpy.Port("/a", names=server.client) as port,
-        LiveSource(Wanted(("/a",)), names=server.client) as source,
+        LiveSource(PortSelection(("/a",)), names=server.client) as source,
         View(source, port=0) as view,
     ):
         port.wait_for_outputs()

@@ -10,8 +10,8 @@ from support.wait import wait_until
 
 import yarpy
 from yarpy.errors import NoNameServer
-from yarpy.kits.record.following import Wanted
-from yarpy.kits.record.intake import OVERHEAD
+from yarpy.kits.record.capture.queue import OVERHEAD
+from yarpy.kits.record.capture.subscriptions import PortSelection
 from yarpy.kits.record.recording import Recording
 from yarpy.kits.record.view import ring as module
 from yarpy.kits.record.view.ring import LiveSource, Ring
@@ -73,7 +73,7 @@ def test_a_page_follows_and_looks_back() -> None:
     with (
         yarpy.NameServer() as server,
         yarpy.Port("/a", names=server.client) as port,
-        LiveSource(Wanted(("/a",)), names=server.client) as source,
+        LiveSource(PortSelection(("/a",)), names=server.client) as source,
         View(source, port=0) as view,
         Client(view.url) as client,
     ):
@@ -108,4 +108,4 @@ def test_a_page_follows_and_looks_back() -> None:
 def test_without_a_name_server(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("YARPY_SERVER", "127.0.0.1:1")
     with pytest.raises(NoNameServer):
-        LiveSource(Wanted(("/a",)))
+        LiveSource(PortSelection(("/a",)))

@@ -16,9 +16,9 @@ from typing import Any, TypeAlias
 from yarpy import registry
 from yarpy.data import codec
 from yarpy.errors import DecodeError, YarpError
-from yarpy.kits.record.bag.reader import BagTape
+from yarpy.kits.record.bag.reader import BagStorage
 from yarpy.kits.record.mcap.layout import Channel, Damaged, Other, Schema
-from yarpy.kits.record.mcap.tape import FOREVER, McapTape
+from yarpy.kits.record.mcap.storage import FOREVER, McapStorage
 from yarpy.kits.record.recorded import PortFacts, Recorded
 from yarpy.kits.record.recording import Recording
 
@@ -28,15 +28,17 @@ Read: TypeAlias = Callable[[bytes], tuple[Any, Any, str]]
 def with_foreign(recording: Recording) -> Recording:
     """Return a recording whose messages are also those of other systems. It is closed with the
     first one."""
-    tapes = [
-        ForeignTape(tape) if isinstance(tape, BagTape | McapTape) and _is_foreign(tape) else tape
-        for tape in recording.tapes
+    storages = [
+        ForeignStorage(storage)
+        if isinstance(storage, BagStorage | McapStorage) and _is_foreign(storage)
+        else storage
+        for storage in recording.storages
     ]
-    return recording if tapes == recording.tapes else Recording(tapes)
+    return recording if storages == recording.storages else Recording(storages)
 
 
-def _is_foreign(tape: BagTape | McapTape) -> bool:
-    return not all(facts.playable for facts in tape.ports.values())
+def _is_foreign(storage: BagStorage | McapStorage) -> bool:
+    return not all(facts.playable for facts in storage.ports.values())
 
 
 class ForeignMessage(Recorded):
@@ -51,50 +53,50 @@ class ForeignMessage(Recorded):
         super().__init__(other.channel.topic, other.received_ns, other.sent_ns, envelope, payload)
 
 
-class ForeignTape:
+class ForeignStorage:
     """A file or folder whose messages are read as YARP's."""
 
-    def __init__(self, tape: BagTape | McapTape) -> None:
-        self._tape = tape
-        self.path: Path = tape.path
+    def __init__(self, storage: BagStorage | McapStorage) -> None:
+        self._storage = storage
+        self.path: Path = storage.path
         self._readers: dict[tuple[str, Schema], Read | None] = {}
         self._told: set[str] = set()
 
     @property
     def size(self) -> int:
         """Return its size in bytes."""
-        return self._tape.size
+        return self._storage.size
 
     @property
     def begin(self) -> int:
         """Return when the first message was received, in nanoseconds; 0 if there is none."""
-        return self._tape.begin
+        return self._storage.begin
 
     @property
     def end(self) -> int:
         """Return when the last message was received, in nanoseconds; 0 if there is none."""
-        return self._tape.end
+        return self._storage.end
 
     @property
     def complete(self) -> bool:
         """Return whether it was finished."""
-        return self._tape.complete
+        return self._storage.complete
 
     @property
     def damages(self) -> list[Damaged]:
         """Return what is wrong with it, and what nobody can read, as far as it was read."""
-        return self._tape.damages
+        return self._storage.damages
 
     @property
     def facts(self) -> dict[str, str]:
         """Return what was known when it was begun."""
-        return self._tape.facts
+        return self._storage.facts
 
     @property
     def ports(self) -> dict[str, PortFacts]:
         """Return its topics by their names. All of them may be played: what cannot be read is
         told then."""
-        found = self._tape.ports
+        found = self._storage.ports
         for facts in found.values():
             facts.playable = True
         return found
@@ -105,8 +107,8 @@ class ForeignTape:
         """Yield the messages of these topics (None: all) that came from `begin` until before
         `end`, in the order in which they came."""
         return heapq.merge(
-            self._tape.messages(ports, begin, end),
-            self._read(self._tape.others(ports, begin, end)),
+            self._storage.messages(ports, begin, end),
+            self._read(self._storage.others(ports, begin, end)),
             key=lambda recorded: recorded.received_ns,
         )
 
@@ -131,15 +133,15 @@ class ForeignTape:
     def _tell(self, channel: Channel, why: str) -> None:
         if channel.topic not in self._told:
             self._told.add(channel.topic)
-            self._tape.damages.append(Damaged(0, why))
+            self._storage.damages.append(Damaged(0, why))
 
     def notes(self) -> list[dict[str, Any]]:
         """Return what was noted while it was recorded."""
-        return self._tape.notes()
+        return self._storage.notes()
 
     def close(self) -> None:
         """Close it."""
-        self._tape.close()
+        self._storage.close()
 
 
 def _reader(channel: Channel) -> Read:

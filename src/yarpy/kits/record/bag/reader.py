@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 from yarpy.errors import DecodeError, MissingFile, UnknownPlugin
 from yarpy.kits.record.bag.bounded import BoundedFile
 from yarpy.kits.record.mcap.layout import Channel, Damaged, Other, Schema
-from yarpy.kits.record.mcap.tape import FOREVER
+from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def is_bag(path: Path) -> bool:
     return path.suffix == ENDING or (path / "metadata.yaml").is_file()
 
 
-class BagTape:
+class BagStorage:
     """A bag at `path`. Raises MissingFile; DecodeError if it is none, UnknownPlugin."""
 
     def __init__(self, path: str | Path) -> None:

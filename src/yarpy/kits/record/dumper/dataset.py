@@ -19,12 +19,12 @@ from yarpy.kits.record.dumper.part import DATA, INFO
 from yarpy.kits.record.dumper.reader import Part
 from yarpy.kits.record.envelope import stamp_text
 from yarpy.kits.record.mcap.layout import Damaged
-from yarpy.kits.record.mcap.tape import FOREVER
+from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
 
 
 class Dataset:
-    """The parts below `path`: a Tape whose ports are parts.
+    """The parts below `path`: a Storage whose ports are parts.
 
     column: which column of times they are played by, if each line has two; 0: there are as many as
     info.log says, and the first one counts. Raises MissingFile if there is no part.

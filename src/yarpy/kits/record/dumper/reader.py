@@ -22,7 +22,7 @@ from yarpy.kits.record.dumper.part import DATA, INFO
 from yarpy.kits.record.dumper.picture import read_picture
 from yarpy.kits.record.envelope import SECOND, stamp_text
 from yarpy.kits.record.mcap.layout import Damaged
-from yarpy.kits.record.mcap.tape import FOREVER
+from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
 from yarpy.limit import DUMPED_LINE, RECORDED_TEXT, limits
 
@@ -35,7 +35,7 @@ _PICTURES: Final = ("Image", "Depth", "Video")
 _DAMAGES: Final = 1000  # that are told of a folder
 
 
-class DumperTape:
+class DumperStorage:
     """A folder at `path`, and those in it. Raises MissingFile if none is a recording."""
 
     def __init__(self, path: str | Path) -> None:

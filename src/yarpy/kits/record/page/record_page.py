@@ -22,7 +22,7 @@ from yarpy.carriers.web.http.page import Site
 from yarpy.port.base import BasePort
 
 if TYPE_CHECKING:
-    from yarpy.kits.record.recorder import Recorder
+    from yarpy.kits.record.capture.recorder import Recorder
 
 NEWS: Final = 20  # lines of an answer
 NEWEST: Final = 3  # files of an answer

@@ -45,10 +45,10 @@ def command(
     compression: str,
 ) -> int:
     """Write some of the ports of FILE."""
-    from yarpy.kits.record.following import Wanted
+    from yarpy.kits.record.capture.subscriptions import PortSelection
 
     names = tuple(name for name in (ports or "").split(",") if name)
-    wanted = Wanted(names, every=not (names or pattern), pattern=pattern, exclude=exclude)
+    wanted = PortSelection(names, every=not (names or pattern), pattern=pattern, exclude=exclude)
     limits = dict(map(parse_rate, rates))
 
     def chosen(recording: Recording) -> dict[str, Any]:

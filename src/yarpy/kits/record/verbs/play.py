@@ -33,8 +33,8 @@ from yarpy.port.rpc import RpcServer
 from yarpy.real_time import realtime
 
 if TYPE_CHECKING:
-    from yarpy.kits.record.player import Player
-    from yarpy.kits.record.words import Words
+    from yarpy.kits.record.commands import Commands
+    from yarpy.kits.record.playback.player import Player
 
 RPC: Final = "/play/rpc:i"
 SWITCH: Final = 0.0005  # seconds that a thread of this program keeps others waiting, at most
@@ -81,9 +81,9 @@ def command(
     paused: bool,
 ) -> int:
     """Send what FILEs have recorded again, each message in its time."""
-    from yarpy.kits.record.player import Player
+    from yarpy.kits.record.commands import player_commands
+    from yarpy.kits.record.playback.player import Player
     from yarpy.kits.record.recording import open_recording
-    from yarpy.kits.record.words import player_words
 
     live = sys.stdin.isatty() and sys.stderr.isatty()
     if not live:
@@ -104,7 +104,7 @@ def command(
                 node="" if node is None else parse_node(node),
                 clock=clock,
             )
-            with player, open_rpc(name, player_words(player)):
+            with player, open_rpc(name, player_commands(player)):
                 if not wait or player.wait_for_readers():
                     ended = _steered(player, paused) if live else player.play(paused)
         except Interrupted:
@@ -115,14 +115,14 @@ def command(
     return 0
 
 
-def open_rpc(name: str, words: Words) -> RpcServer:
-    """Return the port that takes words; by another name if several players run."""
+def open_rpc(name: str, commands: Commands) -> RpcServer:
+    """Return the port that takes commands; by another name if several players run."""
     try:
-        return RpcServer(name or RPC, words)
+        return RpcServer(name or RPC, commands)
     except AddressError:
         if name:
             raise
-        return RpcServer(f"/play/{os.getpid()}/rpc:i", words)
+        return RpcServer(f"/play/{os.getpid()}/rpc:i", commands)
 
 
 def parse_rename(text: str) -> tuple[str, str]:

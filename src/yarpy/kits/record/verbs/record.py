@@ -32,8 +32,8 @@ from yarpy.errors import LocalProtocolError
 from yarpy.port.rpc import RpcServer
 
 if TYPE_CHECKING:
-    from yarpy.kits.record.recorder import Recorder
-    from yarpy.kits.record.screen import Look, Rates
+    from yarpy.kits.record.capture.recorder import Recorder
+    from yarpy.kits.record.capture.screen import Rates, Status
 
 PERIOD: Final = 0.5  # seconds between looks
 NEWS: Final = 100  # lines that are kept
@@ -105,11 +105,11 @@ def command(
 ) -> int:
     """Keep what PORTs send in a file, which yarpy play plays and Foxglove reads."""
     from yarpy.cli.browser import open_page, url_of
+    from yarpy.kits.record.capture.disk_space import parse_size, parse_split, parse_time
+    from yarpy.kits.record.capture.recorder import Recorder
+    from yarpy.kits.record.capture.screen import Rates, summary
+    from yarpy.kits.record.commands import recorder_commands
     from yarpy.kits.record.page.record_page import RecordPage
-    from yarpy.kits.record.recorder import Recorder
-    from yarpy.kits.record.room import parse_size, parse_split, parse_time
-    from yarpy.kits.record.screen import Rates, summary
-    from yarpy.kits.record.words import recorder_words
 
     if recover is not None:
         return recovered(recover, path, compression)
@@ -158,7 +158,7 @@ def command(
     began = time.monotonic()
     seen, stop = Rates(), recorder.ended
     try:
-        with RpcServer(f"{recorder.name}/rpc:i", recorder_words(recorder, stop.set)) as server:
+        with RpcServer(f"{recorder.name}/rpc:i", recorder_commands(recorder, stop.set)) as server:
             RecordPage(server, recorder, news)
             shown = f"its page is at {url_of(server.address)}"
             if page:
@@ -173,11 +173,11 @@ def command(
         pass  # how it ends
     finally:
         recorder.close()
-    look = look_at(recorder, began, seen, news)
+    status = status_of(recorder, began, seen, news)
     if as_json:
-        print_json(facts(recorder, look))
+        print_json(facts(recorder, status))
     else:
-        for line in summary(look):
+        for line in summary(status):
             print_line(line)
     if recorder.failure:
         complain(recorder.failure)
@@ -236,13 +236,13 @@ def recovered(file: str, path: str | None, compression: str) -> int:
     return 0
 
 
-def look_at(recorder: Recorder, began: float, seen: Rates, news: Sequence[str]) -> Look:
+def status_of(recorder: Recorder, began: float, seen: Rates, news: Sequence[str]) -> Status:
     """Return how a recorder is doing now."""
-    from yarpy.kits.record.screen import Look
+    from yarpy.kits.record.capture.screen import Status
 
     counts = recorder.counts
     files = recorder.files
-    return Look(
+    return Status(
         file=(
             f"{files[0]} ... {files[-1]}"
             if len(files) > 3
@@ -263,12 +263,12 @@ def look_at(recorder: Recorder, began: float, seen: Rates, news: Sequence[str]) 
     )
 
 
-def facts(recorder: Recorder, look: Look) -> dict[str, object]:
+def facts(recorder: Recorder, status: Status) -> dict[str, object]:
     """Return what is printed as JSON at the end."""
     return {
         "files": [*map(str, recorder.files)],
-        "seconds": round(look.seconds, 3),
-        "bytes": look.size,
+        "seconds": round(status.seconds, 3),
+        "bytes": status.size,
         "failure": recorder.failure,
         "ports": {
             name: {
@@ -278,7 +278,7 @@ def facts(recorder: Recorder, look: Look) -> dict[str, object]:
                 "missed": count.missed,
                 "left out": count.left_out,
             }
-            for name, count in sorted(look.counts.items())
+            for name, count in sorted(status.counts.items())
         },
     }
 
@@ -291,15 +291,15 @@ def _live(
     from rich.live import Live
 
     from yarpy.cli.verbs.top import keys
-    from yarpy.kits.record.screen import Rates, text
+    from yarpy.kits.record.capture.screen import Rates, text
 
     seen, console = Rates(), Console(highlight=False)
     until = None if duration is None else began + duration
     with keys() as pressed, Live(console=console, auto_refresh=False, screen=True) as live:
         while not recorder.ended.is_set() and (until is None or time.monotonic() < until):
             size = shutil.get_terminal_size((80, 24))
-            look = look_at(recorder, began, seen, news)
-            live.update(text(look, size.columns, size.lines), refresh=True)
+            status = status_of(recorder, began, seen, news)
+            live.update(text(status, size.columns, size.lines), refresh=True)
             end = time.monotonic() + PERIOD
             while (left := end - time.monotonic()) > 0:
                 try:

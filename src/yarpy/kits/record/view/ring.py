@@ -16,13 +16,13 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 from yarpy.errors import YarpError
+from yarpy.kits.record.capture.opening import open_port
+from yarpy.kits.record.capture.queue import MEMORY, OVERHEAD, own
+from yarpy.kits.record.capture.subscriptions import PortSelection, Subscriptions
 from yarpy.kits.record.envelope import fields_of
-from yarpy.kits.record.following import Following, Wanted
-from yarpy.kits.record.intake import MEMORY, OVERHEAD, own
 from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.mcap.layout import Damaged
-from yarpy.kits.record.mcap.tape import FOREVER
-from yarpy.kits.record.opening import open_port
+from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
 from yarpy.kits.record.recording import Recording
 from yarpy.kits.record.view.overview import SECOND, Overview
@@ -39,7 +39,7 @@ _BACK: Final = 20_000  # messages that are looked through for the last one of a 
 
 
 class Ring:
-    """A Tape of what came lately. keep: seconds. memory: bytes."""
+    """A Storage of what came lately. keep: seconds. memory: bytes."""
 
     def __init__(self, keep: float = KEEP, memory: int = MEMORY) -> None:
         self.path = Path("live")
@@ -175,7 +175,7 @@ class LiveSource:
 
     def __init__(
         self,
-        wanted: Wanted,
+        wanted: PortSelection,
         keep: float = KEEP,
         *,
         memory: int = MEMORY,
@@ -187,7 +187,7 @@ class LiveSource:
         self._ring = Ring(keep, memory)
         self._recording = Recording([self._ring])
         self._port = open_port("", self._ring.put, self._connection, names, "/view")
-        self._following = Following(self._port, wanted, carrier, names, tell)
+        self._subscriptions = Subscriptions(self._port, wanted, carrier, names, tell)
 
     def _connection(self, event: ConnectionEvent) -> None:
         if event.incoming:
@@ -237,7 +237,7 @@ class LiveSource:
 
     def close(self) -> None:
         """Close the port."""
-        self._following.close()
+        self._subscriptions.close()
         self._port.close()
 
     def __enter__(self) -> Self:

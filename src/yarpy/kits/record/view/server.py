@@ -9,8 +9,8 @@
 Rules: begin and end are seconds from `origin`, in nanoseconds: the beginning of the recording
 unless another one is given, since that of what is live goes on. It is the page of this computer
 unless it is told otherwise, and the origin rule is that of all pages of programs
-(`YARPY_WEB_ORIGINS`). Requests have a size and a time, connections a number (`doorkeeper`). Nothing
-that is asked here changes anything.
+(`YARPY_WEB_ORIGINS`). Requests have a size and a time, connections a number (`limited_server`).
+Nothing that is asked here changes anything.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ from yarpy.carriers.web.http.origin import may_not_act, not_ours, origins_of
 from yarpy.errors import DecodeError, Timeout, YarpError
 from yarpy.kits.record.convert import convert
 from yarpy.kits.record.view.curve import as_csv, curves
-from yarpy.kits.record.view.doorkeeper import Doorkeeper
 from yarpy.kits.record.view.foxglove import PORT, PROTOCOLS, status
+from yarpy.kits.record.view.limited_server import LimitedServer
 from yarpy.kits.record.view.overview import SECOND
 from yarpy.kits.record.view.session import Session
 from yarpy.kits.record.view.source import Source
@@ -64,11 +64,11 @@ class View:
         self._cutting = threading.Lock()  # one at a time
         handler = type("Handler", (_Handler,), {"view": self})
         try:
-            self._server = Doorkeeper((host, PORT if port is None else port), handler)
+            self._server = LimitedServer((host, PORT if port is None else port), handler)
         except OSError:
             if port is not None:
                 raise
-            self._server = Doorkeeper((host, 0), handler)
+            self._server = LimitedServer((host, 0), handler)
         self._thread = threading.Thread(
             target=self._server.serve_forever, args=(0.1,), name="yarpy view", daemon=True
         )
@@ -142,7 +142,7 @@ class View:
             tempfile.TemporaryDirectory(prefix="yarpy-cut-") as folder,
             self.source.open() as recording,
         ):
-            first = min((tape.begin for tape in recording.tapes if tape.end), default=0)
+            first = min((storage.begin for storage in recording.storages if storage.end), default=0)
             start, duration = (begin - first) / SECOND, max(0, end - begin) / SECOND
             ports = [*self.source.kinds]
             done = convert(
@@ -160,7 +160,7 @@ class _Handler(BaseHTTPRequestHandler):
     """A connection."""
 
     view: View
-    server: Doorkeeper
+    server: LimitedServer
     protocol_version = "HTTP/1.1"
     server_version = "yarpy"
     sys_version = ""

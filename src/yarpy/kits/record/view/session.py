@@ -14,10 +14,10 @@ from collections.abc import Callable, Iterator
 from typing import Any, Final
 
 from yarpy.errors import DecodeError, YarpError
-from yarpy.kits.record.mcap.tape import FOREVER
+from yarpy.kits.record.mcap.storage import FOREVER
+from yarpy.kits.record.playback.timeline import Timeline
 from yarpy.kits.record.recorded import Recorded
 from yarpy.kits.record.recording import Recording
-from yarpy.kits.record.timeline import Timeline
 from yarpy.kits.record.view import foxglove
 from yarpy.kits.record.view.foxglove import Channel, State
 from yarpy.kits.record.view.source import Source

@@ -15,7 +15,7 @@ from typing import Any, Final, Protocol, Self
 from yarpy.errors import YarpError
 from yarpy.kits.record.bag.foreign import with_foreign
 from yarpy.kits.record.kind import BOTTLE
-from yarpy.kits.record.mcap.tape import FOREVER
+from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import Recorded
 from yarpy.kits.record.recording import Recording, open_recording
 from yarpy.kits.record.view.overview import SECOND, Overview
@@ -92,9 +92,9 @@ class FileSource:
     def __init__(self, paths: Sequence[str | Path]) -> None:
         self._paths = [*paths]
         with self.open() as recording:
-            tapes = [tape for tape in recording.tapes if tape.end]
-            begin = min((tape.begin for tape in tapes), default=0)
-            self._overview = Overview(begin, max((tape.end for tape in tapes), default=0))
+            storages = [storage for storage in recording.storages if storage.end]
+            begin = min((storage.begin for storage in storages), default=0)
+            self._overview = Overview(begin, max((storage.end for storage in storages), default=0))
             known = {name: facts for name, facts in recording.ports.items() if facts.playable}
             self.kinds = {
                 name: facts.kinds[0] if facts.kinds else BOTTLE for name, facts in known.items()

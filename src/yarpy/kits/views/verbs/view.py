@@ -125,8 +125,8 @@ def look_back(
     foxglove: bool = False,
 ) -> None:
     """Show files, or the last minutes of ports, until a signal."""
-    from yarpy.kits.record.following import Wanted
-    from yarpy.kits.record.room import parse_split
+    from yarpy.kits.record.capture.disk_space import parse_split
+    from yarpy.kits.record.capture.subscriptions import PortSelection
     from yarpy.kits.record.view.elsewhere import FOXGLOVE, foxglove_address
     from yarpy.kits.record.view.ring import LiveSource
     from yarpy.kits.record.view.server import View
@@ -141,7 +141,7 @@ def look_back(
             seconds = parse_split(keep).seconds
         if not seconds:
             raise LocalProtocolError(f'"{keep}" is no time that is kept: 30s, 5min')
-        wanted = Wanted(words, every=not words)
+        wanted = PortSelection(words, every=not words)
         source = LiveSource(wanted, seconds, carrier=carrier or "", tell=warn)
     if foxglove:  # its page comes from elsewhere, and may read what is asked for here
         known = os.environ.get("YARPY_WEB_ORIGINS", "")
@@ -159,8 +159,8 @@ def look_back(
 def in_rerun(words: tuple[str, ...], carrier: str, window: bool) -> int:
     """Hand recordings to Rerun, or what ports send until a signal; return the exit code. Without a
     window it is handed to one that listens already."""
-    from yarpy.kits.record.following import Following, Wanted
-    from yarpy.kits.record.opening import open_port
+    from yarpy.kits.record.capture.opening import open_port
+    from yarpy.kits.record.capture.subscriptions import PortSelection, Subscriptions
     from yarpy.kits.record.recorded import Recorded
     from yarpy.kits.record.recording import open_recording
     from yarpy.kits.record.view.elsewhere import rerun_library, show
@@ -185,7 +185,7 @@ def in_rerun(words: tuple[str, ...], carrier: str, window: bool) -> int:
         show(rr, Recorded(message.source, now, sent, message.envelope, payload))
 
     with open_port("", take, lambda event: None, None, NAME) as port:
-        following = Following(port, Wanted(words, every=not words), carrier, tell=warn)
+        following = Subscriptions(port, PortSelection(words, every=not words), carrier, tell=warn)
         print_line(f"what {port.name} hears is shown in Rerun")
         try:
             threading.Event().wait()

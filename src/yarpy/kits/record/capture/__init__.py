@@ -1,0 +1,1 @@
+"""Capture: what a recorder takes from ports and writes into files."""

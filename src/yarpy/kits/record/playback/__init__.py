@@ -1,0 +1,1 @@
+"""Playback: a recording sent again, when it is due."""
