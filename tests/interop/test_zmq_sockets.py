@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.access import allow
+from support.access import allow, write
 from support.lasted import lasted
 from support.wait import HANG, wait_until
 
@@ -50,9 +50,9 @@ class Sockets:
         number = socket.bind_to_random_port("tcp://127.0.0.1")
         return socket, f"127.0.0.1:{number}"
 
-    def is_turned_away(self, kind: int, port: Any) -> bool:
+    def is_turned_away(self, kind: int, port: Any, **options: Any) -> bool:
         """Whether a port hangs up on such a socket before it is connected."""
-        socket = self.make(kind)
+        socket = self.make(kind, **options)
         failed = zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL | zmq.EVENT_DISCONNECTED
         events = socket.get_monitor_socket(failed | zmq.EVENT_HANDSHAKE_SUCCEEDED)
         socket.connect(f"tcp://127.0.0.1:{port.contact.port}")
@@ -394,7 +394,7 @@ def test_a_socket_with_security_is_told_no(
     public, secret = zmq.curve_keypair()
     keys = {"CURVE_SERVERKEY": server, "CURVE_PUBLICKEY": public, "CURVE_SECRETKEY": secret}
     sockets.connected(zmq.SUB, out, **keys)
-    wait_until(lambda: "(CURVE, PLAIN)" in caplog.text)
+    wait_until(lambda: "the security mechanism CURVE" in caplog.text)
     assert not out.outputs
 
 
@@ -469,6 +469,25 @@ def test_a_socket_with_a_key_knows_its_ports(sockets: Sockets, reader: yarpy.Buf
             reader.listen_to(f"zmq+sub+curve.{key}://{where}", timeout=HANG)
         reader.listen_to(f"zmq+sub+curve.{key}+password.{password}://{where}")
         wait_until(lambda: socket.send(b"hello") is None and reader.poll() is not None)
+
+
+def test_a_password_of_a_socket_that_dials_is_a_token(
+    names: yarpy.LocalNames,
+    sockets: Sockets,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    token = "4Zr2kXqyJtWm0v8N"
+    rule = '[[allow]]\nwho = "token:visitors"\nmay = ["read"]\n[tokens]\nvisitors = "%s"\n'
+    write(tmp_path, monkeypatch, rule % token)
+    with yarpy.Port("/out", names=names) as out:
+        other = {"PLAIN_USERNAME": b"me", "PLAIN_PASSWORD": b"other"}
+        assert sockets.is_turned_away(zmq.SUB, out, **other)
+        socket = sockets.subscriber(out, b"", PLAIN_USERNAME=b"me", PLAIN_PASSWORD=token.encode())
+        out.write("hello")
+        assert socket.recv_multipart() == [b"/out", b'"hello"']
+        assert token not in caplog.text
 
 
 class Doorkeeper:

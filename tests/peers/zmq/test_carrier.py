@@ -85,8 +85,10 @@ def accepted(kind: bytes, piece: int = 0, minor: int = 1) -> tuple[End, Carrier]
     greeting = bytearray(zmtp.GREETING)
     greeting[11] = minor
     end.feed(bytes(greeting[:11]))
-    assert end.take() == zmtp.GREETING  # libzmq waits for that
-    end.feed(bytes(greeting[11:]) + zmtp.ready({"Socket-Type": kind}))
+    assert end.take() == zmtp.OPENING  # libzmq waits for that
+    end.feed(bytes(greeting[11:]))
+    assert zmtp.OPENING + end.take() == zmtp.GREETING
+    end.feed(zmtp.ready({"Socket-Type": kind}))
     assert end.done
     return end, found[0]
 

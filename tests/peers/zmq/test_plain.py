@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from support.steps import chop
 
-from yarpy.errors import LinkClosed, LocalProtocolError, LoginRefused, RemoteProtocolError
+from yarpy.errors import (
+    AccessRefused,
+    LinkClosed,
+    LocalProtocolError,
+    LoginRefused,
+    RemoteProtocolError,
+)
 from yarpy.peers.zmq import plain, zmtp
 from yarpy.route import parse_carrier
+from yarpy.wire.effects import Claim
+from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream, run
 
 GREETING = bytes.fromhex("ff00000000000000017f0301504c41494e") + bytes(47)
@@ -67,3 +77,62 @@ def test_carrier_strings() -> None:
     for wrong, why in (("password.x", "needs a name"), (f"user.{'x' * 300}", "255 bytes")):
         with pytest.raises(LocalProtocolError, match=why):
             plain.credentials(parse_carrier(f"zmq+sub+{wrong}"))
+
+
+INITIATE = zmtp.command(b"INITIATE", zmtp.properties_of({"Socket-Type": b"SUB"}))
+
+
+def admitted(data: bytes, known: bool | None, size: int = 0) -> tuple[Any, str, bytes]:
+    """What a port makes of a peer that dials it: the properties, what it claimed, the answer."""
+    stream, claims = ByteStream(), []
+
+    def answering() -> Steps[Any]:
+        steps, answer = plain.admit(stream), None
+        while True:
+            try:
+                effect = steps.send(answer)
+            except StopIteration as end:
+                return end.value
+            answer = None
+            if isinstance(effect, Claim):
+                claims.append(effect.token)
+                answer = known
+            else:
+                yield effect
+
+    try:
+        found: Any = run(answering(), stream, chop(data, size))
+    except AccessRefused as error:
+        found = str(error)
+    return found, "".join(claims), b"".join(map(bytes, stream.output))
+
+
+@pytest.mark.parametrize("size", [1, 7, 1000])
+@pytest.mark.parametrize("known", [True, None])
+def test_a_password_is_a_token(known: bool | None, size: int) -> None:
+    found = admitted(plain.hello(b"me", b"a word") + INITIATE, known, size)
+    assert found == ({"socket-type": b"SUB"}, "a word", WELCOME)
+
+
+def test_another_password_is_refused() -> None:
+    found, claimed, said = admitted(plain.hello(b"", b"") + INITIATE, False)
+    assert "none of the tokens" in found
+    assert (claimed, said) == ("", zmtp.error("400"))
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        INITIATE,
+        zmtp.command(b"HELLO"),
+        zmtp.command(b"HELLO", b"\2me"),
+        zmtp.command(b"HELLO", b"\2me\5word"),
+        zmtp.command(b"HELLO", b"\2me\3word"),
+        b"\0\6\5HELLO",
+        plain.hello(b"me", b"x") + zmtp.ready({}),
+        plain.hello(b"me", b"x") + INITIATE[:1] + b"\x0a" + INITIATE[2:12],
+    ],
+)
+def test_bad_peers_that_dial(data: bytes) -> None:
+    with pytest.raises(RemoteProtocolError):
+        admitted(data, True)

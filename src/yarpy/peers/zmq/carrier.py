@@ -118,16 +118,15 @@ class Zmq(Carrier):
     def welcome(self, stream: ByteStream, first: bytes) -> Steps[Carrier | None]:
         if self._open:
             return None
-        stream.write(zmtp.GREETING)
+        stream.write(zmtp.OPENING)
         stream.unread(len(first))
-        try:
-            minor = min(1, (yield from zmtp.read_greeting(stream)))
-        except LinkClosed:
-            raise RemoteProtocolError(
-                "the peer hung up in the middle of its greeting, as those do that want another "
-                "security mechanism (CURVE, PLAIN) than NULL, the only one that is spoken here"
-            ) from None
-        properties = yield from zmtp.read_ready(stream)
+        minor, mechanism = yield from zmtp.read_any_greeting(stream)
+        minor = min(1, minor)
+        if mechanism not in (zmtp.NULL, plain.MECHANISM):
+            zmtp.refuse(mechanism)
+        by_name = mechanism == plain.MECHANISM
+        stream.write(zmtp.greeting(mechanism, by_name)[len(zmtp.OPENING) :])
+        properties = yield from plain.admit(stream) if by_name else zmtp.read_ready(stream)
         kind = properties.get("socket-type", b"").upper()
         if kind not in PARTNER:
             shown = readable(kind[:20].decode("latin-1")) or "socket without a type"

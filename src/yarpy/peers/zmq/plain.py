@@ -5,8 +5,9 @@
     04 SIZE | 08 "INITIATE" | properties                              the side that dials
     04 SIZE | 05 "READY" | properties                                 or ERROR
 
-Rules: pure. A port shows them where it dials; it asks nobody for them, since who may do what with
-it is a matter of `access.toml`. Source: ZeroMQ RFC 24.
+Rules: pure. A port shows them where it dials. Of a socket that shows them to a port the password is
+a token of `access.toml`, whatever the name; where there are no tokens nobody looks at it, as with
+libzmq, and the rules are for its address. Source: ZeroMQ RFC 24.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from yarpy.errors import AccessRefused, LocalProtocolError, LoginRefused, Remote
 from yarpy.limit import ZMQ_COMMAND
 from yarpy.peers.zmq import zmtp
 from yarpy.route import CarrierSpec
+from yarpy.wire.effects import Claim
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
@@ -68,3 +70,28 @@ def log_in(
         return (yield from zmtp.read_ready(stream))
     except AccessRefused as error:
         raise LoginRefused(f"the peer does not admit us: {error}") from None
+
+
+def admit(stream: ByteStream) -> Steps[dict[str, bytes]]:
+    """Let a peer log in behind its greeting; return its properties. Raises AccessRefused for a
+    password that is no token where there are some, which the peer is told."""
+    content = yield from _command(stream, b"HELLO")
+    end = 1 + content[0] if content else 0
+    password = content[end + 1 :]
+    if not content or len(content) <= end or content[end] != len(password):
+        raise RemoteProtocolError("a HELLO of PLAIN whose name and password are cut off")
+    if (yield Claim(password.decode("utf-8", "surrogateescape"))) is False:
+        stream.write(zmtp.error("400"))  # as the RFC spells it: libzmq 4.3.5 takes only the end
+        raise AccessRefused(
+            "the password of a ZeroMQ socket is none of the tokens of access.toml: give it one"
+        )
+    stream.write(zmtp.command(b"WELCOME"))
+    return zmtp.parse_properties((yield from _command(stream, b"INITIATE")))
+
+
+def _command(stream: ByteStream, wanted: bytes) -> Steps[bytes]:
+    flags, body = yield from zmtp.read_frame(stream, ZMQ_COMMAND)
+    data = bytes(body)
+    if not flags & zmtp.COMMAND or data[: 1 + len(wanted)] != bytes((len(wanted),)) + wanted:
+        raise RemoteProtocolError(f"a ZeroMQ peer with PLAIN does not say {wanted.decode()}")
+    return data[1 + len(wanted) :]

@@ -6,14 +6,14 @@
 
 Rules: pure. A frame's flags are 1 (more frames of this message follow), 2 (its size has eight bytes
 instead of one) and 4 (a command). Lengths are checked before memory is taken. The security
-mechanism is NULL, PLAIN (`plain`), or CURVE where a port dials (`curve`). Source: ZeroMQ RFC 23
+mechanism is NULL, PLAIN (`plain`), and CURVE where a port dials (`curve`). Source: ZeroMQ RFC 23
 (3.0) and 37 (3.1).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import Final, NoReturn
 
 from yarpy.errors import RemoteProtocolError
 from yarpy.limit import ZMQ_COMMAND, ZMQ_FRAMES
@@ -38,18 +38,28 @@ Frame = tuple[int, Buffer]
 # -- the greeting ---------------------------------------------------------------------------------
 
 
-def greeting(mechanism: bytes = NULL) -> bytes:
-    """Return what a side begins with that is no server of the security mechanism."""
-    return MAGIC + b"\x01\x7f\x03\x01" + mechanism.ljust(20, b"\0") + bytes(32)
+def greeting(mechanism: bytes = NULL, server: bool = False) -> bytes:
+    """Return what a side begins with, as a server of the security mechanism or as its client."""
+    start = MAGIC + b"\x01\x7f\x03\x01" + mechanism.ljust(20, b"\0")
+    return start + bytes((server,)) + bytes(31)
 
 
 GREETING: Final = greeting()
+OPENING: Final = GREETING[:11]  # with which the side that was dialled begins: libzmq waits for it
 
 
 def read_greeting(stream: ByteStream, wanted: bytes = NULL, dialled: bool = False) -> Steps[int]:
     """Read what the peer begins with; the minor number of its version 3. Raises RemoteProtocolError
     for another security mechanism than the one that is `wanted`, with what to do about it on this
     side if it was `dialled` from here."""
+    minor, mechanism = yield from read_any_greeting(stream)
+    if mechanism != wanted:
+        refuse(mechanism, dialled)
+    return minor
+
+
+def read_any_greeting(stream: ByteStream) -> Steps[tuple[int, bytes]]:
+    """Read what the peer begins with; the minor number of its version 3, and its mechanism."""
     start = bytes((yield from stream.read_exact(11)))
     if start[0] != 0xFF or start[9] != 0x7F:
         raise RemoteProtocolError("the peer does not speak ZMTP, the protocol of ZeroMQ")
@@ -58,26 +68,28 @@ def read_greeting(stream: ByteStream, wanted: bytes = NULL, dialled: bool = Fals
             "the peer speaks a version of ZMTP before 3: it needs ZeroMQ 4 or newer"
         )
     rest = bytes((yield from stream.read_exact(len(GREETING) - len(start))))
-    mechanism = rest[1:21].rstrip(b"\0")
-    if mechanism != wanted:
-        name = readable(mechanism.decode("latin-1"))
-        if dialled and mechanism == b"PLAIN":
-            raise RemoteProtocolError(
-                "the peer asks for a name and a password: say +user.NAME+password.WORD"
-            )
-        if dialled and mechanism == b"CURVE":
-            raise RemoteProtocolError(
-                "the peer is known by its public key: say +curve.KEY, with 64 hexadecimal digits"
-            )
-        if mechanism == NULL:
-            raise RemoteProtocolError(
-                "the peer asks for no name and no key: leave +user, +password and +curve out"
-            )
+    return (rest[0] if start[10] == 3 else 1), rest[1:21].rstrip(b"\0")
+
+
+def refuse(mechanism: bytes, dialled: bool = False) -> NoReturn:
+    """Raise RemoteProtocolError for a security mechanism that does not fit."""
+    name = readable(mechanism.decode("latin-1"))
+    if dialled and mechanism == b"PLAIN":
         raise RemoteProtocolError(
-            f"the peer wants the security mechanism {name}, which is not spoken here: leave that "
-            "option out on its socket"
+            "the peer asks for a name and a password: say +user.NAME+password.WORD"
         )
-    return rest[0] if start[10] == 3 else 1
+    if dialled and mechanism == b"CURVE":
+        raise RemoteProtocolError(
+            "the peer is known by its public key: say +curve.KEY, with 64 hexadecimal digits"
+        )
+    if mechanism == NULL:
+        raise RemoteProtocolError(
+            "the peer asks for no name and no key: leave +user, +password and +curve out"
+        )
+    raise RemoteProtocolError(
+        f"the peer wants the security mechanism {name}, which is not spoken here: leave that "
+        "option out on its socket"
+    )
 
 
 # -- frames ---------------------------------------------------------------------------------------
