@@ -28,7 +28,7 @@ CORE_LAYERS: list[set[str]] = [
     {"errors", "log", "fork", "linger", "platform", "behalf"},
     {"limit", "facts"},
     {"shipped"},
-    {"registry", "route", "scope"},
+    {"registry", "route", "scope", "threads"},
     {"contact"},
     {"wire", "data"},
     {"carriers", "transports"},
@@ -49,6 +49,8 @@ LAYERS: list[set[str]] = [
     {"__main__"},
 ]
 BESIDE = {
+    ("registry", "threads"),
+    ("threads", "scope"),
     ("linger", "fork"),
     ("linger", "log"),
     ("link", "monitors"),
@@ -260,6 +262,16 @@ def test_pure_rooms_have_no_sockets_threads_or_clock() -> None:
         if module.partition(".")[0] in IMPURE_MODULES
     ]
     assert wrong == []
+
+
+def test_what_users_call_starts_threads_that_no_signal_handler_cuts() -> None:
+    rooms = {"transports", "link", "port", "aio", "network", "names", "module"}
+    wrong = [
+        relative(path)
+        for path in FILES
+        if room(path) in rooms and "threading.Thread(" in path.read_text(encoding="utf-8")
+    ]
+    assert wrong == [], "start a `Thread` of yarpy.threads there"
 
 
 def readings_of_errors(handlers: Iterable[ast.AST]) -> Iterator[int]:

@@ -47,6 +47,7 @@ from yarpy.log import logger
 from yarpy.names.base import NameClient
 from yarpy.port.rpc import RpcServer
 from yarpy.resource import ResourceFinder
+from yarpy.threads import Thread
 from yarpy.wire.message import Message
 
 log = logger("yarpy.module")
@@ -146,7 +147,7 @@ class Module:
         word = plain_text(request[0]) if request else ""
         if word in QUIT:
             # From another thread, since the answer is still to leave.
-            threading.Thread(target=self.stop, name="yarpy module stop", daemon=True).start()
+            Thread(target=self.stop, name="yarpy module stop", daemon=True).start()
             return Bottle([Vocab("bye")])
         if word == "help":
             known = {**self.commands, "help": "tell the commands", "quit": "end the module"}
@@ -163,7 +164,7 @@ class Module:
     def _quit(self, message: Message) -> Any:
         request = message.as_(Bottle)
         if request and plain_text(request[0]) in QUIT:
-            threading.Thread(target=self.stop, name="yarpy module stop", daemon=True).start()
+            Thread(target=self.stop, name="yarpy module stop", daemon=True).start()
             return Bottle([Vocab("ok")])
         return Bottle([Vocab("fail"), "say quit"])
 
@@ -203,7 +204,7 @@ def _signals(stop: Callable[[], None]) -> Iterator[None]:
         count += 1
         if count > SIGNALS:
             os._exit(128 + number)
-        threading.Thread(target=stop, name="yarpy module stop", daemon=True).start()
+        Thread(target=stop, name="yarpy module stop", daemon=True).start()
 
     before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

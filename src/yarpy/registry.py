@@ -10,7 +10,6 @@ fails to load is an error that names its distribution.
 from __future__ import annotations
 
 import sys
-import threading
 from collections.abc import Iterable, Iterator, Mapping
 from importlib import import_module
 from typing import Any, Final, Generic, TypeVar
@@ -19,6 +18,7 @@ from yarpy import fork
 from yarpy.errors import UnknownPlugin
 from yarpy.facts import MAGIC_SIZE, Call, CarrierRow, GraphRow, Row, TransportRow
 from yarpy.shipped import CARRIERS, ELSEWHERE, GRAPHS, SHIPPED, TRANSPORTS
+from yarpy.threads import undisturbed
 
 R = TypeVar("R", bound=Row)
 
@@ -264,28 +264,21 @@ def _resolve(row: Row) -> Any:
 def _import_apart(module: str) -> Any:
     """Import a module of ours where no signal handler can raise in the middle, as by Ctrl-C: not in
     the main thread. There, Python would keep the module locked for ever."""
-    if module in sys.modules or threading.current_thread() is not threading.main_thread():
+    if module in sys.modules:
         return import_module(module)
-    done = threading.Lock()
-    done.acquire()
-    found: list[Any] = []
-    failed: list[BaseException] = []
+    began = False
 
-    def load() -> None:
-        try:
-            found.append(import_module(module))
-        except BaseException as error:
-            failed.append(error)
-        done.release()
+    def load() -> Any:
+        nonlocal began
+        began = True
+        return import_module(module)
 
     try:
-        threading.Thread(target=load, name=f"yarpy import {module}", daemon=True).start()
-    except RuntimeError:  # there can be no more threads
-        return import_module(module)
-    done.acquire()
-    if failed:
-        raise failed[0]
-    return found[0]
+        return undisturbed(load, f"yarpy import {module}")
+    except RuntimeError:
+        if began:
+            raise
+        return import_module(module)  # there can be no more threads
 
 
 carriers: Final = CarrierRegistry()

@@ -1,4 +1,4 @@
-"""Descriptors end with their objects, and what must not be cut goes on where signals come."""
+"""Descriptors end with their objects."""
 
 from __future__ import annotations
 
@@ -6,15 +6,13 @@ import _thread
 import operator
 import os
 import signal
-import threading
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
 import pytest
-from support.wait import HANG
 
-from yarpy.transports.descriptor import opened, opened_pair, owned, undisturbed
+from yarpy.transports.descriptor import opened, opened_pair, owned
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "pipe2"), reason="this system has no pipe2")
 
@@ -70,31 +68,3 @@ def test_where_one_is_none_all_are_closed(place: int, tmp_path: Path) -> None:
     with pytest.raises(OSError):
         owned(numbers)
     assert not any(map(is_open, numbers))
-
-
-def test_what_must_not_be_cut_goes_on_in_another_thread() -> None:
-    main, cut, over = threading.get_ident(), threading.Event(), threading.Event()
-
-    def work() -> None:
-        signal.pthread_kill(main, signal.SIGUSR1)
-        assert cut.wait(HANG)
-        over.set()
-
-    with pytest.raises(Alarm):
-        undisturbed(work)
-    assert not over.is_set()
-    cut.set()
-    assert over.wait(HANG)
-
-
-def test_what_it_returns_and_raises() -> None:
-    assert undisturbed(threading.current_thread) is not threading.main_thread()
-    with pytest.raises(ZeroDivisionError):
-        undisturbed(lambda: 1 // 0)
-    found: list[bool] = []
-    thread = threading.Thread(
-        target=lambda: found.append(undisturbed(threading.current_thread) is thread)
-    )
-    thread.start()
-    thread.join()
-    assert found == [True]

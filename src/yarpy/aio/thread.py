@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import asyncio
 import os
-import threading
 from collections import deque
 from collections.abc import Callable
 from contextvars import copy_context
@@ -18,6 +17,7 @@ from queue import Empty, SimpleQueue
 from typing import Final, TypeAlias, TypeVar
 
 from yarpy.scope import Scope
+from yarpy.threads import Thread
 
 T = TypeVar("T")
 Work: TypeAlias = Callable[[], object]
@@ -41,7 +41,7 @@ class Threads:
             inlet = self._idle.pop()
         except IndexError:
             inlet = SimpleQueue()
-            threading.Thread(target=self._run, args=(inlet,), name="yarpy aio", daemon=True).start()
+            Thread(target=self._run, args=(inlet,), name="yarpy aio", daemon=True).start()
         inlet.put(work)
 
     def _run(self, inlet: SimpleQueue[Work]) -> None:

@@ -24,6 +24,7 @@ from yarpy.contact import Contact
 from yarpy.errors import DecodeError
 from yarpy.limit import DISCOVERY_DATAGRAM
 from yarpy.names.registration_line import PREFIX, parse_registration
+from yarpy.threads import Thread
 
 GROUP = "224.2.1.1"
 MOST = 100  # servers that are told of
@@ -136,7 +137,7 @@ class Responder:
         listener = _group_socket(self.group, self.port)
         listener.setblocking(False)  # what made it readable may be a broken datagram
         self._wake, sleeper = socket.socketpair()
-        self._thread = threading.Thread(
+        self._thread = Thread(
             target=self._run, args=(listener, sleeper), name=f"discovery:{self.port}", daemon=True
         )
         self._thread.start()

@@ -9,7 +9,6 @@ what it was asked and what it said to that, a pair in each message (`+log.in`).
 from __future__ import annotations
 
 import contextlib
-import threading
 import time
 from typing import Final, Self
 
@@ -20,6 +19,7 @@ from yarpy.link.begin.handshake import greet
 from yarpy.link.receive.receiver import Receiver
 from yarpy.names.default import secret
 from yarpy.route import Route
+from yarpy.threads import Thread
 from yarpy.wire import framing
 from yarpy.wire.message import CALL, DATA, Message
 
@@ -49,7 +49,7 @@ class Peek:
         except BaseException:
             self._driver.transport.close()
             raise
-        self._thread = threading.Thread(target=self._run, name=f"yarpy peek {contact.name}")
+        self._thread = Thread(target=self._run, name=f"yarpy peek {contact.name}")
         self._thread.daemon = True
         self._thread.start()
 

@@ -20,7 +20,6 @@ when the observer is 1000 behind, further ones are dropped and counted, and the 
 from __future__ import annotations
 
 import queue
-import threading
 import time
 from pathlib import Path
 from typing import Protocol
@@ -33,6 +32,7 @@ from yarpy.monitors.base import Place
 from yarpy.port.assembly import open_hub
 from yarpy.port.mailbox import Latest
 from yarpy.port.port import MessagePort
+from yarpy.threads import Thread
 from yarpy.wire.message import Message
 
 _BEHIND = 1000  # copies
@@ -56,7 +56,7 @@ class RpcMonitor:
         except YarpError:
             self._port.close()
             raise
-        self._thread = threading.Thread(target=self._run, name=f"yarpy {hub.name}", daemon=True)
+        self._thread = Thread(target=self._run, name=f"yarpy {hub.name}", daemon=True)
         self._thread.start()
 
     def update(self, message: Message) -> None:

@@ -18,6 +18,7 @@ from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, YarpError
 from yarpy.monitors.base import Place
 from yarpy.port.port import BufferedPort
+from yarpy.threads import Thread
 from yarpy.wire.message import Message, Packet
 
 _PERIOD = 1.0  # seconds
@@ -38,7 +39,7 @@ class StatsMonitor:
             self._forward.port.close()
             raise
         self._closed = threading.Event()
-        self._thread = threading.Thread(target=self._run, name=f"yarpy stats {place}", daemon=True)
+        self._thread = Thread(target=self._run, name=f"yarpy stats {place}", daemon=True)
         self._thread.start()
 
     def update(self, message: Message) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import threading
 import time
 import warnings
 from collections.abc import Callable, Mapping
@@ -24,6 +23,7 @@ from yarpy.port.hub import Hub
 from yarpy.port.stats import PortStats, port_stats
 from yarpy.route import masked
 from yarpy.scope import CONNECTING, Waiter, apart
+from yarpy.threads import Thread
 from yarpy.wire.message import Message
 
 
@@ -228,7 +228,7 @@ class BasePort:
             stacklevel=2,
             source=self,
         )
-        threading.Thread(target=hub.close, name=f"yarpy close {hub.name}", daemon=True).start()
+        Thread(target=hub.close, name=f"yarpy close {hub.name}", daemon=True).start()
 
     def __repr__(self) -> str:
         state = "closed" if self.closed else self.address

@@ -6,7 +6,6 @@ the port, which only ports have whose program wants to hear of it.
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from typing import Final
 
 from yarpy.link.receive.inbound import Inbound
 from yarpy.scope import Flag
+from yarpy.threads import Thread
 
 SHORTEST: Final = 0.002  # seconds between two looks
 LONGEST: Final = 0.5
@@ -43,7 +43,7 @@ class Watch:
     def __init__(self, name: str, inputs: Callable[[], Iterable[Inbound]]) -> None:
         self._inputs = inputs
         self._stopped = Flag()
-        thread = threading.Thread(target=self._run, name=f"yarpy deadlines {name}", daemon=True)
+        thread = Thread(target=self._run, name=f"yarpy deadlines {name}", daemon=True)
         thread.start()
 
     def stop(self) -> None:

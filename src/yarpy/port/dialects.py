@@ -7,7 +7,6 @@ Readers over text, where both are alike, are not asked. A reader that does not a
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 
 from yarpy.data.stamp import Stamp
@@ -15,6 +14,7 @@ from yarpy.errors import YarpError
 from yarpy.link.send.outbound import Outbound
 from yarpy.log import logger
 from yarpy.port.port import MessagePort, envelope_of
+from yarpy.threads import Thread
 from yarpy.wire.message import Packet
 
 log = logger("yarpy.port")
@@ -76,7 +76,7 @@ class Dialects:
             return _Reader(False)
         found = _Reader(None)
         name = f"yarpy which YARP {link.route.target}"
-        threading.Thread(target=self._ask, args=(link, found), name=name, daemon=True).start()
+        Thread(target=self._ask, args=(link, found), name=name, daemon=True).start()
         return found
 
     def _ask(self, link: Outbound, reader: _Reader) -> None:

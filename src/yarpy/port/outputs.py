@@ -30,6 +30,7 @@ from yarpy.port.connect.saved import SavedQos
 from yarpy.port.graph import Membership
 from yarpy.port.keep.life import Life
 from yarpy.route import Route
+from yarpy.threads import Thread
 
 log = logger("yarpy.port")
 
@@ -144,7 +145,7 @@ class Outputs:
             hub.watch()
         if link.carrier.delivery.attentive:
             name = f"yarpy hear {link.route}"
-            threading.Thread(target=link.attend, name=name, daemon=True).start()
+            Thread(target=link.attend, name=name, daemon=True).start()
 
     @property
     def newest(self) -> bool:

@@ -1,22 +1,18 @@
-"""Descriptors that close with their object, whatever comes between; and work that no signal cuts.
+"""Descriptors that close with their object, whatever comes between.
 
 Rules: a signal handler may raise between any two steps of Python in the main thread, also where a
 call of the system has just returned, and within `__del__`. So a descriptor becomes an object in the
 same call into C in which it is made, and its end is one of C as well. What takes more than that is
-done in a thread, where no handler runs.
+done `undisturbed`, in a thread where no handler runs.
 """
 
 from __future__ import annotations
 
 import os
-import threading
-from _thread import allocate_lock
 from collections.abc import Callable, Iterable
 from io import FileIO
 from itertools import chain
-from typing import Any, TypeVar
-
-T = TypeVar("T")
+from typing import Any
 
 
 class Descriptor(FileIO):
@@ -49,29 +45,3 @@ def owned(numbers: Iterable[int]) -> list[Descriptor]:
             os.close(number)
         raise
     return found
-
-
-def undisturbed(function: Callable[[], T]) -> T:
-    """Return function(), which no signal handler cuts: from the main thread it is called in another
-    one, and comes to its end also where this one is cut. It must not wait for long. Raises what
-    it raises."""
-    if threading.current_thread() is not threading.main_thread():
-        return function()
-    found: list[T] = []
-    failed: list[BaseException] = []
-    done = allocate_lock()
-    done.acquire()
-
-    def run() -> None:
-        try:
-            found.append(function())
-        except BaseException as error:
-            failed.append(error)
-        finally:
-            done.release()
-
-    threading.Thread(target=run, name="yarpy undisturbed", daemon=True).start()
-    done.acquire()
-    if failed:
-        raise failed.pop()  # it would keep itself, and what its frames have, otherwise
-    return found[0]

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import socket
 import sys
-import threading
 import time
 from contextlib import suppress
 from functools import partial
@@ -20,6 +19,7 @@ from yarpy import scope
 from yarpy.contact import Contact
 from yarpy.errors import AddressError
 from yarpy.route import Route
+from yarpy.threads import Thread
 from yarpy.transports.base import Address, SocketTransport
 from yarpy.transports.bind import listening_host
 from yarpy.transports.opener import CONNECT_TIMEOUT, Elsewhere, Opener
@@ -154,7 +154,7 @@ def _addresses(host: str, port: int, limit: float) -> list[Any]:
             failed.append(error)
         waiter.wake()
 
-    threading.Thread(target=ask, name=f"yarpy look up {host}", daemon=True).start()
+    Thread(target=ask, name=f"yarpy look up {host}", daemon=True).start()
     waiter.wait(limit - time.monotonic())
     if failed and isinstance(failed[0], UnicodeError):
         raise AddressError(f'"{host}" is no host name: {failed[0]}') from failed[0]

@@ -16,6 +16,7 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 from yarpy.log import logger
+from yarpy.threads import Thread
 
 log = logger("yarpy.link")
 
@@ -101,7 +102,7 @@ class AcceptLoop:
         if not _SEES_MORE:
             self._waker = socket.socketpair()
             self._selector.register(self._waker[0], selectors.EVENT_READ, None)
-        self.thread = threading.Thread(target=self._run, name="yarpy accept", daemon=True)
+        self.thread = Thread(target=self._run, name="yarpy accept", daemon=True)
         try:
             self.thread.start()
         except BaseException:

@@ -26,6 +26,7 @@ from yarpy.link.begin.pending import Pending
 from yarpy.link.cores import cores
 from yarpy.link.flapping import Flapping
 from yarpy.log import logger
+from yarpy.threads import Thread
 from yarpy.transports.base import MSG_DONTWAIT
 from yarpy.transports.tcp import TcpListener
 
@@ -220,7 +221,7 @@ class Acceptor:
         if not self.occupancy.admit(address):
             sock.close()
             return
-        thread = threading.Thread(
+        thread = Thread(
             target=self._run_one, args=(sock, address), name=f"yarpy {self.name} <- ?", daemon=True
         )
         try:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from yarpy.errors import YarpError
 from yarpy.link.ending import NEVER, NOW, Ending
 from yarpy.link.send.outbox import Outbox, Rest
+from yarpy.threads import Thread
 
 if TYPE_CHECKING:
     from yarpy.link.counter import Counter
@@ -50,7 +51,7 @@ class Queue:
         """Begin to send."""
         with self._lock:
             if self.thread is None and not self.stopped:
-                self.thread = threading.Thread(target=self._run, name=self._name, daemon=True)
+                self.thread = Thread(target=self._run, name=self._name, daemon=True)
                 self.thread.start()
 
     def _add(self, packet: Packet, due: float | None) -> None:

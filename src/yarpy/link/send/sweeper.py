@@ -13,6 +13,8 @@ import time
 from collections.abc import Callable
 from typing import Final
 
+from yarpy.threads import Thread
+
 GATHER_SECONDS: Final = 200e-6  # how long a burst's message may wait for others
 
 
@@ -25,7 +27,7 @@ class Sweeper:
         self._wake.acquire()
         self._asleep = True
         self._stopped = False
-        self.thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self.thread = Thread(target=self._run, name=name, daemon=True)
 
     def watch(self) -> None:
         """Something was gathered."""

@@ -13,6 +13,7 @@ from typing import Final
 from yarpy.errors import LocalProtocolError
 from yarpy.monitors.constraint import Constraint
 from yarpy.monitors.event import EVENTS, Events
+from yarpy.threads import Thread
 
 _LEAST: Final = 0.001  # seconds between two triggers
 _MOST: Final = 1e6
@@ -73,9 +74,7 @@ class Control:
             self._interval = seconds
             self._changed.set()
             if seconds and self._timer is None and not self._closed:
-                self._timer = threading.Thread(
-                    target=self._run, name=f"yarpy trig {self._name}", daemon=True
-                )
+                self._timer = Thread(target=self._run, name=f"yarpy trig {self._name}", daemon=True)
                 self._timer.start()
 
     def unset_trig_interval(self) -> None:

@@ -22,7 +22,6 @@ from __future__ import annotations
 import inspect
 import itertools
 import sys
-import threading
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -34,6 +33,7 @@ from yarpy.data.bottle import Property
 from yarpy.monitors.base import FAILURES
 from yarpy.monitors.script.control import Control
 from yarpy.monitors.script.script import CALLBACK_TIMEOUT, ScriptError
+from yarpy.threads import Thread
 from yarpy.wire.message import Message
 
 _NAMES: Final = {
@@ -156,7 +156,7 @@ class PythonScript:
             except ScriptError as error:
                 failed.append(error)
 
-        thread = threading.Thread(target=run, name=f"yarpy destroy {self._path}", daemon=True)
+        thread = Thread(target=run, name=f"yarpy destroy {self._path}", daemon=True)
         try:
             thread.start()
         except RuntimeError:  # Python is ending, and starts no more threads

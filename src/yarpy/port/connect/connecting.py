@@ -7,7 +7,6 @@ finds the line that C++ has for it. A port makes one attempt at a time to reach 
 
 from __future__ import annotations
 
-import threading
 import time
 from dataclasses import replace
 from typing import Final
@@ -44,6 +43,7 @@ from yarpy.port.connect.choosing import choose, instead
 from yarpy.port.connect.disconnecting import close_output
 from yarpy.port.hub import Hub
 from yarpy.route import CarrierSpec, Route, masked, parse_carrier
+from yarpy.threads import Thread
 
 JOINING: Final = 0.5  # seconds for a receiver to join a multicast group
 _POLL: Final = 0.05  # seconds between attempts to reach a port that is not there yet
@@ -352,7 +352,7 @@ def _open_output(
             route.source, route.target = target, hub.name
             source = Inbound(hub.inputs, driver, speaker)
             hub.inputs.take(source)
-            threading.Thread(target=hub.inputs.serve, args=(source,), daemon=True).start()
+            Thread(target=hub.inputs.serve, args=(source,), daemon=True).start()
             return route.spec
         if speaker.delivery.broadcast or spec.recv:
             _wait_for_member(hub, contact, speaker.name)

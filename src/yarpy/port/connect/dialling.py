@@ -16,6 +16,7 @@ from typing import Final
 from yarpy import scope
 from yarpy.log import logger
 from yarpy.scope import Waiter
+from yarpy.threads import Thread
 
 log = logger("yarpy.port")
 
@@ -82,7 +83,7 @@ class Attempts:
                 return False
             self._targets.add(target)
         name = f"yarpy {self._task} {target}"
-        thread = threading.Thread(target=self._run, args=(target, attempt), name=name, daemon=True)
+        thread = Thread(target=self._run, args=(target, attempt), name=name, daemon=True)
         try:
             thread.start()
         except RuntimeError as error:

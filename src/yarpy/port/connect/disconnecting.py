@@ -6,7 +6,6 @@ The other side is told, so that it does not take the end for a failure and dial 
 
 from __future__ import annotations
 
-import threading
 import time
 from dataclasses import replace
 from typing import Final
@@ -20,6 +19,7 @@ from yarpy.link.send.outbound import Outbound
 from yarpy.log import logger
 from yarpy.port.connect import goodbye, probe
 from yarpy.port.hub import Hub
+from yarpy.threads import Thread
 
 log = logger("yarpy.port")
 
@@ -159,7 +159,7 @@ def close_input(hub: Hub, link: Inbound) -> None:
     own thread has to answer the sender's goodbye."""
     if link.thread is waited_by() and not link.asking:
         name = f"yarpy close {link.route}"
-        threading.Thread(target=_end_input, args=(hub, link), name=name, daemon=True).start()
+        Thread(target=_end_input, args=(hub, link), name=name, daemon=True).start()
     else:
         _end_input(hub, link)
 

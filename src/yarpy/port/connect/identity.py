@@ -9,7 +9,6 @@ chosen on purpose; its listener is asked afterwards, to be recognised the next t
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterable
 from typing import Final
 
@@ -19,6 +18,7 @@ from yarpy.link.begin.handshake import GREETING, find_carrier
 from yarpy.names.base import NameClient
 from yarpy.port.connect import probe
 from yarpy.route import Route
+from yarpy.threads import Thread
 
 TIMEOUT: Final = GREETING
 
@@ -84,7 +84,7 @@ def learn(contact: Contact, route: Route, key: bytes) -> None:
         except YarpError:
             pass  # it cannot say
 
-    threading.Thread(target=ask, name=f"yarpy who is {contact.address}", daemon=True).start()
+    Thread(target=ask, name=f"yarpy who is {contact.address}", daemon=True).start()
 
 
 def properties_of(names: NameClient | None) -> Properties | None:

@@ -34,6 +34,7 @@ from yarpy.port.keep.keepalive import Keepalive, Link
 from yarpy.port.keep.server_watch import ServerWatch
 from yarpy.route import Route
 from yarpy.scope import Waiter
+from yarpy.threads import Thread
 
 log = logger("yarpy.port")
 
@@ -118,9 +119,7 @@ class Reconnector:
         with self._lock:
             self._hubs.append(hub)
             if self._thread is None or not self._thread.is_alive():
-                self._thread = threading.Thread(
-                    target=self._run, name="yarpy reconnect", daemon=True
-                )
+                self._thread = Thread(target=self._run, name="yarpy reconnect", daemon=True)
                 self._thread.start()
 
     def forget(self, hub: Hub) -> None:

@@ -20,6 +20,7 @@ from yarpy.port.connect import connecting
 from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Latest
 from yarpy.scope import Waiter
+from yarpy.threads import Thread
 from yarpy.wire.message import Packet
 
 LOGGER: Final = "/yarplogger"
@@ -66,7 +67,7 @@ class LogSender:
             self._lines.extend(packets)
             self._count += len(packets)
             if self._thread is None and not self.closed:
-                self._thread = threading.Thread(target=self._run, name="yarpy log", daemon=True)
+                self._thread = Thread(target=self._run, name="yarpy log", daemon=True)
                 self._thread.start()
         self._news.wake()
 

@@ -24,8 +24,9 @@ from typing import Final
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.platform.user import user
+from yarpy.threads import undisturbed
 from yarpy.transports.base import MSG_DONTWAIT, Transport
-from yarpy.transports.descriptor import opened_pair, undisturbed
+from yarpy.transports.descriptor import opened_pair
 from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.shared.arena import (
     LEDGER,
