@@ -110,6 +110,7 @@ MQTT_PATTERNS: Final = 64  # of one reader
 MQTT_HEARD: Final = 1 << 14  # bytes of a packet of somebody who reads
 MQTT_CONNECT: Final = 1 << 16  # bytes of the packet that begins a connection
 MQTT_TOPIC: Final = 1 << 12  # bytes
+MQTT_USER: Final = 1 << 13  # bytes of user properties that are kept of a message
 MQTT_WILL: Final = 1 << 16  # bytes of a client's last message
 MQTT_UNRELEASED: Final = 1024  # messages with QoS 2 of one client that are under way
 ZMQ_PREFIX: Final = 1 << 12  # bytes of a subscription

@@ -232,7 +232,7 @@ class Publisher(Client):
             self._number = self._number % 65535 + 1
             self._open.append(self._number)
             head += self._number.to_bytes(2, "big")
-        head += self._properties()
+        head += self._said_beside(packet)
         pieces = mqtt.publish(head, payload, self._first)
         self._small = len(pieces) == 1 and len(pieces[0]) < SMALL
         stream.write(*pieces)
@@ -317,7 +317,7 @@ class Asker(Client):
         head = mqtt.string(self._topic)
         if packet.key == CALL:  # its acknowledgement tells whether there is anybody
             head += self._correlation
-        head += self._properties(properties)
+        head += self._said_beside(packet, properties)
         first = mqtt.PUBLISH | (2 if packet.key == CALL else 0)
         stream.write(*mqtt.publish(head, payload, first))
 

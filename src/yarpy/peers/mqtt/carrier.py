@@ -163,7 +163,7 @@ class Reader(MqttPeer):
         self._topic = writer.route.target.removeprefix("/")
         self._wanted: set[str] = set()
         self._small = False
-        self._head = mqtt.string(self._topic.encode()) + self._properties()
+        self._head = mqtt.string(self._topic.encode())
 
     def subscribe(self, stream: ByteStream, said: mqtt.Body, refused: bool = False) -> bool:
         """Answer a SUBSCRIBE; whether what the port writes is wanted, and may be had."""
@@ -191,7 +191,7 @@ class Reader(MqttPeer):
         if not self._wanted:
             self.unwanted += 1
             return
-        pieces = mqtt.publish(self._head, to_payload(packet))
+        pieces = mqtt.publish(self._head + self._said_beside(packet), to_payload(packet))
         self._small = len(pieces) == 1 and len(pieces[0]) < SMALL
         stream.write(*pieces)
 

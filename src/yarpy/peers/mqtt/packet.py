@@ -52,7 +52,7 @@ _SHORTS: Final = frozenset((0x13, 0x21, 0x22, 0x23))
 _LONGS: Final = frozenset((0x02, 0x11, 0x18, 0x27))
 _STRINGS: Final = frozenset((0x03, 0x08, 0x09, 0x12, 0x15, 0x16, 0x1A, 0x1C, 0x1F))
 _NUMBER: Final = 0x0B
-_PAIR: Final = 0x26
+USER: Final = 0x26  # a name and a value
 
 #: first byte and body
 Packet = tuple[int, Buffer]
@@ -178,8 +178,9 @@ class Body:
         self._at = len(self._data)
         return found
 
-    def properties(self) -> dict[int, bytes]:
-        """The properties of version 5 that have one value; of two alike the last."""
+    def properties(self, pairs: list[tuple[bytes, bytes]] | None = None) -> dict[int, bytes]:
+        """The properties of version 5 that have one value; of two alike the last. Those of users
+        are added to `pairs`."""
         inner = Body(self.take(self.varint()))
         found: dict[int, bytes] = {}
         while inner:
@@ -194,9 +195,10 @@ class Body:
                 found[key] = inner.take(4)
             elif key == _NUMBER:
                 found[key] = inner.varint().to_bytes(4, "big")
-            elif key == _PAIR:
-                inner.string()
-                inner.string()
+            elif key == USER:
+                pair = inner.string(), inner.string()
+                if pairs is not None:
+                    pairs.append(pair)
             else:
                 raise RemoteProtocolError(f"a packet of MQTT with the property {key:#04x}")
         return found

@@ -17,8 +17,9 @@ from yarpy.errors import RemoteProtocolError
 from yarpy.facts import Reach
 from yarpy.limit import MQTT_TOPIC, MQTT_UNRELEASED
 from yarpy.peers.mqtt import packet as mqtt
+from yarpy.peers.mqtt import user
 from yarpy.route import Route
-from yarpy.wire.message import CALL, DATA, QUIT, Message
+from yarpy.wire.message import CALL, DATA, QUIT, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
@@ -56,6 +57,12 @@ class MqttPeer(Carrier):
             return b""  # a broker and no topic
         text = name[found.end() :] if found else name.removeprefix("/")
         return text.encode("utf-8", "surrogateescape")
+
+    def _said_beside(self, packet: Packet, data: bytes = b"") -> bytes:
+        """Return the properties of a message, its envelope among them."""
+        if packet.envelope and self.version == mqtt.V5:
+            data += user.properties_of(packet.envelope)
+        return self._properties(data)
 
     def _properties(self, data: bytes = b"") -> bytes:
         return mqtt.varint(len(data)) + data if self.version == mqtt.V5 else b""
@@ -114,14 +121,18 @@ class MqttPeer(Carrier):
                 stream.write(mqtt.packet(mqtt.PUBREC, number.to_bytes(2, "big")))
             return None
         asked = None
+        pairs: list[user.Pair] = []
         if self.version == mqtt.V5:
-            properties = said.properties()
+            properties = said.properties(pairs)
             if mqtt.RESPONSE_TOPIC in properties:
                 asked = properties[mqtt.RESPONSE_TOPIC], properties.get(mqtt.CORRELATION)
         self._asked = asked
         payload = said.rest()
         self._owe(qos, number)
-        return self._message(topic, payload, CALL if asked else DATA)
+        message = self._message(topic, payload, CALL if asked else DATA)
+        if pairs:
+            message.envelope = user.envelope_of(pairs)
+        return message
 
     def _owe(self, qos: int, number: int) -> None:
         """Note that a message is to be acknowledged. Raises RemoteProtocolError for a peer that
