@@ -199,3 +199,22 @@ def test_person_cannot_get_in_either(key: Path) -> None:
         sock.sendall(b"CONNECT me and some more words to fill the forty bytes\r\n")
         assert len(sock.recv(40)) == 40  # the port speaks first
         assert sock.recv(40) == b""
+
+
+def test_who_looks_whether_a_port_with_a_key_listens_is_told_of_once(
+    key: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """As name servers of other computers do, every few seconds."""
+    with Port("/looked/at", names=LocalNames()) as port:
+        for _ in range(3):
+            with socket.create_connection(("127.0.0.1", port.contact.port)) as sock:
+                sock.settimeout(20)
+                assert sock.recv(1)  # its part of the proof
+            wait_until(lambda: "yarpy /looked/at <- ?" not in _names())
+    told = [one for one in caplog.messages if "/looked/at: connection from" in one]
+    assert len(told) == 1 and "instead of proving that it knows our key" in told[0]
+
+
+def _names() -> list[str]:
+    """Return what the threads of this process are called."""
+    return [one.name for one in threading.enumerate()]

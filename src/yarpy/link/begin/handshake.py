@@ -46,6 +46,10 @@ GREETING: Final = 5.0  # seconds for one of ours, at most: a call under way may 
 PROVING: Final = 2.0  # seconds for the key exchange, as C++
 
 HUNG_UP: Final = -1
+UNPROVED: Final = (
+    "it hung up instead of proving that it knows our key: it has another one (compare both sides' "
+    "auth.conf), or looked whether somebody listens here"
+)
 HESITATION: Final = 0.3  # seconds that a port with a key waits to see whether TLS comes
 LISTENING: Final = 1.0  # seconds within which a port with a key begins to prove it
 
@@ -237,7 +241,10 @@ def welcome(
     driver.silence = silence
     driver.room, driver.rival = room, rival
     if key:
-        driver.run(prove_acceptor(driver.stream, key), time.monotonic() + PROVING)
+        try:
+            driver.run(prove_acceptor(driver.stream, key), time.monotonic() + PROVING)
+        except LinkClosed:
+            raise LinkClosed(UNPROVED) from None
     try:
         first = bytes(driver.run(driver.stream.read_exact(MAGIC_SIZE), deadline))
     except LinkClosed:

@@ -10,13 +10,14 @@ import socket
 import threading
 import time
 from collections.abc import Callable
+from typing import Final
 
 from yarpy.carriers.base import Carrier
 from yarpy.config import access_file
 from yarpy.errors import AccessRefused, YarpError
 from yarpy.link.begin.acceptor import Acceptor
 from yarpy.link.begin.admission import Gate, Rival, Room, any_number, no_rival
-from yarpy.link.begin.handshake import welcome
+from yarpy.link.begin.handshake import UNPROVED, welcome
 from yarpy.link.driver import Driver
 from yarpy.log import logger
 from yarpy.names.base import Medium
@@ -26,6 +27,8 @@ from yarpy.transports.base import Answerable, Transport
 from yarpy.transports.tcp import TcpTransport
 
 log = logger("yarpy.port")
+
+_HOSTS: Final = 1000  # that are remembered, to say of each once what it does
 
 
 class Reception:
@@ -61,6 +64,7 @@ class Reception:
         self._own_gate = gate
         self._gate: Gate | None = None  # of the name that the port has in the end
         self._closing = False
+        self._unproved: set[str] = set()  # hosts that hung up, which was told
         self._stop_medium: Callable[[], None] = lambda: None
 
     def listen(self, port: int) -> int:
@@ -118,7 +122,7 @@ class Reception:
             return
         except BaseException as error:  # a defect, or no memory, ends this connection alone
             transport.close()
-            if not self._closing:
+            if not self._closing and not self._is_old_news(peer, error):
                 log.warning("%s: connection from %s refused: %s", own.name, peer, _said(error))
             return
         finally:
@@ -132,6 +136,17 @@ class Reception:
         except BaseException as error:
             driver.transport.close()
             log.error("%s: connection %s fails: %s", own.name, carrier.route, _said(error))
+
+    def _is_old_news(self, peer: str, error: BaseException) -> bool:
+        """Return whether a warning would say again what that host does all the time: name servers
+        look every few seconds whether a port still listens, and prove no key."""
+        if str(error) != UNPROVED:
+            return False
+        host = peer.rpartition(":")[0]
+        known = host in self._unproved
+        if len(self._unproved) < _HOSTS:
+            self._unproved.add(host)
+        return known
 
     def finish(self, seconds: float) -> None:
         """The port closes: give connections that are just arriving so many seconds to be complete,

@@ -205,6 +205,24 @@ def test_a_start_that_is_never_answered_leaves_nothing(
         assert "kill" in cpp.asked
 
 
+def test_a_start_that_was_never_answered_is_tried_again(
+    runner: RemoteRunner, network: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What came of the first try ends, and what came of the second one does not."""
+    cpp = Cpp(network)
+    cpp.slow.clear()
+    with cpp.server:
+        with monkeypatch.context() as patch:
+            patch.setattr(remote, "STARTING", 0.3)
+            with pytest.raises(Timeout):
+                Started(runner, "sleep", "600")
+        cpp.slow.set()
+        started = Started(runner, "sleep", "600")
+        assert not [one for one in threading.enumerate() if one.name.startswith("yarpy abandons")]
+        assert cpp.running == {"app_one:p"} and started.ends == []
+        assert cpp.asked.index("kill") < len(cpp.asked) - 1 - cpp.asked[::-1].index("cmd")
+
+
 def test_a_supervisor_says_what_it_does_not_know(
     serve: Serve, runner: RemoteRunner, network: yarpy.LocalNames
 ) -> None:

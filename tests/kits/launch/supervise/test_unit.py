@@ -8,6 +8,7 @@ from itertools import pairwise
 import pytest
 from support.wait import HANG, wait_until
 
+from yarpy.errors import LinkClosed, Timeout
 from yarpy.kits.launch.application.application import Module
 from yarpy.kits.launch.supervise import unit as unit_file
 from yarpy.kits.launch.supervise.runner import Program
@@ -126,6 +127,57 @@ def test_one_that_cannot_be_started_is_not_tried_again() -> None:
     unit, states = started(runner, name="/missing")
     assert unit.join(HANG) and states == ["waiting", "failed"]
     assert unit.detail.startswith("it cannot be started: ") and len(runner.programs) == 1
+
+
+class Silent(Fake):
+    """A server that does not answer the first times that it is to start something."""
+
+    def __init__(self, times: int, *codes: int) -> None:
+        super().__init__(*codes)
+        self.times = times
+
+    def start(self, program, on_line, on_end):
+        self.times -= 1
+        if self.times >= 0:
+            raise (Timeout, LinkClosed)[self.times % 2]("/node does not answer")
+        return super().start(program, on_line, on_end)
+
+
+@pytest.mark.parametrize(
+    ("restart", "times", "states", "detail"),
+    [
+        ("no", 1, ["waiting", "failed"], "it cannot be started: /node does not answer"),
+        (
+            "on-failure",
+            2,
+            [*["waiting", "pausing"] * 2, "waiting", "running", "ended"],
+            "ended with 0",
+        ),
+        (
+            "always",
+            unit_file.TRIES,
+            [*["waiting", "pausing"] * 9, "waiting", "failed"],
+            "given up after 10 starts: it cannot be started: /node does not answer",
+        ),
+    ],
+)
+def test_a_silent_server_is_asked_again_as_the_policy_says(
+    restart: str, times: int, states: list[str], detail: str
+) -> None:
+    unit, found = started(Silent(times, 0), restart=restart)
+    assert unit.join(HANG)
+    assert (found, unit.detail) == (states, detail)
+
+
+def test_stopping_what_asks_a_silent_server() -> None:
+    class Stopped(Silent):
+        def start(self, program, on_line, on_end):
+            unit.stop()
+            return super().start(program, on_line, on_end)
+
+    unit = Unit(Module("a", "a"), Stopped(100), Ready())
+    unit.start()
+    assert unit.join(HANG) and unit.state == "stopped"
 
 
 def test_stopping() -> None:

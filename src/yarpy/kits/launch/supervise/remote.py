@@ -61,6 +61,7 @@ class RemoteRunner:
         self._names = names
         self._lock = threading.Lock()  # of the table of handles
         self._handles: dict[str, RemoteHandle] = {}
+        self._abandoned: dict[str, tuple[threading.Thread, threading.Event]] = {}
         self._wake = threading.Event()
         self.closing = threading.Event()
         self._thread: threading.Thread | None = None
@@ -81,6 +82,8 @@ class RemoteRunner:
             thread = self._thread
         for handle in handles:
             handle.port.close(0.0)
+        for _, taken in [*self._abandoned.values()]:
+            taken.set()
         if thread is not None:
             thread.join(ANSWER)
 
@@ -91,24 +94,24 @@ class RemoteRunner:
     def start(self, program: Program, on_line: Line, on_end: End) -> RemoteHandle:
         """Start a program. Raises a YarpError that says why it is not."""
         tag = self.tag(program.name)
+        doubtful = self._take_back(tag)
         handle = RemoteHandle(self, tag, on_line, on_end, self._names)
         try:
             with self.client(STARTING) as node:
-                self._clear(node, tag)
-                try:
-                    started = node.start(
-                        tag,
-                        program.command,
-                        workdir=program.workdir,
-                        environment=program.environment,
-                        log=handle.port.name,
-                        stdio=program.stdio,
-                    )
-                except (TimeoutError, ConnectionError):
-                    self._abandon(tag)
-                    raise
-        except BaseException:
+                self._clear(node, tag, self._replace or doubtful)
+                doubtful = True  # until it is answered
+                started = node.start(
+                    tag,
+                    program.command,
+                    workdir=program.workdir,
+                    environment=program.environment,
+                    log=handle.port.name,
+                    stdio=program.stdio,
+                )
+        except BaseException as error:
             handle.port.close(0.0)
+            if doubtful and isinstance(error, TimeoutError | ConnectionError):
+                self._abandon(tag)
             raise
         handle.pid = started.pid
         with self._lock:
@@ -125,11 +128,12 @@ class RemoteRunner:
         """Return a client of the server."""
         return RunClient(self.server, timeout=timeout, names=self._names)
 
-    def _clear(self, node: RunClient, tag: str) -> None:
-        """See that nothing runs under a tag. Raises LocalProtocolError if something does."""
+    def _clear(self, node: RunClient, tag: str, replace: bool) -> None:
+        """See that nothing runs under a tag, which `replace` ends. Raises LocalProtocolError if
+        something does."""
         if not node.is_running(tag):
             return
-        if self._replace:
+        if replace:
             until = time.monotonic() + self.grace
             node.signal(tag, signal.SIGTERM)
             while node.is_running(tag):
@@ -143,20 +147,34 @@ class RemoteRunner:
         )
 
     def _abandon(self, tag: str) -> None:
-        """End a program whose start was never answered, as soon as its server answers again."""
+        """End a program whose start was never answered, as soon as its server answers again, or
+        whoever starts it again does."""
+        taken = threading.Event()
 
         def follow() -> None:
             until = time.monotonic() + _ABANDONED
-            while time.monotonic() < until and not self.closing.is_set():
+            while time.monotonic() < until and not (self.closing.is_set() or taken.is_set()):
                 try:
                     with self.client() as node:
                         if node.is_running(tag):
                             node.signal(tag, _KILL)
                         return
                 except YarpError:
-                    self.closing.wait(AGAIN)
+                    taken.wait(AGAIN)
 
-        threading.Thread(target=follow, name=f"yarpy abandons {tag}", daemon=True).start()
+        thread = threading.Thread(target=follow, name=f"yarpy abandons {tag}", daemon=True)
+        self._abandoned[tag] = thread, taken
+        thread.start()
+
+    def _take_back(self, tag: str) -> bool:
+        """Return whether a start of before was never answered, and leave what came of it to the
+        next one."""
+        if tag not in self._abandoned:
+            return False
+        thread, taken = self._abandoned.pop(tag)
+        taken.set()
+        thread.join()  # it may be about to end what runs, which must not be the next one
+        return True
 
     def _watch(self) -> None:
         """Look at the programs until none is left, and again when there are new ones."""

@@ -15,7 +15,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Final, Protocol
 
-from yarpy.errors import YarpError
+from yarpy.errors import LinkClosed, Timeout, YarpError
 from yarpy.kits.launch.application.application import Module
 from yarpy.kits.launch.supervise.runner import Handle, Program, Runner
 from yarpy.limit import OUTPUT_LINES
@@ -75,6 +75,7 @@ class Unit:
         self._said = said
         self._stop = threading.Event()
         self._again = False
+        self._silent = ""  # why it was not started, by a server that may be there again soon
         self._ended = threading.Event()
         self._lock = threading.Lock()  # of the thread, which `restart` may start again
         self._thread: threading.Thread | None = None
@@ -141,8 +142,10 @@ class Unit:
                 if self._take_again():
                     continue
                 return
-            self._ended.wait()
-            ran = time.monotonic() - self.started
+            if not self._silent:
+                self._ended.wait()
+            why = self._silent or ending(self.code)
+            ran = 0.0 if self._silent else time.monotonic() - self.started
             if self._take_again():
                 self.restarts += 1
                 continue
@@ -150,17 +153,16 @@ class Unit:
                 self._rest()
                 self._enter("stopped")
                 return
-            wrong = self.code != 0
+            wrong = bool(self._silent) or self.code != 0
             quick = 0 if ran > WELL else quick + 1
             pause = FIRST_PAUSE if ran > WELL else pause
             if self.policy == "no" or (self.policy == "on-failure" and not wrong):
-                self._enter("failed" if wrong else "ended", ending(self.code))
+                self._enter("failed" if wrong else "ended", why)
                 return
             if quick >= TRIES:
-                text = f"given up after {TRIES} starts: {ending(self.code)}"
-                self._enter("failed", text)
+                self._enter("failed", f"given up after {TRIES} starts: {why}")
                 return
-            self._enter("pausing", f"{ending(self.code)}; again in {pause:g} s")
+            self._enter("pausing", f"{why}; again in {pause:g} s")
             if self._stop.wait(pause) and not self._take_again():
                 self._enter("stopped")
                 return
@@ -175,7 +177,7 @@ class Unit:
         return True
 
     def _begin(self) -> bool:
-        """Wait, and start; return whether it runs."""
+        """Wait, and start; return whether it runs, or could not be tried."""
         self._enter("waiting")
         why = self._waiter.wait(self, self._stop)
         if not why and self.module.delay:
@@ -188,7 +190,7 @@ class Unit:
             self._enter("failed", why)
             return False
         self._ended.clear()
-        self.code = None
+        self.code, self._silent = None, ""
         module = self.module
         program = Program(
             name=self.label,
@@ -201,6 +203,9 @@ class Unit:
         self.started = time.monotonic()
         try:
             handle = self._runner.start(program, self._line, self._end)
+        except (Timeout, LinkClosed) as error:  # its computer is silent, perhaps only just now
+            self._silent = f"it cannot be started: {error}"
+            return True
         except (OSError, YarpError) as error:
             self._enter("failed", f"it cannot be started: {error}")
             return False
