@@ -90,9 +90,27 @@ def test_what_a_killed_one_left_is_found(runtime) -> None:
     assert control.running() == []
 
 
-@pytest.mark.parametrize("text", ["", "[]", '{"run": 1}', '{"run": "x", "programs": 7}'])
+def test_what_may_go_on_at_servers_is_remembered_until_it_ends(runtime) -> None:
+    record = control.Record("a")
+    record.write("run-1", ["x", "y"], {"a:x": "/node"})
+    record.close({"a:x": "/node"})
+    again = control.Record("a")
+    assert again.away() == {"a:x": "/node"} and again.left() == {}
+    again.close()
+    last = control.Record("a")
+    assert last.away() == {}
+    last.close()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("", "[]", '{"run": 1}', '{"run": "x", "programs": 7}'),
+        '{"run": "x", "programs": [], "away": 7}',
+    ],
+)
 def test_a_damaged_record_is_none(runtime, text: str) -> None:
     record = control.Record("a")
     (runtime / "a.json").write_text(text)
-    assert record.left() == {}
+    assert record.left() == {} and record.away() == {}
     record.close()

@@ -1,8 +1,11 @@
 """The end of what a killed supervisor has left."""
 
+import signal
 import subprocess
 
-from yarpy.kits.launch.supervise.leftover import end_all, told
+import yarpy
+from yarpy import Bottle
+from yarpy.kits.launch.supervise.leftover import end_all, end_away, told
 
 
 def test_told() -> None:
@@ -31,3 +34,34 @@ def test_who_is_gone_is_no_trouble() -> None:
     child = subprocess.Popen(["true"])
     child.wait()
     assert end_all({child.pid: "x"}, 5.0) == []
+
+
+class Node:
+    """The answers of a server of programs; SIGTERM ends those that are not deaf."""
+
+    def __init__(self, names: yarpy.LocalNames, *running: str) -> None:
+        self.running = {*running}
+        self.sent: list[tuple[str, int]] = []
+        self.server = yarpy.RpcServer("/node", self.answer, names=names)
+
+    def answer(self, message: yarpy.Message) -> list[str]:
+        word, tag, *rest = message.as_(Bottle)[0]
+        if word == "isrunning":
+            return ["running" if tag in self.running else "not running"]
+        number = rest[0] if rest else int(signal.SIGTERM)
+        self.sent.append((tag, number))
+        if number == 9 or "deaf" not in tag:
+            self.running.discard(tag)
+        return [f"{word} OK"]
+
+
+def test_programs_at_servers_end_and_those_of_silent_ones_may_go_on(
+    network: yarpy.LocalNames,
+) -> None:
+    found = {"a:x": "/node", "a:deaf": "/node", "a:over": "/node", "a:far": "/gone"}
+    node = Node(network, "a:x", "a:deaf")
+    with node.server:
+        ended, left = end_away(found, 0.01, network)
+        assert ended == ["a:x", "a:deaf"] and node.running == set()
+        assert node.sent == [("a:x", 15), ("a:deaf", 15), ("a:deaf", 9)]
+        assert [*left] == ["a:far"] and "/gone" in left["a:far"]

@@ -13,7 +13,7 @@ import re
 import socket
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -120,13 +120,25 @@ class Record:
         found = process.members({}, marks)
         return {pid: mark.partition("/")[2] for pid, mark in found.items()}
 
-    def write(self, run: str, labels: list[str]) -> None:
-        """Remember what is about to be started."""
-        self._path.write_text(json.dumps({"run": run, "programs": labels}))
+    def away(self) -> dict[str, str]:
+        """Return the tags of programs that one before has left at servers, each with its server."""
+        try:
+            told = json.loads(self._path.read_bytes())
+            return {str(tag): str(server) for tag, server in told["away"].items()}
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            return {}
 
-    def close(self) -> None:
-        """Give the place back; all has ended."""
-        self._path.unlink(missing_ok=True)
+    def write(self, run: str, labels: list[str], away: Mapping[str, str] | None = None) -> None:
+        """Remember what is about to be started; `away`: the tags of programs at servers."""
+        told = {"run": run, "programs": labels, "away": dict(away or {})}
+        self._path.write_text(json.dumps(told))
+
+    def close(self, away: Mapping[str, str] | None = None) -> None:
+        """Give the place back; all has ended, but for what may go on at servers."""
+        if away:
+            self.write("", [], away)
+        else:
+            self._path.unlink(missing_ok=True)
         self._file.close()
 
 

@@ -38,6 +38,11 @@ Line = Callable[[str], None]
 End = Callable[[int | None], None]
 
 
+def tag_of(application: str, name: str) -> str:
+    """Return what a program of an application is called at its server."""
+    return re.sub(r"[\s/]", "_", f"{application}:{name}")
+
+
 class RemoteRunner:
     """Starts programs of the application `application` at the server called `server`.
 
@@ -89,7 +94,7 @@ class RemoteRunner:
 
     def tag(self, name: str) -> str:
         """Return what a program is called there."""
-        return re.sub(r"[\s/]", "_", f"{self._application}:{name}")
+        return tag_of(self._application, name)
 
     def start(self, program: Program, on_line: Line, on_end: End) -> RemoteHandle:
         """Start a program. Raises a YarpError that says why it is not."""
@@ -123,6 +128,11 @@ class RemoteRunner:
                 self._thread.start()
         self._wake.set()
         return handle
+
+    @property
+    def doubtful(self) -> list[str]:
+        """Tags of programs that may have been started, which no server has said yet."""
+        return [tag for tag, (thread, _) in [*self._abandoned.items()] if thread.is_alive()]
 
     def client(self, timeout: float = ANSWER) -> RunClient:
         """Return a client of the server."""

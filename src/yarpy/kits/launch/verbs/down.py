@@ -1,7 +1,8 @@
 """`yarpy down [NAME]`: stop a running application, as ^C does.
 
-Programs of a `yarpy up` that was killed are ended, too. Exit codes: 0 it has stopped; 1 none runs,
-or something would not end.
+Programs of a `yarpy up` that was killed are ended, too, and so are those that could not be, since
+their server did not answer then. Exit codes: 0 it has stopped; 1 none runs, or something would not
+end.
 """
 
 from __future__ import annotations
@@ -23,31 +24,47 @@ _POLL: Final = 0.05  # seconds
               help="How long to wait for its end.")  # fmt: skip
 def command(name: str, timeout: float) -> int:
     """Stop the application NAME (or that of the file NAME, or the only one) in reverse order."""
+    from yarpy.errors import LocalProtocolError
     from yarpy.kits.launch.console import control
     from yarpy.kits.launch.console.chosen import chosen
-    from yarpy.kits.launch.supervise.leftover import end_all, told
+    from yarpy.kits.launch.supervise.leftover import end_all, end_away, told
     from yarpy.kits.launch.supervise.local import GRACE
 
     name = chosen(name)
-    if name in control.running():
+    ran = name in control.running()
+    if ran:
         control.ask(name, do="down")
-        until = time.monotonic() + timeout
-        while name in control.running():
-            if time.monotonic() > until:
-                complain(f'"{name}" has not ended after {timeout:g} s; `yarpy status` says why')
-                return 1
-            time.sleep(_POLL)
-        print_line(f"{name} has stopped")
-        return 0
-    record = control.Record(name)
-    found = record.left()
+    until = time.monotonic() + timeout
+    while True:
+        try:
+            record = control.Record(name)  # which it holds to its last word
+            break
+        except LocalProtocolError:
+            if not ran:
+                raise
+        if time.monotonic() > until:
+            complain(f'"{name}" has not ended after {timeout:g} s; `yarpy status` says why')
+            return 1
+        time.sleep(_POLL)
+    found, away = record.left(), record.away()
     left = end_all(found, GRACE)
+    far, silent = end_away(away, GRACE)
     if left:
         complain(f"these do not end: {told({pid: found[pid] for pid in left})}")
+    for tag, why in silent.items():
+        complain(f"{tag} may go on at {away[tag]}: {why}; `yarpy down {name}` tries again")
+    if left:
         return 1
-    record.close()
-    if not found:
+    record.close({tag: away[tag] for tag in silent})
+    if silent:
+        return 1
+    if ran:
+        print_line(f"{name} has stopped")
+    elif found or away:
+        ended = [*([told(found)] if found else []), *(f"{tag} at {away[tag]}" for tag in far)]
+        what = f"ended what was left of {name}: {', '.join(ended)}"
+        print_line(what if ended else f"nothing of {name} runs any more")
+    else:
         control.ask(name, do="down")  # which says what runs
         return 1
-    print_line(f"ended what was left of {name}: {told(found)}")
     return 0

@@ -24,6 +24,7 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -192,11 +193,12 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
     stream = LogStream(application) if wish.log else None
     printer = _Printer(live, stream)
 
-    remote = ExitStack()
+    remote, servers = ExitStack(), list[RemoteRunner]()
 
     @functools.cache
     def runners(node: str) -> RemoteRunner:
         runner = RemoteRunner(node, application.name, grace=wish.grace, replace=wish.replace)
+        servers.append(runner)
         return remote.enter_context(runner)
 
     supervisor = Supervisor(
@@ -219,7 +221,8 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
     end_all(found, wish.grace)
 
     def note() -> None:
-        record.write(supervisor.local.run, [*supervisor.units])
+        units = supervisor.units
+        record.write(supervisor.local.run, [*units], _away(supervisor, units))
 
     note()
     serving = Serving(supervisor)
@@ -230,6 +233,7 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
     control = Control(application.name, told_of)
     watch = Watch(supervisor, lambda: load(file), printer.news, note) if wish.watch else None
     left: list[str] = []
+    all_over = False
     why = ""
     if told:
         printer.news("", told)
@@ -251,20 +255,35 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
         if watch is not None:
             watch.close()
         left = supervisor.stop()
+        all_over = True
     finally:
         control.close()
         serving.close()
+        doubtful = {tag: one.server for one in servers for tag in one.doubtful}
         remote.close()
         if stream is not None:
             stream.close()
-        record.close()
+        away = _away(supervisor, left if all_over else supervisor.units)
+        record.close({**doubtful, **away})
     for text in [why, *supervisor.failed] if why else supervisor.failed:
         complain(text)
+    again = f"; `yarpy down {application.name}` tries again"
     for label in left:
         handle = supervisor.units[label].handle
         lost = handle.detail if handle is not None else ""
-        complain(f"{label} {f'may go on: {lost}' if lost else _UNKILLABLE}")
-    return 1 if why or left or supervisor.failed else 0
+        complain(f"{label} {f'may go on: {lost}{again}' if lost else _UNKILLABLE}")
+    for tag in doubtful.keys() - away.keys():
+        complain(f"{tag} may have been started at {doubtful[tag]}, which does not answer{again}")
+    return 1 if why or left or doubtful or supervisor.failed else 0
+
+
+def _away(supervisor: Supervisor, labels: Iterable[str]) -> dict[str, str]:
+    """Return the tags of those programs that are at servers, each with its server."""
+    from yarpy.kits.launch.supervise.remote import tag_of
+
+    name = supervisor.application.name
+    modules = [supervisor.units[label].module for label in labels]
+    return {tag_of(name, one.label): one.node for one in modules if one.node}
 
 
 def _show(url: str, printer: _Printer) -> None:
