@@ -121,7 +121,7 @@ SPELLINGS = [
     ("/out", "/in", "fast_tcp", "Added connection from /out to fast_tcp://in"),
     ("/out", "udp://in", None, "Added connection from /out to udp://in"),
     ("udp://out", "/in", None, "Added connection from /out to udp://in"),
-    ("/out", "/in", "tcp+key.x", "Added connection from /out to tcp+key.x://in"),
+    ("/out", "/in", "tcp+peer_timeout.9", "Added connection from /out to tcp+peer_timeout.9://in"),
     ("/out", "udp://in", "fast_tcp", "Added connection from /out to fast_tcp://in"),
 ]
 

@@ -18,12 +18,12 @@ def test_both_ways_to_connect_give_a_connection() -> None:
     names = LocalNames()
     with Port("/out", names=names) as out, BufferedPort("/in", strict=True, names=names) as in_:
         own = out.connect("/in", "fast_tcp")
-        other = network.connect("/out", "/in", "tcp+note.x", names=names)
+        other = network.connect("/out", "/in", "tcp+peer_timeout.9", names=names)
         assert isinstance(own, yarpy.Connection)
         assert isinstance(other, yarpy.Connection)
         assert repr(own) == "<Connection /out -> /in (fast_tcp)>"
-        assert repr(other) == "<Connection /out -> /in (tcp+note.x)>"
-        assert other.reply == "Added connection from /out to tcp+note.x://in"
+        assert repr(other) == "<Connection /out -> /in (tcp+peer_timeout.9)>"
+        assert other.reply == "Added connection from /out to tcp+peer_timeout.9://in"
         for number in range(3):
             out.write([number])
         out.flush(5)

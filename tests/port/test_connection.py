@@ -17,15 +17,15 @@ from yarpy.port.port import Port
 
 def test_who_over_what_and_how_it_is_doing(names: LocalNames) -> None:
     with Port("/out", names=names) as out, Port("/in", names=names) as in_:
-        out.connect("/in", "tcp+note.x")
+        out.connect("/in", "tcp+peer_timeout.9")
         out.write([1], wait=False)
         in_.read(timeout=5)
         (output,) = out.outputs
         (input_,) = in_.inputs
         for connection in (output, input_):
             assert (connection.source, connection.target) == ("/out", "/in")
-            assert connection.carrier == "tcp+note.x"
-            assert repr(connection) == "<Connection /out -> /in (tcp+note.x)>"
+            assert connection.carrier == "tcp+peer_timeout.9"
+            assert repr(connection) == "<Connection /out -> /in (tcp+peer_timeout.9)>"
             stats = connection.stats
             assert stats.messages == 1
             assert stats.drops == 0

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 from yarpy.data import codec
 from yarpy.data.codec import LISTS, any_list
@@ -32,6 +32,11 @@ from yarpy.wire.effects import BE_CALLED, May
 from yarpy.wire.message import CALL, QUIT, Message, Packet, Spelling
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
+
+#: what may be added to every carrier over TCP
+OVER_TCP: Final[tuple[str, ...]] = ("tls", "peer_timeout.SECONDS")
+#: ... and what is understood wherever it makes sense, and refused elsewhere with its reason
+_ANYWHERE: Final = frozenset(("tls", "log", "peer_timeout"))
 
 PAGE = "page"  # what follows the port command `*` when a browser asks
 ASKS_FOR_KEY = "perhaps it wants a key (auth.conf) or TLS, which this side does not have"
@@ -95,6 +100,7 @@ class Carrier:
     spelling: Spelling = "binary"  # what `encode` uses of a packet
     pages: ClassVar[bool] = False  # web pages can speak it, too
     reaches: ClassVar[Reach] = PORT  # what is at the other end of one that we dial
+    words: ClassVar[tuple[str, ...] | None] = None  # what may be added to its name; None: anything
     over: ClassVar[str] = ""  # the transport of its messages, if they leave where it has greeted
     # What a peer that we have dialled wants to hear, and how often, in seconds; 0: never.
     ping: tuple[bytes, float] = (b"", 0.0)
@@ -245,13 +251,12 @@ def refuse_unknown(spec: CarrierSpec, words: Sequence[str]) -> None:
     `user.NAME`, unless it may be a parameter of a monitor."""
     if spec.send or spec.recv:
         return
-    known = {word.partition(".")[0] for word in words} | {"tls", "log"}
+    known = _ANYWHERE.union(word.partition(".")[0] for word in words)
     for token in spec.tokens:
         word = token.partition(".")[0]  # not what may be a password
         if word not in known:
-            raise LocalProtocolError(
-                f'{spec.base} knows no "+{word[:40]}", but +{", +".join(words)}'
-            )
+            possible = ", +".join((*words, "log.in", "send.MONITOR", "recv.MONITOR"))
+            raise LocalProtocolError(f'{spec.base} knows no "+{word[:40]}", but +{possible}')
 
 
 class Indexed(Carrier):

@@ -28,7 +28,7 @@ class Hosted(Carrier):
 
     reaches = TOPIC
     replies = False
-    words: ClassVar[tuple[str, ...]] = ()  # what may be added to its name
+    words: ClassVar[tuple[str, ...]] = ()
     delivery = Delivery(coalesces=False)
 
     @classmethod

@@ -48,7 +48,7 @@ class Source:
         tell: Callable[[str], object] = lambda line: None,
     ) -> None:
         from yarpy.contact import parse_contact
-        from yarpy.link.begin.handshake import find_carrier
+        from yarpy.link.begin.handshake import asked_carrier
         from yarpy.route import masked, parse_carrier
 
         self._port = port
@@ -58,7 +58,7 @@ class Source:
         self._tell = tell
         self._contact = parse_contact(name)
         if self._contact.carrier != "topic":
-            find_carrier(parse_carrier(carrier or self._contact.carrier or "tcp"))
+            asked_carrier(parse_carrier(carrier or self._contact.carrier or "tcp"))
         self._wanted = True
         self._told = ""
         self._look()

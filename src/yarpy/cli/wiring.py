@@ -23,7 +23,7 @@ from yarpy.config.ini import read_ini
 from yarpy.data.bottle import Bottle, Property
 from yarpy.data.text import plain_text
 from yarpy.errors import LocalProtocolError, YarpError
-from yarpy.link.begin.handshake import find_carrier
+from yarpy.link.begin.handshake import asked_carrier
 from yarpy.qos import Qos
 from yarpy.route import parse_carrier
 
@@ -73,7 +73,7 @@ def _wire(group: Property) -> Wire:
     if "from" not in group or "to" not in group:
         raise LocalProtocolError("a connection needs from and to")
     source, target, carrier = (_text(group, key) for key in ("from", "to", "carrier"))
-    find_carrier(parse_carrier(carrier or ""))
+    asked_carrier(parse_carrier(carrier or ""))
     return Wire(source, target, carrier or "tcp", _qos(group, "sender"), _qos(group, "receiver"))
 
 

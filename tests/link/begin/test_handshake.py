@@ -27,8 +27,16 @@ from yarpy.errors import (
 )
 from yarpy.link.begin import handshake
 from yarpy.link.begin.admission import Admission, Gate, Peer
-from yarpy.link.begin.handshake import UNKNOWN_PROTOCOL, find_carrier, greet, recognise, welcome
+from yarpy.link.begin.handshake import (
+    UNKNOWN_PROTOCOL,
+    asked_carrier,
+    find_carrier,
+    greet,
+    recognise,
+    welcome,
+)
 from yarpy.route import Route, parse_carrier
+from yarpy.shipped import CARRIERS
 from yarpy.transports.tcp import TcpTransport
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
@@ -57,6 +65,23 @@ def answering(serve: Callable[[socket.socket], Any]) -> Iterator[tuple[Contact, 
 
 def welcomed(**options: Any) -> Callable[[socket.socket], Any]:
     return lambda sock: welcome(TcpTransport(sock), "/target", 21602, **options)
+
+
+@pytest.mark.parametrize("name", [row.name for row in CARRIERS.values() if row.home == "core"])
+def test_what_a_carrier_does_not_know_is_refused_where_it_is_asked_for(name: str) -> None:
+    for text in ("bla.3", "tls+bla"):
+        with pytest.raises(LocalProtocolError, match=f'{name} knows no "\\+bla", but .*log.in'):
+            asked_carrier(parse_carrier(f"{name}+{text}"))
+    for text in ("", "+log.in", "+recv.priority+bla.3", "+peer_timeout.60"):
+        spec = parse_carrier(name + text)
+        assert asked_carrier(spec) is find_carrier(spec)
+
+
+def test_a_carrier_that_names_no_words_takes_any(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One of another package, say; and what a peer has added is the peer's matter."""
+    assert find_carrier(parse_carrier("tcp+bla.3")) is Tcp
+    monkeypatch.setattr(Tcp, "words", None)
+    assert asked_carrier(parse_carrier("tcp+bla.3")) is Tcp
 
 
 def test_both_sides_know_each_other() -> None:

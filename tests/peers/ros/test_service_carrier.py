@@ -11,9 +11,10 @@ from support.ros_link import ADD, AddTwoInts, Int32, accept, header, taken_heade
 
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
-from yarpy.errors import AccessRefused, RemoteProtocolError
+from yarpy.errors import AccessRefused, LocalProtocolError, RemoteProtocolError
+from yarpy.link.begin.handshake import asked_carrier
 from yarpy.peers.ros.service_carrier import RosSrv
-from yarpy.route import UNDECLARED, Declared, Route
+from yarpy.route import UNDECLARED, Declared, Route, parse_carrier
 from yarpy.testing import CarrierConformance, End
 from yarpy.wire.effects import May
 from yarpy.wire.message import QUIT, Message, Packet
@@ -209,3 +210,10 @@ def test_who_may_not_write_is_told() -> None:
     with pytest.raises(AccessRefused, match="not you"):
         steps.send("not you")
     assert b"error=not you" in b"".join(map(bytes, stream.take_output()))
+
+
+@pytest.mark.parametrize("text", ["rossrv+service./s", "tcpros+topic./t"])
+def test_an_addition_that_it_does_not_know_is_refused(text: str) -> None:
+    assert asked_carrier(parse_carrier(f"{text}+package.p+raw.1"))
+    with pytest.raises(LocalProtocolError, match=r'knows no "\+bla", but \+(service|topic).NAME'):
+        asked_carrier(parse_carrier(f"{text}+bla"))

@@ -18,6 +18,7 @@ class Local(Carrier):
     """References within one process."""
 
     name = "local"
+    words = ()
     over = "inproc"
     magic = b"LOCALITY"
     spelling = "object"

@@ -51,6 +51,7 @@ class Memory(Indexed):
     """tcp's messages on a Unix socket, and references to shared memory."""
 
     name = NAME
+    words = ()
     over = NAME
     magic = _WORD + VERSION
     acks = True

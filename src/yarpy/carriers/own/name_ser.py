@@ -6,7 +6,7 @@ and the twelve bytes after it are skipped, whatever they are. No sender, no port
 
 from __future__ import annotations
 
-from yarpy.carriers.base import Carrier
+from yarpy.carriers.base import OVER_TCP, Carrier
 from yarpy.carriers.own.text import reply_text
 from yarpy.facts import Reach
 from yarpy.limit import NAME_LINE
@@ -22,6 +22,7 @@ class NameSer(Carrier):
     """Lines for a name server."""
 
     name = "name_ser"
+    words = OVER_TCP
     magic = b"NAME_SER"
     reaches = Reach(tells=False)
     spelling = "text"

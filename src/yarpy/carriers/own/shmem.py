@@ -18,6 +18,7 @@ class Shmem(Indexed):
     """tcp's messages in shared memory."""
 
     name = "shmem"
+    words = ()
     over = "shmem"
     code = 14
     acks = True

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from yarpy.carriers.base import ASKS_FOR_KEY, Indexed
+from yarpy.carriers.base import ASKS_FOR_KEY, OVER_TCP, Indexed
 from yarpy.errors import RemoteProtocolError
 from yarpy.wire import framing
 from yarpy.wire.steps import Steps
@@ -18,6 +18,7 @@ class FastTcp(Indexed):
     """Messages follow one another; only replies come back."""
 
     name = "fast_tcp"
+    words = OVER_TCP
     code = 3
 
     @classmethod

@@ -8,7 +8,7 @@ them, since a stranger may have stored it here. Data are what was sent, as for C
 
 from __future__ import annotations
 
-from yarpy.carriers.base import ASKS_FOR_KEY, Carrier, Limits, introduce
+from yarpy.carriers.base import ASKS_FOR_KEY, OVER_TCP, Carrier, Limits, introduce
 from yarpy.data import codec
 from yarpy.data.text import Balance
 from yarpy.errors import RemoteProtocolError
@@ -31,6 +31,7 @@ class Text(Carrier):
     """`CONNECT name`, then lines."""
 
     name = "text"
+    words = OVER_TCP
     magic = b"CONNECT "
     spelling = "text"
     limits = Limits(message_timeout=600.0)  # people type slowly

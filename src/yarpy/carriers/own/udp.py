@@ -21,6 +21,7 @@ from yarpy.wire.stream import Buffer, ByteStream, DatagramStream
 class Datagrams(Indexed):
     """The base of udp and mcast: messages split into datagrams."""
 
+    words = ()
     replies = False
     delivery = Delivery(coalesces=False, connectionless=True)
     datagram_size = MAX_DATAGRAM

@@ -6,6 +6,8 @@ modifier `+ack` (magic `UNIX_ACK`) each message, quit included, is answered with
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from yarpy.carriers.base import Carrier
 from yarpy.errors import RemoteProtocolError
 from yarpy.facts import MAGIC_SIZE
@@ -22,6 +24,7 @@ class UnixStream(Carrier):
     """Port commands and payloads on a Unix socket."""
 
     name = "unix_stream"
+    words: ClassVar[tuple[str, ...] | None] = ("ack",)
     over = "unix"
     magic = b"UNIX_STR"
 

@@ -23,7 +23,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
-from yarpy.carriers.base import Carrier, Delivery
+from yarpy.carriers.base import OVER_TCP, Carrier, Delivery
 from yarpy.carriers.web.http.chunk import Chunks
 from yarpy.carriers.web.http.header import CHALLENGES, read_headers
 from yarpy.carriers.web.http.login import refusal, take_login
@@ -61,6 +61,7 @@ class Mjpeg(Carrier):
     """Images only, from the dialled port to the one that dialled."""
 
     name = "mjpeg"
+    words = ("path.PATH", "quality.N", "rate.N", "user.NAME", "password.WORD", *OVER_TCP)
     magic = b"GET /?ac"
     push = False
     replies = False

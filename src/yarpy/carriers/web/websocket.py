@@ -19,7 +19,7 @@ from base64 import b64encode
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from yarpy.carriers.base import Carrier, Delivery
+from yarpy.carriers.base import OVER_TCP, Carrier, Delivery
 from yarpy.carriers.web.http.header import read_headers
 from yarpy.carriers.web.http.refusal import refuse, screen, screen_page
 from yarpy.data import codec
@@ -55,6 +55,7 @@ class WebSocket(Carrier):
     """One page's connection, or ours to another port."""
 
     name = "websocket"
+    words = OVER_TCP
     pages = True
     magic = b"GET /?ws"
     reaches = Reach(tells=False)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from yarpy.carriers.base import Carrier, Delivery, Limits
+from yarpy.carriers.base import OVER_TCP, Carrier, Delivery, Limits
 from yarpy.carriers.web.http.header import read_headers
 from yarpy.carriers.web.http.message import CONTINUE, next_event
 from yarpy.carriers.web.http.refusal import refuse, screen, screen_page
@@ -53,6 +53,7 @@ class XmlRpc(Carrier):
     """Calls from any XML-RPC client, or ours to any XML-RPC server."""
 
     name = "xmlrpc"
+    words = ("path.PATH", *OVER_TCP)
     pages = True
     magic = b"POST /RP"
     acks = True

@@ -119,10 +119,10 @@ def _persist(source: str, target: str, carrier: str, mode: str) -> int:
 
     if carrier:
         from yarpy.contact import parse_contact
-        from yarpy.registry import carriers
+        from yarpy.link.begin.handshake import asked_carrier
         from yarpy.route import parse_carrier
 
-        carriers.load(parse_carrier(carrier).base)  # a wrong one shall not be stored
+        asked_carrier(parse_carrier(carrier))  # a wrong one shall not be stored
         target = f"{carrier}:/{parse_contact(target).name}"
     ask_server(None, ["subscribe", source, target, *([mode] if mode else [])])
     return 0

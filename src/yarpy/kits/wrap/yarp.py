@@ -27,7 +27,7 @@ from yarpy.kits.wrap.spelling import (
     text_of,
 )
 from yarpy.kits.wrap.tree import from_text
-from yarpy.link.begin.handshake import find_carrier
+from yarpy.link.begin.handshake import asked_carrier
 from yarpy.port.connection import ConnectionEvent
 from yarpy.port.port import BufferedPort
 from yarpy.port.rpc import RpcClient, RpcServer
@@ -48,7 +48,7 @@ class Yarp:
         if not way.topic.startswith("/"):
             raise ValueError(f'"{way.topic}" is no name of a port: it begins with a slash')
         if way.carrier:
-            find_carrier(parse_carrier(way.carrier))
+            asked_carrier(parse_carrier(way.carrier))
 
     def publisher(self, way: Way, shape: Shape) -> PortPublisher:
         port = BufferedPort(way.topic, strict=way.keep == "all")

@@ -17,7 +17,7 @@ from typing import Final
 
 from yarpy import registry, scope
 from yarpy.carriers.auth import prove_acceptor, prove_initiator
-from yarpy.carriers.base import Carrier
+from yarpy.carriers.base import Carrier, refuse_unknown
 from yarpy.contact import Contact
 from yarpy.errors import (
     LinkClosed,
@@ -94,6 +94,15 @@ def find_carrier(spec: CarrierSpec) -> type[Carrier]:
     if not (isinstance(carrier, type) and issubclass(carrier, Carrier)):
         raise UnknownPlugin(f'"{base}" is installed, but is not a Carrier class')
     return carrier.of(spec)
+
+
+def asked_carrier(spec: CarrierSpec) -> type[Carrier]:
+    """As `find_carrier`, for what somebody asks of us: LocalProtocolError also for an addition that
+    the carrier does not know. Peers may add what they like."""
+    carrier = find_carrier(spec)
+    if carrier.words is not None:
+        refuse_unknown(spec, carrier.words)
+    return carrier
 
 
 def greet(

@@ -23,6 +23,7 @@ class Mpi(UnixStream):
     """Port commands and payloads as messages of MPI from one program to another."""
 
     name = "mpi"
+    words = ()
     over = "mpi"
     magic = b"MPI_____"
     reaches = Reach(tells=False)

@@ -54,6 +54,7 @@ class TcpRos(Carrier):
     """Messages from the port that was dialled to the one that dialled."""
 
     name = "tcpros"
+    words = ("topic.NAME", "package.NAME", "role.pub", "role.sub", "raw.0", "raw.1")
     push = False
     replies = False
     reaches = SERVER

@@ -46,6 +46,7 @@ class RosSrv(Carrier):
     """Questions from the port that dials, answers from the one that was dialled."""
 
     name = "rossrv"
+    words = ("service.NAME", "package.NAME", "raw.0", "raw.1")
     acks = True
     reaches = SERVER
     delivery = Delivery(coalesces=False)

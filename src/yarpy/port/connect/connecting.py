@@ -32,7 +32,7 @@ from yarpy.errors import (
     YarpError,
 )
 from yarpy.link.begin.admission import scripts_allowed
-from yarpy.link.begin.handshake import GREETING, find_carrier, greet
+from yarpy.link.begin.handshake import GREETING, asked_carrier, find_carrier, greet
 from yarpy.link.driver import Driver
 from yarpy.link.receive.inbound import Inbound
 from yarpy.link.send.outbound import Outbound
@@ -80,7 +80,7 @@ def _connect(
     again: bool = False,
 ) -> None:
     """As `connect`; `target` is what the program calls it."""
-    find_carrier(parse_carrier(wanted.carrier))  # no time makes that one come
+    asked_carrier(parse_carrier(wanted.carrier))  # no time makes that one come
     limit = scope.until() if again else None
     unknown_: YarpError | None = None
     while True:
@@ -190,7 +190,7 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
         _connect(hub, replace(contact, carrier=spec.whole), source)
         return
     if contact.reachable:
-        kind = find_carrier(parse_carrier(contact.carrier))
+        kind = asked_carrier(parse_carrier(contact.carrier))
         if not kind.push:
             connect(hub, source, carrier)
             return
@@ -205,7 +205,7 @@ def subscribe(hub: Hub, source: str, carrier: str) -> None:
         if found is None:
             raise unknown(source, names)
         contact = found
-    if not find_carrier(parse_carrier(carrier)).push:
+    if not asked_carrier(parse_carrier(carrier)).push:
         connect(hub, source, carrier)
         return
     identity.confirm(contact, identity.properties_of(hub.service()), hub.key)

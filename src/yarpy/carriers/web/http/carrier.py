@@ -19,7 +19,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
-from yarpy.carriers.base import Carrier, Delivery, Limits
+from yarpy.carriers.base import OVER_TCP, Carrier, Delivery, Limits
 from yarpy.carriers.web.http.client import ENVELOPE, HttpClient
 from yarpy.carriers.web.http.message import CONTINUE, LAST_CHUNK, chunk, next_event, two_lengths
 from yarpy.carriers.web.http.origin import may_not_act, origins_of
@@ -62,6 +62,7 @@ class Http(Carrier):
     """One connection of a browser, with any number of requests; or ours to another port."""
 
     name = "http"
+    words = ("path.PATH", *OVER_TCP)
     pages = True
     magic = b"GET /"
     spelling = "text"
