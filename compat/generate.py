@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 HERE = Path(__file__).parent
 STUB = HERE / "src/yarp/__init__.pyi"
@@ -87,44 +87,99 @@ def recorded(version: str) -> dict[str, list[str]]:
     return {name: members for name, *members in rows}
 
 
-def has(owner: Any, member: str) -> bool:
-    """Return whether a class, or what it makes of nothing, has a member."""
-    if hasattr(owner, member):
-        return True
+def find(owner: Any, member: str) -> Any:
+    """Return a member of a class, or of what it makes of nothing; None if there is none."""
+    found = getattr(owner, member, None)
+    if found is not None or hasattr(owner, member):
+        return owner if found is None else found
     try:
-        return hasattr(owner(), member)
+        made = owner()
+        return getattr(made, member) if hasattr(made, member) else None
     except Exception:
-        return False
+        return None
 
 
-def score(version: str) -> tuple[float, float, list[str]]:
-    """The share of a version's names, of its members, and the names that are missing."""
+class Score(NamedTuple):
+    """Of a version's names: shares that can be imported, of members that are there, and of members
+    that do something; the names that are missing, and what refuses to be called."""
+
+    names: float
+    members: float
+    working: float
+    missing: list[str]
+    refusing: list[str]
+
+
+def score(version: str) -> Score:
+    """Return the score of a version."""
     import yarp
+    from yarp._refusal import refused
 
     names = recorded(version)
-    missing, there, count = [], 0, 0
+    missing: list[str] = []
+    refusing: list[str] = []
+    there = count = 0
     for name, members in names.items():
         count += len(members)
         try:
-            found = getattr(yarp, name)
+            owner = getattr(yarp, name)
         except AttributeError:
             missing.append(name)
             continue
-        there += sum(has(found, member) for member in members)
-    return 1 - len(missing) / len(names), there / count, missing
+        for member in members:
+            found = find(owner, member)
+            there += found is not None
+            if found is not None and refused(found):
+                refusing.append(f"{name}.{member}")
+    return Score(
+        1 - len(missing) / len(names),
+        there / count,
+        (there - len(refusing)) / count,
+        missing,
+        refusing,
+    )
+
+
+def percent(share: float) -> str:
+    """Return a share as text; 100% is all of it.
+
+    >>> percent(0.9999), percent(1.0)
+    ('99.9%', '100.0%')
+    """
+    return f"{int(share * 1000) / 10:.1f}%"
 
 
 def scores() -> list[str]:
     """The lines of README.md about them."""
-    lines = ["Of all public names of the bindings, as SWIG makes them (`names-*.txt`):", ""]
-    lines += ["| | names | members of classes |", "|---|---|---|"]
+    lines = [
+        "Of all public names of the bindings, as SWIG makes them (`names-*.txt`), and of the",
+        "members of their classes; some refuse when they are called and say why, as they mean",
+        "nothing in Python:",
+        "",
+        "| | names | members | members that do not refuse |",
+        "|---|---|---|---|",
+    ]
     absent: dict[str, None] = {}
+    refusing: dict[str, list[str]] = {}
     for version in VERSIONS:
-        names, members, missing = score(version)
-        lines.append(f"| YARP {version} | {names:.1%} | {members:.1%} |")
-        absent |= dict.fromkeys(missing)
-    lines += ["", f"Not here: {', '.join(f'`{name}`' for name in sorted(absent))}.", ""]
-    return lines
+        found = score(version)
+        shares = (found.names, found.members, found.working)
+        lines.append(f"| YARP {version} | {' | '.join(map(percent, shares))} |")
+        absent |= dict.fromkeys(found.missing)
+        for each in found.refusing:
+            owner, _, member = each.partition(".")
+            owners = refusing.setdefault(member, [])
+            if owner not in owners:
+                owners.append(owner)
+    if absent:
+        lines += ["", f"Not here: {', '.join(f'`{name}`' for name in sorted(absent))}."]
+    grouped: dict[str, list[str]] = {}
+    for member, owners in sorted(refusing.items()):
+        grouped.setdefault(" ".join(f"`{each}`" for each in sorted(owners)), []).append(member)
+    lines += ["", "| class | refuses |", "|---|---|"]
+    for kinds, each in grouped.items():
+        lines.append(f"| {kinds} | {' '.join(f'`{name}`' for name in each)} |")
+    return [*lines, ""]
 
 
 def table() -> str:
@@ -149,7 +204,7 @@ def table() -> str:
     lines.append(
         f"| devices for PolyDriver | {' '.join(f'`{name}`' for name in sorted(DEVICES))} |"
     )
-    lines += ["", "| not here | why |", "|---|---|"]
+    lines += ["", "| refuses | why |", "|---|---|"]
     lines += [f"| `{name}` | {why} |" for name, why in NOT_HERE.items()]
     return "".join(f"{line}\n" for line in lines)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -14,15 +13,6 @@ from support.type_check import type_check
 from support.wait import HANG
 
 COMPAT = Path(__file__).parents[2] / "compat"
-
-
-@pytest.fixture
-def generate() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("compat_generate", COMPAT / "generate.py")
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def test_stub_and_readme_are_up_to_date(generate: ModuleType) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from yarp._table import CLASSES, NOT_HERE, WHERE
+from yarp._table import CLASSES, WHERE
 
 YARP_VERSION = "3.9.1"
 YARP_VERSION_SHORT = "3.9.1"
@@ -51,7 +51,6 @@ def _flat(name: str) -> Any:
 def _missing(name: str) -> str:
     from difflib import get_close_matches
 
-    why = NOT_HERE.get(name)
     known = [*WHERE]
     near = get_close_matches(name, known, n=3, cutoff=0.7)
     owner, _, member = name.partition("_")
@@ -61,7 +60,7 @@ def _missing(name: str) -> str:
     hint = f"; did you mean {' or '.join(near)}?" if near else ""
     return (
         f"module 'yarp' has no attribute {name!r}{hint} "
-        f"({why or 'the bindings of C++ YARP may have it'}; this is yarpy-compat, which offers "
+        "(newer bindings of C++ YARP may have it; this is yarpy-compat, which offers "
         f"{len(known)} names: see its README for the table, and open an issue of yarpy if you need "
         "this one)"
     )

@@ -1,5 +1,13 @@
 """Written by generate.py: the names of `yarp`, for type checkers."""
 
+from yarp._absent import DriverCreator as DriverCreator
+from yarp._absent import IControlDebug as IControlDebug
+from yarp._absent import IFrameGrabberControlsDC1394 as IFrameGrabberControlsDC1394
+from yarp._absent import LogStream as LogStream
+from yarp._absent import NameStore as NameStore
+from yarp._absent import StubDriverCreator as StubDriverCreator
+from yarp._absent import Wire as Wire
+from yarp._absent import WireLink as WireLink
 from yarp._abstract_contactable import AbstractContactable as AbstractContactable
 from yarp._abstract_contactable import UnbufferedContactable as UnbufferedContactable
 from yarp._bottle import Bottle as Bottle
@@ -56,18 +64,18 @@ from yarp._contactable import PortReport as PortReport
 from yarp._control_view import IControlLimits as IControlLimits
 from yarp._control_view import IControlMode as IControlMode
 from yarp._control_view import IInteractionMode as IInteractionMode
-from yarp._control_view import IPidControl as IPidControl
-from yarp._control_view import Pid as Pid
-from yarp._control_view import PidVector as PidVector
-from yarp._control_view import PidWithExtraInfo as PidWithExtraInfo
 from yarp._controller_view import CartesianEvent as CartesianEvent
 from yarp._controller_view import CartesianEventParameters as CartesianEventParameters
 from yarp._controller_view import CartesianEventVariables as CartesianEventVariables
 from yarp._controller_view import ICartesianControl as ICartesianControl
+from yarp._device import DeprecatedDeviceDriver as DeprecatedDeviceDriver
 from yarp._device import DeviceDriver as DeviceDriver
 from yarp._device import DeviceResponder as DeviceResponder
 from yarp._device import Drivers as Drivers
 from yarp._device import IConfig as IConfig
+from yarp._device_view import IAnalogSensor as IAnalogSensor
+from yarp._device_view import IFrameWriterImage as IFrameWriterImage
+from yarp._device_view import IJointCoupling as IJointCoupling
 from yarp._environment import cachehome as cachehome
 from yarp._environment import configdirs as configdirs
 from yarp._environment import confighome as confighome
@@ -95,7 +103,9 @@ from yarp._environment import yarpdatadirs as yarpdatadirs
 from yarp._environment import yarpdatahome as yarpdatahome
 from yarp._environment import yarpruntimedir as yarpruntimedir
 from yarp._file import read as read
+from yarp._file import read_bytestream as read_bytestream
 from yarp._file import write as write
+from yarp._file import write_bytestream as write_bytestream
 from yarp._gaze_view import GazeEvent as GazeEvent
 from yarp._gaze_view import GazeEventParameters as GazeEventParameters
 from yarp._gaze_view import GazeEventVariables as GazeEventVariables
@@ -117,6 +127,7 @@ from yarp._log import yError as yError
 from yarp._log import yInfo as yInfo
 from yarp._log import yTrace as yTrace
 from yarp._log import yWarning as yWarning
+from yarp._log import yarp_print_trace as yarp_print_trace
 from yarp._map_grid import MapGrid2D as MapGrid2D
 from yarp._map_place import Map2DArea as Map2DArea
 from yarp._map_place import Map2DLocation as Map2DLocation
@@ -168,9 +179,11 @@ from yarp._navigation_view import INavigation2DTargetActions as INavigation2DTar
 from yarp._navigation_view import INavigation2DVelocityActions as INavigation2DVelocityActions
 from yarp._navigation_view import statusToString as statusToString
 from yarp._navigation_view import stringToStatus as stringToStatus
+from yarp._nested_contact import NestedContact as NestedContact
 from yarp._net_int import NetInt16 as NetInt16
 from yarp._net_int import NetInt32 as NetInt32
 from yarp._net_int import NetInt64 as NetInt64
+from yarp._net_int import UnionNetInt64 as UnionNetInt64
 from yarp._network import Network as Network
 from yarp._network import NetworkBase as NetworkBase
 from yarp._numbers import BVector as BVector
@@ -179,6 +192,13 @@ from yarp._numbers import IVector as IVector
 from yarp._numbers import SPairVector as SPairVector
 from yarp._numbers import SVector as SVector
 from yarp._numbers import ShortVector as ShortVector
+from yarp._pid_view import IPidControl as IPidControl
+from yarp._pid_view import Pid as Pid
+from yarp._pid_view import PidDataDescription as PidDataDescription
+from yarp._pid_view import PidDataUnits as PidDataUnits
+from yarp._pid_view import PidExtraInfo as PidExtraInfo
+from yarp._pid_view import PidVector as PidVector
+from yarp._pid_view import PidWithExtraInfo as PidWithExtraInfo
 from yarp._pixel import PixelBgr as PixelBgr
 from yarp._pixel import PixelBgra as PixelBgra
 from yarp._pixel import PixelHsv as PixelHsv
@@ -196,6 +216,7 @@ from yarp._portable import PortReader as PortReader
 from yarp._portable import PortReaderCreator as PortReaderCreator
 from yarp._portable import PortWriter as PortWriter
 from yarp._portable import Portable as Portable
+from yarp._portable_pair import PortablePairBase as PortablePairBase
 from yarp._property import Property as Property
 from yarp._qos import QosStyle as QosStyle
 from yarp._random import Random as Random
@@ -239,7 +260,7 @@ from yarp._sensor_view import IThreeAxisGyroscopes as IThreeAxisGyroscopes
 from yarp._sensor_view import IThreeAxisLinearAccelerometers as IThreeAxisLinearAccelerometers
 from yarp._sensor_view import IThreeAxisMagnetometers as IThreeAxisMagnetometers
 from yarp._sound import Sound as Sound
-from yarp._sound_tools import SoundMarker as SoundMarker
+from yarp._sound_marker import SoundMarker as SoundMarker
 from yarp._sound_tools import makeSawTooth as makeSawTooth
 from yarp._sound_tools import makeSquareWave as makeSquareWave
 from yarp._sound_tools import makeTone as makeTone
@@ -256,6 +277,7 @@ from yarp._struct import Map2DObjectData as Map2DObjectData
 from yarp._struct import Map2DPathData as Map2DPathData
 from yarp._struct import OdometryData as OdometryData
 from yarp._struct import Pose6D as Pose6D
+from yarp._struct import vertex_t as vertex_t
 from yarp._things import DummyConnector as DummyConnector
 from yarp._things import Things as Things
 from yarp._thread import PeriodicThread as PeriodicThread
@@ -692,7 +714,10 @@ Bottle_copyPortable = Bottle.copyPortable
 Bottle_describeBottleCode = Bottle.describeBottleCode
 Bottle_getNullBottle = Bottle.getNullBottle
 ColorRGB_copyPortable = ColorRGB.copyPortable
+ConnectionReader_createConnectionReader = ConnectionReader.createConnectionReader
+ConnectionReader_readFromStream = ConnectionReader.readFromStream
 ConnectionWriter_createBufferedConnectionWriter = ConnectionWriter.createBufferedConnectionWriter
+ConnectionWriter_writeToStream = ConnectionWriter.writeToStream
 Contact_convertHostToIp = Contact.convertHostToIp
 Contact_fromConfig = Contact.fromConfig
 Contact_fromString = Contact.fromString
@@ -715,6 +740,7 @@ Log_defaultPrintCallback = Log.defaultPrintCallback
 Log_error = Log.error
 Log_fatal = Log.fatal
 Log_forwardCallback = Log.forwardCallback
+Log_getLogMutex = Log.getLogMutex
 Log_info = Log.info
 Log_minimumForwardLevel = Log.minimumForwardLevel
 Log_minimumPrintLevel = Log.minimumPrintLevel
@@ -740,6 +766,7 @@ Network_assertion = Network.assertion
 Network_autoInitMinimum = Network.autoInitMinimum
 Network_checkNetwork = Network.checkNetwork
 Network_connect = Network.connect
+Network_detectNameServer = Network.detectNameServer
 Network_disconnect = Network.disconnect
 Network_disconnectInput = Network.disconnectInput
 Network_exists = Network.exists
@@ -765,7 +792,9 @@ Network_isValidPortName = Network.isValidPortName
 Network_localNetworkAllocation = Network.localNetworkAllocation
 Network_lock = Network.lock
 Network_poll = Network.poll
+Network_queryBypass = Network.queryBypass
 Network_queryName = Network.queryName
+Network_registerCarrier = Network.registerCarrier
 Network_registerContact = Network.registerContact
 Network_registerName = Network.registerName
 Network_sendMessage = Network.sendMessage
@@ -790,6 +819,7 @@ NetworkBase_assertion = NetworkBase.assertion
 NetworkBase_autoInitMinimum = NetworkBase.autoInitMinimum
 NetworkBase_checkNetwork = NetworkBase.checkNetwork
 NetworkBase_connect = NetworkBase.connect
+NetworkBase_detectNameServer = NetworkBase.detectNameServer
 NetworkBase_disconnect = NetworkBase.disconnect
 NetworkBase_disconnectInput = NetworkBase.disconnectInput
 NetworkBase_exists = NetworkBase.exists
@@ -813,7 +843,9 @@ NetworkBase_isValidPortName = NetworkBase.isValidPortName
 NetworkBase_localNetworkAllocation = NetworkBase.localNetworkAllocation
 NetworkBase_lock = NetworkBase.lock
 NetworkBase_poll = NetworkBase.poll
+NetworkBase_queryBypass = NetworkBase.queryBypass
 NetworkBase_queryName = NetworkBase.queryName
+NetworkBase_registerCarrier = NetworkBase.registerCarrier
 NetworkBase_registerContact = NetworkBase.registerContact
 NetworkBase_registerName = NetworkBase.registerName
 NetworkBase_sendMessage = NetworkBase.sendMessage
@@ -840,6 +872,8 @@ PeriodicThread_getKeyOfCaller = PeriodicThread.getKeyOfCaller
 PeriodicThread_setDefaultStackSize = PeriodicThread.setDefaultStackSize
 PeriodicThread_yield_c = PeriodicThread.yield_c
 Portable_copyPortable = Portable.copyPortable
+PortablePairBase_readPair = PortablePairBase.readPair
+PortablePairBase_writePair = PortablePairBase.writePair
 Pose6D_copyPortable = Pose6D.copyPortable
 Property_copyPortable = Property.copyPortable
 QosStyle_getDSCPByVocab = QosStyle.getDSCPByVocab
@@ -903,3 +937,4 @@ VectorBase_copyPortable = VectorBase.copyPortable
 VectorInt_copyPortable = VectorInt.copyPortable
 Vocab_decode = Vocab.decode
 Vocab_encode = Vocab.encode
+vertex_t_copyPortable = vertex_t.copyPortable

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 import yarpy
 from yarp._portable import Portable, message_of
 from yarp._searchable import Searchable
-from yarp._value import MISSING, Value, copied, int32, number, parsed, text, vocab, whole
+from yarp._value import MISSING, Value, copied, int32, number, parsed, text, vocab, vocab64, whole
 
 if TYPE_CHECKING:
     from yarp._property import Property
@@ -124,6 +124,10 @@ class Bottle(Portable, Searchable):
 
     def addVocab(self, x: int) -> None:
         self._native.append(yarpy.Vocab.from_code(int32(x)))
+
+    def addVocab64(self, x: Any) -> None:
+        """Add a word of up to eight letters, or the one of a code; it is sent as a string."""
+        self._native.append(vocab64(x))
 
     def addList(self) -> Bottle:
         """Add an empty list, and return it to be filled."""

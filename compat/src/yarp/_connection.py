@@ -7,9 +7,10 @@ collects; what it holds is sent when the method that it was given to returns.
 from __future__ import annotations
 
 import struct
-from typing import Any
+from typing import Any, NoReturn
 
 import yarpy
+from yarp._refusal import refuses
 
 
 class ConnectionWriter:
@@ -18,6 +19,7 @@ class ConnectionWriter:
     def __init__(self) -> None:
         self._object: Any = None
         self._bytes = bytearray()
+        self._reference: Any = None
 
     def _put(self, writer: Any) -> None:
         self._object = writer._outgoing()
@@ -33,6 +35,34 @@ class ConnectionWriter:
     def createBufferedConnectionWriter() -> ConnectionWriter:
         """Return one that collects."""
         return ConnectionWriter()
+
+    @staticmethod
+    def writeToStream(portable: Any, os: Any) -> bool:
+        """Write the message of an object to an open file, or another object with `write`."""
+        from yarp._memory import encoded
+
+        os.write(bytes(encoded(portable._outgoing())))
+        return True
+
+    def getBuffer(self) -> bytes:
+        """Return the bytes that were collected."""
+        from yarp._memory import encoded
+
+        return bytes(encoded(self._outgoing()))
+
+    def setReference(self, obj: Any) -> None:
+        """Name the object that is written; a reader of what was written here is given it."""
+        self._reference = obj
+
+    @refuses
+    def setReplyHandler(self, reader: Any) -> NoReturn:
+        """Refuse: who asks is told the answer."""
+        raise NotImplementedError(
+            "an answer goes to who asks for it: port.write(question, answer) of a Port or RpcClient"
+        )
+
+    def requestDrop(self) -> None:
+        """The receiver ends the connection itself."""
 
     def declareSizes(self, argc: int, argv: Any) -> None:
         """Say how large the next blocks are; a hint, of which nothing follows here."""
@@ -111,8 +141,11 @@ class Raw:
 class ConnectionReader:
     """A message that has come."""
 
-    def __init__(self, message: yarpy.Message) -> None:
+    def __init__(self, message: yarpy.Message, reference: Any = None, receiver: str = "") -> None:
         self._message = message
+        self._reference, self._receiver = reference, receiver
+        self._parent: ConnectionReader | None = None
+        self._end: int | None = None
         self._at = 0
         self._error = False
         self._writer: ConnectionWriter | None = None
@@ -126,8 +159,43 @@ class ConnectionReader:
             return False
         return True
 
+    @staticmethod
+    def createConnectionReader(is_: Any) -> ConnectionReader:
+        """Return a reader of bytes, or of an open file."""
+        data = bytes(is_.read() if hasattr(is_, "read") else is_)
+        return ConnectionReader(yarpy.Message("D", data))
+
+    @staticmethod
+    def readFromStream(portable: Any, is_: Any) -> bool:
+        """Fill an object from bytes, or from an open file."""
+        return bool(portable.read(ConnectionReader.createConnectionReader(is_)))
+
+    def setSize(self, len: int) -> bool:
+        """Let so many bytes be left; False if there are fewer."""
+        if not 0 <= len <= self.getSize():
+            return False
+        self._end = self._at + len
+        return True
+
+    def setParentConnectionReader(self, parentConnectionReader: ConnectionReader | None) -> None:
+        """Name the reader from which this message comes: its sender is that of this one."""
+        self._parent = parentConnectionReader
+
+    def getReference(self) -> Any:
+        """Return the object itself if it never left this program (`DummyConnector`), else None."""
+        return self._reference
+
+    def getConnectionModifiers(self) -> Any:
+        """Return what the carrier was given behind its name: nothing, receivers are not told."""
+        from yarp._property import Property
+
+        return Property()
+
+    def _data(self) -> memoryview:
+        return memoryview(self._message.to_bytes())[: self._end]
+
     def _read(self, kind: str) -> Any:
-        data = memoryview(self._message.to_bytes())
+        data = self._data()
         size = struct.calcsize(kind)
         if self._at + size > len(data):
             self._error = True
@@ -137,7 +205,7 @@ class ConnectionReader:
         return value
 
     def _block(self, size: int) -> bytes:
-        data = memoryview(self._message.to_bytes())
+        data = self._data()
         if size < 0 or self._at + size > len(data):
             self._error = True
             return b""
@@ -211,13 +279,22 @@ class ConnectionReader:
 
     def getSize(self) -> int:
         """The bytes that were not read yet."""
-        return len(self._message.to_bytes()) - self._at
+        return len(self._data()) - self._at
 
     def getRemoteContact(self) -> Any:
         """Return the address of the port that sent it."""
         from yarp._contact import Contact
 
+        if self._parent is not None:
+            return self._parent.getRemoteContact()
         return Contact(self._message.source)
+
+    def getLocalContact(self) -> Any:
+        """Return the address of the port that it came to: its name, not valid where that is not
+        known."""
+        from yarp._contact import Contact
+
+        return Contact(self._receiver)
 
     def readEnvelope(self) -> str:
         return self._message.envelope

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import yarpy
+from yarp._nested_contact import NestedContact
 
 
 class Contact:
@@ -18,6 +19,7 @@ class Contact:
         self._name, self._host, self._port = name, hostname, port
         self._carrier: str = carrier
         self._timeout = -1.0
+        self._nested = NestedContact()
 
     @classmethod
     def _of(cls, contact: yarpy.Contact | None) -> Contact:
@@ -67,6 +69,13 @@ class Contact:
 
     def hasTimeout(self) -> bool:
         return self._timeout > 0
+
+    def getNested(self) -> NestedContact:
+        """Return what `setNestedContact` was given: a topic and its node."""
+        return self._nested
+
+    def setNestedContact(self, nestedContact: NestedContact) -> None:
+        self._nested = nestedContact
 
     def toURI(self, includeCarrier: bool = True) -> str:
         """`tcp://host:port/name`."""

@@ -228,7 +228,7 @@ class Contactable:
                 traceback.print_exc()
 
     def _hand(self, reader: Any, message: yarpy.Message) -> None:
-        connection = ConnectionReader(message)
+        connection = ConnectionReader(message, receiver=self._name)
         reader.read(connection)
         connection.flushWriter()
 

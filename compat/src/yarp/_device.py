@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any, Self
 
 from yarp._portable import PortReader
+from yarp._refusal import refuses
 
 
 class IConfig:
@@ -46,6 +47,10 @@ class DeviceDriver(IConfig):
         return self
 
 
+class DeprecatedDeviceDriver(DeviceDriver):
+    """The base of devices that C++ is about to drop."""
+
+
 class DeviceResponder(PortReader):
     """Answers requests: a subclass defines `respond(command, reply)`."""
 
@@ -67,6 +72,29 @@ class DeviceResponder(PortReader):
         for text, explain in self._usage:
             reply.addString(f"{text} {explain}".strip())
         return True
+
+    def read(self, reader: Any) -> bool:
+        """Answer what has come."""
+        from yarp._bottle import Bottle
+
+        command, reply = Bottle(), Bottle()
+        if not command.read(reader):
+            return False
+        self.respond(command, reply)
+        writer = reader.getWriter()
+        if writer is not None:
+            reply.write(writer)
+        return True
+
+    def onRead(self, v: Any) -> None:
+        """Answer a request that a port was set to hand over; its answer goes nowhere."""
+        from yarp._bottle import Bottle
+
+        self.respond(v, Bottle())
+
+    def attach(self, port: Any) -> None:
+        """Answer what a port is asked: `responder.attach(port)` instead of `setReader`."""
+        port.setReader(self)
 
 
 class Drivers:
@@ -98,6 +126,7 @@ class Drivers:
         driver = PolyDriver()
         return driver if driver.open(config) else None
 
+    @refuses
     def add(self, creator: Any) -> None:
         """Refuse: devices of Python are served by `PolyDriver.attach`."""
         raise NotImplementedError(
@@ -109,6 +138,16 @@ class Drivers:
         """Nothing was added, so nothing is removed."""
         return False
 
+    def addDeprecatedAlias(self, old_name: str, new_name: str) -> bool:
+        """Let a device be opened by another name, too, as it was once called."""
+        from yarp._poly_driver import ALIASES, DEVICES
+
+        if new_name not in DEVICES or old_name in DEVICES:
+            return False
+        ALIASES[old_name] = new_name
+        return True
+
+    @refuses
     def yarpdev(self, argc: int, argv: Any) -> int:
         """Refuse: the command is `yarpdev`."""
         raise NotImplementedError("yarpdev is a command of yarpy-compat: yarpdev --device NAME")

@@ -1,20 +1,35 @@
-"""Pictures in files: `read(image, "x.ppm")`, `write(image, "x.pgm")`."""
+"""Pictures and sounds in files: `read(image, "x.ppm")`, `write(sound, "x.wav")`.
+
+Rules: sounds are WAV of 8 or 16 bits when they are read, of 16 when they are written; for others
+the result is False, as that of C++ without its libraries for them.
+"""
 
 from __future__ import annotations
 
+import io
+import wave
 from pathlib import Path
 from typing import Any
 
 import yarpy
 from yarp._image import Image
+from yarp._log import say
+from yarp._sound import Sound
 
 FORMAT_PPM = 3
 FORMAT_PGM = 2
 
 
-def write(src: Image, dest: str, format: int = 0) -> bool:
-    """Write an image: grey as PGM, colour as PPM, a floating-point one as numbers; False if the
-    file cannot be written."""
+def write(src: Image | Sound, dest: str, format: int = 0) -> bool:
+    """Write an image: grey as PGM, colour as PPM, a floating-point one as numbers; a sound as WAV;
+    False if the file cannot be written."""
+    if isinstance(src, Sound):
+        data = write_bytestream(src, Path(dest).suffix)
+        try:
+            Path(dest).write_bytes(data)
+        except OSError:
+            return False
+        return bool(data)
     picture = src._image()
     try:
         if str(picture.code) in ("dec", "int"):
@@ -38,6 +53,8 @@ def read(dest: Any, src: str, format: int = 0) -> bool:
         data = Path(src).read_bytes()
     except OSError:
         return False
+    if isinstance(dest, Sound):
+        return read_bytestream(dest, data, len(data), Path(src).suffix)
     try:
         if data[:2] in (b"P5", b"P6"):
             words, rest = _header(data)
@@ -55,6 +72,52 @@ def read(dest: Any, src: str, format: int = 0) -> bool:
         return False
     dest._fill(picture)
     return True
+
+
+def read_bytestream(data: Sound, bytestream: bytes, streamsize: int, format: str) -> bool:
+    """Become the sound of these bytes; `format` is how a file of them would end: ".wav"."""
+    if not _known(format):
+        return False
+    try:
+        with wave.open(io.BytesIO(bytes(bytestream)[:streamsize])) as opened:
+            channels, width = opened.getnchannels(), opened.getsampwidth()
+            frames, frequency = opened.readframes(opened.getnframes()), opened.getframerate()
+    except (wave.Error, EOFError) as error:
+        say("ERROR", f"|yarp.sig.SoundFile| this is no WAV file: {error}")
+        return False
+    if width not in (1, 2):
+        say("ERROR", f"|yarp.sig.SoundFile| samples have 8 or 16 bits, not {8 * width}")
+        return False
+    import numpy as np
+
+    kind = "<i2" if width == 2 else "u1"
+    samples = np.frombuffer(frames, kind).astype("<i2")
+    made = yarpy.Sound(samples.reshape(-1, channels).T, frequency)
+    data._take(yarpy.Message("D", b"".join(made.to_wire())))
+    return True
+
+
+def write_bytestream(data: Sound, format: str) -> bytes:
+    """Return the bytes of a file that ends with `format`; none, if that is not ".wav"."""
+    if not _known(format):
+        return b""
+    import numpy as np
+
+    samples = np.array([[*one] for one in data._channels], "<i2")
+    made = io.BytesIO()
+    with wave.open(made, "wb") as opened:
+        opened.setnchannels(max(data.getChannels(), 1))
+        opened.setsampwidth(2)
+        opened.setframerate(data.getFrequency() or 1)
+        opened.writeframes(samples.T.tobytes() if samples.size else b"")
+    return made.getvalue()
+
+
+def _known(format: str) -> bool:
+    if format.lower() in (".wav", "wav"):
+        return True
+    say("ERROR", f"|yarp.sig.SoundFile| sounds are read and written as .wav, not as {format!r}")
+    return False
 
 
 def _header(data: bytes) -> tuple[list[int], bytes]:

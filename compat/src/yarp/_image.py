@@ -340,6 +340,11 @@ class ImageFloat(Image):
 class FlexImage(Image):
     """Takes the pixels of what is read into it."""
 
+    def setPixelSize(self, imgPixelSize: int) -> None:
+        """Let pixels have so many bytes; if the kind has another size, they have no kind."""
+        if imgPixelSize != self.getPixelSize():
+            self.setPixelCode(-imgPixelSize)
+
 
 def PAD_BYTES(len: int, pad: int) -> int:
     """How many bytes fill a row of `len` bytes up to a multiple of `pad`."""

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
+import traceback
 from collections.abc import Callable, Iterable
 from typing import Any, Final
 
@@ -24,6 +26,7 @@ class _Taste:
     least_forwarded = 1
     printer: Any = None
     forwarder: Any = None
+    lock = threading.RLock()
 
 
 _ORDER: Final = [*_NUMBERS]
@@ -165,6 +168,11 @@ class Log:
         raise SystemExit(255)
 
     @staticmethod
+    def getLogMutex() -> Any:
+        """Return a lock that threads may share which print several lines; each is whole without."""
+        return _Taste.lock
+
+    @staticmethod
     def nolog(msg: str = "") -> None:
         """Print nothing."""
 
@@ -187,3 +195,10 @@ def yWarning(msg: str) -> None:
 
 def yError(msg: str) -> None:
     Log.error(msg)
+
+
+def yarp_print_trace(out: Any = None, file: str = "", line: int = 0) -> None:
+    """Print where the program is: on standard error, or to a file that is open."""
+    stream = sys.stderr if out is None else out
+    stream.write(f"backtrace {file}:{line}\n" if file else "backtrace\n")
+    traceback.print_stack(file=stream)

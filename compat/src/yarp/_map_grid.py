@@ -6,14 +6,18 @@ numbers of `Grid`. What is outside is False or -1. It has no files.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import yarpy
+from yarp._log import say
+from yarp._map_image import coloured, flags_of
 from yarp._numbers import store
 from yarp._portable import Portable
 from yarpy.kits import devices
 
 Cell = Any  # a pair of numbers
+_UNSEEN = 255
 
 
 class MapGrid2D(Portable):
@@ -170,6 +174,72 @@ class MapGrid2D(Portable):
         flags = self._flags
         for flag in (self.MAP_CELL_TEMPORARY_OBSTACLE, self.MAP_CELL_ENLARGED_OBSTACLE):
             flags[flags == flag] = self.MAP_CELL_FREE
+
+    def enlargeObstacles(self, size: float) -> bool:
+        """Mark the free cells around what is not free, so many metres; 0 frees them again."""
+        import numpy as np
+
+        flags = self._flags
+        if size <= 0:
+            flags[flags == self.MAP_CELL_ENLARGED_OBSTACLE] = self.MAP_CELL_FREE
+            return True
+        for _ in range(math.ceil(size / self._resolution)):
+            wide = np.pad(flags != self.MAP_CELL_FREE, 1)
+            height, width = flags.shape
+            near = [wide[y : y + height, x : x + width] for y in range(3) for x in range(3)]
+            free = flags == self.MAP_CELL_FREE
+            flags[free & np.logical_or.reduce(near)] = self.MAP_CELL_ENLARGED_OBSTACLE
+        return True
+
+    def crop(self, left: int, top: int, right: int, bottom: int) -> bool:
+        """Keep a rectangle of cells, without the last column and row; a negative side is where
+        somebody has seen something. The origin moves along."""
+        import numpy as np
+
+        rows, columns = np.nonzero(self._occupied != _UNSEEN)
+        if len(rows):
+            left = int(columns.min()) if left < 0 else left
+            right = int(columns.max()) if right < 0 else right
+            top = int(rows.min()) if top < 0 else top
+            bottom = int(rows.max()) + 1 if bottom < 0 else bottom
+        if not (0 <= left < right <= self.width() and 0 <= top < bottom <= self.height()):
+            return False
+        x, y, theta = self._origin
+        below = self.height() - bottom
+        self._origin = (x + left * self._resolution, y + below * self._resolution, theta)
+        self._flags = self._flags[top:bottom, left:right].copy()
+        self._occupied = self._occupied[top:bottom, left:right].copy()
+        return True
+
+    # -- as pictures --------------------------------------------------------------------------
+
+    def getMapImage(self, image: Any) -> bool:
+        """Become a picture of the cells: free ones white, walls black, the rest in colour."""
+        image._fill(yarpy.Image(coloured(self._flags)))
+        return True
+
+    def setMapImage(self, image: Any) -> bool:
+        """Take the cells of a picture of this size; what is no colour of a map is unknown."""
+        picture = image._image().converted("rgb").array
+        if picture.shape[:2] != self._flags.shape:
+            say("ERROR", "|yarp.dev.MapGrid2D| the picture has another size: setSize_in_cells")
+            return False
+        self._flags = flags_of(picture)
+        return True
+
+    def getOccupancyGrid(self, image: Any) -> bool:
+        """Become a picture of the percentages as they are, 255 where nobody has been."""
+        image._fill(yarpy.Image(self._occupied))
+        return True
+
+    def setOccupancyGrid(self, image: Any) -> bool:
+        """Take the percentages of a picture of this size."""
+        picture = image._image().converted("mono").array
+        if picture.shape != self._occupied.shape:
+            say("ERROR", "|yarp.dev.MapGrid2D| the picture has another size: setSize_in_cells")
+            return False
+        self._occupied = picture.copy()
+        return True
 
     def isIdenticalTo(self, otherMap: MapGrid2D) -> bool:
         """Return whether everything is the same."""

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import Any, NoReturn
 
 import yarpy
 from yarp import _names
 from yarp._contact import Contact, ContactStyle
 from yarp._log import say
+from yarp._numbers import store
+from yarp._refusal import refuses
 from yarpy.config.configuration import (
     Server,
     conf_directory,
     configuration,
+    default_port,
     namespaces,
     write_namespaces,
     write_server,
@@ -61,3 +64,51 @@ def set_name_server_contact(contact: Contact) -> bool:
         say("ERROR", f"|yarp.os.Network| {error}")
         return False
     return True
+
+
+def detect_name_server(
+    useDetectedServer: bool = False, scanNeeded: Any = None, serverUsed: Any = None
+) -> Contact:
+    """Return where a name server is: the configured one if it answers, else one of the local
+    network, looked for by multicast as `yarp detect` does; not valid if none answers.
+
+    useDetectedServer: keep its address in a file. scanNeeded, serverUsed: BVectors, for whether the
+    network was searched, and whether an address was kept.
+    """
+    from yarpy.names.discovery import search
+
+    space = configuration(os.environ).namespace
+    found, scanned, used = Contact(), False, False
+    try:
+        found = Contact._of(yarpy.query(space, names=_names.names()))
+    except yarpy.YarpError:
+        scanned = True
+        try:
+            contact = search(space, default_port(os.environ))
+        except OSError:  # a computer without multicast
+            contact = None
+        if contact is not None:
+            found = Contact(space, contact.carrier, contact.host, contact.port or -1)
+            used = useDetectedServer and set_name_server_contact(found)
+    for place, value in ((scanNeeded, scanned), (serverUsed, used)):
+        if place is not None:
+            store(place, [value])
+    return found
+
+
+@refuses
+def query_bypass(store: Any) -> NoReturn:
+    """Refuse: a source of names of your own is a name client."""
+    raise NotImplementedError(
+        "names of another source come from a name client of yarpy (entry point yarpy.names), not "
+        "from a NameStore"
+    )
+
+
+@refuses
+def register_carrier(name: str, dll: str) -> NoReturn:
+    """Refuse: carriers are classes of Python, found by their entry point."""
+    raise NotImplementedError(
+        f"{name!r} cannot be loaded from {dll!r}: carriers of yarpy are packages of Python with "
+        "the entry point yarpy.carriers; `yarpy plugin` lists those that are here"
+    )

@@ -1,4 +1,5 @@
 """NetInt16, NetInt32, NetInt64: integers of so many bits, as C++ has them on the network.
+UnionNetInt64: one of them as its bytes.
 
 Rules: what does not fit raises OverflowError, where C++ cuts it off.
 """
@@ -44,3 +45,28 @@ class NetInt64(NetInt32):
     """64 bits."""
 
     _bits = 64
+
+
+class UnionNetInt64:
+    """`d` is a number, `c` its eight bytes, the lowest first; to change one changes the other."""
+
+    def __init__(self) -> None:
+        self._value = 0
+
+    @property
+    def d(self) -> int:
+        """Return the number."""
+        return self._value
+
+    @d.setter
+    def d(self, value: int) -> None:
+        self._value = int(NetInt64(value))
+
+    @property
+    def c(self) -> bytes:
+        """Return its bytes."""
+        return self._value.to_bytes(8, "little", signed=True)
+
+    @c.setter
+    def c(self, value: bytes) -> None:
+        self._value = int.from_bytes(bytes(value)[:8].ljust(8, b"\0"), "little", signed=True)

@@ -14,6 +14,9 @@ from yarp import _names
 from yarp._contact import Contact, ContactStyle
 from yarp._log import say
 from yarp._name_server import (
+    detect_name_server,
+    query_bypass,
+    register_carrier,
     set_name_server_contact,
     set_name_server_name,
     write_to_name_server,
@@ -193,6 +196,9 @@ class NetworkBase:
     setNameServerName = staticmethod(set_name_server_name)
     setNameServerContact = staticmethod(set_name_server_contact)
     writeToNameServer = staticmethod(write_to_name_server)
+    detectNameServer = staticmethod(detect_name_server)
+    queryBypass = staticmethod(query_bypass)
+    registerCarrier = staticmethod(register_carrier)
 
     @staticmethod
     def queryName(name: str) -> Contact:

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterable, Iterator
-from typing import Any, ClassVar, Generic, Self, SupportsIndex, TypeVar, overload
+from typing import Any, ClassVar, Generic, NoReturn, Self, SupportsIndex, TypeVar, overload
 
 from yarp._iterator import SwigPyIterator
+from yarp._refusal import refuses
 from yarp._value import int32, number, text
 
 T = TypeVar("T")
@@ -139,6 +140,11 @@ class StdVector(Generic[T]):
 
     def iterator(self) -> Iterator[T]:
         return iter(self._items)
+
+    @refuses
+    def get_allocator(self) -> NoReturn:
+        """Refuse: it is where the memory of a vector of C++ comes from."""
+        raise NotImplementedError("Python has no allocators: a vector grows by itself")
 
     def _store(self, values: Iterable[Any]) -> None:
         found = [self._kind(value) for value in values]

@@ -9,10 +9,13 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Callable
+from math import atan2, cos, hypot, sin
+from operator import mul
 from typing import Any
 
 import yarpy
 from yarp._matrix import Matrix
+from yarp._numbers import store
 from yarp._view import FAILURES, View
 from yarpy.kits import devices
 
@@ -138,9 +141,36 @@ class IFrameTransform(View):
         found = [
             sum(a * b for a, b in zip(row, (*point, 1.0), strict=True)) for row in matrix._rows
         ]
-        transformed_point.resize(3)
-        for index, value in enumerate(found[:3]):
-            transformed_point[index] = value
+        _give(transformed_point, found[:3])
+        return True
+
+    def transformPose(
+        self, target_frame_id: str, source_frame_id: str, input_pose: Any, transformed_pose: Any
+    ) -> bool:
+        """Multiply a pose, metres and radians (x y z roll pitch yaw), by where the target is, seen
+        from the source."""
+        matrix, pose = Matrix(), [*map(float, input_pose)]
+        if len(pose) != 6 or not self.getTransform(target_frame_id, source_frame_id, matrix):
+            return False
+        placed = [[*row, at] for row, at in zip(_of_angles(*pose[3:]), pose[:3], strict=True)]
+        found = _product(matrix._rows, [*placed, [0.0, 0.0, 0.0, 1.0]])
+        _give(transformed_pose, [*(row[3] for row in found[:3]), *_angles(found)])
+        return True
+
+    def transformQuaternion(
+        self,
+        target_frame_id: str,
+        source_frame_id: str,
+        input_quaternion: Any,
+        transformed_quaternion: Any,
+    ) -> bool:
+        """Multiply a rotation, four numbers x y z w, by that of the target, seen from the
+        source."""
+        matrix, given = Matrix(), [*map(float, input_quaternion)]
+        if len(given) != 4 or not self.getTransform(target_frame_id, source_frame_id, matrix):
+            return False
+        turned = _quaternion_product(_quaternion([row[:3] for row in matrix._rows[:3]]), given)
+        _give(transformed_quaternion, turned)
         return True
 
     def deleteTransform(self, target_frame_id: str, source_frame_id: str) -> bool:
@@ -182,3 +212,42 @@ def _quaternion(m: list[list[float]]) -> list[float]:
         parts[j], parts[k] = m[j][at] + m[at][j], m[k][at] + m[at][k]
     size = sum(each * each for each in parts) ** 0.5 or 1.0
     return [each / size for each in parts]
+
+
+def _of_angles(roll: float, pitch: float, yaw: float) -> list[list[float]]:
+    """The rotation of three angles, first around x, then y, then z."""
+    (sr, sp, sy), (cr, cp, cy) = ([f(a) for a in (roll, pitch, yaw)] for f in (sin, cos))
+    return [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
+
+
+def _angles(m: list[list[float]]) -> tuple[float, float, float]:
+    """Roll, pitch and yaw of a rotation; straight up or down, all of its turn is yaw."""
+    pitch = atan2(-m[2][0], hypot(m[2][1], m[2][2]))
+    if hypot(m[2][1], m[2][2]) < 1e-9:
+        return 0.0, pitch, atan2(-m[0][1], m[1][1])
+    return atan2(m[2][1], m[2][2]), pitch, atan2(m[1][0], m[0][0])
+
+
+def _product(a: list[list[float]], b: list[list[float]]) -> list[list[float]]:
+    columns = [*zip(*b, strict=True)]
+    return [[sum(map(mul, row, column)) for column in columns] for row in a]
+
+
+def _quaternion_product(a: list[float], b: list[float]) -> list[float]:
+    (ax, ay, az, aw), (bx, by, bz, bw) = a, b
+    return [
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    ]
+
+
+def _give(place: Any, values: list[float]) -> None:
+    if hasattr(place, "resize"):
+        place.resize(len(values))
+    store(place, values)

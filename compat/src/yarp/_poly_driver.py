@@ -12,7 +12,8 @@ from typing import Any, TypeVar
 import yarpy
 from yarp import _names, _network_device
 from yarp._camera_view import IFrameGrabberControls, IFrameGrabberImage, IFrameGrabberRgb
-from yarp._control_view import IControlLimits, IControlMode, IInteractionMode, IPidControl
+from yarp._control_view import IControlLimits, IControlMode, IInteractionMode
+from yarp._device_view import IAnalogSensor, IJointCoupling
 from yarp._log import say
 from yarp._measuring_view import (
     IAmplifierControl,
@@ -34,6 +35,7 @@ from yarp._motion_view import (
     ITorqueControl,
     IVelocityControl,
 )
+from yarp._pid_view import IPidControl
 from yarp._property import Property
 from yarp._searchable import Searchable
 from yarp._sensor_view import (
@@ -77,6 +79,9 @@ class PolyDriver(MirrorViews):
         else:
             self._options = Property(config.toString())
         name = self._options.find("device").asString()
+        if name in ALIASES:
+            name = ALIASES[name]
+            self._options.put("device", name)
         make = DEVICES.get(name)
         if make is None and name in installed.names():
             make = PolyDriver._open_installed
@@ -274,6 +279,12 @@ class PolyDriver(MirrorViews):
     def viewISkinPatches(self) -> ISkinPatches | None:
         return self._view(ISkinPatches, ISkinPatches.kind)
 
+    def viewIAnalogSensor(self) -> IAnalogSensor | None:
+        return self._view(IAnalogSensor, "channels")
+
+    def viewIJointCoupling(self) -> IJointCoupling | None:
+        return self._view(IJointCoupling, "coupled_joints")
+
     # -- devices ------------------------------------------------------------------------------
 
     def _text(self, key: str, default: str = "") -> str:
@@ -382,6 +393,8 @@ WRAPPERS = {
     "test_grabber": "frameGrabber_nws_yarp",
     "fakeMotionControl": "controlBoard_nws_yarp",
 }
+#: Other names of devices, see `Drivers.addDeprecatedAlias`.
+ALIASES: dict[str, str] = {}
 DEVICES = {
     "fakeFrameGrabber": PolyDriver._open_fake_camera,
     "test_grabber": PolyDriver._open_fake_camera,

@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 from yarp import _control_view as control
 from yarp import _measuring_view as measuring
 from yarp import _motion_view as motion
+from yarp import _pid_view as pid
 from yarp._view import View
 
 
@@ -96,7 +97,7 @@ class IPWMControlRaw(RawView, of=motion.IPWMControl):
     """Duty cycles of motors."""
 
 
-class IPidControlRaw(RawView, of=control.IPidControl):
+class IPidControlRaw(RawView, of=pid.IPidControl):
     """Controllers of joints."""
 
 

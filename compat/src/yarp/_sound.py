@@ -1,15 +1,38 @@
-"""Sound: samples of 16 bits in several channels, which ports send."""
+"""Sound: samples of 16 bits in several channels, which ports send.
+
+Rules: it is sent in the form of YARP 3.9, which has no markers; with markers, in that of YARP 4.
+"""
 
 from __future__ import annotations
 
+import struct
 from array import array
 from typing import Any
 
 import yarpy
+from yarp._connection import ConnectionReader, Raw
 from yarp._log import say
 from yarp._numbers import ShortVector, store
 from yarp._portable import Portable
+from yarp._sound_marker import SoundMarker
 from yarp._value import whole
+
+#: How the form of YARP 4 begins: a list of six.
+_LIST = 256
+_WITH_MARKERS = struct.pack("<2i", _LIST, 6)
+#: Where its samples begin.
+_BEFORE = 48
+
+
+def _packed(marker: SoundMarker) -> bytes:
+    """Return a marker in the form of YARP 4: a list whose elements have no tags."""
+    label = marker.label.encode("utf-8", "surrogateescape")
+    text = struct.pack("<i", len(label)) + label
+    return (
+        struct.pack("<2i", _LIST, 4)
+        + text * 2
+        + struct.pack("<iq", marker.channel, marker.sample_id)
+    )
 
 
 class Sound(Portable):
@@ -18,7 +41,10 @@ class Sound(Portable):
     def __init__(self, bytesPerSample: int | Sound = 2) -> None:
         self._channels: list[array[int]] = []
         self._frequency = 0
+        self._markers: dict[str, SoundMarker] = {}
         if isinstance(bytesPerSample, Sound):
+            for each in bytesPerSample._markers.values():
+                self.add_marker(each.label, each.sample_id, each.channel)
             self._channels = [one[:] for one in bytesPerSample._channels]
             self._frequency = bytesPerSample._frequency
 
@@ -29,12 +55,31 @@ class Sound(Portable):
         samples = np.zeros(shape, "<i2")
         for index, one in enumerate(self._channels):
             samples[index] = one
-        return yarpy.Sound(samples, self._frequency)
+        sound = yarpy.Sound(samples, self._frequency)
+        if not self._markers:
+            return sound
+        head = sound.to_bottle("4.0").to_bytes()
+        listed = b"".join(map(_packed, self._markers.values()))
+        return Raw(head[:-4] + struct.pack("<i", len(self._markers)) + listed)
 
     def _take(self, message: yarpy.Message) -> None:
         found = message.as_(yarpy.Sound)
         self._channels = [array("h", one.tobytes()) for one in found.array]
         self._frequency = found.frequency
+        self._markers.clear()
+        data = message.to_bytes()
+        if bytes(data[:8]) != _WITH_MARKERS:
+            return
+        rest = ConnectionReader(yarpy.Message("D", data[_BEFORE + 2 * found.array.size :]))
+        count = rest.expectInt32() if rest.expectInt32() == _LIST else 0
+        for _ in range(count):
+            if (rest.expectInt32(), rest.expectInt32()) != (_LIST, 4):
+                break
+            rest.expectString()  # its key, which is its label
+            label, channel, sample = rest.expectString(), rest.expectInt32(), rest.expectInt64()
+            if rest.isError():
+                break
+            self.add_marker(label, sample, channel)
 
     def getSamples(self) -> int:
         """Samples in each channel."""
@@ -60,6 +105,7 @@ class Sound(Portable):
     def resize(self, samples: int, channels: int = 1) -> None:
         """So many samples in each channel; all are 0."""
         self._channels = [array("h", bytes(2 * samples)) for _ in range(channels)]
+        self._markers.clear()
 
     def set(self, value: int, sample: int, channel: int = 0) -> None:
         """Change a sample."""
@@ -95,10 +141,54 @@ class Sound(Portable):
         if not 0 <= channel < self.getChannels():
             return False
         self._channels[channel][:] = array("h", bytes(2 * self.getSamples()))
+        self._markers.clear()
         return True
 
-    def subSound(self, first_sample: int, last_sample: int) -> Sound:
-        """The samples from one index up to another."""
+    zeroChannel = clearChannel
+
+    # -- markers ------------------------------------------------------------------------------
+
+    def add_marker(self, marker_label: str, sample_id: int, channel: int = -1) -> None:
+        """Give a sample a name, in one channel or in all (-1)."""
+        marker = SoundMarker()
+        marker.label, marker.sample_id, marker.channel = marker_label, sample_id, channel
+        self._markers[marker_label] = marker
+
+    def get_marker(self, marker_label: str, sample_id: Any, channel: Any) -> bool:
+        """Store where a marker is; False, 0 and -1 if there is none of that name."""
+        marker = self._markers.get(marker_label) or SoundMarker()
+        store(sample_id, [marker.sample_id])
+        store(channel, [marker.channel])
+        return marker_label in self._markers
+
+    def getMarkersCount(self) -> int:
+        return len(self._markers)
+
+    def getMarker(self, index: int) -> SoundMarker:
+        """Return a marker by its number; a blank one if there are fewer."""
+        markers = self.getMarkers()
+        return markers[index] if 0 <= index < len(markers) else SoundMarker()
+
+    def getMarkers(self) -> list[SoundMarker]:
+        return [*self._markers.values()]
+
+    def remove_marker(self, marker_label: str) -> None:
+        self._markers.pop(marker_label, None)
+
+    def remove_all_markers(self) -> None:
+        self._markers.clear()
+
+    def _marked(self, label: str, default: int) -> int:
+        if label in self._markers:
+            return self._markers[label].sample_id
+        say("WARNING", f"|yarp.sig.Sound| Sound marker not found: {label}")
+        return default
+
+    def subSound(self, first_sample: int | str, last_sample: int | str) -> Sound:
+        """The samples from one index up to another; from one marker to another, with both."""
+        if isinstance(first_sample, str) or isinstance(last_sample, str):
+            first_sample = self._marked(str(first_sample), 0)
+            last_sample = self._marked(str(last_sample), self.getSamples() - 1) + 1
         found = Sound()
         found._frequency = self._frequency
         found._channels = [one[first_sample:last_sample] for one in self._channels]
@@ -115,6 +205,7 @@ class Sound(Portable):
         if channel.getSamples() != self.getSamples() or not 0 <= id < self.getChannels():
             return False
         self._channels[id] = channel._channels[0][:]
+        self._markers.clear()
         return True
 
     def amplify(self, gain: float) -> None:

@@ -1,4 +1,4 @@
-"""Sounds that are made: makeTone, makeSquareWave, makeSawTooth, mix; SoundMarker, of YARP 4."""
+"""Sounds that are made: makeTone, makeSquareWave, makeSawTooth, mix."""
 
 from __future__ import annotations
 
@@ -8,16 +8,6 @@ from collections.abc import Callable
 
 from yarp._log import say
 from yarp._sound import Sound
-
-
-class SoundMarker:
-    """A place in a sound with a name: `channel` -1 is all of them."""
-
-    def __init__(self) -> None:
-        self.label, self.sample_id, self.channel = "", 0, -1
-
-    def isEqual(self, other: SoundMarker) -> bool:
-        return self.__dict__ == other.__dict__
 
 
 def _make(

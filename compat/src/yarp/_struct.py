@@ -53,6 +53,11 @@ class LLM_Message(Portable):
         return f"<yarp.LLM_Message {self.toString()}>"
 
 
+class _Corner(thrift.Struct):
+    x: thrift.i32 = 0
+    y: thrift.i32 = 0
+
+
 class _Record(Portable):
     """A struct of `yarpy.devices` whose fields are plain attributes."""
 
@@ -120,6 +125,12 @@ class Map2DObject(_Record):
             return False
         height = self.z - other.z if isinstance(other, Map2DObject) else 0.0
         return math.hypot(self.x - other.x, self.y - other.y, height) <= linear_tolerance
+
+
+class vertex_t(_Record):
+    """`vertex_t(x, y)`: a corner of what is cut out of a picture."""
+
+    _struct = _Corner
 
 
 class OdometryData(_Record):

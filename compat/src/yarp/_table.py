@@ -17,6 +17,8 @@ _MODULES = {
     "_portable": "Portable PortReader PortWriter PortReaderCreator",
     "_connection": "ConnectionReader ConnectionWriter",
     "_contact": "Contact ContactStyle",
+    "_nested_contact": "NestedContact",
+    "_portable_pair": "PortablePairBase",
     "_contactable": "Contactable PortReport PortInfo",
     "_abstract_contactable": "UnbufferedContactable AbstractContactable",
     "_stamp": "Stamp",
@@ -24,7 +26,7 @@ _MODULES = {
     "useCustomClock isSystemClock isNetworkClock isCustomClock isClockInitialized getClockType "
     "clockTypeToString YARP_CLOCK_UNINITIALIZED YARP_CLOCK_DEFAULT YARP_CLOCK_SYSTEM "
     "YARP_CLOCK_NETWORK YARP_CLOCK_CUSTOM",
-    "_log": "Log yTrace yDebug yInfo yWarning yError",
+    "_log": "Log yTrace yDebug yInfo yWarning yError yarp_print_trace",
     "_network": "Network NetworkBase",
     "_port": "Port",
     "_rpc": "RpcServer RpcClient",
@@ -50,17 +52,18 @@ _MODULES = {
     "_vector": "Vector VectorInt VectorBase",
     "_matrix": "Matrix removeCols removeRows submatrix",
     "_sound": "Sound",
-    "_sound_tools": "SoundMarker makeTone makeSquareWave makeSawTooth mix",
+    "_sound_marker": "SoundMarker",
+    "_sound_tools": "makeTone makeSquareWave makeSawTooth mix",
     "_pixel": "PixelRgb PixelRgba PixelRgbFloat PixelBgr PixelBgra PixelHsv PixelHsvFloat "
     "PixelRgbSigned PixelRgbInt",
-    "_net_int": "NetInt16 NetInt32 NetInt64",
+    "_net_int": "NetInt16 NetInt32 NetInt64 UnionNetInt64",
     "_qos": "QosStyle",
-    "_device": "IConfig DeviceDriver DeviceResponder Drivers",
+    "_device": "IConfig DeviceDriver DeprecatedDeviceDriver DeviceResponder Drivers",
     "_return_value": "ReturnValue",
     "_map_grid": "MapGrid2D",
     "_image": "Image ImageRgb ImageRgba ImageRgbFloat ImageMono ImageMono16 ImageInt ImageFloat "
     "FlexImage PAD_BYTES",
-    "_file": "read write",
+    "_file": "read write read_bytestream write_bytestream",
     "_vocab": "encode decode createVocab createVocab32 VOCAB VOCAB1 VOCAB2 VOCAB3 VOCAB4 Vocab "
     "createVocab64 encode64 decode64",
     "_navigation_view": "INavigation2D INavigation2DTargetActions INavigation2DControlActions "
@@ -70,7 +73,7 @@ _MODULES = {
     "_gaze_view": "IGazeControl GazeEvent GazeEventParameters GazeEventVariables",
     "_map_place": "Map2DLocation Map2DPath Map2DArea",
     "_struct": "Map2DLocationVector Map2DObject OdometryData Pose6D ColorRGB LLM_Message "
-    "LLMVector Map2DLocationData Map2DPathData Map2DAreaData Map2DObjectData",
+    "LLMVector Map2DLocationData Map2DPathData Map2DAreaData Map2DObjectData vertex_t",
     "_map_port": "BufferedPortMap2DLocation BufferedPortMap2DArea BufferedPortMap2DPath "
     "BufferedPortMapGrid2D TypedReaderMap2DLocation TypedReaderMap2DArea TypedReaderMap2DPath "
     "TypedReaderMapGrid2D Map2DLocationCallback Map2DAreaCallback Map2DPathCallback "
@@ -87,30 +90,34 @@ _MODULES = {
     "ICurrentControl IPWMControl IImpedanceControl MotorTorqueParameters",
     "_measuring_view": "IEncoders IEncodersTimed IMotorEncoders IMotor IAmplifierControl "
     "IAxisInfo IJointFault IRemoteVariables",
-    "_control_view": "IControlMode IInteractionMode IControlLimits IPidControl Pid PidVector "
-    "PidWithExtraInfo",
+    "_control_view": "IControlMode IInteractionMode IControlLimits",
+    "_pid_view": "IPidControl Pid PidVector PidWithExtraInfo PidDataDescription PidDataUnits "
+    "PidExtraInfo",
     "_sensor_view": "IThreeAxisGyroscopes IThreeAxisLinearAccelerometers IThreeAxisMagnetometers "
     "IOrientationSensors ITemperatureSensors ISixAxisForceTorqueSensors IPositionSensors "
     "IContactLoadCellArrays IEncoderArrays ISkinPatches ILinearVelocitySensors "
     "IThreeAxisAngularAccelerometers",
     "_camera_view": "IFrameGrabberImageBase IFrameGrabber IFrameGrabberImage IFrameGrabberRgb "
     "IFrameGrabberControls CameraDescriptor",
+    "_device_view": "IAnalogSensor IJointCoupling IFrameWriterImage",
+    "_absent": "NameStore Wire WireLink DriverCreator StubDriverCreator LogStream IControlDebug "
+    "IFrameGrabberControlsDC1394",
 }
 WHERE = {name: module for module, names in _MODULES.items() for name in names.split()}
 
 #: Whose static methods are also functions: `Network_connect`.
 CLASSES = frozenset(name for name in WHERE if name[0].isupper() and not name.isupper())
 
-#: What the bindings of C++ have and this does not, and why.
+#: What the bindings of C++ have and means nothing here, and why: it refuses when it is called.
 NOT_HERE: dict[str, str] = {
     "IFrameGrabberControlsDC1394": "it sets registers of FireWire cameras, which nobody has here: "
     "viewIFrameGrabberControls has brightness, gain and the rest",
     "NameStore": "a program that answers for names in C++; yarpy has name clients, see "
     "CONTRIBUTING.md",
-    "Wire": "the base of C++ code that is made of Thrift files: yarpidl_thrift makes Python",
-    "WireLink": "as Wire",
+    "Wire": "it is the base of what C++ makes of Thrift files: yarpidl_thrift makes Python",
+    "WireLink": "it is a part of what C++ makes of Thrift files: yarpidl_thrift makes Python",
     "DriverCreator": "a class of Python is a device without a factory: PolyDriver.attach serves it",
-    "StubDriverCreator": "as DriverCreator",
-    "LogStream": "the << of C++: yarp.Log().info(text)",
-    "get_allocator": "where the memory of a vector of C++ comes from",
+    "StubDriverCreator": "types of devices in Python are found by the entry point yarpy.devices",
+    "LogStream": "it is the << of C++: yarp.Log().info(text)",
+    "IControlDebug": "no device tells of the memory from which a motor's board starts",
 }

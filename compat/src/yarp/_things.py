@@ -135,8 +135,12 @@ class DummyConnector:
         data = encoded(native)
         if self._text:
             line = yarpy.Bottle.from_bytes(data).to_text() + "\n"
-            return ConnectionReader(yarpy.Message("D", line.encode(), spelling="text"))
-        return ConnectionReader(yarpy.Message("D", data))
+            found = yarpy.Message("D", line.encode(), spelling="text")
+        else:
+            found = yarpy.Message("D", data)
+        reader = ConnectionReader(found, self._writer._reference)
+        reader.setParentConnectionReader(parentConnectionReader)
+        return reader
 
     def reset(self) -> None:
         """Forget what was written."""

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import yarpy
 from yarp._portable import Portable
+from yarp._vocab64 import Word64, code64, word64
 from yarpy.data.text import plain_text
 
 TAG_LIST: Final = 256
@@ -60,6 +61,11 @@ def vocab(*words: Any) -> yarpy.Vocab:
     if len(words) > 1 or isinstance(words[0], str):
         return yarpy.Vocab("".join(map(text, words)))
     return yarpy.Vocab.from_code(int32(words[0]))
+
+
+def vocab64(x: Any) -> Word64:
+    """A word of up to eight letters, of a code or the word."""
+    return Word64(x[:8]) if isinstance(x, str) else Word64(word64(whole(x, 64)))
 
 
 def native_int(value: int) -> int:
@@ -133,6 +139,10 @@ class Value(Portable):
     def isVocab32(self) -> bool:
         return isinstance(self._native, yarpy.Vocab | bool)
 
+    def isVocab64(self) -> bool:
+        """Return whether it was made by `addVocab64`; what has come over a port is a string."""
+        return type(self._native) is Word64
+
     def isBlob(self) -> bool:
         return isinstance(self._native, bytes | bytearray | memoryview)
 
@@ -201,6 +211,13 @@ class Value(Portable):
         if isinstance(value, float):
             return 0
         return yarpy.Vocab(value).code if type(value) is str else self._whole(32)
+
+    def asVocab64(self) -> int:
+        """The number of a word of up to eight letters, or an integer as it is."""
+        value = self._native
+        if isinstance(value, float):
+            return 0
+        return code64(plain_text(value)) if isinstance(value, str) else self._whole(64)
 
     def asBlob(self) -> bytes | None:
         return bytes(self._native) if self.isBlob() else None

@@ -6,6 +6,7 @@ from typing import Any
 
 import yarpy
 from yarp._value import int32, text
+from yarp._vocab64 import code64, word64
 
 
 def createVocab32(a: Any, *more: Any) -> int:
@@ -38,8 +39,7 @@ def decode(code: int) -> str:
 
 def createVocab64(a: Any, *more: Any) -> int:
     """The number of a word of up to eight letters, or of these one by one."""
-    letters = "".join(map(text, (a, *more))).encode("latin-1", "replace")[:8]
-    return int.from_bytes(letters.ljust(8, b"\0"), "little", signed=True)
+    return code64("".join(map(text, (a, *more))))
 
 
 def encode64(str: str) -> int:
@@ -49,8 +49,7 @@ def encode64(str: str) -> int:
 
 def decode64(code: int) -> str:
     """The word of such a number."""
-    letters = (code & 0xFFFFFFFFFFFFFFFF).to_bytes(8, "little")
-    return letters.rstrip(b"\0").decode("latin-1")
+    return word64(code)
 
 
 class Vocab:

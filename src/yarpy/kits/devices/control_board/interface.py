@@ -117,6 +117,8 @@ class PidController(Protocol):
     error_limits: Sequence[float]
     offsets: Sequence[float]  # added to the output
     enabled: Sequence[bool]
+    #: texts for programs of YARP 4: `description`, `input`, `output`, and units by names of `Gains`
+    details: Sequence[Mapping[str, str]]
 
     def errors(self) -> Sequence[float]:
         """Target minus measurement."""

@@ -5,7 +5,7 @@ Rules: whoever asks the board is handed in, in the words of YARP 3 or the functi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, MutableMapping, Sequence
+from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from typing import Any, Protocol
 
 from yarpy.errors import LocalProtocolError
@@ -74,6 +74,11 @@ class RemotePids:
     def reset(self, joints: Sequence[int]) -> None:
         """Reset the integral."""
         self._ask.write("reset", joints, None)
+
+    @property
+    def details(self) -> Sequence[Mapping[str, str]]:
+        """What is said of each controller; boards of YARP 4 alone tell."""
+        return self._ask.read("details")
 
     @property
     def offsets(self) -> tuple[float, ...]:

@@ -188,3 +188,16 @@ def test_others_get_fail(server: Functions) -> None:
     assert ask(server, Bottle([Vocab("get"), Vocab("encs")]).to_bytes()) == (
         bytes.fromhex("09010000010000006661696c")
     )
+
+
+def test_what_is_said_of_controllers() -> None:
+    device = Head()
+    device.pids["pos"].details = [{"description": "positions", "kp": "V/deg"}] * 3  # type: ignore[attr-defined]
+    server = Functions(Board(device, "/head"))
+    kind = Vocab("pos1").code
+    status, *told = call(server, "getPidExtraInfo", kind, 1)
+    assert told == [["positions", "", "", "V/deg", *[""] * 9]], status
+    _, everything = call(server, "getPidExtraInfos", kind)
+    assert len(everything) == 3
+    device.pids["pos"].details = [{"colour": "red"}] * 3  # type: ignore[attr-defined]
+    assert "positions" not in str(call(server, "getPidExtraInfo", kind, 1))

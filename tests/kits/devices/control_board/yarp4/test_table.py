@@ -64,3 +64,12 @@ def test_numbers_are_finite(bad: float) -> None:
     ):  # fmt: skip
         with pytest.raises(Refused):
             shape.gather(fields)
+
+
+def test_what_is_said_of_controllers_is_texts_by_name() -> None:
+    said = table.DETAILS.kind.check({"kp": "V/deg"})
+    (sent,) = table.DETAILS.spread(said)
+    found = table.DETAILS.gather([sent])
+    assert found["kp"] == "V/deg" and found["ki"] == "" and len(found) == 13
+    with pytest.raises(ValueError, match="not colour"):
+        table.DETAILS.kind.check({"colour": "red"})

@@ -32,9 +32,9 @@ class Pid(thrift.Struct):
 class PidDetails(thrift.Struct):
     """Texts about a controller: three, and one for each gain."""
 
-    unit_in: str = ""
-    unit_out: str = ""
-    type: str = ""
+    description: str = ""
+    input: str = ""
+    output: str = ""
     kp: str = ""
     kd: str = ""
     ki: str = ""

@@ -19,7 +19,7 @@ struct Pid {
 
 /** Texts about a controller: three, and one for each gain. */
 struct PidDetails {
-  1: string unit_in, 2: string unit_out, 3: string type,
+  1: string description, 2: string input, 3: string output,
   4: string kp, 5: string kd, 6: string ki, 7: string max_integral, 8: string scale,
   9: string max_output, 10: string offset, 11: string stiction_up, 12: string stiction_down,
   13: string feed_forward

@@ -25,7 +25,7 @@ from yarpy.kits.devices.control_board.grammar import (
     Words,
 )
 from yarpy.kits.devices.control_board.interface import Gains, MotorTorqueParameters
-from yarpy.kits.devices.control_board.yarp4.functions import Pid, TorqueParameters
+from yarpy.kits.devices.control_board.yarp4.functions import Pid, PidDetails, TorqueParameters
 from yarpy.kits.devices.kind import (
     FAULT,
     FLAG,
@@ -116,6 +116,27 @@ class GainsShape(Shape):
         return tuple(number(getattr(fields[0], name)) for name in Gains._fields)
 
 
+class DetailsKind(Kind):
+    """What is said of a controller: texts by name."""
+
+    def check(self, value: Any) -> Any:
+        names = PidDetails._attributes
+        unknown = sorted(set(value) - set(names))
+        if unknown:
+            raise ValueError(f"controllers are told {', '.join(names)}, not {unknown[0]}")
+        return {name: str(value[name]) for name in names if name in value}
+
+
+class DetailsShape(Shape):
+    """What is said of a controller."""
+
+    def spread(self, value: Any) -> list[Any]:
+        return [PidDetails(**value)]
+
+    def gather(self, fields: Sequence[Any]) -> Any:
+        return {name: str(getattr(fields[0], name)) for name in PidDetails._attributes}
+
+
 class TorqueShape(Shape):
     """How a motor produces torque."""
 
@@ -139,6 +160,7 @@ STIFFNESS_RANGE: Final = Numbers(IMPEDANCE_RANGE, 4)
 FAULTS: Final = Several(FAULT, 2)
 TORQUE: Final = TorqueShape(FIELDS_OF_TORQUE)
 GAINS_: Final = GainsShape(GAINS)
+DETAILS: Final = DetailsShape(DetailsKind())
 NONE: Final = Shape(NOTHING)
 
 
@@ -240,6 +262,7 @@ WRITE: Final[tuple[Row, ...]] = (
 #: functions whose first argument is a kind of controllers
 PID_READ: Final[tuple[Row, ...]] = (
     Row("getPid", "getPids", "", "gains", GAINS_),
+    Row("getPidExtraInfo", "getPidExtraInfos", "", "details", DETAILS),
     Row("getPidReference", "getPidReferences", "", "targets"),
     Row("getPidErrorLimit", "getPidErrorLimits", "", "error_limits"),
     Row("getPidError", "getPidErrors", "", "errors"),
