@@ -163,6 +163,25 @@ class Recording:
             for found in storage.attachments
         }
 
+    def attached_sizes(self) -> dict[str, int]:
+        """Return how many bytes these files have, by their names."""
+        return {
+            found.name: found.size
+            for storage in self.storages
+            if isinstance(storage, McapStorage)
+            for found in storage.attachments
+        }
+
+    def attachment(self, name: str) -> bytes:
+        """Return one of these files. Raises KeyError if there is none of that name, DecodeError if
+        it has changed."""
+        for storage in reversed(self.storages):
+            if isinstance(storage, McapStorage):
+                for found in storage.attachments:
+                    if found.name == name:
+                        return storage.attached(found)
+        raise KeyError(name)
+
     def mark(self, text: str) -> float:
         """Return when a moment was marked with that text, in seconds from the beginning. Raises
         UnknownName."""

@@ -191,3 +191,25 @@ def test_points_and_sounds(browser: Browser, sensors: View) -> None:
     page.locator("figure", has_text="/ear").get_by_text("Hear").click()
     assert page.get_attribute("figure:has-text('/ear') .hear", "aria-pressed") == "true"
     assert "300 points of /depth" in (page.get_attribute(".space", "aria-label") or "")
+
+
+def test_files_logs_and_names_of_joints(browser: Browser, tmp_path: Path) -> None:
+    with McapWriter(tmp_path / "x.mcap") as writer:
+        writer.attach("walk.xml", b"<application/>", "application/xml")
+        for n in range(3):
+            time = START + n * SECOND
+            line = ["[/log/lab/demo/7]", f"(level INFO) (systemtime 12.5) (message line{n})"]
+            writer.add("/log", "", time, payload_of(line))
+            state_ = [[[1, 2], "f"], ["hip", "knee"], [n + 0.5, 7.0], [], []]
+            writer.add("/joints", "", time, payload_of(state_))
+    with FileSource([tmp_path / "x.mcap"]) as source, View(source, port=0) as view:
+        page = browser.open(view.url)
+        wait_until(lambda: "knee position 7" in card(page, "/joints"))
+        assert "hip position 0.5" in card(page, "/joints")
+        assert page.get_by_role("link", name="walk.xml").get_attribute("download") == "walk.xml"
+        wait_until(lambda: "INFO /log/lab/demo/7: line0" in card(page, "/log"))
+        page.keyboard.press("End")  # where one is led at once, the lines before are there, too
+        wait_until(
+            lambda: "line2" in card(page, "/log") and "hip position 2.5" in card(page, "/joints")
+        )
+        assert "line1" in card(page, "/log") and "line0" in card(page, "/log")

@@ -10,12 +10,14 @@ from pathlib import Path
 
 import pytest
 from support.foxglove_client import Client
-from support.recordings import START, STEP
+from support.recordings import START, STEP, payload_of
 from support.wait import HANG, wait_until
 
 from yarpy import record
+from yarpy.kits.record.mcap.writer import McapWriter
 from yarpy.kits.record.view import server
 from yarpy.kits.record.view.server import View
+from yarpy.kits.record.view.source import FileSource
 
 
 def get(url: str, headers: dict[str, str] | None = None) -> tuple[int, HTTPMessage, bytes]:
@@ -110,3 +112,33 @@ def test_one_stretch_is_cut_out_at_a_time(view: View, monkeypatch: pytest.Monkey
         code, _, body = get(view.url + "cut.mcap?begin=0.1&end=0.2")
     assert code == 503 and b"another stretch" in body
     assert get(view.url + "cut.mcap?begin=0.1&end=0.2")[0] == 200
+
+
+def test_files_and_lines_of_a_log(tmp_path: Path) -> None:
+    with McapWriter(tmp_path / "x.mcap") as writer:
+        writer.attach("walk.xml", b"<application/>", "application/xml")
+        for n in range(2):
+            line = ["[/log/lab/demo/7]", f"(level INFO) (systemtime 12.5) (message {'ab'[n]})"]
+            writer.add("/log", "", START + n * STEP, payload_of(line))
+    with FileSource([tmp_path / "x.mcap"]) as source, View(source, port=0) as view:
+        told = json.loads(get(view.url + "timeline")[2])
+        assert told["attached"] == [{"name": "walk.xml", "size": 14}]
+        code, headers, body = get(view.url + "attached?name=walk.xml")
+        assert (code, body) == (200, b"<application/>")
+        assert headers["Content-Type"] == "application/octet-stream"
+        assert get(view.url + "attached?name=other")[0] == get(view.url + "attached")[0] == 404
+        assert get(view.url + "log?port=/none")[0] == 404
+        assert get(view.url + "log?port=/log&end=x")[0] == 400
+        lines = json.loads(get(view.url + "log?port=/log&end=0.001")[2])
+        assert [one["text"] for one in lines] == ["a"]
+        assert len(json.loads(get(view.url + "log?port=/log")[2])) == 2
+
+
+def test_names_of_joints(tmp_path: Path) -> None:
+    with McapWriter(tmp_path / "x.mcap") as writer:
+        state = [[[1, 2], "f"], ["hip", "knee"], [0.5, 1.5], [], []]
+        writer.add("/joints", "", START, payload_of(state))
+    with FileSource([tmp_path / "x.mcap"]) as source, View(source, port=0) as view:
+        found = json.loads(get(view.url + "curve?port=/joints")[2])
+    assert found["names"] == ["", "", "hip position", "knee position"]
+    assert len(found["columns"]) == 4

@@ -12,7 +12,7 @@ from yarpy.kits.record.envelope import SECOND
 from yarpy.kits.record.form.form import Bytes, Spelled
 from yarpy.kits.record.form.protobuf import encode, timestamp
 from yarpy.kits.record.form.sensor import form_of
-from yarpy.port.keep.log_line import read_message
+from yarpy.port.keep.log_line import LogLine, read_message
 from yarpy.wire.message import DATA, Message
 
 LINE: Final = form_of("foxglove.Log")
@@ -22,8 +22,8 @@ _HEADER: Final = (b"[/", b"[]")  # of a port that hands lines on
 _AT: Final = 12  # where the first string begins
 
 
-def line(payload: Bytes, sent: int, port: str) -> Spelled | None:
-    """Return a line of a log; None for what is none."""
+def read_line(payload: Bytes, port: str) -> LogLine | None:
+    """Return what a message of that port says to a log; None for what is no line of one."""
     if payload[:8] != _BEGINNING or payload[_AT : _AT + 2] not in _HEADER:
         return None
     message = Message(DATA, payload, "")
@@ -32,7 +32,13 @@ def line(payload: Bytes, sent: int, port: str) -> Spelled | None:
         found = read_message(message)
     except YarpError:
         return None
-    if found is None or not found.level:
+    return found if found is not None and found.level else None
+
+
+def line(payload: Bytes, sent: int, port: str) -> Spelled | None:
+    """Return a line of a log; None for what is none."""
+    found = read_line(payload, port)
+    if found is None:
         return None
     more = found.more
     values = {

@@ -17,6 +17,7 @@ import numpy as np
 from yarpy.kits.record.envelope import SECOND
 from yarpy.kits.record.recorded import Recorded
 from yarpy.kits.record.recording import Recording
+from yarpy.kits.record.view.labels import labels_of
 from yarpy.kits.record.view.source import rows_of
 from yarpy.kits.record.view.spelling import NUMBERS, numbers_of, text_of
 
@@ -29,12 +30,15 @@ DAY: Final = 86_400.0  # seconds within which a number is the time of its messag
 def curves(
     recording: Recording, port: str, origin: int, begin: int, end: int, points: int
 ) -> dict[str, Any]:
-    """Return the `times` in seconds from `origin`, and `columns` of values; begin, end, origin in
-    nanoseconds."""
+    """Return the `times` in seconds from `origin`, `columns` of values, and the names that these
+    have in the first message, if any; begin, end, origin in nanoseconds."""
     points = min(max(points, 10), POINTS)
     taken: list[tuple[int, Recorded | list[float]]] = []
     every, number = 1, -1
+    names: list[str] = []
     for number, recorded in enumerate(rows_of(recording, port, begin, end)):
+        if not number:
+            names = labels_of(recorded, NUMBERS)
         if number % every == 0:
             taken.append((recorded.received_ns, _kept(recorded)))
             if len(taken) >= DECODED:
@@ -52,7 +56,13 @@ def curves(
         [None if value != value or abs(value) == np.inf else value for value in column]
         for column in table.T.tolist()
     ]
-    return {"times": found_times.tolist(), "columns": columns, "every": every, "of": number + 1}
+    return {
+        "times": found_times.tolist(),
+        "columns": columns,
+        "names": names,
+        "every": every,
+        "of": number + 1,
+    }
 
 
 def _kept(recorded: Recorded) -> Recorded | list[float]:

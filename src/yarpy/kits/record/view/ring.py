@@ -222,6 +222,10 @@ class LiveSource:
         """Return the last message of each port that is not after that time."""
         return self._ring.last(ports, time)
 
+    def attachment(self, name: str) -> bytes:
+        """Raise KeyError: what is live was given no files."""
+        raise KeyError(name)
+
     def told(self) -> dict[str, Any]:
         """Return what the time line of a page shows."""
         ports, times = self._ring.moments()

@@ -2,6 +2,8 @@
 
     GET /             the page           GET /timeline     ports, gaps and marks, as JSON
     GET /curve        ?port=&begin=&end=&points=           the numbers of a port, as JSON
+    GET /log          ?port=&end=                          the lines of a log until then, as JSON
+    GET /attached     ?name=                               a file that the recording was given
     GET /data.csv     ?port=&begin=&end=                   all of them as a file
     GET /cut.mcap     ?begin=&end=                         a stretch of time as a recording
     GET / with Upgrade: websocket                          the protocol of Foxglove
@@ -37,6 +39,7 @@ from yarpy.kits.record.convert import convert
 from yarpy.kits.record.view.curve import as_csv, curves
 from yarpy.kits.record.view.foxglove import PORT, PROTOCOLS, status
 from yarpy.kits.record.view.limited_server import LimitedServer
+from yarpy.kits.record.view.log import lines_before
 from yarpy.kits.record.view.overview import SECOND
 from yarpy.kits.record.view.session import Session
 from yarpy.kits.record.view.source import Source
@@ -122,6 +125,12 @@ class View:
         with self.source.open() as recording:
             return curves(recording, self.known(fields), self.origin(fields), begin, end, points)
 
+    def lines(self, fields: Mapping[str, str]) -> list[dict[str, Any]]:
+        """Return the last lines of a log before the end of a stretch."""
+        _, end = self.stretch(fields)
+        with self.source.open() as recording:
+            return lines_before(recording, self.known(fields), self.origin(fields), end)
+
     def csv(self, fields: Mapping[str, str]) -> Iterator[bytes]:
         """Yield the lines of a file."""
         with self.source.open() as recording:
@@ -204,6 +213,11 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(json.dumps(view.source.told()).encode(), "application/json")
         elif path == "/curve":
             self._send(json.dumps(view.curve(fields)).encode(), "application/json")
+        elif path == "/log":
+            self._send(json.dumps(view.lines(fields)).encode(), "application/json")
+        elif path == "/attached":
+            content = view.source.attachment(fields["name"])
+            self._send(content, "application/octet-stream")
         elif path == "/data.csv":
             view.known(fields)
             view.stretch(fields)

@@ -53,6 +53,9 @@ class Source(Protocol):
     def told(self) -> dict[str, Any]:
         """Return what the time line of a page shows."""
 
+    def attachment(self, name: str) -> bytes:
+        """Return a file that was given to the recording. Raises KeyError, DecodeError."""
+
     def close(self) -> None:
         """Stop what is done in the background."""
 
@@ -101,6 +104,8 @@ class FileSource:
             }
             self._counts = {name: facts.messages for name, facts in known.items()}
             self._notes = recording.notes()
+        with open_recording(*self._paths) as recording:
+            self._attached = recording.attached_sizes()
         self.seen = 0.0  # how much of the time line is there, 1 for all
         self.problem = ""
         self._closing = threading.Event()
@@ -158,7 +163,18 @@ class FileSource:
     def told(self) -> dict[str, Any]:
         """Return what the time line of a page shows."""
         found = timeline(self, self._overview, self._counts, self._notes)
-        return {**found, "seen": round(self.seen, 3), "problem": self.problem}
+        attached = [{"name": name, "size": size} for name, size in self._attached.items()]
+        return {
+            **found,
+            "seen": round(self.seen, 3),
+            "problem": self.problem,
+            "attached": attached[:SHOWN_NOTES],
+        }
+
+    def attachment(self, name: str) -> bytes:
+        """Return a file that was given to the recording. Raises KeyError, DecodeError."""
+        with open_recording(*self._paths) as recording:
+            return recording.attachment(name)
 
     def close(self) -> None:
         """Stop making the time line."""

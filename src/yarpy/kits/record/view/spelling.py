@@ -20,10 +20,12 @@ from yarpy.data.sig.image import Image
 from yarpy.data.sig.pointcloud import PointCloud
 from yarpy.data.sig.vector import Vector
 from yarpy.errors import YarpError
+from yarpy.kits.record.form.line import read_line
 from yarpy.kits.record.form.protobuf import descriptor_set, encode, timestamp
 from yarpy.kits.record.kind import kind_of
 from yarpy.kits.record.recorded import Recorded
 from yarpy.kits.record.view.foxglove import Channel
+from yarpy.kits.record.view.labels import labels_of
 from yarpy.kits.record.view.media import media_of
 
 PICTURE: Final = "yarp/image"
@@ -60,6 +62,11 @@ def spelled(recorded: Recorded, kind: str) -> bytes:
     values = numbers_of(recorded)
     if values:
         found["v"] = [value if math.isfinite(value) else None for value in values]
+        names = labels_of(recorded, len(values))
+        if names:
+            found["names"] = names
+    elif read_line(recorded.payload, recorded.port) is not None:
+        found["log"] = True
     found["text"] = text_of(recorded)
     if recorded.envelope:
         found["envelope"] = recorded.envelope[:TEXT]

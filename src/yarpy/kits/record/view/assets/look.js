@@ -135,6 +135,19 @@ function cut() {
   say(byId("command").firstElementChild, told.live ? "" : shown);
 }
 
+// The files that were given to the recording.
+function files(attached) {
+  const list = byId("files");
+  list.hidden = !attached.length;
+  for (const {name, size} of attached) {
+    const link = document.createElement("a");
+    link.href = `/attached?${new URLSearchParams({name})}`;
+    link.download = name;
+    say(link, `${name} (${size} bytes)`);
+    list.append(link);
+  }
+}
+
 // -- what the program tells --
 
 async function look() {
@@ -156,6 +169,7 @@ async function look() {
   document.title = `${found.title} - yarpy view`;
   say(byId("trouble"), found.problem || (found.ports.length ? "" : "Nothing came yet."));
   byId("live").hidden = !found.live;
+  if (initial) files(found.attached ?? []);
   if (initial) following = playing = found.live;
   if (initial || whole) line.whole();
   else if (found.live && following) line.move(shift + found.length - line.view.length);

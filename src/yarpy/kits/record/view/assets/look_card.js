@@ -2,7 +2,7 @@
 // the message as text.
 
 import {ask, copyOf, fileName, part, save, say} from "/*/common.js";
-import {Plot} from "/*/plot.js";
+import {Plot, colour} from "/*/plot.js";
 import {Cloud} from "/look_cloud.js";
 import {pictureOf} from "/look_link.js";
 import {Voice} from "/look_sound.js";
@@ -48,9 +48,41 @@ export class Card {
     const said = JSON.parse(new TextDecoder().decode(bytes));
     const number = said.envelope ? `number ${said.envelope.split(" ")[0]}, ` : "";
     say(part(this.figure, "facts"), `${number}${time.toFixed(3)} s`);
-    say(part(this.figure, "text"), said.text);
+    this.values = said.v;
+    if (said.log) this.lines(time);
+    else say(part(this.figure, "text"), said.text);
+    this.legend(said.names);
     this.points(said.cloud);
     this.sounds(said.sound);
+  }
+
+  // The lines of a log until the moment that is shown, however one came there.
+  lines(time) {
+    this.moment = time;
+    clearTimeout(this.reading);
+    this.reading = setTimeout(async () => {
+      // A line is asked for by its own time, of which a double has not every nanosecond.
+      const words = {port: this.port.name, origin: String(this.origin), end: (time + 1e-6).toFixed(6)};
+      const found = await ask(`/log?${new URLSearchParams(words)}`);
+      if (!found || this.moment !== time) return;
+      const text = part(this.figure, "text");
+      say(text, found.map((one) => `${one.t.toFixed(3)} ${one.level} ${one.from}: ${one.text}`).join("\n"));
+      text.scrollTop = text.scrollHeight;
+    }, this.origin === undefined ? WAIT : 0);
+  }
+
+  // The names of numbers, in the colours of their curves, with what they are at the cursor.
+  legend(names) {
+    const list = part(this.figure, "legend");
+    list.hidden = !names?.length;
+    if (list.hidden) return;
+    while (list.children.length > names.length) list.lastElementChild.remove();
+    names.forEach((name, number) => {
+      const row = list.children[number] ?? list.appendChild(document.createElement("li"));
+      row.style.color = colour(number);
+      const value = this.values?.[number];
+      say(row, `${name || number} ${value === null || value === undefined ? "" : Number(value.toPrecision(6))}`);
+    });
   }
 
   points(found) {
@@ -76,12 +108,15 @@ export class Card {
     this.jpeg = null;
     this.image.hidden = part(this.figure, "save").hidden = true;
     for (const name of ["space", "wave", "hear"]) part(this.figure, name).hidden = true;
+    this.moment = null;
+    this.legend(null);
     say(part(this.figure, "facts"), "nothing came until here");
     say(part(this.figure, "text"), "");
   }
 
   // Draw the curves of what the time line shows; ask for them if that has changed.
   show(view, cursor, origin) {
+    this.origin = origin;
     if (this.pictured) return;
     const question = `/curve?${new URLSearchParams({
       port: this.port.name,
