@@ -41,12 +41,13 @@ _USUAL: Final = re.compile(
     r"(?: \(component ([A-Za-z_][\w.]*)\))?(?: \(id ([A-Za-z_][\w.]*)\))?"
     r' \(message (?:"([^"\\]*)"|([A-Za-z_]\w*))\)'
 )
-_TWO: Final = Struct("<2i").pack(LIST + STRING, 2)  # a list of two strings begins so
+_TWO: Final = (LIST + STRING, 2)  # a list of two strings begins so,
+_HEAD: Final = Struct("<3i")  # and with the length of the first one
 _COUNT: Final = Struct("<i")
 _LEVEL: Final = re.compile(r"\[(TRACE|DEBUG|INFO|WARNING|ERROR|FATAL)\]\s?(.*)", re.S)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)  # a frozen one takes twice as long to make, and there are many
 class LogLine:
     """A line of a log. `origin`: the port; `time` in seconds since 1970, 0.0 if it is not told;
     `level` one of LEVELS, or ""; `more`: everything else that was told."""
@@ -116,17 +117,19 @@ def read_message(message: Message) -> LogLine | None:
 
 def _pair(payload: Any) -> tuple[str, str] | None:
     """Return the two strings of a message, None if it is another one, or a longer one."""
-    data = bytes(payload[: 3 * LONGEST]) if len(payload) <= 2 * LONGEST else b""
-    if not data.startswith(_TWO) or len(data) < 16:
+    size = len(payload)
+    if not 16 <= size <= 2 * LONGEST:
         return None
-    first = 12 + _COUNT.unpack_from(data, 8)[0]
-    if not 12 <= first <= len(data) - 4:
+    data = bytes(payload)
+    code, count, first = _HEAD.unpack_from(data)
+    if (code, count) != _TWO or not 0 <= first <= size - 16:
         return None
-    second = first + 4 + _COUNT.unpack_from(data, first)[0]
-    if second != len(data) or second < first + 4:
+    first += 12
+    second = first + 4
+    if second + _COUNT.unpack_from(data, first)[0] != size:
         return None
     try:
-        return data[12:first].decode(), data[first + 4 : second].decode()
+        return data[12:first].decode(), data[second:].decode()
     except UnicodeDecodeError:
         return None
 
@@ -154,7 +157,10 @@ def _line(header: str, text: str, source: str) -> LogLine:
         if id_ is not None:
             more["id"] = id_
         said = word if quoted is None else quoted
-        return LogLine(origin, level, said, _time(float(moment)), component or "", more)
+        seconds = float(moment)
+        return LogLine(
+            origin, level, said, seconds if seconds < LATEST else 0.0, component or "", more
+        )
     found = _fields(text) if text.startswith("(") else {}
     if "level" not in found:
         match = _LEVEL.match(text)

@@ -46,3 +46,18 @@ def test_members_are_found_by_session_and_by_mark() -> None:
             child.kill()
             child.wait()
     assert process.members({a: "run/a"}, {"run/a", "run/b"}) == {}
+
+
+def test_a_second_look_is_at_what_was_unclear_or_is_new() -> None:
+    marked = {**os.environ, "A_BIG_ONE": "x" * 60_000, process.MARK: "run/a"}
+    child = subprocess.Popen(["sleep", "600"], env=marked)
+    try:
+        wait_until(lambda: process.mark_of(child.pid) == "run/a")
+        known = {child.pid: (1, "as it was")}
+        assert process.rescan(process.Scan(known, set())).found[child.pid] == (1, "as it was")
+        for before in (process.Scan(known, {child.pid}), process.Scan({}, set())):
+            assert process.rescan(before).found[child.pid] == (os.getsid(0), "run/a")
+    finally:
+        child.kill()
+        child.wait()
+    assert child.pid not in process.rescan(process.Scan(known, set())).found

@@ -26,6 +26,7 @@ PARTS: Final = ("/log/", "/yarprunlog/")  # of the names of ports that log
 PERIOD: Final = 1.0  # seconds between looks for more of them
 AGAIN: Final = 1024  # lines of a program that are known when they come again
 _BATCH: Final = 2000  # lines read at a time
+_BYTES: Final = (memoryview, bytes, bytearray, str)
 
 
 @dataclass(slots=True)
@@ -111,7 +112,9 @@ class Intake:
             line = read_message(message)
         except yarpy.DecodeError:
             return None
-        if line is None or not matches(self._pattern, line.origin) or self._is_known(line):
+        if line is None or (self._pattern and not matches(self._pattern, line.origin)):
+            return None
+        if self._is_known(line):
             return None
         return line, message
 
@@ -124,26 +127,29 @@ class Intake:
         if not line.time:
             return False
         mark = hash((line.time, line.text))
-        if line.time <= origin.time and mark in origin.known:
+        if line.time > origin.time:
+            origin.time = line.time
+        elif mark in origin.known:
             return True
         origin.known.append(mark)
-        origin.time = max(origin.time, line.time)
         return False
 
     # -- threads ----------------------------------------------------------------------------------
 
     def _take(self) -> None:
         try:
+            lock, waiting, news = self._lock, self._waiting, self._news
             for message in self._port:
-                with self._lock:
-                    waiting = self._waiting
+                size = _size(message)
+                with lock:
                     self.taken += 1
-                    self._bytes += _size(message)
+                    self._bytes += size
                     waiting.append(message)
                     while len(waiting) > LOG_WAITING or self._bytes > LOG_WAITING_BYTES:
                         self._bytes -= _size(waiting.popleft())
                         self.lost += 1
-                self._news.set()
+                if not news.is_set():  # which costs less than to set it again
+                    news.set()
         except yarpy.YarpError:
             pass  # it was interrupted or closed
         self._done.set()
@@ -172,4 +178,4 @@ class Intake:
 
 def _size(message: Message) -> int:
     payload = message.payload
-    return len(payload) if isinstance(payload, bytes | bytearray | memoryview | str) else 100
+    return len(payload) if isinstance(payload, _BYTES) else 100

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Collection, Mapping, Set
+from collections.abc import Callable, Collection, Iterable, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -19,6 +19,7 @@ MARK: Final = "YARPY_UP_PROGRAM"  # the variable that says which program a proce
 _PROC: Final = Path("/proc")
 _LOOKS: Final = 6  # at all processes, while some of them end
 _ENVIRON: Final = 1 << 18  # bytes that are looked at
+_CHUNK: Final = 1 << 14  # ... of which most have less
 _TICKS: Final = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 100
 _PAGE: Final = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 
@@ -50,7 +51,7 @@ def known() -> bool:
 def look(pid: int) -> Process | None:
     """Return what the system knows of a process, None if there is none or it does not tell."""
     try:
-        text = (_PROC / str(pid) / "stat").read_bytes()
+        text = _read(f"/proc/{pid}/stat")
     except OSError:
         return None
     return parse(pid, text)
@@ -76,8 +77,7 @@ def mark_of(pid: int) -> str | None:
     """Return the mark in the environment of a process, "" for none or that of another user, None
     while it has no environment: between two programs, or given none."""
     try:
-        with open(_PROC / str(pid) / "environ", "rb") as file:
-            text = file.read(_ENVIRON)
+        text = _read(f"/proc/{pid}/environ")
     except PermissionError:
         return ""
     except OSError:
@@ -107,16 +107,31 @@ class Scan:
 
 def scan() -> Scan:
     """Look at all processes but this one; at none where there is no /proc."""
-    found: dict[int, tuple[int, str]] = {}
+    return _looked(_pids(), {})
+
+
+def rescan(before: Scan) -> Scan:
+    """Look again, but not at processes whose session and mark are known: that would cost as much
+    as the first look, and they keep both as long as they run this program."""
+    pids = _pids()
+    known = {pid: before.found[pid] for pid in pids if pid in before.found}
+    fresh = [pid for pid in pids if pid not in known or pid in before.unclear]
+    return _looked(fresh, known)
+
+
+def _looked(pids: Iterable[int], known: Mapping[int, tuple[int, str]]) -> Scan:
+    found = {**known}
     unclear: set[int] = set()
     own = os.getpid()
-    for pid in _pids():
+    for pid in pids:
         process = look(pid)
         if pid == own:
             continue
         mark = mark_of(pid) if process is not None and process.alive else None
         if process is not None and process.alive:
             found[pid] = process.session, mark or ""
+        else:
+            found.pop(pid, None)
         if mark is None:
             unclear.add(pid)
     return Scan(found, unclear)
@@ -127,15 +142,16 @@ def members(
 ) -> dict[int, str]:
     """Return the processes of programs, each with the mark of its program: those in `sessions`
     (by the number of the session), and those that have one of the `marks`. Not this process."""
-    before: Set[int] = set()
+    now = scan()
     for _ in range(_LOOKS):
-        now = scan()
-        found = now.members(sessions, marks)
-        # One that ended between the list of all and the look at it may have begun another one.
-        if found or now.unclear <= before:
+        found, before = now.members(sessions, marks), now.unclear
+        if found or not before:
             return found
-        before = now.unclear
-    return {}
+        # One that ended between the list of all and the look at it may have begun another one.
+        now = rescan(now)
+        if now.unclear <= before:
+            break
+    return now.members(sessions, marks)
 
 
 class Scanner:
@@ -170,6 +186,19 @@ class Scanner:
             self._busy, self._done, self._last = False, mine, found
             self._turn.notify_all()
         return found
+
+
+def _read(path: str) -> bytes:
+    """Return what a file of /proc says, or as much as is looked at: without the buffers of `open`,
+    which take most of the time where there are hundreds of files."""
+    file = os.open(path, os.O_RDONLY)
+    try:
+        parts = [os.read(file, _CHUNK)]
+        while len(parts[-1]) == _CHUNK and len(parts) * _CHUNK < _ENVIRON:
+            parts.append(os.read(file, _CHUNK))
+    finally:
+        os.close(file)
+    return parts[0] if len(parts) == 1 else b"".join(parts)
 
 
 def _pids() -> list[int]:
