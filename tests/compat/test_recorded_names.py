@@ -323,3 +323,29 @@ def test_where_the_program_is() -> None:
     assert out.getvalue().startswith("backtrace here.py:7") and "print_stack" in out.getvalue()
     with yarp.Log.getLogMutex(), yarp.Log.getLogMutex():
         pass
+
+
+def test_joints_that_motors_share() -> None:
+    class Coupling:
+        joint_names = ("knee", "ankle")
+        axis_names = ("upper", "lower")
+        joint_limits = ((-10.0, 20.0), (-5.0, 5.0))
+        coupled_joints = coupled_axes = (0, 1)
+
+        def axis_positions(self, joints: list[float]) -> list[float]:
+            return [joints[0] + joints[1], joints[0] - joints[1]]
+
+    driver = yarp.PolyDriver()
+    driver.give(Coupling())
+    view = driver.viewIJointCoupling()
+    assert view is not None
+    assert (view.getNrOfPhysicalJoints(), view.getNrOfActuatedAxes()) == (2, 2)
+    assert (view.getPhysicalJointName(1), view.getActuatedAxisName(5)) == ("ankle", "")
+    axes, low, high = yarp.Vector(), yarp.DVector(1), yarp.DVector(1)
+    assert view.convertFromPhysicalJointsToActuatedAxesPos(yarp.Vector([3.0, 1.0]), axes)
+    assert [*axes] == [4.0, 2.0]
+    assert not view.convertFromActuatedAxesToPhysicalJointsTrq(axes, axes, axes)
+    assert view.getPhysicalJointLimits(0, low, high) and (low[0], high[0]) == (-10.0, 20.0)
+    assert not view.getPhysicalJointLimits(-1, low, high)
+    coupled = yarp.IVector()
+    assert view.getCoupledActuatedAxes(coupled) and [*coupled] == [0, 1]

@@ -1,8 +1,13 @@
-"""IAnalogSensor, IJointCoupling and IFrameWriterImage: views of a device in the same program, or
-of the client of one.
+"""IAnalogSensor, IJointCoupling and IFrameWriterImage: views of a device in the same program, an
+object of Python (`PolyDriver.give`). Nothing of them goes over a network.
 
-Rules: as `_view`; the members that a device has for them are those of
-`yarpy.kits.devices.analog.interface`, `coupling.interface` and `frame_writer.interface`.
+    channels()                          a number for each channel; states(), calibrate(values) and
+                                        calibrate_channel(channel, value) if it has them
+    joint_names, axis_names,            of a coupling, with joint_limits, and what turns positions
+    coupled_joints, coupled_axes        into others: axis_positions(joints), joint_speeds(axes, ...)
+    show(image)                         shows a picture
+
+Rules: as `_view`: what a device does not have is False, or AS_ERROR.
 """
 
 from __future__ import annotations
