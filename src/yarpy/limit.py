@@ -85,6 +85,7 @@ ROS_PEER_FIELDS: Final = 400
 ROS_REASON: Final = 1 << 16  # bytes of the text that says why there is no answer
 ROS_MASTER_ANSWER: Final = 1 << 26  # bytes
 ROS_BAG_CHUNK: Final = 1 << 30  # bytes of a compressed part of a file
+ROS_BAG_METADATA: Final = 1 << 23  # bytes of the file that says what is in a folder
 ROS_TEXT: Final = 1 << 20  # characters of a file; the largest one of ROS has 12 000
 ROS_DECLARATIONS: Final = 1000  # fields and constants of a message; each becomes code
 ROS_DEPTH: Final = 50  # messages within messages

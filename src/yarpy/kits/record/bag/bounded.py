@@ -77,19 +77,20 @@ class BoundedFile:
 
 
 def _from_bz2(data: bytes) -> bytes:
-    return _limited(BZ2Decompressor(), data)
+    return limited(BZ2Decompressor(), data)
 
 
 def _from_lz4(data: bytes) -> bytes:
     from lz4.frame import LZ4FrameDecompressor
 
-    return _limited(LZ4FrameDecompressor(), data)
+    return limited(LZ4FrameDecompressor(), data)
 
 
-def _limited(decompressor: Any, data: bytes) -> bytes:
-    found: bytes = decompressor.decompress(data, ROS_BAG_CHUNK)
+def limited(decompressor: Any, data: bytes, most: int = ROS_BAG_CHUNK) -> bytes:
+    """Return what is packed in data, `most` bytes at most. Raises DecodeError."""
+    found: bytes = decompressor.decompress(data, most)
     if not decompressor.eof:
-        raise DecodeError(f"a packed part is cut off, or has more than {ROS_BAG_CHUNK} bytes")
+        raise DecodeError(f"a packed part is cut off, or has more than {most} bytes")
     return found
 
 

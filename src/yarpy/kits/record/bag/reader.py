@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.errors import DecodeError, MissingFile, UnknownPlugin
 from yarpy.kits.record.bag.bounded import BoundedFile
+from yarpy.kits.record.bag.bounded_folder import open_folder
 from yarpy.kits.record.mcap.layout import Channel, Damaged, Other, Schema
 from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.recorded import PortFacts, Recorded
@@ -37,7 +38,6 @@ class BagStorage:
         self.path = Path(path)
         try:
             from rosbags.rosbag1 import Reader as Reader1
-            from rosbags.rosbag2 import Reader as Reader2
         except ImportError:
             raise UnknownPlugin(NEEDS) from None
         if not self.path.exists():
@@ -48,9 +48,11 @@ class BagStorage:
         self._file = None if self.path.is_dir() else BoundedFile(self.path)
         file: Any = self._file  # it has what is asked of a path
         try:
-            self._reader = Reader2(self.path) if file is None else Reader1(file)
-            self._reader.open()
-            if file is not None:
+            if file is None:
+                self._reader = open_folder(self.path)
+            else:
+                self._reader = Reader1(file)
+                self._reader.open()
                 file.opened(self._reader)
         except Exception as error:  # whatever the library raises for what a stranger wrote
             where = "" if file is None else f" byte {file.place}:"
