@@ -1,6 +1,6 @@
 """`python -m yarpy` is the command `yarpy`."""
 
-from yarpy.cli.main import main
+from yarpy.cli.start import main
 
 if __name__ == "__main__":
     main()

@@ -6,6 +6,7 @@ import sys
 import time
 
 import pytest
+from support.wait import HANG
 
 from yarpy.cli.signals import Interrupted, held
 
@@ -112,6 +113,51 @@ def test_a_signal_that_comes_where_python_drops_exceptions_is_not_lost():
     done = subprocess.run([sys.executable, "-c", LOST], capture_output=True, text=True, timeout=20)
     assert done.stdout.splitlines()[-1] == f"ended by {int(signal.SIGTERM)}"
     assert "Exception ignored" not in done.stderr
+
+
+STARTING = """
+import os, signal, threading, time
+from yarpy.cli import signals
+class Dying:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0.05)
+signals.watch()
+try:
+    with threading._active_limbo_lock:  # as in the start of a thread, where it may be collected
+        Dying()
+    threading.Event().wait()
+except signals.Interrupted as signal_:
+    print("ended by", signal_.number, flush=True)
+"""
+
+
+def test_a_signal_that_is_dropped_while_a_thread_starts_is_not_lost_either():
+    """Raised again by a thread, which could not be started then: the command waited for ever."""
+    done = subprocess.run(
+        [sys.executable, "-c", STARTING], capture_output=True, text=True, timeout=HANG
+    )
+    assert done.stdout.splitlines() == [f"ended by {int(signal.SIGTERM)}"]
+
+
+FAILING = """
+import os, signal
+from yarpy.cli import signals
+signals.watch()
+try:
+    with signals.held():
+        os.kill(os.getpid(), signal.SIGINT)
+        raise ValueError("taken")
+except signals.Interrupted as signal_:
+    print("ended by", signal_.number)
+"""
+
+
+def test_a_signal_that_waits_is_not_forgotten_where_the_block_fails():
+    done = subprocess.run(
+        [sys.executable, "-c", FAILING], capture_output=True, text=True, timeout=HANG
+    )
+    assert done.stdout.splitlines() == [f"ended by {int(signal.SIGINT)}"]
 
 
 ELSEWHERE = """

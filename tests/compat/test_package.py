@@ -19,7 +19,7 @@ FILES = sorted(SOURCE.glob("*.py"))
 # What compat may know of yarpy: what any program may.
 ALLOWED = {
     "yarpy",
-    "yarpy.cli.main",
+    "yarpy.cli.start",
     "yarpy.config.command_line",
     "yarpy.config.configuration",
     "yarpy.config.ini",

@@ -323,7 +323,7 @@ def _forward(name: str, translate: Any) -> NoReturn:
         print(f"error: {name}: {wrong}", file=sys.stderr)
         sys.exit(1)
     sys.argv = ["yarpy", *words]
-    from yarpy.cli.main import main
+    from yarpy.cli.start import main
 
     main()
 

@@ -16,7 +16,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Final
 
@@ -46,6 +46,7 @@ def watch() -> None:
         reading, writing = os.pipe()
         os.set_blocking(writing, False)
         signal.set_wakeup_fd(writing, warn_on_full_buffer=False)
+        handler.writing = writing
         threading.Thread(
             target=handler.relay, args=(reading,), name="yarpy signals", daemon=True
         ).start()
@@ -63,8 +64,8 @@ def held() -> Iterator[None]:
         yield
     finally:
         handler.holding = False
-    if handler.waiting is not None:
-        raise Interrupted(handler.waiting)
+        if handler.waiting is not None:  # also where the block fails, after which one may go on
+            raise Interrupted(handler.waiting)
 
 
 class _Handler:
@@ -73,6 +74,8 @@ class _Handler:
     def __init__(self) -> None:
         self.holding = False
         self.waiting: int | None = None
+        self.writing: int | None = None  # the pipe to the thread that hears of each signal
+        self._dropped = False  # by Python, since that thread heard of a signal
         self._first: float | None = None
         self._calls = 0
 
@@ -93,18 +96,25 @@ class _Handler:
             before = self._calls
             for number in os.read(reading, 64):
                 time.sleep(AGAIN)
-                if self._calls == before and signal.getsignal(number) is self:
+                dropped, self._dropped = self._dropped, False
+                if (dropped or self._calls == before) and signal.getsignal(number) is self:
                     _wake_main_thread(number)
 
     def retry(self, lost: sys.UnraisableHookArgs) -> None:
         """Raise the signal again if Python dropped it: it had come while a finaliser or a callback
-        of the interpreter ran, whose exceptions go nowhere."""
+        of the interpreter ran, whose exceptions go nowhere. No thread may be started here: what a
+        finaliser has interrupted may be the start of another one, which holds the lock for that."""
         if not isinstance(lost.exc_value, Interrupted):
             sys.__unraisablehook__(lost)
             return
         self._first = None
-        # From another thread: here it would be dropped once more.
-        threading.Timer(AGAIN, _wake_main_thread, (lost.exc_value.number,)).start()
+        # By another thread: here it would be dropped once more.
+        if self.writing is not None:
+            self._dropped = True
+            with suppress(BlockingIOError):  # it has other news, and looks then
+                os.write(self.writing, bytes([lost.exc_value.number]))
+        else:
+            threading.Timer(AGAIN, _wake_main_thread, (lost.exc_value.number,)).start()
 
 
 def _wake_main_thread(number: int) -> None:
