@@ -32,9 +32,10 @@ from typing import Any, Final, TypeVar, cast
 from yarpy import registry
 from yarpy.data.bottle import Bottle, Numbers, Property, read_bottle
 from yarpy.data.embedded import instead, with_article
-from yarpy.data.python import described, description, typed
+from yarpy.data.python import described, description, restored, typed
 from yarpy.data.python.array import array_of, scalar
 from yarpy.data.python.array import blocks as array_blocks
+from yarpy.data.python.place import located
 from yarpy.data.reader import KEPT, SMALL, read_small
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.vector import Vector
@@ -100,9 +101,11 @@ def encode(obj: Any) -> Blocks:
             return tuple(blocks)
         return cast(Blocks, blocks)
     if isinstance(obj, dict):
-        return (
-            described.blocks(obj) if described.is_needed(obj) else list_blocks(dict_elements(obj))
-        )
+        try:
+            needed = described.is_needed(obj)
+            return described.blocks(obj) if needed else list_blocks(dict_elements(obj))
+        except TypeError as error:
+            raise located(obj, error) from None
     if isinstance(obj, (list, tuple)):
         return list_blocks(obj, any_list)
     if obj is None:
@@ -115,7 +118,10 @@ def encode(obj: Any) -> Blocks:
             return value_blocks(scalar(obj))
         obj = obj.item()
     if isinstance(obj, complex) or described.is_record(obj):
-        return described.blocks(obj)
+        try:
+            return described.blocks(obj)
+        except TypeError as error:
+            raise located(obj, error) from None
     if not isinstance(obj, (str, int, float, bytes, bytearray, memoryview)):
         array = array_of(obj)
         if array is not None:
@@ -150,7 +156,10 @@ def _check_blocks(blocks: object, kind: type) -> None:
 
 def any_list(items: Any) -> Blocks:
     """The message of a list or tuple for which `list_blocks` has no short way."""
-    return described.blocks(items) if described.is_needed(items) else long_blocks(items)
+    try:
+        return described.blocks(items) if described.is_needed(items) else long_blocks(items)
+    except TypeError as error:
+        raise located(items, error) from None
 
 
 def encode_text(obj: Any) -> bytes:
@@ -208,7 +217,7 @@ def decode(view: Buffer) -> Any:
             if len(view) >= description.SMALLEST:
                 start = description.place(view)
                 if start:
-                    return described.restore(view, start)
+                    return restored.restore(view, start)
             if count == 1:
                 tag = _read_i32(view, 8)[0]
                 bottle = read_bottle(view)
@@ -274,7 +283,7 @@ def decode_text(line: bytes | str) -> Any:
     """The Bottle of a line, or what its description says; what is not Bottle text is left out."""
     bottle = Bottle.from_text(line)
     if bottle and isinstance(bottle[-1], list):
-        return described.restore_text(bottle)
+        return restored.restore_text(bottle)
     return bottle
 
 
@@ -306,7 +315,7 @@ def _decode_as(view: Buffer, type_: type[T]) -> T:
     if type_ is not Bottle:
         start = description.place(view)
         if start:
-            return cast(T, typed.convert(described.restore(view, start), type_))
+            return cast(T, typed.convert(restored.restore(view, start), type_))
     convert = _CONVERTERS.get(type_)
     if convert is not None:
         return cast(T, convert(view))

@@ -16,6 +16,16 @@ from typing import Final
 from yarpy.data.value import INT32, INT64, LIST, STRING, Buffer
 
 KEY: Final = "yarpy.type"
+#: types of ours by their word, and where each is
+OWN: Final = {
+    "image": ("sig.image", "Image"),
+    "matrix": ("sig.matrix", "Matrix"),
+    "vector": ("sig.vector", "Vector"),
+    "stamp": ("stamp", "Stamp"),
+    "sound": ("sig.sound", "Sound"),
+    "pointcloud": ("sig.pointcloud", "PointCloud"),
+}
+BLOBS: Final = frozenset(("sound", "pointcloud"))  # whose message is no Bottle
 
 _PAIR = Struct("<ii")
 _LONG = Struct("<iq")
