@@ -15,6 +15,7 @@ import hypothesis
 import pytest
 from support import multicast, peer
 from support.stage import STAGES, TESTS, stage_of
+from support.system import NO_UNIX_SOCKETS
 
 from yarpy import log
 
@@ -55,8 +56,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)  # before -m is applied
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Give the marker `peer` to tests that need one by a fixture."""
+    """Give the marker `peer` to tests that need one by a fixture, and say of which rows a system
+    has nothing."""
     for item in items:
+        if NO_UNIX_SOCKETS and "unix_stream" in item.name:
+            item.add_marker(pytest.mark.skip(NO_UNIX_SOCKETS))
         names = peer.needed(item)
         if names:
             item.add_marker(pytest.mark.peer(*names))

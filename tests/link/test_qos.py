@@ -7,11 +7,14 @@ import socket
 from collections.abc import Iterator
 
 import pytest
+from support.system import NO_SCHEDULING
 from support.wait import wait_until
 
 import yarpy
 from yarpy.link import qos
 from yarpy.qos import Qos, Sched
+
+schedules = pytest.mark.skipif(bool(NO_SCHEDULING), reason=NO_SCHEDULING)
 
 
 @pytest.fixture
@@ -45,6 +48,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int, int]]:
     return seen
 
 
+@schedules
 def test_nothing_is_set_at_first(ports) -> None:
     out, in_ = ports
     assert out.outputs[0].qos == Qos(packets="CS0")  # the writer's thread sends: none of its own
@@ -60,6 +64,7 @@ def test_packets_of_either_side(ports, packets) -> None:
         assert sock.getsockopt(socket.IPPROTO_IP, socket.IP_TOS) == Qos(packets=packets).tos
 
 
+@schedules
 def test_output_that_is_scheduled_gets_its_thread(ports, asked) -> None:
     out, in_ = ports
     out.outputs[0].qos = Qos("SCHED_FIFO", 30)
@@ -75,6 +80,7 @@ def test_output_that_is_scheduled_gets_its_thread(ports, asked) -> None:
     assert asked[-1] == (link.thread.native_id, os.SCHED_OTHER, 0)
 
 
+@schedules
 def test_input_that_is_scheduled_is_read_by_its_thread(ports, asked) -> None:
     out, in_ = ports
     for number in range(20):  # the reader gets the lease
@@ -89,6 +95,7 @@ def test_input_that_is_scheduled_is_read_by_its_thread(ports, asked) -> None:
     assert not link.turn.leased
 
 
+@schedules
 def test_refusal_says_what_to_do_and_changes_nothing(ports, refusing) -> None:
     out, in_ = ports
     for connection in (out.outputs[0], in_.inputs[0]):

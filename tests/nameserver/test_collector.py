@@ -1,7 +1,6 @@
 """Names of dead ports go away; names of living, silent and foreign things stay."""
 
 import os
-import signal
 import socket
 import subprocess
 import sys
@@ -58,7 +57,7 @@ def test_a_killed_port_loses_its_name(server):
     process = subprocess.run(
         [sys.executable, "-c", CRASHER], env=environment, timeout=30, capture_output=True
     )
-    assert process.returncode == -signal.SIGKILL
+    assert abs(process.returncode) == 9  # on Windows it is no signal
     wait_gone("/dead/port")
 
 

@@ -24,7 +24,7 @@ from typing import Any, Final
 
 from support.wait import HANG
 
-WITHIN: Final = re.compile(r"/yarpy/|/threading\.py$")
+WITHIN: Final = re.compile(r"[/\\]yarpy[/\\]|(^|[/\\])threading\.py$")
 LOOKS: Final = ("CALL", "CALL_FUNCTION_EX", "RESUME", "JUMP_BACKWARD")
 
 

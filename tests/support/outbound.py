@@ -83,7 +83,8 @@ def at_work(link: Outbound) -> Iterator[None]:
 def read_messages(far: socket.socket, count: int, ack: bool = True) -> list[bytes]:
     """Read so many messages of one size, acknowledging each."""
     size = len(b"".join(framing.encode(Packet([0]))))  # type: ignore[arg-type]
-    if far.family == socket.AF_UNIX:  # where a message is its command and its payload
+    # Through a Unix socket a message is its command and its payload.
+    if far.family == getattr(socket, "AF_UNIX", None):
         packet = Packet([0])
         size = len(framing.encode_command(packet.key)) + sum(map(len, packet.blocks))
     found = []

@@ -9,6 +9,10 @@ from typing import Final
 
 NO_UNIX_SOCKETS: Final = "" if hasattr(socket, "AF_UNIX") else "Windows' Python has no Unix sockets"
 NO_MEMFD: Final = "" if hasattr(os, "memfd_create") else "only Linux has memory with a descriptor"
+NO_SCHEDULING: Final = (
+    "" if sys.platform == "linux" else "only Linux schedules a thread of its own in real time"
+)
+NO_LINKS: Final = "" if sys.platform != "win32" else "on Windows it takes a right to make a link"
 NO_GROUPS: Final = (
     ""
     if sys.platform != "win32"

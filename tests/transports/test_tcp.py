@@ -183,7 +183,15 @@ def test_what_a_peer_had_read_when_it_hung_up() -> None:
     assert transport.taken(100, 3) is None
 
 
-@pytest.mark.parametrize("consume", [True, False])
+WITH_ERROR = pytest.param(
+    True,
+    marks=pytest.mark.skipif(
+        sys.platform == "win32", reason="Windows tells of a reset by reading and writing alone"
+    ),
+)
+
+
+@pytest.mark.parametrize("consume", [WITH_ERROR, False])
 def test_peer_that_had_not_read_all(consume: bool) -> None:
     """How much it had read, nobody can say."""
     transport, far = pair()

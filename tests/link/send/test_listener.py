@@ -58,8 +58,8 @@ def test_a_slow_reader_costs_its_writer_nothing_and_is_not_cut_off_for_asking() 
             pass  # now a part of one waits
         assert link.sender.halfway
         started = time.monotonic()
-        for _ in range(1000):
-            assert not link.send(large)
+        # The system may find a little more room while it moves what it has taken.
+        assert sum(link.send(large) for _ in range(1000)) < 100
         assert lasted(started) < 10  # much less, but for a busy machine
         thread = threading.Thread(target=link.attend)
         thread.start()
