@@ -7,6 +7,7 @@ import threading
 import time
 
 import pytest
+from support.wait import HANG
 
 from yarpy.aio.thread import THREADS, Threads, Turn, in_thread
 from yarpy.scope import sleep
@@ -65,9 +66,9 @@ def test_cancelled_work_is_ended_and_what_follows_waits_for_its_end():
             finally:
                 seen.append(number)
 
-        first = asyncio.create_task(turn.run(lambda: work(1, 60)))
-        second = asyncio.create_task(turn.run(lambda: work(2, 0)))
-        third = asyncio.create_task(turn.run(lambda: work(3, 0)))
+        first = asyncio.create_task(turn.run(lambda left: work(1, 60), None))
+        second = asyncio.create_task(turn.run(lambda left: work(2, 0), None))
+        third = asyncio.create_task(turn.run(lambda left: work(3, 0), None))
         await asyncio.sleep(0.05)
         second.cancel()
         await asyncio.sleep(0)
@@ -91,6 +92,20 @@ def test_turn_goes_on_when_whoever_got_it_is_cancelled():
         await asyncio.wait_for(waiting[1], 10)
         turn.release()
         assert turn.take()
+
+    asyncio.run(main())
+
+
+def test_turn_that_does_not_come_in_time_is_not_waited_for():
+    async def main():
+        turn = Turn()
+        assert turn.take()
+        late, patient = turn.wait(0.0), asyncio.create_task(turn.wait())
+        assert not await asyncio.wait_for(late, HANG)
+        assert await turn.run(lambda left: left, 0.0) == 0.0  # and the turn is still another's
+        turn.release()
+        assert await asyncio.wait_for(patient, HANG)
+        assert not turn.take()
 
     asyncio.run(main())
 

@@ -104,3 +104,37 @@ def test_messages_leave_in_the_order_of_their_calls(names: yarpy.LocalNames) -> 
         asyncio.run(asyncio.wait_for(main(), HANG))
         wait_until(lambda: into.waiting == 1000, HANG)
         assert [into.read(HANG).value[0] for _ in range(1000)] == [*range(1000)]
+
+
+def test_the_time_limit_of_a_write_counts_while_an_earlier_one_waits(
+    names: yarpy.LocalNames,
+) -> None:
+    async def main() -> None:
+        async with aio.Port("/in", names=names), aio.Port("/out", names=names) as out:
+            await out.connect("/in")
+            endless = asyncio.create_task(out.write(bytes(1 << 24), wait=True))
+            await asyncio.sleep(0)
+            assert await asyncio.wait_for(out.write([1], timeout=0.05), HANG) == 0
+            assert out.stats.outputs[0].drops == 1
+            endless.cancel()
+
+    asyncio.run(main())
+
+
+@pytest.mark.parametrize("verb", ["call", "ask", "tell"])
+def test_the_time_limit_of_a_question_counts_while_an_earlier_one_waits(
+    names: yarpy.LocalNames, verb: str
+) -> None:
+    async def main() -> None:
+        async with (
+            aio.RpcServer("/server", answer, names=names),
+            aio.RpcClient("/server", names=names) as client,
+        ):
+            await client.open()
+            endless = asyncio.create_task(client.call("slow"))
+            await asyncio.sleep(0)
+            with pytest.raises(yarpy.Timeout, match="earlier question"):
+                await asyncio.wait_for(getattr(client, verb)("quick", timeout=0.05), HANG)
+            endless.cancel()
+
+    asyncio.run(main())

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar, Unpack
 
 from yarpy.aio.base import BasePort
 from yarpy.aio.inbox import TaskRendezvous
-from yarpy.aio.thread import Turn, in_thread
+from yarpy.aio.thread import Turn, in_thread, left_until
 from yarpy.aio.wakeup import LONGEST_RUN
 from yarpy.data.stamp import Stamp
 from yarpy.errors import PortClosed, Timeout
@@ -24,6 +24,7 @@ from yarpy.port.hub import Hub
 from yarpy.port.mailbox import Callback, Fifo, Latest, Mailbox
 from yarpy.port.options import PortOptions
 from yarpy.port.typed import of_type
+from yarpy.scope import moment
 from yarpy.wire.message import Message, T
 
 if TYPE_CHECKING:
@@ -109,13 +110,16 @@ class MessagePort(BasePort[M], Generic[M, T]):
     ) -> int:
         """Send `value` to every connected port; see `yarpy.Port.write`.
 
-        Messages of several tasks leave in the order of their calls. The loop keeps running while
-        this waits for a slow reader. Of a task that is cancelled meanwhile the message is a drop
-        where it has not begun to leave.
+        Messages of several tasks leave in the order of their calls, and `timeout` counts while this
+        waits for its turn. The loop keeps running while this waits for a slow reader. Of a task
+        that is cancelled meanwhile the message is a drop where it has not begun to leave.
         """
         port = self.port
         if not self._turn.take():
-            await self._turn.wait()
+            until = moment(timeout)
+            if not await self._turn.wait(until):
+                return port._drop()
+            timeout = None if until is None else left_until(until)
         begun: int | Callable[[], int]
         try:
             self._run += 1
@@ -163,7 +167,7 @@ class Port(MessagePort["_Port", T]):
     async def ask(self, value: object, timeout: float | None = None) -> list[Message]:
         """Ask every connected port, one after the other; the answers of those that give one. See
         `yarpy.Port.ask`."""
-        return await self._turn.run(partial(self.port.ask, value, timeout))
+        return await self._turn.run(partial(self.port.ask, value), timeout)
 
 
 class BufferedPort(MessagePort["_BufferedPort", T]):

@@ -10,7 +10,7 @@ import asyncio
 from collections.abc import Callable
 from functools import partial
 from inspect import isawaitable
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, Unpack
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar, Unpack
 
 from yarpy.aio.base import ENDED, BasePort
 from yarpy.aio.thread import Turn
@@ -22,6 +22,8 @@ from yarpy.port.connection import PortConnection
 from yarpy.port.options import PortOptions
 from yarpy.port.typed import of_type
 from yarpy.wire.message import Message, T
+
+R = TypeVar("R")
 
 
 class RpcServer(BasePort[rpc.RpcServer]):
@@ -133,14 +135,19 @@ class RpcClient(BasePort[rpc.RpcClient], Generic[T]):
     async def call(self, *args: object, timeout: float | None = None) -> Any:
         """Ask, and return the answer's value; see `yarpy.RpcClient.call`."""
         client = (await self.open()).port
-        return await self._turn.run(partial(client.call, *args, timeout=timeout))
+        return await self._in_turn(lambda left: client.call(*args, timeout=left), timeout)
 
     async def ask(self, question: object, timeout: float | None = None) -> Message | None:
         """As `call` with one argument, but returns the whole Message; None if there is no reply."""
         client = (await self.open()).port
-        return await self._turn.run(partial(client.ask, question, timeout))
+        return await self._in_turn(partial(client.ask, question), timeout)
 
     async def tell(self, statement: object, timeout: float | None = None) -> None:
         """Send it without waiting for an answer; see `yarpy.RpcClient.tell`."""
         client = (await self.open()).port
-        await self._turn.run(partial(client.tell, statement, timeout))
+        await self._in_turn(partial(client.tell, statement), timeout)
+
+    async def _in_turn(self, work: Callable[[float | None], R], timeout: float | None) -> R:
+        """One question at a time. Where an earlier one takes all the time, the client underneath
+        says so."""
+        return await self._turn.run(work, self._timeout if timeout is None else timeout)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import time
 from collections import deque
 from collections.abc import Callable
 from contextvars import copy_context
@@ -16,7 +17,7 @@ from functools import partial
 from queue import Empty, SimpleQueue
 from typing import Final, TypeAlias, TypeVar
 
-from yarpy.scope import Scope
+from yarpy.scope import Scope, moment
 from yarpy.threads import Thread
 
 T = TypeVar("T")
@@ -133,7 +134,7 @@ class Turn:
 
     def __init__(self) -> None:
         self._taken = False
-        self._waiting: deque[asyncio.Future[None]] = deque()
+        self._waiting: deque[asyncio.Future[bool]] = deque()
 
     def take(self) -> bool:
         """Take the turn if nothing is at work and nothing waits; `release` gives it back."""
@@ -146,24 +147,44 @@ class Turn:
         while self._waiting:
             next_ = self._waiting.popleft()
             if not next_.done():
-                next_.set_result(None)
+                next_.set_result(True)
                 return
         self._taken = False
 
-    async def wait(self) -> None:
-        """Take the turn once everything before this call has ended."""
+    async def wait(self, until: float | None = None) -> bool:
+        """Take the turn once everything before this call has ended; return False if `until` comes
+        first."""
         if self.take():
-            return
-        granted: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            return True
+        loop = asyncio.get_running_loop()
+        granted: asyncio.Future[bool] = loop.create_future()
         self._waiting.append(granted)
+
+        def give_up() -> None:
+            if not granted.done():
+                self._waiting.remove(granted)
+                granted.set_result(False)
+
+        late = loop.call_later(left_until(until), give_up) if until is not None else None
         try:
-            await granted
+            return await granted
         except asyncio.CancelledError:
-            if granted.done() and not granted.cancelled():
+            if granted.done() and not granted.cancelled() and granted.result():
                 self.release()
             raise
+        finally:
+            if late is not None:
+                late.cancel()
 
-    async def run(self, work: Callable[[], T]) -> T:
-        """As `in_thread`, once everything before it has ended."""
-        await self.wait()
-        return await in_thread(work, self.release)
+    async def run(self, work: Callable[[float | None], T], timeout: float | None) -> T:
+        """As `in_thread`, once everything before it has ended, or `timeout` seconds are over.
+        `work` gets those that are left of them, None for no limit."""
+        until = moment(timeout)
+        ours = await self.wait(until)
+        left = None if until is None else left_until(until)
+        return await in_thread(partial(work, left), self.release if ours else None)
+
+
+def left_until(until: float) -> float:
+    """Return the seconds until a moment of time.monotonic(), 0.0 if it has come."""
+    return max(0.0, until - time.monotonic())
