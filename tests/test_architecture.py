@@ -25,7 +25,7 @@ TESTS = ROOT / "tests"
 # Rooms are packages, or single files of the top level; of `peers` and `kits` each folder is one;
 # what is in a folder `verbs` belongs to the command line, wherever it lies.
 CORE_LAYERS: list[set[str]] = [
-    {"errors", "log", "fork", "linger", "platform", "behalf"},
+    {"errors", "log", "fork", "linger", "platform", "callback_thread", "installed"},
     {"limit", "facts"},
     {"shipped"},
     {"registry", "route", "scope", "threads"},

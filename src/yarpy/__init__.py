@@ -232,10 +232,14 @@ else:
 
     def __getattr__(name):
         from importlib import import_module
+        from os import path
 
         if name in _ROOMS:
             return import_module(_ROOMS[name])
         if name not in _WHERE:
+            place = path.join(__path__[0], name)
+            if path.exists(f"{place}.py") or path.exists(place):  # `from yarpy import` a part asks
+                raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
             packages = import_module("yarpy.shipped").PACKAGES
             if name in packages:
                 return import_module(packages[name].target)

@@ -17,6 +17,7 @@ from typing import Any, Final, Generic, TypeVar
 from yarpy import fork
 from yarpy.errors import UnknownPlugin
 from yarpy.facts import MAGIC_SIZE, Call, CarrierRow, GraphRow, Row, TransportRow
+from yarpy.installed import entry_points
 from yarpy.shipped import CARRIERS, ELSEWHERE, GRAPHS, SHIPPED, TRANSPORTS
 from yarpy.threads import undisturbed
 
@@ -84,8 +85,6 @@ class Registry(Generic[R]):
 
     def _entries(self) -> dict[str, Any]:
         if self._foreign is None:
-            from importlib.metadata import entry_points
-
             self._foreign = {
                 entry.name: entry
                 for entry in entry_points(group=f"yarpy.{self.kind}")

@@ -19,7 +19,7 @@ from typing import Any, Final, Generic, Self, TypeVar
 
 from yarpy.aio.thread import THREADS, Turn, in_thread
 from yarpy.aio.wakeup import Wakeup
-from yarpy.behalf import on_behalf
+from yarpy.callback_thread import in_callback_of
 from yarpy.contact import Contact
 from yarpy.errors import PortClosed, YarpError
 from yarpy.port import base
@@ -260,7 +260,7 @@ class BasePort(Generic[P]):
         assert loop is not None
 
         async def run(thread: threading.Thread, arguments: tuple[object, ...]) -> Any:
-            with on_behalf(thread):
+            with in_callback_of(thread):
                 found = callback(*arguments)
                 return await found if isawaitable(found) else found
 

@@ -6,8 +6,7 @@ acceptor begins. It encrypts nothing.
 
 from __future__ import annotations
 
-import hmac
-import secrets
+import os
 from collections.abc import Callable
 
 from yarpy.errors import RemoteProtocolError
@@ -21,19 +20,21 @@ Random = Callable[[int], bytes]
 
 
 def _sign(key: bytes, nonces: bytes) -> bytes:
+    import hmac  # which loads OpenSSL: where there is a key
+
     return hmac.digest(key, nonces, "sha256")
 
 
 def _check(message: bytes, key: bytes, nonces: bytes) -> bytes:
     nonce, signature = message[:_NONCE], message[_NONCE:]
-    if not hmac.compare_digest(signature, _sign(key, nonces + nonce)):
+    from hmac import compare_digest
+
+    if not compare_digest(signature, _sign(key, nonces + nonce)):
         raise RemoteProtocolError("the peer does not know our key; compare both sides' auth.conf")
     return nonces + nonce
 
 
-def prove_acceptor(
-    stream: ByteStream, key: bytes, random: Random = secrets.token_bytes
-) -> Steps[None]:
+def prove_acceptor(stream: ByteStream, key: bytes, random: Random = os.urandom) -> Steps[None]:
     """The accepting side of the exchange. Raises RemoteProtocolError if the keys differ."""
     nonces = random(_NONCE)
     stream.write(nonces + _sign(key, nonces))
@@ -42,9 +43,7 @@ def prove_acceptor(
     stream.write(last + _sign(key, nonces + last))
 
 
-def prove_initiator(
-    stream: ByteStream, key: bytes, random: Random = secrets.token_bytes
-) -> Steps[None]:
+def prove_initiator(stream: ByteStream, key: bytes, random: Random = os.urandom) -> Steps[None]:
     """The dialling side of the exchange. Raises RemoteProtocolError if the keys differ."""
     nonces = _check(bytes((yield from stream.read_exact(_MESSAGE))), key, b"")
     own = random(_NONCE)

@@ -6,7 +6,6 @@ this computer. The rules are those of `access.toml`; `access_file` reads it.
 
 from __future__ import annotations
 
-import hmac
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -88,10 +87,12 @@ class Access:
     def token_name(self, token: str) -> str:
         """Return the name of that web token; "" if there is no such token. Takes the same time for
         all wrong ones."""
+        from hmac import compare_digest  # which loads OpenSSL: where there are tokens
+
         shown = token.encode("utf-8", "surrogateescape")
         found = ""
         for name, secret in self.tokens.items():
-            if hmac.compare_digest(shown, secret.encode()):
+            if compare_digest(shown, secret.encode()):
                 found = name
         return found
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from yarpy import linger, scope
-from yarpy.behalf import waited_by
+from yarpy.callback_thread import waited_by
 from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.errors import NoNameServer, YarpError

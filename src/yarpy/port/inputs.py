@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import Final, Protocol
 
 from yarpy import scope
-from yarpy.behalf import waited_by
+from yarpy.callback_thread import waited_by
 from yarpy.carriers.base import PAGE, Carrier
 from yarpy.data.bottle import Bottle
 from yarpy.errors import AccessRefused, NoNameServer, PortClosed, RemoteProtocolError, YarpError

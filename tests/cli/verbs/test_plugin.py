@@ -37,7 +37,7 @@ def test_nobody(here):
 
 def test_one_that_does_not_load(here, monkeypatch):
     entry = EntryPoint("broken", "yarpy_no_such_package:X", "yarpy.monitors")
-    monkeypatch.setattr("importlib.metadata.entry_points", lambda group: [entry])
+    monkeypatch.setattr(registry, "entry_points", lambda group: [entry])
     monkeypatch.setattr(registry, "monitors", registry.Registry("monitors", {}))
     said = here("plugin", "broken")
     assert said.code == 1

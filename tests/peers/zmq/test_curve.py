@@ -88,7 +88,7 @@ def advance(steps: Generator[Any, Any, Any], stream: ByteStream, data: bytes, si
 
 
 @pytest.mark.parametrize("size", [1, 7, 1000])
-@pytest.mark.parametrize("secret", [None, OWN_SECRET])
+@pytest.mark.parametrize("secret", [None, OWN_SECRET], ids=["without a key", "with a key"])
 def test_two_sides_agree(secret: bytes | None, size: int) -> None:
     sealed, server, stream = curve.Sealed(PUBLIC, secret), Server(), ByteStream()
     steps = sealed.log_in(stream, {"Socket-Type": b"SUB"})

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
-from yarpy.behalf import waited_by
+from yarpy.callback_thread import waited_by
 from yarpy.carriers.base import Carrier
 from yarpy.data.bottle import Bottle
 from yarpy.errors import AccessRefused, LinkClosed, RemoteProtocolError, Timeout, YarpError

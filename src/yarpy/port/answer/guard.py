@@ -18,7 +18,6 @@ from yarpy.carriers.base import Carrier, to_write
 from yarpy.contact import parse_contact
 from yarpy.data.bottle import Bottle
 from yarpy.data.text import plain_text
-from yarpy.data.xmlrpc import Plain
 from yarpy.errors import AccessRefused, DecodeError, YarpError
 from yarpy.link.begin.admission import ASK, Admission, Peer, on_behalf
 from yarpy.link.begin.handshake import find_carrier
@@ -118,6 +117,8 @@ class Guard:
         if message.key == ADMIN:
             called = graphs.call(_words(message.as_(Bottle))[0])
             if called is not None and called[1].changes and link.carrier.reaches.foreign:
+                from yarpy.data.xmlrpc import Plain  # for programs of others
+
                 return Plain([-1, why, 0])
             return Refused(why)
         if message.key == "*":

@@ -7,7 +7,6 @@ connection with that peer.
 from __future__ import annotations
 
 import os
-import platform
 import sys
 import threading
 from typing import Any, Final
@@ -27,6 +26,8 @@ TIMING: Final = ("deadline", "rate", "late")
 
 def get_self(hub: Hub) -> Bottle:
     """Scheduling of the accepting thread, the process, the platform, the port's kind."""
+    import platform  # which is not small, for one word
+
     argv = sys.orig_argv
     thread = hub.reception.thread_id
     own, process = scheduled(thread), scheduled(os.getpid())

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Final
 
 from yarpy import scope
-from yarpy.behalf import waited_by
+from yarpy.callback_thread import waited_by
 from yarpy.contact import Contact, parse_contact
 from yarpy.errors import NoNameServer, YarpError
 from yarpy.link.receive.inbound import Inbound

@@ -1,12 +1,12 @@
-"""On whose behalf: the thread of a connection that waits for a callback, wherever that runs.
+"""The thread of a connection that waits for a callback, wherever that runs.
 
-    with on_behalf(thread):
+    with in_callback_of(thread):
         ...                 # here `waited_by()` is that thread, also in what a task hands on
 
 Rules: callbacks of an event loop run in its thread, while the thread of their connection waits for
 them. What ends connections does not wait for the thread that waits for it: it asks `waited_by`
-instead of `threading.current_thread`. A task or a thread that goes on when the callback has
-returned acts on nobody's behalf any more.
+instead of `threading.current_thread`. For a task or a thread that goes on when the callback has
+returned nobody waits any more.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ class _Wait:
         self.over = False
 
 
-_CURRENT: Final[ContextVar[_Wait | None]] = ContextVar("yarpy behalf", default=None)
+_CURRENT: Final[ContextVar[_Wait | None]] = ContextVar("yarpy callback", default=None)
 
 
 @contextmanager
-def on_behalf(thread: threading.Thread) -> Iterator[None]:
+def in_callback_of(thread: threading.Thread) -> Iterator[None]:
     """Let what runs in the block, and in copies of its context meanwhile, be waited for by
     `thread`."""
     wait = _Wait(thread)

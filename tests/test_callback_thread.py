@@ -3,7 +3,7 @@
 import threading
 from contextvars import copy_context
 
-from yarpy.behalf import on_behalf, waited_by
+from yarpy.callback_thread import in_callback_of, waited_by
 
 
 def test_the_current_thread_waits_for_what_is_called_in_it() -> None:
@@ -12,7 +12,7 @@ def test_the_current_thread_waits_for_what_is_called_in_it() -> None:
 
 def test_the_thread_that_waits_is_known_inside_and_in_copies_of_the_context() -> None:
     other = threading.Thread()
-    with on_behalf(other):
+    with in_callback_of(other):
         assert waited_by() is other
         within = copy_context()
         assert within.run(waited_by) is other
