@@ -112,7 +112,7 @@ class Process:
                 seen = len(self.lines)
                 left = deadline - time.monotonic()
                 if self._open_streams == 0:
-                    raise AssertionError(f"{self} ended without saying {pattern!r}{self._said()}")
+                    raise AssertionError(f"{self} ended without saying {pattern!r}{self.said()}")
                 if left <= 0:
                     break
                 self._changed.wait(left)
@@ -200,9 +200,9 @@ class Process:
                 self._popen.wait(5)
             with self._changed:
                 self._changed.wait_for(lambda: self._open_streams == 0, 1)
-        return self._said()
+        return self.said()
 
-    def _said(self) -> str:
+    def said(self) -> str:
         return "; it said:" + "".join(f"\n  {kind}| {line}" for kind, line in self.lines)
 
 

@@ -153,14 +153,14 @@ def passes(process: Process, count: int) -> None:
 @brings("mosquitto")
 def crossing(
     wrapyfi: Path, server: yarpy.NameServer, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[dict[tuple[str, str], Process]]:
+) -> Iterator[dict[tuple[str, str], list[Process]]]:
     """Pairs of programs: who sends, and over what; the other side takes."""
     folder = tmp_path_factory.mktemp("cross")
     ours = sys.executable, str(OURS)
     real = str(wrapyfi / "bin/python"), f"{ROOT / 'src'}{os.pathsep}{ROOT / 'compat/src'}"
     pairs = {"ours": (ours, real), "real": (real, ours)}
     with ExitStack() as stack:
-        takers = {}
+        pairs_of = {}
         for (mwares, side), types in SENT.items():
             # Its publishers over ZeroMQ do not see in time that somebody listens.
             waits = "0" if (mwares, side) == ("zeromq", "real") else "1"
@@ -171,15 +171,18 @@ def crossing(
                 types = (*types, "ask")
             elif mwares != "zeromq":
                 known = {**known, **_servers(stack, folder)}
-            for word, (python, path) in zip(("send", "take"), pairs[side], strict=True):
-                process = Process(
-                    [python, CROSS, word, mwares, *types],
-                    env={**known, "PYTHONPATH": path},
-                    cwd=folder,
+            both = [
+                stack.enter_context(
+                    Process(
+                        [python, CROSS, word, mwares, *types],
+                        env={**known, "PYTHONPATH": path},
+                        cwd=folder,
+                    )
                 )
-                stack.enter_context(process)
-                takers.update({(mware, side): process for mware in mwares.split(",")})
-        yield takers
+                for word, (python, path) in zip(("send", "take"), pairs[side], strict=True)
+            ]
+            pairs_of.update({(mware, side): both for mware in mwares.split(",")})
+        yield pairs_of
 
 
 def _servers(stack: ExitStack, folder: Path) -> dict[str, str]:
@@ -207,14 +210,19 @@ def _servers(stack: ExitStack, folder: Path) -> dict[str, str]:
 
 @pytest.mark.parametrize("side", ["ours", "real"])
 @pytest.mark.parametrize("mware", ["yarp", "zeromq", *BYTES])
-def test_each_type_crosses(mware: str, side: str, crossing: dict[tuple[str, str], Process]) -> None:
+def test_each_type_crosses(
+    mware: str, side: str, crossing: dict[tuple[str, str], list[Process]]
+) -> None:
     """`side` sends; what the other one got is printed."""
-    process = crossing[mware, side]
+    sender, process = crossing[mware, side]
     found: dict[str, Any] = {}
     sent = next(types for (known, who), types in SENT.items() if who == side and mware in known)
     for name in sent:
         pattern = rf'^\["{mware}", "{name}", .*\]$'
-        line = process.wait_line(pattern, timeout=2 * HANG, stream="out")
+        try:
+            line = process.wait_line(pattern, timeout=2 * HANG, stream="out")
+        except AssertionError as error:
+            raise AssertionError(f"{error}\nThe sender {sender}{sender.said()}") from None
         found[name] = json.loads(line[0])[2]
     native = "{'t': (1, 2), 's': {1, None}, 'a': array([0., 1., 2., 3.]), 'n': [None, True, 2.5]}"
     assert found["native"] in (native, native.replace("{1, None}", "{None, 1}"))
