@@ -26,6 +26,7 @@ from yarpy.kits.wrap.npy import from_npy, to_npy
 from yarpy.kits.wrap.spelling import failure, failure_of, frame_of
 from yarpy.network.connection import ask_server
 
+OPENING = 60.0  # seconds for a busy name server; programs of Wrapyfi know no limit there
 _CODES = {(True, False): "rgb", (False, False): "mono", (True, True): "rgb.", (False, True): "dec"}
 
 
@@ -105,7 +106,9 @@ def _spelled_sound(samples: Any, rate: int) -> Any:
 
 class _Out:
     def __init__(self, side: Any) -> None:
-        self._port = yarpy.BufferedPort(side.out_topic, strict=side.kind == "AudioChunk")
+        self._port = yarpy.BufferedPort(
+            side.out_topic, strict=side.kind == "AudioChunk", timeout=OPENING
+        )
         self._greeted: set[str] = set()
         target = side.options.get("out_topic_connect") or f"{side.out_topic}:out"
         if not side.options.get("persistent", True):
@@ -138,7 +141,9 @@ def _own(topic: str) -> str:
 
 class _In:
     def __init__(self, side: Any) -> None:
-        self._port = yarpy.BufferedPort(_own(side.in_topic), strict=side.kind == "AudioChunk")
+        self._port = yarpy.BufferedPort(
+            _own(side.in_topic), strict=side.kind == "AudioChunk", timeout=OPENING
+        )
         self._follower = Follower(self._port, side.in_topic, side.carrier or "tcp")
 
     def wait(self, seconds: float) -> bool:
@@ -196,7 +201,7 @@ class _SoundAnswer(_NativeForm):
 class _Serving(Desk):
     def __init__(self, side: Any) -> None:
         super().__init__(side.out_topic)
-        self._port = yarpy.RpcServer(side.out_topic, self._handle)
+        self._port = yarpy.RpcServer(side.out_topic, self._handle, timeout=OPENING)
 
     def _handle(self, message: yarpy.Message) -> Any:
         found = self.ask(message)
