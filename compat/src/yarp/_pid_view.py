@@ -110,7 +110,7 @@ class _Texts:
 
 
 class PidDataDescription(_Texts):
-    """What a controller is, and what goes in and out."""
+    """The description of a controller, with its units."""
 
     _names: ClassVar = {
         "pid_description": "description",
@@ -137,7 +137,7 @@ class PidDataUnits(_Texts):
 
 
 class PidExtraInfo:
-    """What the driver says of a controller, of YARP 4: `description` and `units`."""
+    """A parameter that a driver of YARP 4 adds to a controller: `description` and `units`."""
 
     def __init__(self) -> None:
         self.description, self.units = PidDataDescription(), PidDataUnits()

@@ -1,4 +1,4 @@
-"""What C++ has and means nothing in Python: it can be imported, and says why when it is called.
+"""Names of C++ that mean nothing in Python: they can be imported, and say why when called.
 
     class Wire(Absent, members="yarp", why="yarpidl_thrift makes Python"): ...
 

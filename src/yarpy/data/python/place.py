@@ -30,7 +30,7 @@ def located(value: Any, error: TypeError) -> TypeError:
 
 
 def _items(value: Any) -> Iterator[tuple[str, Any]]:
-    """What is directly in a value, each behind the words that lead to it."""
+    """Yield what is directly in a value, each behind the words that lead to it."""
     if isinstance(value, dict):
         for key, item in value.items():
             text = json.dumps(key, ensure_ascii=False) if isinstance(key, str) else repr(key)

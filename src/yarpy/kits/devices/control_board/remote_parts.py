@@ -77,7 +77,7 @@ class RemotePids:
 
     @property
     def details(self) -> Sequence[Mapping[str, str]]:
-        """What is said of each controller; boards of YARP 4 alone tell."""
+        """Descriptions of the controllers; boards of YARP 4 alone tell."""
         return self._ask.read("details")
 
     @property

@@ -10,7 +10,7 @@ import time
 from collections.abc import Mapping
 from typing import Final
 
-from yarpy.errors import RemoteError, YarpError
+from yarpy.errors import YarpError
 from yarpy.kits.launch.run.client import RunClient
 from yarpy.kits.launch.supervise import process
 from yarpy.names.base import NameClient
@@ -60,9 +60,12 @@ def end_away(
         try:
             if server not in silent:
                 with RunClient(server, timeout=_FAR, names=names) as node:
-                    if node.is_running(tag):
-                        _end_one(node, tag, grace)
+                    if not node.is_running(tag):
+                        continue
+                    if _end_one(node, tag, grace):
                         ended.append(tag)
+                    else:
+                        left[tag] = "it does not end, not even when it is killed"
         except YarpError as error:
             silent[server] = str(error)
         if server in silent:
@@ -70,8 +73,8 @@ def end_away(
     return ended, left
 
 
-def _end_one(node: RunClient, tag: str, grace: float) -> None:
-    """Raises a YarpError where its server does not answer, or it does not end."""
+def _end_one(node: RunClient, tag: str, grace: float) -> bool:
+    """Return whether a program has ended. Raises a YarpError where its server does not answer."""
     for number, seconds in ((signal.SIGTERM, grace), (_KILL, _GONE)):
         node.signal(tag, number)
         until = time.monotonic() + seconds
@@ -80,5 +83,5 @@ def _end_one(node: RunClient, tag: str, grace: float) -> None:
                 break
             time.sleep(_FAR_POLL)
         else:
-            return
-    raise RemoteError(f"{tag} does not end, not even when it is killed")
+            return True
+    return False

@@ -117,7 +117,7 @@ class GainsShape(Shape):
 
 
 class DetailsKind(Kind):
-    """What is said of a controller: texts by name."""
+    """The description of a controller: texts by name."""
 
     def check(self, value: Any) -> Any:
         names = PidDetails._attributes
@@ -128,7 +128,7 @@ class DetailsKind(Kind):
 
 
 class DetailsShape(Shape):
-    """What is said of a controller."""
+    """The description of a controller."""
 
     def spread(self, value: Any) -> list[Any]:
         return [PidDetails(**value)]
