@@ -3,9 +3,9 @@
 import pytest
 
 from yarpy.kits.devices.control_board.interface import ControlMode
-from yarpy.kits.sim.axis import ICUB_HEAD
 from yarpy.kits.sim.board import Board
 from yarpy.kits.sim.body import Body
+from yarpy.kits.sim.icub import ICUB_HEAD
 from yarpy.kits.sim.joint import Joint
 
 

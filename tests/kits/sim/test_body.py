@@ -4,8 +4,9 @@ import threading
 
 import pytest
 
-from yarpy.kits.sim.axis import ICUB_HEAD, Axis
+from yarpy.kits.sim.axis import Axis
 from yarpy.kits.sim.body import MEMORY, STEP, Body
+from yarpy.kits.sim.icub import ICUB_HEAD
 from yarpy.kits.sim.joint import Joint
 
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from yarpy.kits.sim.axis import ICUB_HEAD
 from yarpy.kits.sim.body import Body
 from yarpy.kits.sim.eye import PAIR, Eye, Shutter
+from yarpy.kits.sim.icub import ICUB_HEAD
 from yarpy.kits.sim.joint import Joint
 from yarpy.kits.sim.scene import room
 

@@ -13,10 +13,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from yarpy.data.bottle import Property
-from yarpy.kits.sim.axis import ICUB_HEAD
 from yarpy.kits.sim.board import Board
 from yarpy.kits.sim.body import Body
 from yarpy.kits.sim.head import SIDES
+from yarpy.kits.sim.icub import ICUB_HEAD
 from yarpy.kits.sim.inertial import Inertial
 from yarpy.kits.sim.joint import Joint
 from yarpy.names.base import NameClient

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Final
 from yarpy.kits.devices.closeable import Closeable, prefix
 from yarpy.kits.devices.control_board.interface import Joints
 from yarpy.kits.devices.frame_grabber.interface import Camera
-from yarpy.kits.sim.axis import ICUB_HEAD
 from yarpy.kits.sim.board import Board
 from yarpy.kits.sim.body import Body, Clock
 from yarpy.kits.sim.head import SIDES
+from yarpy.kits.sim.icub import ICUB_BODY, ICUB_HEAD
 from yarpy.kits.sim.joint import Joint
 
 if TYPE_CHECKING:
@@ -57,6 +57,17 @@ def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
     return Parts(
         {"head": Board(body)}, {"cam/left": left, "cam/right": right}, {"inertial": Inertial(body)}
     )
+
+
+def icub(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
+    """A head as `icub_head` makes it, and the boards of torso, arms and legs. The head does not
+    move with the torso: what it sees and feels is its own.
+    """
+    head = icub_head(size, clock)
+    body = {
+        part: Board(Body([Joint(axis) for axis in axes], clock)) for part, axes in ICUB_BODY.items()
+    }
+    return Parts({**head.boards, **body}, head.cameras, head.sensors)
 
 
 class Robot(Closeable):

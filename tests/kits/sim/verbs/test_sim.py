@@ -34,6 +34,22 @@ def test_robot_of_a_name(cli, names):
     assert names.list("/robbie") == []
 
 
+def test_a_whole_icub(cli, names):
+    with cli.start("sim", "--whole") as process:
+        ready = process.wait_line(r"^/icubSim is ready: (.*)$", stream="out", timeout=HANG)[1]
+        assert "/icubSim/left_arm /icubSim/right_arm /icubSim/left_leg" in ready
+        with yarpy.RpcClient("/icubSim/right_arm/rpc:i", names=names) as arm:
+            assert arm.call("get", "axes")[2] == 16
+            assert arm.call("get", "enc", 3)[2] == 15  # an elbow cannot be straight
+        process.signal(signal.SIGINT)
+        assert process.wait() == 0, process.stderr
+
+
+def test_a_model_says_what_it_has(cli):
+    result = cli.run("sim", "--whole", "--mujoco", str(ARM))
+    assert result.returncode == 1 and "--whole is the iCub's" in result.stderr
+
+
 @pytest.mark.peer("ros", "rosmaster")
 def test_a_node_of_ros(tmp_path):
     with ros_graph(tmp_path) as graph:

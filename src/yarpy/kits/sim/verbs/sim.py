@@ -1,8 +1,9 @@
-"""`yarpy sim`: a simulated robot on YARP ports, the head of an iCub or a MuJoCo model.
+"""`yarpy sim`: a simulated robot on YARP ports, the head of an iCub, all of one, or a MuJoCo model.
 
     --robot NAME      the beginning of its ports' names (icubSim, or what the model is called)
     --fps HZ          pictures per second of its cameras (30)
     --size WxH        of its pictures, in pixels (320x240)
+    --whole           torso, arms and legs too, the boards of a whole iCub
     --mujoco FILE     this model instead of the head: joints, cameras, inertial sensors
     --ros             as a node of ROS 1 too: pictures, joint states, a service that moves joints
 
@@ -56,6 +57,7 @@ class Size(_Type):
 @click.option(
     "--size", type=Size(), default="320x240", metavar="WxH", help="Of the pictures, in pixels."
 )
+@click.option("--whole", is_flag=True, help="Torso, arms and legs too.")
 @click.option(
     "--mujoco",
     "model",
@@ -64,14 +66,21 @@ class Size(_Type):
     help="Simulate this MuJoCo model (XML) instead.",
 )
 def command(
-    robot: str | None, fps: float, size: tuple[int, int], model: str | None, **others: bool
+    robot: str | None,
+    fps: float,
+    size: tuple[int, int],
+    whole: bool,
+    model: str | None,
+    **others: bool,
 ) -> int:
     """Simulate a robot: joints, cameras and sensors on YARP ports."""
-    from yarpy.kits.sim.robot import NAME, Robot, icub_head
+    from yarpy.kits.sim.robot import NAME, Robot, icub, icub_head
 
     log.show()
+    if whole and model is not None:
+        raise click.UsageError("--whole is the iCub's: a model of --mujoco says itself what it has")
     if model is None:
-        name, parts = NAME, icub_head(size)
+        name, parts = NAME, (icub if whole else icub_head)(size)
     else:
         from yarpy.kits.sim.mujoco.robot import mujoco_robot
 
