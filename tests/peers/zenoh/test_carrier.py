@@ -9,6 +9,7 @@ import pytest
 
 import yarpy
 from yarpy.data import codec
+from yarpy.errors import LocalProtocolError
 from yarpy.link.begin.handshake import find_carrier
 from yarpy.peers.zenoh.carrier import (
     Asker,
@@ -135,3 +136,37 @@ def test_answering(spec: str, payload: bytes | None) -> None:
 def test_encodings() -> None:
     assert encoding_of(b"[1, 2]", [1, 2]) == "application/json"
     assert encoding_of(b"\xff\xd8\xff\xe0", None) == "image/jpeg"
+
+
+def test_an_envelope_goes_and_comes() -> None:
+    carrier, end = opened("zenoh")
+    carrier.encode(end.stream, Packet([1], b"7 1.5"))
+    assert said(end) == [Outgoing(b"[1]", "application/json", attachment=b"7 1.5")]
+    carrier, end = opened("zenoh+sub")
+    for attachment, envelope in ((b"7 1.5", "7 1.5"), (b"", ""), (b"\xff", "\ufffd")):
+        end.begin(carrier.decode(end.stream))
+        end.feed(Incoming(b"[1]", attachment=attachment))
+        assert (end.result.value, end.result.envelope) == ([1], envelope)
+
+
+def test_a_delete_is_told_by_a_vocab() -> None:
+    carrier, end = opened("zenoh+sub+delete")
+    end.begin(carrier.decode(end.stream))
+    end.feed(Incoming(b"", place="robot/arm", deleted=True))
+    assert (end.result.value, end.result.source) == ([yarpy.Vocab("delete")], "/zenoh://robot/arm")
+
+
+@pytest.mark.parametrize(
+    ("spec", "why"),
+    [
+        ("zenoh+priority.FAST", "Zenoh has REAL_TIME"),
+        ("zenoh+sub+priority.DATA", "for ports that put"),
+        ("zenoh+srv+block", "for ports that put"),
+        ("zenoh+sub+express", "for ports that put"),
+        ("zenoh+delete", "for ports that subscribe"),
+        ("zenoh+sub+srv+delete", "for ports that subscribe"),
+    ],
+)
+def test_additions_that_do_not_fit(spec: str, why: str) -> None:
+    with pytest.raises(LocalProtocolError, match=why):
+        find_carrier(parse_carrier(spec))

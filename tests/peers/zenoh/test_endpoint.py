@@ -7,9 +7,11 @@ from queue import Queue
 from typing import Any
 
 import pytest
+import zenoh
 from support.wait import HANG, wait_until
 
 import yarpy
+from yarpy.limit import ZENOH_ATTACHMENT
 from yarpy.peers.zenoh import endpoint
 from yarpy.peers.zenoh.endpoint import Publisher, Server, Subscriber
 from yarpy.peers.zenoh.transport import share
@@ -154,3 +156,44 @@ def test_strange_payloads_are_messages(client: Any, caplog: pytest.LogCaptureFix
         for data in strange:
             assert reader.read(timeout=HANG).value in (data, data.decode("latin-1"))
         assert not caplog.text
+
+
+def test_an_envelope_is_the_attachment(client: Any) -> None:
+    heard = Queue[Any]()
+    client.declare_subscriber("robot/beside", heard.put)
+    with yarpy.Port("/out") as out, yarpy.BufferedPort("/in", strict=True) as reader:
+        out.connect("zenoh://robot/beside")
+        wait_until(lambda: out.write(1, stamp="7 1.5") and not heard.empty())
+        assert heard.get().attachment.to_string() == "7 1.5"
+        reader.connect("zenoh+sub://robot/there")
+        waits = zenoh.CongestionControl.BLOCK  # where there is no room
+        publisher = client.declare_publisher("robot/there", congestion_control=waits)
+        wait_until(lambda: publisher.matching_status.matching)
+        publisher.put("[1]", attachment="note")
+        publisher.put("[2]", attachment=b"x" * 100_000)
+        publisher.put("[3]")
+        found = [reader.read(timeout=HANG).envelope for _ in range(3)]
+        assert found == ["note", "x" * ZENOH_ATTACHMENT, ""]
+
+
+def test_a_delete_is_a_message_where_it_is_asked_for(client: Any) -> None:
+    with yarpy.BufferedPort("/in", strict=True) as reader:
+        reader.connect("zenoh+sub+delete://robot/*")
+        publisher = client.declare_publisher("robot/gone")
+        wait_until(lambda: publisher.matching_status.matching)
+        publisher.delete()
+        message = reader.read(timeout=HANG)
+        assert message.value == [yarpy.Vocab("delete")]
+        assert message.source == "/zenoh://robot/gone"
+
+
+def test_a_port_puts_with_a_priority(client: Any) -> None:
+    heard = Queue[Any]()
+    client.declare_subscriber("robot/fast", heard.put)
+    with yarpy.Port("/out") as out:
+        out.connect("zenoh+priority.REAL_TIME+block+express://robot/fast")
+        wait_until(lambda: out.write(1) and not heard.empty())
+        sample = heard.get()
+        assert sample.priority == zenoh.Priority.REAL_TIME
+        assert sample.congestion_control == zenoh.CongestionControl.BLOCK
+        assert sample.express

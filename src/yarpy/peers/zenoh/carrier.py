@@ -6,8 +6,11 @@
     yarpy connect zenoh+srv://robot/arm /server  the port answers such questions: a queryable
 
     zenoh+raw://...                              payloads are YARP's own spelling
+    zenoh+sub+delete://...                       a DELETE is a message, too: [delete]
+    zenoh+priority.REAL_TIME+block+express://... what is put, as publishers of Zenoh say it
 
-Rules: those of `hosted`; `yarpy.zenoh` has the endpoints. `payload` says what a payload holds.
+Rules: those of `hosted`; `yarpy.zenoh` has the endpoints. `payload` says what a payload holds. An
+envelope is the attachment, both ways.
 """
 
 from __future__ import annotations
@@ -20,13 +23,23 @@ from yarpy.carriers.hosted import LISTENS, SERVICE, Hosted, failure
 from yarpy.carriers.payload import JPEG, message_of, payload_of, to_payload
 from yarpy.data import codec
 from yarpy.data.failure import error_of, raised
+from yarpy.data.value import Vocab
+from yarpy.errors import LocalProtocolError
 from yarpy.log import readable
-from yarpy.route import Route
+from yarpy.route import CarrierSpec, Route
 from yarpy.wire.message import CALL, DATA, Encoded, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
 RAW: Final = "raw"
+DELETE: Final = "delete"
+BLOCK: Final = "block"  # wait for room on the way instead of dropping
+EXPRESS: Final = "express"  # do not wait for more that could go in one packet
+#: what a message of Zenoh can have, the most urgent first
+PRIORITIES: Final = (
+    *("REAL_TIME", "INTERACTIVE_HIGH", "INTERACTIVE_LOW"),
+    *("DATA_HIGH", "DATA", "DATA_LOW", "BACKGROUND"),
+)
 
 JSON: Final = "application/json"
 PICTURE: Final = "image/jpeg"
@@ -38,12 +51,13 @@ _UNTOLD: Final = (bytes, bytearray, memoryview, Encoded)  # the last holds anyth
 @dataclass(slots=True)
 class Outgoing:
     """A message, question or answer that goes. `encoding`: its type, as Zenoh writes it. `to`: what
-    it answers. `failed`: it says why there is no answer."""
+    it answers. `failed`: it says why there is no answer. `attachment`: what goes beside it."""
 
     payload: Buffer
     encoding: str = BYTES
     to: Any = None
     failed: bool = False
+    attachment: bytes = b""
 
     @property
     def size(self) -> int:
@@ -54,13 +68,15 @@ class Outgoing:
 class Incoming:
     """A message, question or answer that came. `asked`: the question, to be answered. `failure`:
     why there is no answer, `raised`: by which kind of exception. `place`: the key that it was put
-    at."""
+    at. `attachment`: what came beside it. `deleted`: there is nothing at that key any more."""
 
     payload: Buffer
     asked: Any = None
     failure: str = ""
     raised: str = ""
     place: str = ""
+    attachment: bytes = b""
+    deleted: bool = False
 
     @property
     def size(self) -> int:
@@ -72,11 +88,26 @@ class Zenoh(Hosted):
 
     name = "zenoh"
     over = "zenoh"
-    words = (SERVICE, LISTENS, RAW)
+    words = (SERVICE, LISTENS, RAW, DELETE, "priority.NAME", BLOCK, EXPRESS)
 
     def __init__(self, route: Route) -> None:
         super().__init__(route)
         self.raw = RAW in route.spec.tokens
+
+    @classmethod
+    def of(cls, spec: CarrierSpec) -> type[Carrier]:
+        priority = spec.value("priority")
+        if priority is not None and priority not in PRIORITIES:
+            raise LocalProtocolError(
+                f"+priority.{readable(priority[:20])}: Zenoh has {', '.join(PRIORITIES)}"
+            )
+        reads, puts = LISTENS in spec.tokens, {"priority", BLOCK, EXPRESS}
+        said = puts & {token.partition(".")[0] for token in spec.tokens}
+        if said and (reads or SERVICE in spec.tokens):
+            raise LocalProtocolError(f"+{min(said)} is for ports that put: zenoh://KEY")
+        if DELETE in spec.tokens and (not reads or SERVICE in spec.tokens):
+            raise LocalProtocolError("+delete is for ports that subscribe: zenoh+sub://KEY")
+        return super().of(spec)
 
     @classmethod
     def roles(cls) -> tuple[type[Carrier], type[Carrier], type[Carrier]]:
@@ -96,14 +127,18 @@ class Zenoh(Hosted):
 
     def _said(self, packet: Packet) -> Outgoing:
         if self.raw:
-            return Outgoing(_joined(packet.blocks))
+            return Outgoing(_joined(packet.blocks), attachment=packet.envelope)
         payload = to_payload(packet)
-        return Outgoing(payload, encoding_of(payload, packet.value))
+        encoding = encoding_of(payload, packet.value)
+        return Outgoing(payload, encoding, attachment=packet.envelope)
 
     def _heard(self, key: str, came: Incoming) -> Message:
-        if self.raw:
-            return Message(key, came.payload)
-        return message_of(key, [came.payload])
+        if came.deleted:
+            return Message(key, b"".join(codec.encode([Vocab(DELETE)])))
+        message = Message(key, came.payload) if self.raw else message_of(key, [came.payload])
+        if came.attachment:
+            message.envelope = came.attachment.decode("utf-8", "replace")
+        return message
 
 
 class Subscriber(Zenoh):

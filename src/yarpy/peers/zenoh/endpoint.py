@@ -12,26 +12,30 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from yarpy.limit import ZENOH_ATTACHMENT
 from yarpy.log import logger, readable
-from yarpy.peers.zenoh.carrier import TEXT, Incoming, Outgoing
+from yarpy.peers.zenoh.carrier import BLOCK, DELETE, EXPRESS, TEXT, Incoming, Outgoing
 from yarpy.peers.zenoh.exchange import undeclare
 from yarpy.peers.zenoh.library import CALLS, load
 from yarpy.peers.zenoh.transport import SharedSession
+from yarpy.route import CarrierSpec, parse_carrier
 from yarpy.transports.inbox import Inbox
 
 log = logger("yarpy.zenoh")
 
 KEPT: Final = 1000  # messages that wait to be read
 MOST_QUESTIONS: Final = 100  # that wait for a server of ours
+_NOTHING_SAID: Final = parse_carrier("zenoh")
 ANSWER: Final = 600.0  # seconds for an answer; who asks may wait less long
 
 
 class Endpoint(Inbox):
     """The base of publishers, subscriptions, clients and servers. It closes the shared session."""
 
-    def __init__(self, shared: SharedSession, key: str) -> None:
+    def __init__(self, shared: SharedSession, key: str, spec: CarrierSpec = _NOTHING_SAID) -> None:
         super().__init__()
         self.name = key
+        self._spec = spec
         self._shared = shared
         self._session: Any = shared.session
         self._declared: list[Any] = []
@@ -59,11 +63,22 @@ class Publisher(Endpoint):
     """Puts messages on its key."""
 
     def begin(self) -> None:
-        self._declared.append(self._session.declare_publisher(self.name))
+        library, tokens = load(), self._spec.tokens
+        said: dict[str, Any] = {}
+        priority = self._spec.value("priority")
+        if priority is not None:
+            said["priority"] = getattr(library.Priority, priority)
+        if BLOCK in tokens:
+            said["congestion_control"] = library.CongestionControl.BLOCK
+        if EXPRESS in tokens:
+            said["express"] = True
+        self._declared.append(self._session.declare_publisher(self.name, **said))
 
     def give(self, item: Outgoing) -> None:
         with CALLS:
-            self._declared[0].put(bytes(item.payload), encoding=item.encoding)
+            self._declared[0].put(
+                bytes(item.payload), encoding=item.encoding, attachment=item.attachment or None
+            )
 
 
 class Subscriber(Endpoint):
@@ -74,9 +89,18 @@ class Subscriber(Endpoint):
         self._declared.append(self._session.declare_subscriber(self.name, hear))
 
     def _heard(self, sample: Any) -> None:
+        place = str(sample.key_expr)
         if sample.kind == load().SampleKind.PUT:
-            place = str(sample.key_expr)
-            self.put(Incoming(sample.payload.to_bytes(), place=place), KEPT)
+            beside = _attached(sample)
+            self.put(Incoming(sample.payload.to_bytes(), place=place, attachment=beside), KEPT)
+        elif DELETE in self._spec.tokens:
+            self.put(Incoming(b"", place=place, deleted=True), KEPT)
+
+
+def _attached(said: Any) -> bytes:
+    """Return what is attached to a sample or a question, as far as it is kept."""
+    beside = said.attachment
+    return b"" if beside is None else bytes(beside.to_bytes()[:ZENOH_ATTACHMENT])
 
 
 class Asker(Endpoint):
@@ -109,6 +133,7 @@ class Asker(Endpoint):
                 consolidation=zenoh.ConsolidationMode.NONE,
                 payload=bytes(item.payload),
                 encoding=item.encoding,
+                attachment=item.attachment or None,
                 timeout=ANSWER,
             )
 
@@ -137,7 +162,7 @@ class Server(Endpoint):
             return
         payload = query.payload
         body = b"[]" if payload is None else payload.to_bytes()
-        self.put(Incoming(body, query), MOST_QUESTIONS)
+        self.put(Incoming(body, query, attachment=_attached(query)), MOST_QUESTIONS)
 
     def give(self, item: Outgoing) -> None:
         query = item.to

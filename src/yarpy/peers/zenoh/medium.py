@@ -48,7 +48,7 @@ def open_medium(contact: Contact, route: Route) -> Endpoint:
     key = check_key(contact.name, patterns=listens and not serves)
     shared = share(_where())
     try:
-        return _KINDS[serves, listens](shared, key)
+        return _KINDS[serves, listens](shared, key, route.spec)
     except BaseException:
         shared.close()
         raise
