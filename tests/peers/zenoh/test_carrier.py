@@ -143,7 +143,12 @@ def test_an_envelope_goes_and_comes() -> None:
     carrier.encode(end.stream, Packet([1], b"7 1.5"))
     assert said(end) == [Outgoing(b"[1]", "application/json", attachment=b"7 1.5")]
     carrier, end = opened("zenoh+sub")
-    for attachment, envelope in ((b"7 1.5", "7 1.5"), (b"", ""), (b"\xff", "\ufffd")):
+    for attachment, envelope in (
+        (b"7 1.5", "7 1.5"),
+        (b"", ""),
+        (b"\xff", "\ufffd"),
+        (b"7 1.5\r\nd 8 2.5", "7 1.5"),
+    ):
         end.begin(carrier.decode(end.stream))
         end.feed(Incoming(b"[1]", attachment=attachment))
         assert (end.result.value, end.result.envelope) == ([1], envelope)

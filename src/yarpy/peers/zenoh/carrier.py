@@ -15,6 +15,7 @@ envelope is the attachment, both ways.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -45,6 +46,7 @@ JSON: Final = "application/json"
 PICTURE: Final = "image/jpeg"
 TEXT: Final = "text/plain"  # of what went wrong; behind it the kind of an exception
 BYTES: Final = "zenoh/bytes"  # which says nothing
+_CONTROL: Final = re.compile(r"[\x00-\x1f\x7f]")
 _UNTOLD: Final = (bytes, bytearray, memoryview, Encoded)  # the last holds anything
 
 
@@ -137,7 +139,8 @@ class Zenoh(Hosted):
             return Message(key, b"".join(codec.encode([Vocab(DELETE)])))
         message = Message(key, came.payload) if self.raw else message_of(key, [came.payload])
         if came.attachment:
-            message.envelope = came.attachment.decode("utf-8", "replace")
+            text = came.attachment.decode("utf-8", "replace")
+            message.envelope = _CONTROL.split(text, maxsplit=1)[0]  # a line, as everywhere
         return message
 
 
