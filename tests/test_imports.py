@@ -21,7 +21,7 @@ def look(act, name):
         failed.append(f"{name}: {error!r}")
 
 def ask():
-    from yarpy.network.connection import ask_server
+    from yarpy.network.asking import ask_server
 
 acts = [(lambda name=name: getattr(yarpy, name), name) for name in names[NUMBER:] + names[:NUMBER]]
 threads = [threading.Thread(target=look, args=act) for act in [*acts, (ask, "ask"), (ask, "ask")]]

@@ -132,15 +132,8 @@ if TYPE_CHECKING:
     from yarpy.names.client import YarpNameClient
     from yarpy.nameserver.local import LocalNames
     from yarpy.nameserver.server import NameServer
-    from yarpy.network.connection import (
-        admin,
-        disconnect,
-        exists,
-        is_connected,
-        ping,
-        query,
-        wait_for,
-    )
+    from yarpy.network.asking import admin, ping, query
+    from yarpy.network.connection import disconnect, exists, is_connected, wait_for
     from yarpy.network.remote import connect
     from yarpy.peers import ros as ros
     from yarpy.peers import ros2 as ros2
@@ -196,10 +189,10 @@ else:
         "disconnect": "yarpy.network.connection",
         "is_connected": "yarpy.network.connection",
         "exists": "yarpy.network.connection",
-        "query": "yarpy.network.connection",
-        "ping": "yarpy.network.connection",
+        "query": "yarpy.network.asking",
+        "ping": "yarpy.network.asking",
         "wait_for": "yarpy.network.connection",
-        "admin": "yarpy.network.connection",
+        "admin": "yarpy.network.asking",
         "realtime": "yarpy.real_time",
         "YarpError": "yarpy.errors",
         "AddressError": "yarpy.errors",

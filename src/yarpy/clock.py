@@ -27,7 +27,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError, LocalProtocolError, PortClosed, Timeout, YarpError
 from yarpy.log import logger
 from yarpy.names.base import NameClient
-from yarpy.network.connection import ask_server
+from yarpy.network.asking import ask_server
 from yarpy.network.remote import connect
 from yarpy.port.port import BufferedPort
 from yarpy.wire.message import Message

@@ -39,6 +39,7 @@ ALLOWED = {
     "yarpy.log",
     "yarpy.names.default",
     "yarpy.names.discovery",
+    "yarpy.network.asking",
     "yarpy.network.connection",
     "yarpy.network.qos",
     "yarpy.qos",

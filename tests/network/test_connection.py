@@ -1,33 +1,26 @@
-"""The network as a whole: any two ports, from a program that has none."""
+"""Connections between any two ports, from a program that has none."""
 
 from __future__ import annotations
 
-import logging
 import socket
 import threading
 import time
 
 import pytest
-from support.guest import guest
 from support.lasted import lasted
 from support.port import free_port
 from support.wait import wait_until
 
 import yarpy
 from yarpy import network
-from yarpy.contact import Contact
 from yarpy.errors import (
     AddressError,
     LinkClosed,
     LocalProtocolError,
-    NoNameServer,
-    NotAllowed,
     UnknownName,
     UnknownPlugin,
-    WrongPort,
 )
 from yarpy.nameserver.local import LocalNames
-from yarpy.network.connection import called
 from yarpy.port.port import Port
 
 
@@ -39,14 +32,11 @@ def names() -> LocalNames:
 # ---------------------------------------------------------------------------------- asking
 
 
-def test_where_a_port_is(names: LocalNames) -> None:
-    with Port("/in", names=names) as port:
-        assert network.query("/in", names) == port.contact
-        assert network.query("/none", names) is None
-        assert network.query("/127.0.0.1:5", names) == Contact("tcp", "", "127.0.0.1", 5)
-        assert network.find("/in", names) == port.contact
-        with pytest.raises(UnknownName, match='did you mean "/in"'):
-            network.find("/inn", names)
+def _refuse(web: socket.socket) -> None:
+    sock, _ = web.accept()
+    sock.recv(100)
+    sock.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+    sock.close()
 
 
 def test_whether_a_port_lives(names: LocalNames) -> None:
@@ -60,57 +50,6 @@ def test_whether_a_port_lives(names: LocalNames) -> None:
         names.register("/silent", "tcp", *web.getsockname())
         threading.Thread(target=_refuse, args=(web,), daemon=True).start()
         assert not network.exists("/silent", names=names)
-
-
-def _refuse(web: socket.socket) -> None:
-    sock, _ = web.accept()
-    sock.recv(100)
-    sock.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
-    sock.close()
-
-
-def test_description_of_a_port(names: LocalNames) -> None:
-    with Port("/in", names=names) as port:
-        assert network.ping("/in", names=names) == [
-            f"This is /in at tcp://{port.address}/",
-            "There are no outgoing connections",
-            "There is an input connection from <ping> to /in using text_ack",
-        ]
-    with pytest.raises(UnknownName):
-        network.ping("/in", names=names)
-
-
-def test_administration_from_outside(names: LocalNames) -> None:
-    with Port("/in", names=names):
-        assert network.admin("/in", "ver", names=names)[1:] == [1, 2, 3]
-        assert network.admin("/in", "prop", "set", "color", "red", names=names) == ["ok"]
-        assert network.admin("/in", "prop", "get", "color", names=names) == ["red"]
-    names.register("/dead", "tcp", "127.0.0.1", free_port())
-    with pytest.raises(LinkClosed, match=r"yarpy clean"):
-        network.admin("/dead", "ver", names=names)
-
-
-def test_nothing_is_changed_at_another_port(names: LocalNames) -> None:
-    """One that has the number by now which the name service remembers of a port that is gone."""
-    with Port("/motor", names=names) as motor, Port("/viewer", names=names):
-        motor.connect("/viewer")
-        names.register("/camera", "tcp", "127.0.0.1", motor.contact.port)
-        assert network.admin("/camera", "ver", names=names)  # by hand: an alias
-        names.set("/camera", "process", 1)  # as ports say of themselves
-        with pytest.raises(WrongPort, match=r'"/motor" listens .*, not "/camera"'):
-            network.admin("/camera", "prop", "set", "color", "red", names=names)
-        assert not network.exists("/camera", names=names)
-        with pytest.raises(WrongPort, match='not "/camera"'):
-            network.disconnect("/camera", "/viewer", names=names)
-        assert motor.outputs
-        assert not network.admin("/motor", "prop", "get", "color", names=names)
-
-
-def test_nobody_to_ask(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("YARPY_SERVER", f"127.0.0.1:{free_port()}")
-    for ask in (network.query, network.exists, network.ping):
-        with pytest.raises(NoNameServer):
-            ask("/in")
 
 
 # ---------------------------------------------------------------------------------- connecting
@@ -199,28 +138,6 @@ def test_what_the_ends_can_do_is_for_them_to_say(carrier: str, names: LocalNames
         assert [link.carrier for link in out.outputs] == ["tcp"]  # the one that there is stays
 
 
-def test_local_is_not_asked_of_two_programs(names: LocalNames) -> None:
-    """A port of C++ YARP that is dialled so from another program crashes."""
-    with Port("/out", names=names) as out, Port("/in", callback=lambda message: None, names=names):
-        for name in ("/out", "/in"):
-            names.set(name, "process", 1)
-        network.connect("/out", "/in", "local", names=names)
-        assert network.disconnect("/out", "/in", names=names)
-        names.set("/in", "process", 2)
-        with pytest.raises(NotAllowed, match="two programs"):
-            network.connect("/out", "/in", "local", names=names)
-        assert not out.outputs
-
-
-def test_carriers_of_others_that_the_receiver_dials(names: LocalNames) -> None:
-    with (
-        Port("/out", names=names),
-        Port("/in", names=names),
-        pytest.raises(UnknownPlugin, match="refused: Cannot connect to h264://out: no"),
-    ):
-        network.connect("/out", "/in", "h264", names=names)
-
-
 def test_waiting_for_both_ports(names: LocalNames) -> None:
     ports: list[Port] = []
 
@@ -258,16 +175,6 @@ def test_waiting_for_a_port_and_a_connection(names: LocalNames) -> None:
 # --------------------------------------------------------------------------- registered cameras
 
 
-def test_endpoint_that_takes_no_commands_constrains_the_carrier(names: LocalNames) -> None:
-    """A camera's web server, registered by hand, has a carrier of its own; nobody asks it."""
-    names.register("/cam", "mjpeg", "127.0.0.1", free_port())
-    with Port("/viewer", names=names):
-        with pytest.raises(LocalProtocolError, match="conflict between tcp and mjpeg"):
-            network.connect("/cam", "/viewer", "tcp", names=names)
-        with pytest.raises((LocalProtocolError, UnknownPlugin)):
-            network.connect("/viewer", "/cam", names=names)
-
-
 # ---------------------------------------------------------------------------------- with a server
 
 
@@ -295,51 +202,3 @@ def test_topics_are_asked_of_the_server() -> None:
             "topic://news", ""
         )
         assert len(out.outputs) == 1  # as in C++, what exists stays
-
-
-def test_questions_leave_no_trace(names: LocalNames, caplog: pytest.LogCaptureFixture) -> None:
-    """Tools are no connections that anybody wants to hear of."""
-    caplog.set_level(logging.INFO, "yarpy")
-    with Port("/in", names=names) as port:
-        caplog.clear()
-        network.exists("/in", names=names)
-        network.ping("/in", names=names)
-        network.admin("/in", "ver", names=names)
-        wait_until(lambda: not port._hub.inputs.links)
-        assert caplog.records == []
-
-
-def test_connection_to_an_address_with_a_name_can_be_ended_by_it(names: LocalNames) -> None:
-    with yarpy.Port("/out", names=names) as out, yarpy.Port("/in", names=names) as in_:
-        target = f"tcp://{in_.address}/in"
-        yarpy.connect("/out", target, names=names)
-        assert [link.target for link in out.outputs] == ["/in"]
-        assert yarpy.is_connected("/out", target, names=names)
-        assert yarpy.disconnect("/out", target, names=names)
-        assert not out.outputs
-
-
-def test_connection_to_an_address_is_known_by_the_name_that_is_there(names: LocalNames) -> None:
-    with yarpy.Port("/out", names=names) as out, yarpy.BufferedPort("/in", names=names) as in_:
-        address = f"/{in_.address}/"
-        yarpy.connect("/out", address, names=names)
-        wait_until(lambda: in_.inputs)
-        assert called("/out", "/in", names) == address
-        assert called("/in", "/out", names) == "/out"
-        assert called("/out", "/other", names) == "/other"
-        assert yarpy.is_connected("/out", "/in", names=names)
-        assert yarpy.disconnect("/out", "/in", names=names)
-        assert not out.outputs
-
-
-def test_who_has_no_server_is_told_of_one() -> None:
-    guest("ros", "zenoh")
-    from yarpy.peers.ros.names import RosNames
-
-    for names, told in (
-        (yarpy.LocalNames(), "`yarpy server` starts one"),
-        (yarpy.zenoh.ZenohNames("tcp/127.0.0.1:1"), "`yarpy server --zenoh`"),
-        (RosNames(None), "/TOPIC@/NODE"),  # type: ignore[arg-type]
-    ):
-        with pytest.raises(LocalProtocolError, match=told):
-            network.ask_server(names, ["topic", "list"])

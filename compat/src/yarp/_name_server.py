@@ -20,7 +20,7 @@ from yarpy.config.configuration import (
     write_namespaces,
     write_server,
 )
-from yarpy.network.connection import ask_server
+from yarpy.network.asking import ask_server
 
 
 def write_to_name_server(cmd: Any, reply: Any, style: ContactStyle | None = None) -> bool:

@@ -391,7 +391,7 @@ def _decorated(name: str, carrier: str) -> str:
 
 
 def _persist(command: list[str]) -> bool:
-    from yarpy.network.connection import ask_server
+    from yarpy.network.asking import ask_server
 
     try:
         ask_server(_names.names(), command)

@@ -22,25 +22,22 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from yarpy.network.connection import (
-        Pairing,
-        admin,
-        ask_server,
-        disconnect,
-        exists,
-        find,
-        is_connected,
-        ping,
-        query,
-        wait_for,
-    )
+    from yarpy.network.asking import admin, ask_server, find, ping, query
+    from yarpy.network.connection import disconnect, exists, is_connected, wait_for
+    from yarpy.network.pairing import Pairing
     from yarpy.network.remote import RemoteConnection, connect
 else:
+    _PARTS = {
+        "asking": ("admin", "ask_server", "find", "ping", "query"),
+        "connection": ("disconnect", "exists", "is_connected", "wait_for"),
+        "pairing": ("Pairing",),
+        "remote": ("RemoteConnection", "connect"),
+    }
 
     def __getattr__(name):
         from importlib import import_module
 
-        if name not in __all__:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        part = "remote" if name in ("RemoteConnection", "connect") else "connection"
-        return getattr(import_module(f"{__name__}.{part}"), name)
+        for part, names in _PARTS.items():
+            if name in names:
+                return getattr(import_module(f"{__name__}.{part}"), name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

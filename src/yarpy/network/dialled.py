@@ -8,6 +8,8 @@ it is for others to say which.
 from __future__ import annotations
 
 from yarpy.contact import Contact, parse_contact
+from yarpy.data.bottle import Bottle
+from yarpy.data.text import plain_text
 from yarpy.errors import AddressError
 from yarpy.names.address import is_loopback, plain_host
 
@@ -34,3 +36,12 @@ def leads_to(address: Contact, contact: Contact, host: str) -> bool:
         return False
     there, meant = plain_host(contact.host), plain_host(address.host)
     return meant == there or (is_loopback(meant) and (is_loopback(there) or there == host))
+
+
+def dialled_in(listed: Bottle, contact: Contact, host: str) -> str:
+    """The address of `contact` in what a port at `host` lists, "" if it is not there."""
+    for peer in map(plain_text, listed):
+        address = address_in(peer)
+        if address is not None and leads_to(address, contact, host):
+            return peer
+    return ""

@@ -14,7 +14,7 @@ from yarpy.data.text import plain_text
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, UnknownName
 from yarpy.names.base import NameClient
-from yarpy.network.connection import admin, called
+from yarpy.network.asking import admin, called
 from yarpy.qos import Qos, Sched, policy_of
 
 

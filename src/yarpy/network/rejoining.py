@@ -14,7 +14,8 @@ from typing import Final, TypeAlias
 from yarpy.errors import UnknownName, YarpError
 from yarpy.log import logger
 from yarpy.names.base import NameClient
-from yarpy.network.connection import Pairing, disconnect, join
+from yarpy.network.connection import disconnect, join
+from yarpy.network.pairing import Pairing
 from yarpy.network.qos import grant, granted
 from yarpy.qos import Qos
 

@@ -37,7 +37,7 @@ from yarpy.link.send.outbound import Outbound
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT, secret
 from yarpy.network import qos
-from yarpy.network.connection import confirmed, query
+from yarpy.network.asking import confirmed, query
 from yarpy.network.traffic import (
     End,
     Flow,

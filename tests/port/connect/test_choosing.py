@@ -148,7 +148,7 @@ def test_pictures_to_two_programs(server: yarpy.NameServer) -> None:
 
 def test_persistent_connections(server: yarpy.NameServer) -> None:
     """Whatever the name server has to keep, the port chooses how."""
-    from yarpy.network.connection import ask_server
+    from yarpy.network.asking import ask_server
 
     ask_server(None, ["subscribe", "/out", "/in"])
     with yarpy.Port("/out") as out, reader("/in") as process:

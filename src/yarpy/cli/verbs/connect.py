@@ -105,7 +105,7 @@ def _existing(source: str, target: str, carrier: str | None) -> str:
     Its carrier tells which of the two ends to ask: a camera that takes a single connection must not
     waste it on us.
     """
-    from yarpy.network.connection import Pairing
+    from yarpy.network.pairing import Pairing
 
     try:
         pairing = Pairing(source, target, carrier or "", None)
@@ -115,7 +115,7 @@ def _existing(source: str, target: str, carrier: str | None) -> str:
 
 
 def _persist(source: str, target: str, carrier: str, mode: str) -> int:
-    from yarpy.network.connection import ask_server
+    from yarpy.network.asking import ask_server
 
     if carrier:
         from yarpy.contact import parse_contact
@@ -129,7 +129,7 @@ def _persist(source: str, target: str, carrier: str, mode: str) -> int:
 
 
 def _list(port: str, describe: bool) -> int:
-    from yarpy.network.connection import ask_server
+    from yarpy.network.asking import ask_server
 
     if port and describe:
         from yarpy.cli.verbs.ping import as_shown

@@ -22,7 +22,8 @@ from yarpy.cli.stderr import complain
               help="End the connections of a running application, or this one.")  # fmt: skip
 def command(source: str | None, target: str | None, persist: bool, application: str | None) -> int:
     """Have the port SOURCE no longer send to the port TARGET."""
-    from yarpy.network.connection import ask_server, disconnect
+    from yarpy.network.asking import ask_server
+    from yarpy.network.connection import disconnect
 
     if application is not None:
         from yarpy.cli.verbs.connect import of_application

@@ -36,7 +36,7 @@ def command(port: str, target: str | None, as_json: bool) -> int:
 def _carrier(port: str, target: str) -> str:
     """Return the carrier that connects the two, "" if they are not connected."""
     from yarpy.errors import LinkClosed, Timeout, UnknownName
-    from yarpy.network.connection import Pairing
+    from yarpy.network.pairing import Pairing
 
     try:
         return Pairing(port, target, "", None).existing()

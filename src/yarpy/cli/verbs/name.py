@@ -52,7 +52,7 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
     from yarpy.cli.service import server, services
     from yarpy.config.command_line import parse_value
     from yarpy.names.base import Foreign
-    from yarpy.network.connection import find
+    from yarpy.network.asking import find
 
     verb, arguments = (words[0], words[1:]) if words else ("help", ())
     in_use = services()
@@ -91,7 +91,7 @@ def command(words: tuple[str, ...], as_json: bool) -> int:
 
 def _answer_for(names: Any, verb: str, arguments: tuple[str, ...], as_json: bool) -> int:
     """Answer in the words of a name server where there is none, but `names` of another system."""
-    from yarpy.network.connection import find
+    from yarpy.network.asking import find
 
     if verb == "query" and len(arguments) == 1:
         _print_contact(find(arguments[0], names), as_json)

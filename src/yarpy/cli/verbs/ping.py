@@ -69,7 +69,7 @@ def read_description(lines: Sequence[str]) -> dict[str, Any]:
 
 
 def _measure_time(port: str, as_json: bool) -> int:
-    from yarpy.network.connection import find_port
+    from yarpy.network.asking import find_port
     from yarpy.port.connect import probe
 
     if not as_json:

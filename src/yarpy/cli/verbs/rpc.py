@@ -119,7 +119,7 @@ class Target:
 
     def _dial(self) -> Caller:
         from yarpy.contact import parse_contact, reach
-        from yarpy.network.connection import confirmed
+        from yarpy.network.asking import confirmed
         from yarpy.port.connect.probe import ANONYMOUS, Caller
         from yarpy.registry import graphs
 

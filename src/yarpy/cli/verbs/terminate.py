@@ -18,7 +18,7 @@ from yarpy.cli.output import print_line
 @click.argument("name")
 def command(name: str) -> int:
     """Ask the program that listens at NAME/quit to end."""
-    from yarpy.network.connection import confirmed, find
+    from yarpy.network.asking import confirmed, find
     from yarpy.port.connect import probe
 
     wanted = name if "/quit" in name else f"{name.rstrip('/')}/quit"

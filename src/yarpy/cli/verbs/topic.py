@@ -24,7 +24,7 @@ def command(
     name: str | None, structure: str | None, listing: bool, remove: bool, as_json: bool
 ) -> int:
     """Make the topic NAME, whose messages look like STRUCTURE."""
-    from yarpy.network.connection import ask_server
+    from yarpy.network.asking import ask_server
 
     if listing:
         topics = ask_server(None, ["topic"])

@@ -15,7 +15,7 @@ from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.autoqos.change import Change
 from yarpy.names.base import NameClient
-from yarpy.network.connection import called
+from yarpy.network.asking import called
 from yarpy.network.qos import groups
 from yarpy.network.rejoining import rejoin
 from yarpy.qos import Qos

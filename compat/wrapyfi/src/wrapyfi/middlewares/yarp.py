@@ -24,7 +24,7 @@ from yarpy.kits.wrap.follower import Follower
 from yarpy.kits.wrap.middleware import Failure
 from yarpy.kits.wrap.npy import from_npy, to_npy
 from yarpy.kits.wrap.spelling import failure, failure_of, frame_of
-from yarpy.network.connection import ask_server
+from yarpy.network.asking import ask_server
 
 OPENING = 60.0  # seconds for a busy name server; programs of Wrapyfi know no limit there
 _CODES = {(True, False): "rgb", (False, False): "mono", (True, True): "rgb.", (False, True): "dec"}

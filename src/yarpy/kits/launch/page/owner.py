@@ -15,7 +15,7 @@ from yarpy.errors import YarpError
 from yarpy.kits.launch.application.application import Module
 from yarpy.kits.launch.supervise import process
 from yarpy.names.base import NameClient
-from yarpy.network.connection import admin
+from yarpy.network.asking import admin
 from yarpy.network.traffic import PortState, read_port
 
 AT_ONCE: Final = 3  # ports that are asked for one answer

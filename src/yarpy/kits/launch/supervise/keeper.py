@@ -21,7 +21,7 @@ from yarpy.kits.launch.application.application import Connection
 from yarpy.kits.launch.document.problem import NOWHERE
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
-from yarpy.network import connection
+from yarpy.network import asking, connection
 
 _QUICK: Final = 0.2  # seconds between looks while something is missing
 _SLOW: Final = 1.0
@@ -209,7 +209,7 @@ class Keeper:
 
         if wanted.persist:
             there = f"{wanted.carrier or 'tcp'}:/{wanted.target}"
-            connection.ask_server(self._names, ["subscribe", wanted.source, there])
+            asking.ask_server(self._names, ["subscribe", wanted.source, there])
         if wanted.source_qos or wanted.target_qos:
             qos.grant(
                 wanted.source,

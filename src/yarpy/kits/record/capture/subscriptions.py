@@ -23,7 +23,8 @@ from yarpy.data.bottle import Property
 from yarpy.errors import LocalProtocolError, NoNameServer, YarpError
 from yarpy.names.base import NameClient
 from yarpy.names.default import DEFAULT
-from yarpy.network.connection import admin, disconnect
+from yarpy.network.asking import admin
+from yarpy.network.connection import disconnect
 from yarpy.network.remote import connect
 from yarpy.network.sampling import can_answer
 from yarpy.network.traffic import pairs
