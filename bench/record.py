@@ -1,29 +1,33 @@
 """What a recorder costs, how fast files are written and read, and how punctual a player is.
 
 `yarpy record` is a program of its own, and so are the senders; what it costs is the processor time
-of its process. A disk is compared with what plain `write` calls do in the same folder, in turns.
+of its process. Each figure stands beside what can be had on the same machine in the same run:
+`yarpdatadumper` of C++ where it is installed, plain system calls, the library `mcap`.
 
     python bench/record.py [--folder /dev/shm] [--seconds 10] [--ports 50] [--size 1920x1080]
 """
 
 import argparse
 import os
+import resource
 import signal
-import statistics
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+
+from record_files import GREAT, asking, large, small
+from record_play import memory, punctual
+from support.cpp import CppYarp, MissingPeer
 
 import yarpy
 from yarpy import record
-from yarpy.data import codec
-from yarpy.kits.record.mcap.reader import McapFile
-from yarpy.kits.record.mcap.writer import McapWriter
-from yarpy.kits.record.report import report
+from yarpy.kits.record.report import Report, report
 
 SENDER = """
 import sys, time, numpy, yarpy
@@ -43,120 +47,138 @@ while True:
     n, due = n + 1, due + 1 / rate
     time.sleep(max(0.0, due - time.perf_counter()))
 """
-LARGE = 6 << 20  # bytes of a large message
 WRITTEN = 1 << 30  # bytes that are written and read
+RATE = 100  # small messages that each port sends a second
+PICTURES = 30  # a second
+PARTS = ("recorder", "files", "player")
+RECORDER = [sys.executable, "-m", "yarpy", "record", "-e", "^/bench/", "--json", "-o"]
 
 
-def recorded(folder: Path, ports: int, rate: int, size: tuple[int, int], seconds: float) -> str:
-    """A row: what a recorder costs that takes these ports for a while."""
-    path = folder / f"load{ports}.mcap"
-    words = ["record", "-e", "^/bench/", "--json", "-o", str(path)]
-    sender = [sys.executable, "-c", SENDER, *map(str, (ports, rate, *size))]
-    with _program([sys.executable, "-m", "yarpy", *words]) as recorder, _program(sender) as sends:
-        assert sends.stdout is not None
-        sends.stdout.readline()
-        time.sleep(1.0)
-        before, began = _used(recorder.pid), time.perf_counter()
-        time.sleep(seconds)
-        used = (_used(recorder.pid) - before) / (time.perf_counter() - began)
+def ports(folder: Path, count: int, seconds: float, cpp: CppYarp | str) -> str:
+    """Return a row: what it costs to record small messages of many ports, here and in C++."""
+    path = folder / "ports.mcap"
+    told, share = _recorded(path, [count, RATE, 0, 0], seconds)
+    theirs = cpp
+    if isinstance(cpp, CppYarp):
+        ratio = _dumped(count, seconds, cpp) * _rate(told) / share
+        theirs = f"1/{ratio:.1f} of C++ yarpdatadumper, a message"
+    return f"| {_traffic(told)} | {share:.0%} of a core | {theirs} | {_lost(told)} lost |"
+
+
+def camera(folder: Path, size: tuple[int, int], seconds: float) -> str:
+    """Return a row: what it costs to record a camera, beside writing as many bytes."""
+    path = folder / "camera.mcap"
+    told, share = _recorded(path, [1, PICTURES, *size], seconds)
+    payload, pieces = bytes(size[0] * size[1] * 3), max(round(PICTURES * seconds), 1)
+    before = _own()
+    with open(path, "wb", buffering=0) as file:
+        for _ in range(pieces):
+            file.write(payload)
+    plain = (_own() - before) / seconds
+    path.unlink()
+    beside = f"{share / max(plain, 1e-3):.1f} x plain writes"
+    return f"| {_traffic(told)} | {share:.0%} of a core | {beside} | {_lost(told)} lost |"
+
+
+def killed(folder: Path, count: int, seconds: float) -> str:
+    """Return a row: how much of the end is missing in a file whose recorder was killed."""
+    path = folder / "killed.mcap"
+    with _program([*RECORDER, str(path)]) as recorder, _sending([count, RATE, 0, 0]):
+        time.sleep(1.0 + seconds)
+        recorder.kill()
+        end = time.time()
+        recorder.wait()
+    with record.open(path) as found:
+        missing = end - found.end
+    path.unlink()
+    return (
+        f"| killed by `kill -9` | the last {missing:.2f} s are missing | {missing:.2f} of 1 s | |"
+    )
+
+
+def _recorded(path: Path, words: list[int], seconds: float) -> tuple[Report, float]:
+    """Return what is in a file that was recorded for a while, and the share of a core."""
+    with _program([*RECORDER, str(path)]) as recorder, _sending(words):
+        share = _share([recorder.pid], seconds)
         recorder.send_signal(signal.SIGINT)
         recorder.wait()
     with record.open(path) as found:
         told = report(found)
+    path.unlink()
+    return told, share
+
+
+def _dumped(count: int, seconds: float, cpp: CppYarp) -> float:
+    """Return the seconds of a core that a message costs in dumpers of C++, one for each port."""
+    with ExitStack() as stack:
+        server = stack.enter_context(cpp.at(*_address()))
+        dumpers = []
+        for number in range(count):
+            name = f"/dump/{number}"
+            words = ["--name", name, "--dir", f"d{number}", "--connect", f"/bench/{number}"]
+            dumpers.append(stack.enter_context(server.popen(*words, program="yarpdatadumper")))
+            yarpy.wait_for(name, timeout=60)
+        sender = stack.enter_context(_program(_sender([count, RATE, 0, 0])))
+        for number in range(count):  # their own attempt came before there was a sender
+            yarpy.wait_for(f"/bench/{number}", timeout=60)
+            yarpy.connect(f"/bench/{number}", f"/dump/{number}", "tcp")
+        assert sender.stdout is not None
+        sender.stdout.readline()
+        share = _share([dumper.pid for dumper in dumpers], seconds)
+        for dumper in dumpers:
+            dumper.signal(signal.SIGINT)
+        for dumper in dumpers:
+            dumper.wait(60)
+        rates = []
+        for path in server.home.glob("d*/data.log"):
+            lines = path.read_text().splitlines()
+            first, last = (float(line.split()[1]) for line in (lines[0], lines[-1]))
+            rates.append((len(lines) - 1) / (last - first))
+        return share / sum(rates)
+
+
+def _address() -> tuple[str, int]:
+    host, _, port = os.environ["YARPY_SERVER"].rpartition(":")
+    return host, int(port)
+
+
+def _share(programs: list[int], seconds: float) -> float:
+    """Return how much of a core these programs use from a second later on."""
+    time.sleep(1.0)
+    before, began = sum(map(_used, programs)), time.perf_counter()
+    time.sleep(seconds)
+    return (sum(map(_used, programs)) - before) / (time.perf_counter() - began)
+
+
+def _traffic(told: Report) -> str:
     passed = told.end - told.begin
     written = sum(file["bytes"] for file in told.files)
-    lost = sum(port.lost for port in told.ports)
-    path.unlink()
     return (
-        f"| {told.messages / passed:.0f} messages, {written / passed / 1e6:.1f} MB a second "
-        f"from {len(told.ports)} ports | {100 * used:.0f} % of a core | {lost} lost |"
+        f"{_rate(told):.0f} messages, {written / passed / 1e6:.1f} MB a second "
+        f"from {len(told.ports)} ports"
     )
 
 
-def speeds(folder: Path, total: int, rounds: int) -> str:
-    """A table: writing and reading large messages, beside plain system calls."""
-    payload = os.urandom(LARGE)
-    count = max(total // LARGE, 1)
-    plain, ours, reading, asking = [], [], [], []
-    for _ in range(rounds):
-        path = folder / "plain"
-        began = time.perf_counter()
-        with open(path, "wb", buffering=0) as file:
-            for _ in range(count):
-                file.write(payload)
-            os.fsync(file.fileno())
-        plain.append(count * LARGE / (time.perf_counter() - began))
-        path.unlink()
-        path = folder / "ours.mcap"
-        began = time.perf_counter()
-        with McapWriter(path) as writer:
-            for number in range(count):
-                writer.add("/cam", f"{number} 1", time.time_ns(), payload)
-        ours.append(count * LARGE / (time.perf_counter() - began))
-        began = time.perf_counter()
-        with McapFile(path) as found:
-            size = sum(len(one.data) for one in found.records())
-        reading.append(size / (time.perf_counter() - began))
-        began = time.perf_counter()
-        with record.open(path) as recording:
-            report(recording)
-        asking.append(time.perf_counter() - began)
-        path.unlink()
-    rows = [
-        ("plain writes, synced", plain, 1e9, "GB/s"),
-        ("a recording, synced", ours, 1e9, "GB/s"),
-        ("reading it, checked", reading, 1e9, "GB/s"),
-        ("yarpy info of it", asking, 1e-3, "ms"),
-    ]
-    lines = [
-        f"| {name} | {statistics.median(all_) / unit:.2f} {word} |"
-        for name, all_, unit, word in rows
-    ]
-    share = statistics.median(one / other for one, other in zip(ours, plain, strict=True))
-    return "\n".join([*lines, f"| of the speed of plain writes | {100 * share:.0f} % |"])
+def _rate(told: Report) -> float:
+    """Return the messages a second."""
+    return told.messages / (told.end - told.begin)
 
 
-def small(folder: Path, count: int) -> str:
-    """Rows: small messages, one by one."""
-    payload = b"".join(map(bytes, codec.encode([1, 2.5, 3.5, 4.5])))
-    path = folder / "small.mcap"
-    began = time.perf_counter()
-    with McapWriter(path) as writer:
-        for number in range(count):
-            writer.add(f"/p{number % 50}", f"{number} 1.5", time.time_ns(), payload)
-    writing = time.perf_counter() - began
-    began = time.perf_counter()
-    with McapFile(path) as found:
-        assert sum(1 for _ in found.records()) == count
-    reading = time.perf_counter() - began
-    path.unlink()
-    return (
-        f"| a small message written | {writing / count * 1e6:.1f} us |\n"
-        f"| a small message read | {reading / count * 1e6:.1f} us |"
-    )
+def _lost(told: Report) -> int:
+    return sum(port.lost for port in told.ports)
 
 
-def punctual(folder: Path, seconds: float) -> str:
-    """A row: how late messages are played, 1000 a second."""
-    path = folder / "play.mcap"
-    begin = time.time_ns()
-    with McapWriter(path) as writer:
-        for number in range(round(seconds * 1000)):
-            writer.add("/bench/played", f"{number} 1", begin + number * 10**6, b"\0\1\0\0\0\0\0\0")
-    times: list[float] = []
-    with (
-        record.open(path) as recording,
-        yarpy.BufferedPort("/bench/reader", callback=lambda m: times.append(time.perf_counter())),
-        record.Player(recording) as player,
-    ):
-        yarpy.connect("/bench/played", "/bench/reader", "tcp")
-        began = time.perf_counter()
-        player.play()
-        time.sleep(0.2)
-    path.unlink()
-    late = sorted(at - began - number / 1000 for number, at in enumerate(times))
-    half, most = (f"{late[int((len(late) - 1) * part)] * 1e3:.2f} ms" for part in (0.5, 0.99))
-    return f"| {len(times)} messages played, 1000 a second | late by {half}, p99 {most} |"
+def _sender(words: list[int]) -> list[str]:
+    return [sys.executable, "-c", SENDER, *map(str, words)]
+
+
+@contextmanager
+def _sending(words: list[int]) -> Iterator[None]:
+    """A program that sends, as soon as somebody hears it."""
+    with _program(_sender(words)) as sender:
+        assert sender.stdout is not None
+        sender.stdout.readline()
+        yield
 
 
 @contextmanager
@@ -177,6 +199,18 @@ def _used(process: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def _own() -> float:
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+def _cpp(folder: Path) -> CppYarp | str:
+    try:
+        return CppYarp.prepare(folder / "cpp")
+    except MissingPeer as error:
+        return f"no C++ YARP: {str(error).splitlines()[0]}"
+
+
 def main() -> None:
     asked = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     asked.add_argument("--folder", type=Path)
@@ -185,18 +219,29 @@ def main() -> None:
     asked.add_argument("--size", default="1920x1080")
     asked.add_argument("--bytes", type=int, default=WRITTEN)
     asked.add_argument("--rounds", type=int, default=3)
+    asked.add_argument("--info", type=int, default=GREAT, help="bytes of a file that info reads")
+    asked.add_argument("--no-cpp", action="store_true", help="leave out C++ YARP")
+    asked.add_argument("--parts", nargs="*", choices=PARTS, default=PARTS)
     options = asked.parse_args()
     width, height = map(int, options.size.split("x"))
+    seconds, rounds = options.seconds, options.rounds
     with tempfile.TemporaryDirectory(dir=options.folder) as name, yarpy.NameServer() as server:
         os.environ.update(server.environment)
         folder = Path(name)
-        print("| recorded | costs | |\n|---|---|---|")
-        print(recorded(folder, options.ports, 100, (0, 0), options.seconds))
-        print(recorded(folder, 1, 30, (width, height), options.seconds))
-        print("\n| | |\n|---|---|")
-        print(speeds(folder, options.bytes, options.rounds))
-        print(small(folder, 20_000))
-        print(punctual(folder, min(options.seconds, 10.0)))
+        cpp = "C++ YARP is left out" if options.no_cpp else _cpp(folder)
+        if "recorder" in options.parts:
+            print("| recorded | costs | beside | |\n|---|---|---|---|", flush=True)
+            print(ports(folder, options.ports, seconds, cpp), flush=True)
+            print(camera(folder, (width, height), seconds), flush=True)
+            print(killed(folder, options.ports, min(seconds, 3.0)), flush=True)
+        print("\n| files and players | | beside |\n|---|---|---|", flush=True)
+        if "files" in options.parts:
+            print("\n".join(large(folder, options.bytes, rounds)), flush=True)
+            print("\n".join(small(folder, min(20_000, options.bytes // 1000), rounds)), flush=True)
+            print(asking(folder, options.info, rounds), flush=True)
+        if "player" in options.parts:
+            print(punctual(folder, min(seconds, 10.0)), flush=True)
+            print(memory(folder, options.bytes))
 
 
 if __name__ == "__main__":

@@ -12,21 +12,26 @@ sys.path.insert(0, str(BENCH))
 
 import record as bench  # noqa: E402
 
+ROWS = {
+    "recorder": ("from 3 ports", "C++ YARP is left out", "from 1 ports", "plain writes", "of 1 s"),
+    "files": ("plain writes", "plain reads", "library mcap", "small message read", "`info`"),
+    "player": ("300 messages", "p99", "of 300 MB"),
+}
+
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="it looks into /proc")
+@pytest.mark.parametrize("part", ROWS)
 def test_tables(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    part: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    small = ["--seconds", "0.3", "--ports", "3", "--size", "160x120", "--rounds", "1"]
-    monkeypatch.setattr(
-        sys, "argv", ["record.py", *small, "--bytes", "10000000", "--folder", str(tmp_path)]
-    )
+    small = ["--seconds", "0.3", "--ports", "3", "--size", "160x120", "--rounds", "1", "--no-cpp"]
+    sizes = ["--bytes", "10000000", "--info", "50000000", "--folder", str(tmp_path)]
+    monkeypatch.setattr(sys, "argv", ["record.py", *small, *sizes, "--parts", part])
     with yarpy.NameServer() as server:
         for name in server.environment:
             monkeypatch.setenv(name, "")
     bench.main()
     table = capsys.readouterr().out
-    assert "from 3 ports" in table and "from 1 ports" in table
-    for row in ("plain writes", "reading it", "yarpy info", "small message read", "300 messages"):
+    for row in ROWS[part]:
         assert row in table
     assert [*tmp_path.iterdir()] == []
