@@ -15,6 +15,7 @@ from yarpy.contact import Contact
 from yarpy.data.bottle import Bottle
 from yarpy.errors import AccessRefused, AddressError, NoNameServer, RemoteProtocolError, Timeout
 from yarpy.names import client as client_module
+from yarpy.names import line as line_module
 from yarpy.names.client import YarpNameClient
 from yarpy.nameserver.reply import Reply
 from yarpy.scope import Scope, moment
@@ -285,7 +286,7 @@ def test_restarted_between_two_commands() -> None:
 
 
 def test_endless_lines_and_replies_are_cut(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(client_module, "NAME_REPLY", 100_000)
+    monkeypatch.setattr(line_module, "NAME_REPLY", 100_000)
     for answer in (b"x" * 400_000, b"registration\r\n" * 40_000):
         with (
             Scripted(answer) as server,

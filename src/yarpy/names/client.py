@@ -1,9 +1,8 @@
 """The client of a YARP name server, ours or that of C++.
 
-Rules: plain blocking sockets with a timeout; safe to use from any thread, connections are lent to
-one command at a time. Old style commands go over `NAME_SERVER` lines, several over one connection,
-each behind its own 12 bytes of prefix. What C++ answers with a Bottle (`bot ...`, `subscribe`,
-`topic` ...) goes over `CONNACK`, where the end of a reply can be seen. A connection that turns out
+Rules: safe to use from any thread, connections are lent to one command at a time. Old style
+commands go over `NAME_SERVER` lines, several over one connection. What C++ answers with a Bottle
+(`bot ...`, `subscribe`, `topic` ...) goes over `CONNACK`, where the end of a reply can be seen. A connection that turns out
 to be dead (the server was restarted) is replaced once before NoNameServer is raised; every command
 may be repeated without harm.
 """
@@ -26,7 +25,6 @@ from yarpy.data.text import plain_text
 from yarpy.errors import (
     AccessRefused,
     AddressError,
-    DecodeError,
     LinkClosed,
     NoNameServer,
     PortClosed,
@@ -34,9 +32,9 @@ from yarpy.errors import (
     Timeout,
     YarpError,
 )
-from yarpy.limit import NAME_REPLY
 from yarpy.names.base import Contacts, Strings, Values
-from yarpy.names.registration_line import END, PREFIX, parse_registration
+from yarpy.names.line import Gone, Line, acknowledged, old_style
+from yarpy.names.registration_line import END, parse_registration
 from yarpy.transports.peer_timeout import notice_death
 from yarpy.transports.tcp import connected
 from yarpy.transports.tls_setting import required
@@ -49,81 +47,11 @@ WHO = 1.0  # seconds to find out what listens there when it does not answer
 SHARE: Final = 0.8  # of the time of a call, for the answer; the rest is for finding that out
 FAIR: Final = 0.1  # seconds in which a server that is there answers; less says nothing of it
 
-_ACK = "<ACK>"
 _FAILED = ("[fail]", "fail")
 _BOTTLE_VERBS = frozenset({"announce", "subscribe", "unsubscribe", "topic", "untopic", "type"})
 
 Prepare = Callable[[socket.socket], None]
 _T = TypeVar("_T")
-
-
-class _Gone(Exception):
-    """The connection ended before a reply; a new one may do better."""
-
-
-class _Line:
-    """One connection after its handshake: `lines` for NAME_SERVER, `acked` for CONNACK."""
-
-    def __init__(self, connection: socket.socket, kind: Literal["lines", "acked"]) -> None:
-        self.connection = connection
-        self.kind = kind
-        self.used = time.monotonic()
-        self.process = os.getpid()
-        self.until = math.inf  # of what is being said, as of time.monotonic()
-        self._buffer = bytearray()
-
-    def send(self, data: bytes) -> None:
-        try:
-            self.connection.settimeout(self._left())
-            self.connection.sendall(data)
-        except TimeoutError:
-            raise
-        except OSError as error:
-            raise _Gone(str(error)) from error
-
-    def line(self) -> str:
-        """The next line without its end."""
-        start = 0
-        while (end := self._buffer.find(b"\n", start)) < 0:
-            start = len(self._buffer)
-            if start > NAME_REPLY:
-                raise RemoteProtocolError(f"a name server's line of more than {NAME_REPLY} bytes")
-            try:
-                self.connection.settimeout(self._left())
-                data = self.connection.recv(65_536)
-            except TimeoutError:
-                raise
-            except OSError as error:
-                raise _Gone(str(error)) from error
-            if not data:
-                raise _Gone("it closed the connection")
-            self._buffer += data
-        text = bytes(self._buffer[:end]).rstrip(b"\r")
-        del self._buffer[: end + 1]
-        return text.decode("utf-8", "surrogateescape")
-
-    def _left(self) -> float | None:
-        """The seconds for what comes next. Raises TimeoutError."""
-        if self.until == math.inf:
-            return None
-        left = self.until - time.monotonic()
-        if left <= 0.0:
-            raise TimeoutError("timed out")
-        return left
-
-    def wake(self) -> None:
-        """Free a thread that waits for the server."""
-        with contextlib.suppress(OSError):
-            self.connection.shutdown(socket.SHUT_RDWR)
-
-    @property
-    def clean(self) -> bool:
-        """Return whether nothing is left over from the last command."""
-        return not self._buffer
-
-    def close(self) -> None:
-        with contextlib.suppress(OSError):
-            self.connection.close()
 
 
 class YarpNameClient:
@@ -146,7 +74,7 @@ class YarpNameClient:
         own_host: str = "",
         prepare: Prepare | None = None,
     ) -> None:
-        self._idle: list[_Line] = []
+        self._idle: list[Line] = []
         if not (host and port):
             raise TypeError(
                 "which name server? YarpNameClient(host, port) asks that one; ports that are given "
@@ -218,7 +146,7 @@ class YarpNameClient:
             f"bot set {quoted} {_text(key)} {_text(*values)}" for key, values in properties.items()
         ]
         texts.append(f"announce {quoted}")
-        for lines in self._ask("acked", lambda line: _acknowledged(line, *texts)):
+        for lines in self._ask("acked", lambda line: acknowledged(line, *texts)):
             if lines and lines[0].startswith(_FAILED):
                 self._succeeded(_bottle(lines))
 
@@ -257,7 +185,7 @@ class YarpNameClient:
         if not words or verb == "bot" or (verb in _BOTTLE_VERBS and verb != "announce"):
             raise AddressError(f'"{verb or "nothing"}" is answered with a Bottle: use request()')
         text = Bottle(words).to_text()
-        lines = self._ask("lines", lambda line: _old_style(line, text))
+        lines = self._ask("lines", lambda line: old_style(line, text))
         self._admitted(lines[0].removeprefix("error ") if lines else "")
         return lines
 
@@ -267,7 +195,7 @@ class YarpNameClient:
         An old style reply comes as a Bottle of its lines, without the end line.
         """
         text = Bottle(command).to_text()
-        reply = _bottle(self._ask("acked", lambda line: _acknowledged(line, text))[0])
+        reply = _bottle(self._ask("acked", lambda line: acknowledged(line, text))[0])
         self._succeeded(reply)
         return reply
 
@@ -310,7 +238,7 @@ class YarpNameClient:
         """Host and number of the server, as they are written."""
         return Contact(host=self.host, port=self.port).address
 
-    def _ask(self, kind: Literal["lines", "acked"], talk: Callable[[_Line], _T]) -> _T:
+    def _ask(self, kind: Literal["lines", "acked"], talk: Callable[[Line], _T]) -> _T:
         seconds = self._time_limit()
         until = time.monotonic() + seconds
         try:
@@ -318,11 +246,11 @@ class YarpNameClient:
             if line is not None:
                 try:
                     return self._talk(line, talk, until)
-                except _Gone:
+                except Gone:
                     pass  # perhaps the server was restarted: try once more on a new connection
             try:
                 return self._talk(self._open(kind, until), talk, until)
-            except _Gone as error:
+            except Gone as error:
                 raise self._nobody(f"hung up: {error}") from error
         except TimeoutError as error:
             if isinstance(error, YarpError):  # the time was over before anybody was asked
@@ -340,7 +268,7 @@ class YarpNameClient:
         whole = scope.left()
         return self.timeout if whole == math.inf else min(self.timeout, SHARE * whole)
 
-    def _talk(self, line: _Line, talk: Callable[[_Line], _T], until: float) -> _T:
+    def _talk(self, line: Line, talk: Callable[[Line], _T], until: float) -> _T:
         line.until = until
         try:
             with scope.waking(line.wake):
@@ -353,7 +281,7 @@ class YarpNameClient:
 
     def _open(
         self, kind: Literal["lines", "acked"], until: float | None = None, bare: bool = False
-    ) -> _Line:
+    ) -> Line:
         if until is None:
             until = time.monotonic() + self._time_limit()
         try:
@@ -362,7 +290,7 @@ class YarpNameClient:
             raise
         except (OSError, AddressError) as error:
             raise self._nobody(str(error)) from error
-        line = _Line(connection, kind)
+        line = Line(connection, kind)
         line.until = until
         try:
             with scope.waking(line.wake):
@@ -370,7 +298,7 @@ class YarpNameClient:
         except (Timeout, PortClosed):
             line.close()
             raise
-        except (_Gone, OSError, LinkClosed, RemoteProtocolError) as error:
+        except (Gone, OSError, LinkClosed, RemoteProtocolError) as error:
             line.close()
             raise self._nobody(str(error)) from error
         except BaseException:
@@ -378,7 +306,7 @@ class YarpNameClient:
             raise
         return line
 
-    def _greet(self, line: _Line, bare: bool) -> None:
+    def _greet(self, line: Line, bare: bool) -> None:
         """Say what comes before any command; with `bare` not in TLS."""
         connection = line.connection
         connection.settimeout(max(0.001, line.until - time.monotonic()))
@@ -393,7 +321,7 @@ class YarpNameClient:
             line.send(b"CONNACK admin\r\n")
             line.line()  # "Welcome admin"
 
-    def _borrow(self, kind: str) -> _Line | None:
+    def _borrow(self, kind: str) -> Line | None:
         now, process = time.monotonic(), os.getpid()
         stale = []
         found = None
@@ -410,7 +338,7 @@ class YarpNameClient:
             line.close()
         return found
 
-    def _give_back(self, line: _Line) -> None:
+    def _give_back(self, line: Line) -> None:
         line.used = time.monotonic()
         with self._lock:
             alike = sum(other.kind == line.kind for other in self._idle)
@@ -425,7 +353,7 @@ class YarpNameClient:
     def _silent(self, seconds: float) -> NoNameServer:
         """The error for a server that accepts but was silent: perhaps it is no name server."""
         found: str | None = None
-        with contextlib.suppress(_Gone, OSError, YarpError):
+        with contextlib.suppress(Gone, OSError, YarpError):
             line = self._open("acked", time.monotonic() + scope.left(WHO))
             try:
                 line.send(b"*\r\n")
@@ -450,39 +378,6 @@ class YarpNameClient:
         )
 
 
-def _old_style(line: _Line, command: str) -> list[str]:
-    line.send(_encode(f"{PREFIX}{command}\n"))
-    lines: list[str] = []
-    size = 0
-    while (text := line.line()) != END:
-        if text.startswith("[") and not lines:
-            try:  # [ok] to an announce, or [fail] and why
-                return list(map(plain_text, Bottle.from_text(text)[1:2]))
-            except DecodeError:
-                return []
-        size += len(text) + 2
-        if size > NAME_REPLY:
-            raise RemoteProtocolError(f"a name server's reply of more than {NAME_REPLY} bytes")
-        lines.append(text)
-    return lines
-
-
-def _acknowledged(line: _Line, *commands: str) -> list[list[str]]:
-    """Send commands in one piece; the lines of each reply."""
-    line.send(_encode("".join(f"d\r\n{command}\r\n" for command in commands)))
-    replies: list[list[str]] = []
-    size = 0
-    for _ in commands:
-        lines: list[str] = []
-        while (text := line.line()) != _ACK:
-            size += len(text) + 2
-            if size > NAME_REPLY:
-                raise RemoteProtocolError(f"a name server's reply of more than {NAME_REPLY} bytes")
-            lines.append(text)
-        replies.append(lines)
-    return replies
-
-
 @lru_cache(maxsize=64, typed=True)
 def _text(*words: str | int | float) -> str:
     """Words as a command has them. What all ports of a program say is spelled once."""
@@ -492,11 +387,6 @@ def _text(*words: str | int | float) -> str:
 def _bottle(lines: list[str]) -> Bottle:
     """The one Bottle that a reply is, or a Bottle of its old style lines."""
     return Bottle(lines[:-1]) if lines[-1:] == [END] else Bottle.from_text("\n".join(lines))
-
-
-def _encode(text: str) -> bytes:
-    # A newline inside a string is escaped in Bottle text, so one command is one line.
-    return text.encode("utf-8", "surrogateescape")
 
 
 def _in_tls(connection: socket.socket, host: str) -> socket.socket:
