@@ -116,6 +116,20 @@ def test_a_token_gives_the_rights_of_its_name() -> None:
     assert not other.allows("read")
 
 
+def test_a_public_key_gives_the_rights_of_its_name() -> None:
+    access = Access((rule("token:arm"),), {"panel": "s" * 64}, keys={"arm": "a" * 64})
+    before = Door(access, "/arm").admit(FAR)
+    assert before.takes_tokens
+    after = before.showing("a" * 64, public_key=True)
+    assert after is not None
+    assert after.rights() == ["read"]
+    # Everybody may know it: it is no secret, and a secret is no key.
+    assert before.showing("a" * 64) is None
+    assert before.showing("s" * 64, public_key=True) is None
+    without = Door(Access((rule("token:panel"),), {"panel": "s" * 64}), "/arm").admit(FAR)
+    assert without.showing("a" * 64, public_key=True) is without
+
+
 def test_a_refusal_is_logged_once(caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.INFO, "yarpy.access")
     access = Access((rule("loopback"),), path="/etc/access.toml")

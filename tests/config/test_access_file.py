@@ -91,6 +91,8 @@ RULE = '[[allow]]\nwho = "anyone"\nmay = "read"\n'
         ('[tokens]\npanel = "blanks are not for the web"\n', "line 2: tokens: panel needs"),
         ("[tokens]\npanel = 5\n", "line 2: tokens: write panel ="),
         ('[tokens]\npanel = {file = "none"}\n', "line 2: tokens: .*none cannot be read"),
+        ('[tokens]\narm = {curve = "12"}\n', "line 2: tokens: write arm = .*64 hexadecimal"),
+        ("[tokens]\narm = {curve = 5}\n", "line 2: tokens: write arm = .*64 hexadecimal"),
         ("tokens = 5\n", r"line 1: tokens: write \[tokens\]"),
     ],
 )
@@ -160,3 +162,10 @@ def test_no_port_opens_with_a_mistake_in_it(
     assert names.query("/arm") is None
     with pytest.raises(AddressError, match="raed"):
         yarpy.NameServer()
+
+
+def test_public_keys_are_told_from_secrets() -> None:
+    key = "0123456789abcdef" * 4
+    text = '[[allow]]\nwho = "token:arm"\nmay = "read"\n[tokens]\narm = {curve = "%s"}\n'
+    access = parse(text % key.upper())
+    assert (access.tokens, access.keys) == ({}, {"arm": key})

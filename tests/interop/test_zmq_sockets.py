@@ -386,10 +386,15 @@ def test_a_subscriber_finds_a_port_that_was_restarted(
 
 
 def test_a_socket_with_security_is_told_no(
-    out: yarpy.Port, sockets: Sockets, caplog: pytest.LogCaptureFixture
+    out: yarpy.Port,
+    sockets: Sockets,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
 ) -> None:
     if not zmq.has("curve"):
         pytest.skip("this libzmq has no CURVE")
+    monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))  # where no curve.key is
     server, _ = zmq.curve_keypair()
     public, secret = zmq.curve_keypair()
     keys = {"CURVE_SERVERKEY": server, "CURVE_PUBLICKEY": public, "CURVE_SECRETKEY": secret}
@@ -490,6 +495,48 @@ def test_a_password_of_a_socket_that_dials_is_a_token(
         out.write("hello")
         assert socket.recv_multipart() == [b"/out", b'"hello"']
         assert token not in caplog.text
+
+
+def test_sockets_with_a_key_dial_a_port(
+    names: yarpy.LocalNames,
+    sockets: Sockets,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    if not zmq.has("curve"):
+        pytest.skip("this libzmq has no CURVE: pip install pyzmq brings one that has")
+    ours, secret = zmq.curve_keypair()
+    monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))
+    (tmp_path / "curve.key").write_text(z85.decode(secret).hex())
+    public, own = zmq.curve_keypair()
+    known = {"CURVE_SERVERKEY": ours, "CURVE_PUBLICKEY": public, "CURVE_SECRETKEY": own}
+    rules = (
+        '[[allow]]\nwho = "token:arm"\nmay = ["read", "write"]\n[tokens]\narm = {curve = "%s"}\n'
+    )
+    write(tmp_path, monkeypatch, rules % z85.decode(public).hex())
+    with (
+        yarpy.Port("/out", names=names) as out,
+        yarpy.BufferedPort("/in", strict=True, names=names) as reader,
+        yarpy.RpcServer("/double", lambda message: [2 * message.value], names=names) as server,
+    ):
+        other, strange = zmq.curve_keypair()
+        for wrong in (
+            {"CURVE_SERVERKEY": other},  # of another port
+            {"CURVE_PUBLICKEY": other, "CURVE_SECRETKEY": strange},  # nobody's
+        ):
+            assert sockets.is_turned_away(zmq.SUB, out, **{**known, **wrong})
+        assert sockets.is_turned_away(zmq.SUB, out)  # without a key
+        socket = sockets.subscriber(out, b"", **known)
+        for value in ("hello", "x" * 100_000):
+            out.write(value)
+            assert socket.recv_multipart() == [b"/out", b'"%s"' % value.encode()]
+        sockets.connected(zmq.PUSH, reader, **known).send_multipart([b"[1]", b"y" * 100_000])
+        assert reader.read(timeout=HANG).value == [[1], "y" * 100_000]
+        asker = sockets.connected(zmq.REQ, server, **known)
+        asker.send(b"21")
+        assert asker.recv_json() == [42]
+    assert z85.decode(secret).hex() not in caplog.text
 
 
 class Doorkeeper:

@@ -61,13 +61,18 @@ class Rule:
 
 
 class Access:
-    """The rules of a file, and its web tokens."""
+    """The rules of a file, its web tokens, and public keys that stand for tokens; each by name."""
 
     def __init__(
-        self, rules: tuple[Rule, ...], tokens: Mapping[str, str] | None = None, path: str = FILE
+        self,
+        rules: tuple[Rule, ...],
+        tokens: Mapping[str, str] | None = None,
+        path: str = FILE,
+        keys: Mapping[str, str] | None = None,
     ) -> None:
         self.rules = rules
         self.tokens = dict(tokens or {})
+        self.keys = dict(keys or {})
         self.path = path
         self.asks_names = any(one.startswith("tls:") for rule in rules for one in rule.who)
         self._told: OrderedDict[tuple[str, str, str], None] = OrderedDict()
@@ -95,6 +100,10 @@ class Access:
             if compare_digest(shown, secret.encode()):
                 found = name
         return found
+
+    def key_name(self, key: str) -> str:
+        """Return the name of that public key; "" if there is no such key."""
+        return next((name for name, known in self.keys.items() if known == key), "")
 
     def tell(self, peer: Peer, port: str, right: str, text: str) -> None:
         """Log what was refused, unless it was before."""
@@ -124,7 +133,7 @@ class Ruled(Admission):
         # Who may name scripts is guarded: the guard says on whose behalf a command is carried out.
         plain = SCRIPT not in self._rights
         self.everything = plain and not names and self._rights >= _PORT_RIGHTS
-        self.takes_tokens = bool(access.tokens)
+        self.takes_tokens = bool(access.tokens or access.keys)
 
     def allows(self, right: str, name: str = "") -> bool:
         if name:
@@ -146,8 +155,13 @@ class Ruled(Admission):
     def rights(self) -> list[str]:
         return _sorted(self._rights)
 
-    def showing(self, token: str) -> Admission | None:
-        name = self._access.token_name(token)
+    def showing(self, token: str, public_key: bool = False) -> Admission | None:
+        if public_key:
+            if not self._access.keys:
+                return self
+            name = self._access.key_name(token)
+        else:
+            name = self._access.token_name(token)
         if token and not name:
             return None
         if name == self.peer.token:

@@ -7,6 +7,7 @@
 
     [tokens]                                # for web pages: http://HOST:PORT/?token=...
     panel = "4Zr2kXqyJtWm0v8N"              # or {file = "panel.token"}, beside this file
+    arm = {curve = "f81c..."}               # the public key of a ZeroMQ socket that dials
 
 Rules: the file lies beside yarp.conf, or where YARPY_ACCESS says. It is read once, when the program
 opens its first port; with a mistake in it no port opens. Without it everything is allowed, as in
@@ -17,7 +18,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
@@ -35,6 +36,7 @@ _WHO: Final = (
     '"tls:NAME", "key" or "token:NAME"'
 )
 _TOKEN: Final = re.compile(r"[A-Za-z0-9_.~-]+")
+_KEY: Final = re.compile(r"[0-9a-fA-F]{64}")
 _HEAD: Final = re.compile(r"\s*+\[\[\s*+allow\s*+\]\]")
 
 
@@ -87,21 +89,21 @@ def parse(text: str, where: Path | str = FILE) -> Access:
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise reader.mistake(0, f"this is not TOML: {error}") from None
     reader.check_keys(told, ("allow", "tokens"), 0, "")
-    tokens = dict(reader.tokens(told.get("tokens", {})))
+    tokens, keys = reader.tokens(told.get("tokens", {}))
     rules = told.get("allow", [])
     if not isinstance(rules, list) or not all(isinstance(rule, dict) for rule in rules):
         raise reader.mistake(reader.line("allow"), "write each rule below a line [[allow]]")
     found = tuple(reader.rule(number, rule) for number, rule in enumerate(rules))
     for rule in found:
         for one in rule.who:
-            if one.startswith("token:") and one[6:] not in tokens:
-                known = ", ".join(tokens) or "none"
+            if one.startswith("token:") and one[6:] not in {*tokens, *keys}:
+                known = ", ".join((*tokens, *keys)) or "none"
                 raise reader.mistake(
                     reader.line(one, rule.line),
                     f'who: "{one}" has no secret: [tokens] needs a line {one[6:]} = "..." '
                     f"(there: {known})",
                 )
-    return Access(found, tokens, str(where))
+    return Access(found, tokens, str(where), keys)
 
 
 class _Reader:
@@ -197,15 +199,31 @@ class _Reader:
             line, f'who: "{one}" is both one computer and a range: write "{own}" or "{meant}"'
         )
 
-    def tokens(self, table: Any) -> Iterator[tuple[str, str]]:
+    def tokens(self, table: Any) -> tuple[dict[str, str], dict[str, str]]:
+        """The secrets, and the public keys, by their names."""
         if not isinstance(table, dict):
             raise self.mistake(
                 self.line("tokens"), 'tokens: write [tokens], and below it NAME = "..."'
             )
         start = self.line("[tokens]")
+        secrets, keys = {}, {}
         for name, value in table.items():
             line = self.line(name, start)
-            yield name, self._token(name, value, line)
+            if isinstance(value, dict) and "curve" in value:
+                keys[name] = self._key(name, value, line)
+            else:
+                secrets[name] = self._token(name, value, line)
+        return secrets, keys
+
+    def _key(self, name: str, value: dict[str, Any], line: int) -> str:
+        key = value["curve"]
+        if len(value) > 1 or not isinstance(key, str) or not _KEY.fullmatch(key):
+            raise self.mistake(
+                line,
+                f'tokens: write {name} = {{curve = "..."}} with the 64 hexadecimal digits of a '
+                "public key: zmq.utils.z85.decode(key).hex() makes them of one in Z85",
+            )
+        return key.lower()
 
     def _token(self, name: str, value: Any, line: int) -> str:
         from secrets import token_urlsafe

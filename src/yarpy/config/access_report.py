@@ -49,6 +49,8 @@ def listing(access: Access) -> list[str]:
     lines += ["", "What no rule allows is refused. Programs read the file when they start."]
     if access.tokens:
         lines += _wrapped("Web tokens: ", ", ".join(access.tokens))
+    if access.keys:
+        lines += _wrapped("Public keys: ", ", ".join(access.keys))
     return lines
 
 
@@ -65,7 +67,7 @@ def notes(access: Access, *, authority: Path, has_key: bool) -> Iterator[str]:
         yield f"nobody can be known as tls:NAME without {authority} (yarpy cert makes it)"
     if "key" in named and not has_key:
         yield "nobody can prove a key without auth.conf"
-    unused = [name for name in access.tokens if f"token:{name}" not in named]
+    unused = [name for name in (*access.tokens, *access.keys) if f"token:{name}" not in named]
     if unused:
         yield f"no rule is about the token {', '.join(unused)}"
     file = Path(access.path)
@@ -89,8 +91,8 @@ def peer_from(text: str, access: Access | None) -> Peer:
             names.append(name)
         elif kind == "token" and name:
             token = name
-            if access is not None and name not in access.tokens:
-                known = ", ".join(access.tokens) or "there is none"
+            if access is not None and name not in {*access.tokens, *access.keys}:
+                known = ", ".join((*access.tokens, *access.keys)) or "there is none"
                 raise AddressError(f'no web token is called "{name}" in {access.path}: {known}')
         else:
             try:

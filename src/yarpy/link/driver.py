@@ -128,7 +128,7 @@ class Driver:
             return self.admission.refusal(effect.right)
         if not self.admission.takes_tokens:
             return None
-        admission = self.admission.showing(effect.token)
+        admission = self.admission.showing(effect.token, effect.public_key)
         if admission is None:
             return False
         self.admission = admission

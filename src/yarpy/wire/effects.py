@@ -98,7 +98,9 @@ class May(Effect):
 class Claim(Effect):
     """The peer shows a web token, "" for none: `May` is answered for whom it belongs to.
 
-    The driver sends back whether it is known; None: there are no tokens here.
+    The driver sends back whether it is known; None: there are no tokens here. `public_key`: it is
+    one, in hexadecimal digits, and the peer has proven that it has the secret one.
     """
 
     token: str
+    public_key: bool = False

@@ -28,7 +28,7 @@ def test_a_plain_subscriber_gets_what_a_port_writes(client: Any) -> None:
     heard = Queue[Any]()
     client.declare_subscriber("robot/**", heard.put)
     with yarpy.Port("/out") as out:
-        out.connect("zenoh://robot/arm")
+        out.connect("zenoh+block://robot/arm")  # behind many others it would be dropped
         wait_until(lambda: out.write("?") == 1 and not heard.empty())  # once it is known
         wait_until(lambda: heard.empty() or not heard.get())
         out.write([1, 2.5])
@@ -37,7 +37,7 @@ def test_a_plain_subscriber_gets_what_a_port_writes(client: Any) -> None:
         while len(found) < 2:
             found += [one for one in taken(heard, 1) if one[1] != b'"?"']
         assert found == [("robot/arm", b"[1, 2.5]"), ("robot/arm", b"raw")]
-        assert out.disconnect("zenoh://robot/arm") and out.stats.outputs == []
+        assert out.disconnect("zenoh+block://robot/arm") and out.stats.outputs == []
 
 
 def test_a_port_reads_what_a_plain_program_puts(client: Any) -> None:

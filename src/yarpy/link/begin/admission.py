@@ -101,9 +101,9 @@ class Admission:
         """Return the rights of the peer."""
         return [*RIGHTS]
 
-    def showing(self, token: str) -> Admission | None:
-        """Return the rights of the peer once it has shown a token, "" for none; None if the token
-        is not known."""
+    def showing(self, token: str, public_key: bool = False) -> Admission | None:
+        """Return the rights of the peer once it has shown a token, "" for none, or has proven that
+        it has the secret key of this public one; None if that is not known."""
         return self
 
 

@@ -25,7 +25,7 @@ from yarpy.errors import AccessRefused, LinkClosed, LocalProtocolError, RemotePr
 from yarpy.facts import SOCKET
 from yarpy.limit import ZMQ_BACKLOG, ZMQ_FRAMES, ZMQ_HELD, ZMQ_PREFIX, ZMQ_SUBSCRIPTIONS
 from yarpy.log import readable
-from yarpy.peers.zmq import curve, plain, zmtp
+from yarpy.peers.zmq import curve, curve_server, plain, zmtp
 from yarpy.route import CarrierSpec, Route
 from yarpy.wire.effects import HEAR, May
 from yarpy.wire.message import CALL, DATA, SMALL, Message, Packet
@@ -122,11 +122,18 @@ class Zmq(Carrier):
         stream.unread(len(first))
         minor, mechanism = yield from zmtp.read_any_greeting(stream)
         minor = min(1, minor)
-        if mechanism not in (zmtp.NULL, plain.MECHANISM):
+        sealed: curve_server.Server | None = None
+        if mechanism == curve.MECHANISM:
+            sealed = curve_server.Server(curve_server.own_key())
+            admitting = sealed.admit(stream)
+        elif mechanism == plain.MECHANISM:
+            admitting = plain.admit(stream)
+        elif mechanism == zmtp.NULL:
+            admitting = zmtp.read_ready(stream)
+        else:
             zmtp.refuse(mechanism)
-        by_name = mechanism == plain.MECHANISM
-        stream.write(zmtp.greeting(mechanism, by_name)[len(zmtp.OPENING) :])
-        properties = yield from plain.admit(stream) if by_name else zmtp.read_ready(stream)
+        stream.write(zmtp.greeting(mechanism, mechanism != zmtp.NULL)[len(zmtp.OPENING) :])
+        properties = yield from admitting
         kind = properties.get("socket-type", b"").upper()
         if kind not in PARTNER:
             shown = readable(kind[:20].decode("latin-1")) or "socket without a type"
@@ -145,8 +152,9 @@ class Zmq(Carrier):
             raise RemoteProtocolError(f"a {kind.decode()} that says that it is {route.spec}")
         carrier = other(route)
         carrier.minor, carrier.push, carrier._open = minor, not other.push, True
+        carrier._sealed = sealed
         yield from carrier._admit(stream)
-        stream.write(zmtp.ready(carrier._said()))
+        stream.write((sealed.ready_of if sealed else zmtp.ready)(carrier._said()))
         carrier._begin(stream)
         return carrier
 

@@ -6,11 +6,11 @@
     04 .. | 05 "READY" nonce, box of properties                             or ERROR
     00 .. | 07 "MESSAGE" nonce, box of (flags, body)                        both sides
 
-Rules: pure. S and C are the lasting keys of the server and of us, S' and C' those of the
-connection. The number in a nonce grows with every box, and one that does not is refused, so nothing
-can be sent a second time by others. A port shows a key where it dials; nothing is accepted from a
-socket that cannot open what was meant for the server's key. Source: ZeroMQ RFC 26. PyNaCl is
-imported where it is needed.
+Rules: pure. S and C are the lasting keys of the side that was dialled, the server, and of the one
+that dials; S' and C' are those of the connection. The number in a nonce grows with every box, and
+one that does not is refused, so nothing can be sent a second time by others. Nothing is accepted
+from a socket that cannot open what was meant for the server's key. `curve_server` is the side that
+was dialled. Source: ZeroMQ RFC 26. PyNaCl is imported where it is needed.
 """
 
 from __future__ import annotations
@@ -62,10 +62,11 @@ def keys_of(spec: CarrierSpec) -> tuple[bytes, bytes | None] | None:
         raise LocalProtocolError("a socket asks for a name (PLAIN) or for a key (CURVE): say one")
     own = spec.value("password")
     library()
-    return _key(server, "+curve.KEY"), None if own is None else _key(own, "+password.KEY")
+    return key_of(server, "+curve.KEY"), None if own is None else key_of(own, "+password.KEY")
 
 
-def _key(text: str, where: str) -> bytes:
+def key_of(text: str, where: str) -> bytes:
+    """Return the bytes of a key. Raises LocalProtocolError, which says `where` it stands."""
     try:
         found = bytes.fromhex(text)
     except ValueError:
@@ -80,6 +81,9 @@ def _key(text: str, where: str) -> bytes:
 
 class Sealed:
     """A connection that is enciphered, as the side that has dialled."""
+
+    _ours = b"CurveZMQMESSAGEC"  # the beginnings of nonces
+    _theirs = b"CurveZMQMESSAGES"
 
     def __init__(self, server: bytes, secret: bytes | None = None) -> None:
         self._nacl: Any = library()
@@ -169,7 +173,7 @@ class Sealed:
         number = self._take(data[8:16])
         opened = self._open(
             lambda: self._nacl.crypto_box_open_afternm(
-                data[16:], b"CurveZMQMESSAGES" + number, self._shared
+                data[16:], self._theirs + number, self._shared
             )
         )
         told = opened[0]
@@ -180,8 +184,7 @@ class Sealed:
     def _seal(self, flags: int, body: Buffer) -> bytes:
         number = self._next()
         clear = bytes((flags,)) + body
-        nonce = b"CurveZMQMESSAGEC" + number
-        box: bytes = self._nacl.crypto_box_afternm(clear, nonce, self._shared)
+        box: bytes = self._nacl.crypto_box_afternm(clear, self._ours + number, self._shared)
         return _MESSAGE + number + box
 
     def _next(self) -> bytes:
@@ -202,11 +205,14 @@ class Sealed:
         try:
             found: bytes = box()
         except (CryptoError, ValueError):
-            raise LoginRefused(
-                "the peer has another key than the one in +curve.KEY, or somebody has changed what "
-                "it sent: take the public key of that socket"
-            ) from None
+            raise self._other_key() from None
         return found
+
+    def _other_key(self) -> LoginRefused:
+        return LoginRefused(
+            "the peer has another key than the one in +curve.KEY, or somebody has changed what it "
+            "sent: take the public key of that socket"
+        )
 
 
 def _answer(stream: ByteStream, wanted: bytes) -> Steps[bytes]:

@@ -6,8 +6,7 @@
 
 Rules: pure. A frame's flags are 1 (more frames of this message follow), 2 (its size has eight bytes
 instead of one) and 4 (a command). Lengths are checked before memory is taken. The security
-mechanism is NULL, PLAIN (`plain`), and CURVE where a port dials (`curve`). Source: ZeroMQ RFC 23
-(3.0) and 37 (3.1).
+mechanism is NULL, PLAIN (`plain`) or CURVE (`curve`). Source: ZeroMQ RFC 23 (3.0) and 37 (3.1).
 """
 
 from __future__ import annotations
