@@ -64,10 +64,6 @@ def test_arrays_and_questions(broker: Broker) -> None:
             there.camera(timeout=HANG)
             there.camera(timeout=0.05)
     with wrap.call(there.turn, middleware=place):
-        # On a busy machine the time may be over before the broker has answered.
-        told = "nobody has subscribed to arm/rpc|did not reply"
-        with pytest.raises((yarpy.UnknownName, yarpy.Timeout), match=told):
-            there.turn(1, timeout=0.2)
         with pytest.raises(yarpy.UnknownName, match="nobody has subscribed to arm/rpc"):
             there.turn(1)
         with wrap.serve(here.turn, middleware=place):

@@ -121,15 +121,19 @@ class MqttClient:
         question = payload.question(args, kwargs)
         deadline = None if timeout is None else time.monotonic() + timeout
         while True:
-            left = None if deadline is None else max(deadline - time.monotonic(), 0.001)
+            asked = time.monotonic()
+            left = None if deadline is None else max(deadline - asked, 0.001)
             message = self._client.ask(question, left)
             if message is None:
                 raise LinkClosed(f'"{self._way.topic}" gave no answer')
             refused = spelling.failure_of(message) if message.spelling == "binary" else None
             if refused is None:
                 break
-            # By the broker: nobody has subscribed. As elsewhere, with a timeout that is waited for.
-            if deadline is None or time.monotonic() + _PAUSE >= deadline:
+            # By the broker: nobody has subscribed. As elsewhere, with a timeout that is waited for,
+            # as long as there is time for another answer: without one nobody would know why.
+            answered = time.monotonic()
+            enough = _PAUSE + 2 * (answered - asked)
+            if deadline is None or answered + enough >= deadline:
                 raise UnknownName(refused.text)
             time.sleep(_PAUSE)
         data = message.as_(bytes)
