@@ -13,6 +13,7 @@ import inspect
 import re
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
@@ -95,6 +96,7 @@ def error_names() -> list[str]:
     ]
 
 
+@cache
 def errors() -> str:
     """The page of all errors: what each means, what mends it, and every message."""
     lines = [
