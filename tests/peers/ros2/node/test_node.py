@@ -1,5 +1,7 @@
 """A node: how others see it, its names, and its end."""
 
+from typing import Any
+
 import pytest
 from support.wait import HANG, wait_until
 
@@ -66,6 +68,13 @@ def test_which_layer() -> None:
         assert chosen(None, {"RMW_IMPLEMENTATION": rmw}).__name__ == name
     with pytest.raises(AddressError, match="zenoh or dds"):
         chosen("tcp", {})
+
+
+def test_content_filters_are_refused(names: yarpy.LocalNames) -> None:
+    with ros2.Node("/arm") as arm:
+        wanted: Any = ("data = %0", ["7"])
+        with pytest.raises(LocalProtocolError, match="let the callback return"):
+            arm.subscriber("x", "std_msgs/msg/String", print, content_filter_options=wanted)
 
 
 def test_the_command_line(names: yarpy.LocalNames) -> None:

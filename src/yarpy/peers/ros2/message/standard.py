@@ -71,6 +71,12 @@ string raw_file_contents
                 "string file; string function; uint32 line"
             ),
             "rcl_interfaces/ListParametersResult": "string[] names; string[] prefixes",
+            "rcl_interfaces/LoggerLevel": (
+                "uint8 LOG_LEVEL_UNKNOWN=0; uint8 LOG_LEVEL_DEBUG=10; uint8 LOG_LEVEL_INFO=20; "
+                "uint8 LOG_LEVEL_WARN=30; uint8 LOG_LEVEL_ERROR=40; uint8 LOG_LEVEL_FATAL=50; "
+                "string name; uint32 level"
+            ),
+            "rcl_interfaces/SetLoggerLevelsResult": "bool successful; string reason",
             "rcl_interfaces/Parameter": "string name; ParameterValue value",
             "rcl_interfaces/ParameterDescriptor": (
                 "string name; uint8 type; string description; string additional_constraints; "
@@ -139,6 +145,10 @@ KeyValue[] extra_information
             ),
             "rcl_interfaces/DescribeParameters": (
                 "string[] names; ---; ParameterDescriptor[] descriptors"
+            ),
+            "rcl_interfaces/GetLoggerLevels": "string[] names; ---; LoggerLevel[] levels",
+            "rcl_interfaces/SetLoggerLevels": (
+                "LoggerLevel[] levels; ---; SetLoggerLevelsResult[] results"
             ),
             "rcl_interfaces/GetParameters": "string[] names; ---; ParameterValue[] values",
             "rcl_interfaces/GetParameterTypes": "string[] names; ---; uint8[] types",

@@ -36,10 +36,11 @@ from yarpy.peers.ros2.exchange import Question, Worker
 from yarpy.peers.ros2.key import domain as domain_of
 from yarpy.peers.ros2.message.library import default_library
 from yarpy.peers.ros2.name import check_node
-from yarpy.peers.ros2.node import rosout
+from yarpy.peers.ros2.node import logger_level, rosout
 from yarpy.peers.ros2.node.arguments import expand, parse_arguments
 from yarpy.peers.ros2.node.describer import TYPE as DESCRIBED
 from yarpy.peers.ros2.node.describer import Describer
+from yarpy.peers.ros2.node.logger_level import LoggerLevels
 from yarpy.peers.ros2.node.sim_time import CLOCK, CLOCK_QOS, NodeTime
 from yarpy.peers.ros2.parameter.client import RemoteParameters
 from yarpy.peers.ros2.parameter.server import EVENT, EVENTS, QOS, SERVICES, Asked, event
@@ -56,9 +57,10 @@ SIMULATED: Final = "use_sim_time"  # the parameter that every node has
 class Node:
     """A node called `name`, with a namespace or without. `domain`: of ROS 2, else ROS_DOMAIN_ID.
     `parameters`: those that it begins with. `rmw`: zenoh or dds, else what RMW_IMPLEMENTATION says,
-    else zenoh. `arguments`: a command line with `--ros-args`, else that of this program. Raises
-    AddressError, UnknownPlugin, LinkClosed (no router); TypeError, ValueError for a parameter that
-    the command line sets to what it cannot be."""
+    else zenoh. `arguments`: a command line with `--ros-args`, else that of this program.
+    `enable_logger_service`: others may see and set the level of its log. Raises AddressError,
+    UnknownPlugin, LinkClosed (no router); TypeError, ValueError for a parameter that the command
+    line sets to what it cannot be."""
 
     def __init__(
         self,
@@ -68,6 +70,7 @@ class Node:
         parameters: Mapping[str, Any] | None = None,
         rmw: str | None = None,
         arguments: Sequence[str] | None = None,
+        enable_logger_service: bool = False,
     ) -> None:
         self._said = parse_arguments(sys.argv if arguments is None else arguments)
         self._node = self._said.node(check_node(name))
@@ -93,6 +96,11 @@ class Node:
             for service, type_ in SERVICES.items():
                 handler = asked.handlers[service]
                 self._answer(f"{self.name}/{service}", type_, handler, self._worker, QOS)
+            if enable_logger_service:
+                levels = LoggerLevels(self.logger)
+                for service, type_ in logger_level.SERVICES.items():
+                    handler = levels.handlers[service]
+                    self._answer(f"{self.name}/{service}", type_, handler, self._worker, None)
             describe, name_ = self._describer.answer, f"{self.name}/get_type_description"
             self._answer(name_, DESCRIBED, describe, self._worker, None)
         except BaseException:
@@ -145,10 +153,17 @@ class Node:
         *,
         qos: str | Qos | None = None,
         on_event: Callable[[Event], object] | None = None,
+        content_filter_options: None = None,
     ) -> Hearer:
         """Call `callback` with each message, in the node's order. `qos`, `on_event`: as those of a
-        publisher. Raises AddressError, UnknownType."""
+        publisher. Raises AddressError, UnknownType; LocalProtocolError for a filter, which there is
+        none of."""
         self._check()
+        if content_filter_options is not None:
+            raise LocalProtocolError(
+                f"{topic}: messages are not filtered by their content here: subscribe without "
+                "content_filter_options, and let the callback return where a message is not wanted"
+            )
         worker = self._keep(Worker(f"yarpy topic {topic}"))
         whole = self.resolve(topic)
         made = self._used(self._rmw.hearer(whole, type_, callback, worker, _qos(qos)))
