@@ -96,6 +96,7 @@ check: $(VENV)/.ready
 	$(BIN)/mypy
 	$(BIN)/mypy --platform darwin --cache-dir .mypy_cache/darwin
 	$(BIN)/mypy --platform win32 --cache-dir .mypy_cache/win32
+	$(BIN)/python tests/support/breaking.py
 
 # Strange input for everything that reads. SEED=N does a run again.
 fuzz: $(VENV)/.ready

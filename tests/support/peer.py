@@ -38,8 +38,21 @@ PATH: Final = os.environ.get("PATH", os.defpath)  # of who started the tests
 DEBIAN_PYTHON = Path("/usr/bin/python3")  # the one that Debian's packages of ROS and torch are for
 # What every system has, and tests without peers may start.
 EVERYWHERE = (
-    *("sh", "bash", "cat", "cut", "echo", "env", "false", "grep", "head", "kill", "ls", "mkdir"),
-    *("mount", "rm", "sed", "sleep", "sort", "stty", "tail", "taskset", "tee", "test", "touch"),
+    *("sh", "bash", "cat", "cut", "echo", "env", "false", "git", "grep", "head", "kill", "ls"),
+    *(
+        "mkdir",
+        "mount",
+        "rm",
+        "sed",
+        "sleep",
+        "sort",
+        "stty",
+        "tail",
+        "taskset",
+        "tee",
+        "test",
+        "touch",
+    ),
     *("tr", "true", "umount", "wc"),
 )
 _PLACES = ("/usr/local/bin", "/usr/bin", "/bin", "/usr/local/sbin", "/usr/sbin", "/sbin")
