@@ -6,7 +6,16 @@ import yarpy
 from yarpy.errors import DecodeError, UnknownType
 from yarpy.peers import ros2
 from yarpy.peers.ros2.key import NO_HASH
-from yarpy.peers.ros2.kind import chosen, has_bytes, humble, key_of, learned, named, shown
+from yarpy.peers.ros2.kind import (
+    MOST_ASKED,
+    chosen,
+    has_bytes,
+    humble,
+    key_of,
+    learned,
+    named,
+    shown,
+)
 from yarpy.peers.ros2.message.library import Library, hash_of
 from yarpy.peers.ros2.message.source import Rosbags
 from yarpy.peers.ros2.token import Token, parse_token
@@ -51,6 +60,19 @@ def test_what_the_graph_says() -> None:
     assert found == (("std_msgs/String", "msg"), strange.key)
     with pytest.raises(UnknownType, match="p/msg/T"):
         learned([token("p::msg::dds_::T_", hash_of(String))], "msg", nobody)
+
+
+def test_of_a_flood_of_unknown_types_few_nodes_are_asked() -> None:
+    asked: list[Token] = []
+
+    def ask(token: Token, name: str, kind: str) -> None:
+        asked.append(token)
+        raise UnknownType("its node says nothing")
+
+    flood = [token("std_msgs::msg::dds_::String_", f"RIHS01_{at:064x}") for at in range(5000)]
+    good = token("std_msgs::msg::dds_::String_", hash_of(String))
+    assert learned([*flood, good], "msg", ask) == (String, good.key)
+    assert asked == flood[:MOST_ASKED]
 
 
 @pytest.mark.parametrize(

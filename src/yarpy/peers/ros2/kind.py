@@ -24,6 +24,7 @@ from yarpy.peers.ros2.token import Token
 
 MESSAGE: Final = "msg"
 SERVICE: Final = "srv"
+MOST_ASKED: Final = 4  # nodes, for the types of one topic or service
 
 
 @cache
@@ -53,8 +54,10 @@ def learned(
     seen: Iterable[Token], kind: str, ask: Callable[[Token, str, str], Any]
 ) -> tuple[Any, Key] | None:
     """The type of the first token that one is known of, and its key; None without tokens. `ask`
-    asks its node. Raises UnknownType if neither knows any of their types."""
+    asks its node, of so many tokens at most: each may keep us waiting. Raises UnknownType if
+    neither knows any of their types."""
     problem: YarpError | None = None
+    asked = 0
     for token in seen:
         key = token.key
         if key is None:
@@ -69,6 +72,9 @@ def learned(
                 try:
                     return default_library().having(name, key.hash, kind), key
                 except UnknownType as error:
+                    if asked >= MOST_ASKED:
+                        raise
+                    asked += 1
                     return _asked(ask, token, name, kind, error), key
         except (UnknownType, DecodeError) as error:
             problem = problem or error

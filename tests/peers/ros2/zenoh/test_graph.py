@@ -59,3 +59,31 @@ def test_there_is_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     for at in range(50):
         found.take(NODE.replace("/0/0/", f"/{at}/{at}/"), True)
     assert len(found.tokens) == 10
+
+
+def test_there_is_a_limit_of_letters(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(graph, "MOST_LETTERS", len(NODE) + len(SAYS))
+    found = Graph(0)
+    for text in (NODE, HEARS, SAYS):
+        found.take(text, True)
+    assert [str(token) for token in found.tokens] == [NODE, HEARS]
+    found.take(SAYS, False)  # which was not kept
+    found.take(HEARS, False)
+    found.take(SAYS, True)
+    assert [str(token) for token in found.tokens] == [NODE, SAYS]
+
+
+def test_a_flood_is_gone_without_a_trace() -> None:
+    """5000 endpoints of a topic and others of as many, which come and go: a node that flaps."""
+    found = Graph(0)
+    flood = [HEARS.replace("/1/MS/", f"/{at}/MS/") for at in range(1, 5001)]
+    flood += [SAYS.replace("/2/MP/", f"/{at}/MP/").replace("pose", f"p{at}") for at in range(5000)]
+    for _ in range(3):
+        for text in flood:
+            found.take(text, True)
+        assert len(found.endpoints("/goal", "MS")) == 5000
+        assert len(found.endpoints("/robot/p7", "MP")) == 1
+        for text in flood:
+            found.take(text, False)
+        assert found.tokens == [] and found.endpoints("/goal", "MS") == []
+        assert (found._named, found._letters) == ({}, 0)

@@ -25,6 +25,7 @@ from yarpy.peers.ros2.name import Node
 from yarpy.peers.ros2.qos import KEEP_ALL, PROFILES, Qos, promised
 from yarpy.peers.ros2.token import CLIENT, PUBLISHER, SERVER, SUBSCRIBER, Token, gid
 from yarpy.peers.ros2.zenoh.attachment import Attachment, parse_attachment
+from yarpy.peers.ros2.zenoh.coalesced import Coalesced
 from yarpy.peers.ros2.zenoh.description import describe
 from yarpy.peers.ros2.zenoh.participant import Declared, Participant
 from yarpy.peers.ros2.zenoh.querier import Querier
@@ -65,6 +66,7 @@ class Endpoint(Inbox):
         self._closed = False
         self._told: set[tuple[Node, Key]] = set()
         self._opening = threading.RLock()  # the type is settled once
+        self._look = Coalesced(self._take_type, f"yarpy type of {name}")
         self.events = Events()
 
     # -- as the carrier sees it -------------------------------------------------------------------
@@ -141,7 +143,7 @@ class Endpoint(Inbox):
         if token.kind not in self.peers:
             return
         if self.key is None:
-            threading.Thread(target=self._take_type, name=f"yarpy type of {self.name}").start()
+            self._look()
         elif key[2:] != self.key[2:]:
             self._tell(token, key)
         else:
@@ -250,6 +252,7 @@ class Subscriber(Endpoint):
         self._numbers: dict[bytes, int] = {}  # the last of each publisher
         self._repeats = False  # whether what was kept may come once more
         self._refused = ""
+        self._past = Coalesced(self._catch_up, f"yarpy past of {self.name}")
 
     def extra(self, kind: Any) -> str:
         return BACKENDS if kinds.has_bytes(kind) and not self.qos.latched else ""
@@ -281,7 +284,7 @@ class Subscriber(Endpoint):
 
     def joined(self, token: Token) -> None:
         if token.qos.latched and not self.qos.latched and not self.given_qos:
-            threading.Thread(target=self._catch_up, name=f"yarpy past of {self.name}").start()
+            self._past()
 
     def _catch_up(self) -> None:
         """Subscribe to what is kept, too: a publisher has come that keeps something."""
@@ -315,8 +318,9 @@ class Subscriber(Endpoint):
             if number > before + 1:
                 self.dropped += number - before - 1
                 self.events.tell(Event(MESSAGE, number - before - 1))
-            if len(self._numbers) < MOST_PUBLISHERS or sender in self._numbers:
-                self._numbers[sender] = number
+            if len(self._numbers) >= MOST_PUBLISHERS and sender not in self._numbers:
+                del self._numbers[next(iter(self._numbers))]  # one that flaps has many names
+            self._numbers[sender] = number
         self.put(Incoming(bytes(sample.payload), number, when), self.qos.kept)
 
 

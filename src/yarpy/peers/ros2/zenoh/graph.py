@@ -20,6 +20,7 @@ from yarpy.peers.ros2.token import SPACE, Token, parse_token
 log = logger("yarpy.ros2")
 
 MOST: Final = 100_000  # tokens
+MOST_LETTERS: Final = 32 << 20  # of all of them
 SETTLED: Final = 1.0  # seconds for a router to tell of what was there before
 
 Watcher = Callable[[Token, bool], None]  # a token, and whether it has come
@@ -31,6 +32,8 @@ class Graph:
     def __init__(self, domain: int) -> None:
         self.domain = domain
         self._tokens: dict[str, Token] = {}
+        self._named: dict[str, dict[str, Token]] = {}  # those of each topic or service
+        self._letters = 0
         self._watchers: tuple[Watcher, ...] = ()
         self._changed = threading.Condition()
         self._full = False
@@ -65,19 +68,39 @@ class Graph:
         with self._changed:
             if (text in self._tokens) == come:
                 return  # some are told twice
-            if come and len(self._tokens) >= MOST:
-                if not self._full:
-                    self._full = True
-                    log.warning("more than %s tokens of ROS 2: others are not seen", MOST)
+            if come and not self._has_room(text):
                 return
-            if come:
-                self._tokens[text] = token
-            else:
-                del self._tokens[text]
+            self._keep(text, token) if come else self._drop(text)
             self._changed.notify_all()
             watchers = self._watchers
         for watcher in watchers:
             watcher(token, come)
+
+    def _has_room(self, text: str) -> bool:
+        room = len(self._tokens) < MOST and self._letters + len(text) <= MOST_LETTERS
+        if not room and not self._full:
+            self._full = True
+            log.warning(
+                "more than %s tokens of ROS 2, or %s letters of them: others are not seen",
+                MOST,
+                MOST_LETTERS,
+            )
+        return room
+
+    def _keep(self, text: str, token: Token) -> None:
+        self._tokens[text] = token
+        self._letters += len(text)
+        if token.key is not None:
+            self._named.setdefault(token.key.name, {})[text] = token
+
+    def _drop(self, text: str) -> None:
+        token = self._tokens.pop(text)
+        self._letters -= len(text)
+        if token.key is not None:
+            others = self._named[token.key.name]
+            del others[text]
+            if not others:
+                del self._named[token.key.name]
 
     @property
     def tokens(self) -> list[Token]:
@@ -87,11 +110,9 @@ class Graph:
 
     def endpoints(self, name: str, *kinds: str) -> list[Token]:
         """Those of a topic or service."""
-        return [
-            token
-            for token in self.tokens
-            if token.key is not None and token.key.name == name and token.kind in kinds
-        ]
+        with self._changed:
+            named = self._named.get(name, {})
+            return [token for token in named.values() if token.kind in kinds]
 
     def nodes(self, node: Node) -> set[tuple[str, int]]:
         """All nodes of a name; there should be one."""
