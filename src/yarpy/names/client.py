@@ -2,9 +2,9 @@
 
 Rules: safe to use from any thread, connections are lent to one command at a time. Old style
 commands go over `NAME_SERVER` lines, several over one connection. What C++ answers with a Bottle
-(`bot ...`, `subscribe`, `topic` ...) goes over `CONNACK`, where the end of a reply can be seen. A connection that turns out
-to be dead (the server was restarted) is replaced once before NoNameServer is raised; every command
-may be repeated without harm.
+(`bot ...`, `subscribe`, `topic` ...) goes over `CONNACK`, where the end of a reply can be seen. A
+connection that turns out to be dead (the server was restarted) is replaced once before NoNameServer
+is raised; every command may be repeated without harm.
 """
 
 from __future__ import annotations
