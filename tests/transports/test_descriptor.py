@@ -6,13 +6,15 @@ import _thread
 import operator
 import os
 import signal
+import socket
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
 import pytest
 
-from yarpy.transports.descriptor import opened, opened_pair, owned
+import yarpy
+from yarpy.transports.descriptor import has_input, opened, opened_pair, owned
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "pipe2"), reason="this system has no pipe2")
 
@@ -68,3 +70,39 @@ def test_where_one_is_none_all_are_closed(place: int, tmp_path: Path) -> None:
     with pytest.raises(OSError):
         owned(numbers)
     assert not any(map(is_open, numbers))
+
+
+def test_input_is_waited_for_at_any_number() -> None:
+    """Also where a program has more than a thousand: `select` would refuse those."""
+    import fcntl
+    import resource
+
+    number, before = 1500, resource.getrlimit(resource.RLIMIT_NOFILE)
+    if before[1] != resource.RLIM_INFINITY and before[1] <= number:
+        pytest.skip(f"this system gives a program {before[1]} descriptors at most (ulimit -Hn)")
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(before[0], number + 100), before[1]))
+    try:
+        here, there = socket.socketpair()
+        with here, there:
+            high = fcntl.fcntl(here, fcntl.F_DUPFD_CLOEXEC, number)
+            try:
+                assert not has_input(high, 0.001)
+                there.send(b"x")
+                assert has_input(high, 60.0)
+                there.shutdown(socket.SHUT_WR)
+                assert has_input(here.fileno(), 60.0)
+            finally:
+                os.close(high)
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
+
+
+def test_nobody_else_selects() -> None:
+    """Those that do have another way where there is `poll`."""
+    source = Path(yarpy.__file__).parent
+    found = {
+        path.relative_to(source).as_posix()
+        for path in source.rglob("*.py")
+        if "select.select(" in path.read_text("utf-8")
+    }
+    assert found <= {"link/send/readiness.py", "transports/base.py", "transports/descriptor.py"}

@@ -9,6 +9,8 @@ done `undisturbed`, in a thread where no handler runs.
 from __future__ import annotations
 
 import os
+import select
+import sys
 from collections.abc import Callable, Iterable
 from io import FileIO
 from itertools import chain
@@ -45,3 +47,13 @@ def owned(numbers: Iterable[int]) -> list[Descriptor]:
             os.close(number)
         raise
     return found
+
+
+def has_input(number: int, seconds: float) -> bool:
+    """Return whether there is something to read, or somebody to accept, within that time. The
+    number may be any: `select` takes those below 1024 alone."""
+    if sys.platform == "win32" or not hasattr(select, "poll"):
+        return bool(select.select([number], [], [], seconds)[0])
+    poll = select.poll()
+    poll.register(number, select.POLLIN)
+    return bool(poll.poll(seconds * 1000))

@@ -7,7 +7,6 @@ newline then, and its end is the other one's end.
 
 from __future__ import annotations
 
-import select
 import socket
 import time
 from collections.abc import Sequence
@@ -18,6 +17,7 @@ from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.log import readable
 from yarpy.peers.mpi.library import HINT, Library
 from yarpy.transports.base import MSG_DONTWAIT, Address, Transport
+from yarpy.transports.descriptor import has_input
 from yarpy.wire.framing import refused
 from yarpy.wire.stream import Buffer
 
@@ -84,7 +84,7 @@ class Line:
         if sock is None:
             return b""
         try:
-            if not select.select([sock], [], [], seconds)[0]:
+            if not has_input(sock.fileno(), seconds):
                 return None
             said = sock.recv(1, MSG_DONTWAIT)
         except BlockingIOError:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import contextlib
 import os
 import secrets
-import select
 import socket
 import struct
 import sys
@@ -26,7 +25,7 @@ from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.platform.user import user
 from yarpy.threads import undisturbed
 from yarpy.transports.base import MSG_DONTWAIT, Transport
-from yarpy.transports.descriptor import opened_pair
+from yarpy.transports.descriptor import has_input, opened_pair
 from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.shared.arena import (
     LEDGER,
@@ -137,7 +136,7 @@ class SendingTransport(MemoryTransport):
         listener, deadline = self.sock, time.monotonic() + TIMEOUT
         with contextlib.closing(listener):
             while True:
-                if not select.select([listener], [], [], LOOK)[0]:
+                if not has_input(listener.fileno(), LOOK):
                     if time.monotonic() > deadline:
                         raise TimeoutError("the reader did not come to share memory")
                     if look is not None:
@@ -219,12 +218,12 @@ class ReadingTransport(MemoryTransport):
         self._aside: socket.socket | None = None  # where descriptors come from
 
     def ready(self, look: Callable[[], object] | None = None) -> None:
-        self.limit_waiting(TIMEOUT)
-        try:
-            said, numbers, complete = _receive(self.sock, len(_WORD))
-        except BlockingIOError:
-            raise TimeoutError("the sender does not share its memory") from None
-        self.limit_waiting(None)
+        if not has_input(self.sock.fileno(), TIMEOUT):
+            raise TimeoutError("the sender does not share its memory")
+        undisturbed(self._adopt)
+
+    def _adopt(self) -> None:
+        said, numbers, complete = _receive(self.sock, len(_WORD), MSG_DONTWAIT)
         if said != _WORD or len(numbers) != 4 or not complete:
             _close(numbers)
             raise RemoteProtocolError(

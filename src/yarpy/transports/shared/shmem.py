@@ -12,7 +12,6 @@ ring, which grows as far as its reader is behind; beyond `AHEAD` bytes the write
 
 from __future__ import annotations
 
-import select
 import socket
 import struct
 import time
@@ -22,6 +21,7 @@ from typing import Final
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.transports.base import MSG_DONTWAIT, Address, Transport, address_of
+from yarpy.transports.descriptor import has_input
 from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.shared.ring import FIRST_SIZE, Ring
 from yarpy.transports.shared.sysv import ELSEWHERE, require
@@ -114,7 +114,7 @@ class ShmemTransport(Transport):
 
     def _accept(self, deadline: float, look: Callable[[], object] | None) -> None:
         listener = self._sock
-        while not select.select([listener], [], [], LOOK)[0]:
+        while not has_input(listener.fileno(), LOOK):
             if time.monotonic() > deadline:
                 raise TimeoutError("the peer did not come to share memory")
             if look is not None:
