@@ -130,7 +130,7 @@ def test_bytes_go_through_as_they_are(cli):
         capture_output=True,
         timeout=20,
     )
-    assert done.stdout == b"ODD=caf\xe9 \xc3\xa9\n"
+    assert done.stdout.replace(b"\r\n", b"\n") == b"ODD=caf\xe9 \xc3\xa9\n"
 
 
 def test_a_reader_that_goes_away_is_no_traceback(cli):
@@ -167,6 +167,7 @@ def test_small_verbs_load_nothing_heavy(verb):
     assert done.stdout.strip() == "[]", done.stderr
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no sh, which closes them")
 @pytest.mark.parametrize(
     "shell",
     ["yarpy name list >&-", "yarpy name list 2>&-", "yarpy write /closed/in <&-"],

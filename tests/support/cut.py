@@ -67,7 +67,7 @@ def cut_at(
         return look
 
     def enter(frame: FrameType, event: str, argument: object) -> Any:
-        if not frame.f_code.co_filename.endswith(files):
+        if not frame.f_code.co_filename.replace("\\", "/").endswith(files):
             return None
         frame.f_trace_opcodes = True
         return look

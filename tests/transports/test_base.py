@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -174,7 +175,8 @@ def test_what_finds_no_room_is_left(pair: Pair, sizes: list[int]) -> None:
         assert have
         found += receive(right, have)
         assert left.wait_writable(5.0)
-    assert waits or sum(sizes) < 1000
+    # Windows takes all of it where there is any room.
+    assert waits or sum(sizes) < 1000 or sys.platform == "win32"
     found += receive(right, sum(sizes) - len(found)) if len(found) < sum(sizes) else b""
     assert found == b"".join(wanted)
 
@@ -186,11 +188,11 @@ def test_end_is_told_to_who_waits_for_room(pair: Pair) -> None:
     started = time.monotonic()
     assert left.wait_writable(20.0)
     assert lasted(started) < 10
-    with pytest.raises(OSError, match="pipe"):
+    with pytest.raises(OSError, match=r"pipe|10058"):
         left.try_send([b"more"])
     left.close()
     assert left.wait_writable(20.0)
-    with pytest.raises(OSError, match="descriptor"):
+    with pytest.raises(OSError, match=r"descriptor|10038"):
         left.try_send([b"more"])
 
 

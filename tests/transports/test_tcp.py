@@ -142,7 +142,8 @@ def test_numbers_that_somebody_has() -> None:
     listener = TcpListener(number)
     assert is_taken(number)
     near = dial("127.0.0.1", number)
-    assert is_taken(near.local[1]), "one dials from it"
+    # (wine lets a number be taken from which one dials)
+    assert is_taken(near.local[1]) or sys.platform == "win32", "one dials from it"
     near.close()
     listener.close()
     listener.release()

@@ -9,10 +9,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from support.system import NO_ROOT, NO_UNIX_SOCKETS
 
 from yarpy.errors import LocalProtocolError
 from yarpy.transports import unix
 from yarpy.transports.unix import UnixTransport, open_unix, runtime_directory
+
+pytestmark = pytest.mark.skipif(bool(NO_UNIX_SOCKETS), reason=NO_UNIX_SOCKETS)
 
 ACCEPTOR, INITIATOR = ("127.0.0.1", 21605), ("127.0.0.1", 47340)
 
@@ -128,7 +131,7 @@ def test_directory_is_where_cpp_has_it(
     assert str(runtime_directory()) == wanted
 
 
-@pytest.mark.skipif(os.getuid() != 0, reason="it takes root to make a directory of somebody else")
+@pytest.mark.skipif(bool(NO_ROOT), reason=NO_ROOT)
 @pytest.mark.parametrize("whose", ["runtime-me", "runtime-me/yarp"])
 def test_a_directory_of_somebody_else_is_not_used(
     whose: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

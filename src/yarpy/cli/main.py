@@ -10,6 +10,7 @@ Exit codes: 0 done; 1 not done, or used wrongly; 255 no such verb; 128 + N ended
 
 from __future__ import annotations
 
+import errno
 import re
 import sys
 from collections.abc import Sequence
@@ -158,7 +159,10 @@ def main() -> NoReturn:
     try:
         if sys.stdout is not None:  # closed before we began
             sys.stdout.flush()
-    except BrokenPipeError:
+    except OSError as error:
+        # Windows calls the same an invalid argument.
+        if error.errno != (errno.EINVAL if sys.platform == "win32" else errno.EPIPE):
+            raise
         sys.stdout = None  # nobody reads: no complaint at exit
         code = code or 1
     sys.exit(code)

@@ -1,8 +1,8 @@
 """Transport: moves bytes and knows no protocol.
 
-Rules: blocking calls, no Python-level timeouts (a kernel receive timeout costs nothing per call);
-`interrupt` wakes the threads inside; `close` is idempotent. Errors are OSError,
-mapped to ours by the driver alone.
+Rules: blocking calls, no Python-level timeouts (a kernel receive timeout costs nothing per call;
+Windows has `polling.py`); `interrupt` wakes the threads inside; `close` is idempotent. Errors are
+OSError, mapped to ours by the driver alone.
 """
 
 from __future__ import annotations
@@ -12,11 +12,13 @@ import socket
 import struct
 import sys
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
+from yarpy.transports.polling import Polling
 from yarpy.wire.stream import Buffer
 
 Address = tuple[str, int]
+T = TypeVar("T")
 
 
 class Transport:
@@ -180,15 +182,16 @@ class SocketTransport(Answerable):
 
     def __init__(self, sock: socket.socket) -> None:
         self.sock = sock
-        sock.setblocking(True)
         self.use(sock)
 
     def use(self, sock: socket.socket) -> None:
         """Send and receive through this socket."""
         self.sock = sock
+        sock.setblocking(bool(MSG_DONTWAIT))
+        self._polling = None if MSG_DONTWAIT else Polling(sock)
         #: What `recv_into` and `try_send` come down to: one call into the system each, which an
         #: exception out of a signal handler comes before or after. None: they do more than that.
-        self.recv_call: Callable[..., int] | None = sock.recv_into
+        self.recv_call: Callable[..., int] | None = sock.recv_into if MSG_DONTWAIT else None
         self.send_call: Callable[..., int] | None = sock.send
         self._poll: Any = None  # asks whether there is something to be read
 
@@ -201,11 +204,23 @@ class SocketTransport(Answerable):
         return address_of(self.sock.getpeername())
 
     def recv_into(self, view: memoryview) -> int:
-        return self.sock.recv_into(view)
+        return self.sock.recv_into(view) if self._polling is None else self._polling.recv_into(view)
+
+    def receive(self, call: Callable[..., T], *arguments: Any) -> T:
+        """Return call(*arguments), which reads from the socket and waits as `recv_into` does."""
+        waits = self._polling
+        return call(*arguments) if waits is None else waits.receive(call, *arguments)
+
+    def send_all(self, buffers: Sequence[Buffer]) -> None:
+        """Hand all of them to the system, whatever the transport does to its bytes before."""
+        if self._polling is not None:
+            self._polling.send_all(buffers)
+        elif len(buffers) == 1:
+            self.sock.sendall(buffers[0])
+        elif buffers:
+            send_all(self.sock, buffers)
 
     def try_recv_into(self, view: memoryview) -> int:
-        if not MSG_DONTWAIT and not self._readable():
-            return -1
         try:
             return self.sock.recv_into(view, 0, MSG_DONTWAIT)
         except BlockingIOError:
@@ -214,36 +229,31 @@ class SocketTransport(Answerable):
     def send(self, buffers: Sequence[Buffer]) -> None:
         if len(buffers) > 1:
             buffers = _fewest(buffers)
-        if len(buffers) == 1:
-            self.sock.sendall(buffers[0])
-        elif buffers:
-            send_all(self.sock, buffers)
+        self.send_all(buffers)
 
     def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
         rest: list[Buffer] = []
         if len(buffers) > 1:
             buffers = _fewest(buffers)
         try:
-            if len(buffers) == 1 and MSG_DONTWAIT:  # as nearly always
+            if len(buffers) == 1:  # as nearly always
                 sent = self.sock.send(buffers[0], MSG_DONTWAIT)
                 if sent == len(buffers[0]):
                     return rest
                 return [memoryview(buffers[0])[sent:]]
             rest = [buffer for buffer in buffers if buffer]
-            if not MSG_DONTWAIT:  # there a send waits until the whole buffer has gone
-                if not (rest and self.wait_writable(0.0)):
-                    return rest
-                self.send(rest)
-                return []
-            if sys.platform == "win32":
-                return rest  # which was dealt with above
             while rest:
+                if sys.platform == "win32":  # it has no sendmsg
+                    _drop_sent(rest, self.sock.send(rest[0]))
+                    continue
                 _drop_sent(rest, self.sock.sendmsg(rest[:_IOV_MAX], (), MSG_DONTWAIT))
         except BlockingIOError:
             return rest or list(buffers)
         return rest
 
     def wait_writable(self, seconds: float) -> bool:
+        if self._polling is not None:
+            return self._polling.wait(reads=False, seconds=seconds)
         number = self.sock.fileno()
         if number < 0:
             return True  # closed, as sending tells
@@ -254,6 +264,8 @@ class SocketTransport(Answerable):
         return bool(poll.poll(max(0.0, seconds) * 1000))
 
     def wait_readable(self, seconds: float) -> bool:
+        if self._polling is not None:
+            return self._polling.wait(reads=True, seconds=seconds)
         number = self.sock.fileno()
         if number < 0:
             return True  # closed, as reading tells
@@ -264,6 +276,11 @@ class SocketTransport(Answerable):
         return bool(poll.poll(seconds * 1000))
 
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
+        if self._polling is not None:
+            self._polling.receiving = seconds
+            if sends:
+                self._polling.sending = seconds
+            return
         value = _FOR_EVER if seconds is None else timeval(seconds)
         try:
             self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, value)
@@ -290,10 +307,6 @@ class SocketTransport(Answerable):
             pass  # closed meanwhile
         return 0
 
-    def _readable(self) -> bool:
-        """For systems where a single call cannot be told not to wait (Windows)."""
-        return bool(select.select([self.sock], [], [], 0)[0])
-
     def ended(self) -> bool:
         number = self.sock.fileno()
         if _POLL is None:
@@ -316,6 +329,8 @@ class SocketTransport(Answerable):
             return True
 
     def interrupt(self) -> None:
+        if self._polling is not None:
+            self._polling.shut = True
         try:
             self.sock.shutdown(socket.SHUT_RDWR)
         except OSError:

@@ -64,14 +64,19 @@ class DatagramTransport(SocketTransport):
         while True:
             if self._woken:
                 return self._rest(view)
-            count = self._recv_datagram(view)
+            try:
+                count = self.receive(self._recv_datagram, view)
+            except BrokenPipeError:  # Windows' word for a wake-up
+                if not self._woken:
+                    raise
+                continue
             if count:
                 return count  # an empty datagram is not an end: anybody can send one
 
     def _rest(self, view: memoryview) -> int:
         """Return the size of what had come before the wake-up: it was sent before the end. 0 when
         that is all."""
-        while MSG_DONTWAIT and self._room > 0:  # a sender that goes on is not read for ever
+        while self._room > 0:  # a sender that goes on is not read for ever
             try:
                 count = self._recv_datagram(view, MSG_DONTWAIT)
             except OSError:
@@ -95,8 +100,6 @@ class DatagramTransport(SocketTransport):
 
     def try_recv_into(self, view: memoryview) -> int:
         while True:
-            if not MSG_DONTWAIT and not self._readable():
-                return -1
             try:
                 count = self._recv_datagram(view, MSG_DONTWAIT)
             except BlockingIOError:
@@ -111,7 +114,10 @@ class DatagramTransport(SocketTransport):
             self._pace.wait(len(datagram))
             if self._woken:
                 raise OSError("closed while it was sending")
-            if self._connected:
+            if self._polling is not None:  # there a call does not wait for room
+                to = () if self._connected else (self._target,)
+                self._polling.send(self.sock.sendto if to else self.sock.send, datagram, *to)
+            elif self._connected:
                 self.sock.send(datagram)
             else:
                 self.sock.sendto(datagram, self._target)

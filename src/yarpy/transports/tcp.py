@@ -56,7 +56,7 @@ class TcpTransport(SocketTransport):
         return True
 
     def peek(self) -> int:
-        first = self.sock.recv(1, socket.MSG_PEEK)
+        first = self.receive(self.sock.recv, 1, socket.MSG_PEEK)
         return first[0] if first else -1
 
     def taken(self, sent: int, received: int) -> tuple[int, bool] | None:

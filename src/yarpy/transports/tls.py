@@ -12,7 +12,7 @@ import socket
 import ssl
 import threading
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
@@ -100,6 +100,9 @@ class TlsTransport(TcpTransport):
     def use(self, sock: socket.socket) -> None:
         super().use(sock)
         self.recv_call = self.send_call = None  # there is TLS between the system and us
+        # One call into C where the system has one, for the sake of signals.
+        polling = self._polling
+        self._receive: Callable[..., int] = sock.recv_into if polling is None else polling.recv_into
 
     def recv_into(self, view: memoryview) -> int:
         with self._reading:
@@ -108,7 +111,7 @@ class TlsTransport(TcpTransport):
             try:
                 while (count := self._decrypted(view, came[0])) < 0:
                     came = []
-                    came.extend(map(self.sock.recv_into, (self._raw,)))
+                    came.extend(map(self._receive, (self._raw,)))
                     if not came[0]:
                         return 0
                     if self._timeout is not None:  # a record may come byte by byte
@@ -143,7 +146,7 @@ class TlsTransport(TcpTransport):
                 super().send(self._unsent)
                 self._unsent = []
             for piece in _pieces(buffers):
-                self.sock.sendall(self._encrypted(piece))
+                self.send_all([self._encrypted(piece)])
 
     def try_send(self, buffers: Sequence[Buffer]) -> list[Buffer]:
         with self._sending:
@@ -210,7 +213,7 @@ class TlsTransport(TcpTransport):
         """Send what the SSL object has written on its own account."""
         records = self._outgoing.read()
         if records:
-            self.sock.sendall(records)
+            self.send_all([records])
 
     def _decrypted(self, view: memoryview, fresh: int = 0) -> int:
         """Bytes that have come, of which `fresh` ones of the socket have not been looked at; 0 at

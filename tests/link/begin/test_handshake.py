@@ -13,6 +13,7 @@ import pytest
 from support.lasted import lasted
 from support.port import free_port
 from support.transport import ScriptTransport
+from support.wait import HANG
 
 from yarpy.carriers.own.tcp import Tcp
 from yarpy.carriers.own.text import Text
@@ -59,7 +60,7 @@ def answering(serve: Callable[[socket.socket], Any]) -> Iterator[tuple[Contact, 
         thread = threading.Thread(target=run, daemon=True)
         thread.start()
         yield Contact("tcp", "/target", *listener.getsockname()), found
-        thread.join(5)
+        thread.join(HANG)
         assert not thread.is_alive()
 
 
@@ -240,7 +241,7 @@ def test_plugin_that_is_no_carrier() -> None:
 def answer_to(*pieces: bytes, pause: float = 0.0, shut: bool = False) -> tuple[bytes, Any]:
     """What a stranger gets who says this, and what the acceptor makes of it."""
     near, far = socket.socketpair()
-    near.settimeout(5)
+    near.settimeout(HANG)
     found: list[Any] = []
 
     def run() -> None:
@@ -262,7 +263,7 @@ def answer_to(*pieces: bytes, pause: float = 0.0, shut: bool = False) -> tuple[b
     said = b""
     while part := near.recv(1000):
         said += part
-    thread.join(5)
+    thread.join(HANG)
     near.close()
     far.close()
     return said, found[0]

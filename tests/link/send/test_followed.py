@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import pytest
 from support.outbound import connected, open_link, read_messages
+from support.system import NO_TAKEN
 from support.wait import wait_until
 
 from yarpy.carriers.base import Carrier
@@ -59,6 +60,7 @@ def test_a_message_is_confirmed_when_the_reader_has_acknowledged_it() -> None:
         assert link.sender.window.open == 0
 
 
+@pytest.mark.skipif(bool(NO_TAKEN), reason=NO_TAKEN)
 def test_where_nobody_acknowledges_the_system_confirms() -> None:
     with connected(FastTcp) as (link, far):
         watcher = Watcher()
@@ -69,7 +71,10 @@ def test_where_nobody_acknowledges_the_system_confirms() -> None:
         wait_until(lambda: len(watcher.taken) == 3)
 
 
-@pytest.mark.parametrize("kind", [Tcp, FastTcp])
+@pytest.mark.parametrize(
+    "kind",
+    [Tcp, pytest.param(FastTcp, marks=pytest.mark.skipif(bool(NO_TAKEN), reason=NO_TAKEN))],
+)
 def test_a_reader_that_goes_away(kind: type[Carrier]) -> None:
     with connected(kind) as (link, far):
         link.ride(Chain([Watcher()], "here"))

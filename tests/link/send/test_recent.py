@@ -39,7 +39,8 @@ def test_a_writer_never_waits_and_the_oldest_gives_way() -> None:
         assert queue is not None
         assert len(queue._waiting) == 3
         assert [packet.value[0] for packet, _ in queue._waiting] == [17, 18, 19]
-        assert link.counter.replaced >= 15
+        # All but what the system has taken, which may be a message or two more.
+        assert link.counter.replaced >= 12
 
         def read() -> None:
             while far.recv(1 << 20):

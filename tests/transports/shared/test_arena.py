@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import fcntl
 import gc
 import logging
 import mmap
 import os
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -25,6 +25,7 @@ from yarpy.transports.shared.arena import (
 )
 from yarpy.transports.shared.lease import HEADROOM
 
+fcntl: Any = pytest.importorskip("fcntl", reason="only Unix seals memory")
 pytestmark = pytest.mark.skipif(not module.available(), reason="this system has no such memory")
 
 

@@ -21,7 +21,8 @@ def make(root: Path, files: dict[str, str]) -> None:
 
 def test_groups_in_groups(tmp_path: Path) -> None:
     make(tmp_path, {"own": "4:cpu,memory:/x/../y\n3:pids:/z\n0::/a\nnonsense\n"})
-    found = [(version, str(path)) for version, path in groups("cpu", Path("/r"), tmp_path / "own")]
+    own = tmp_path / "own"
+    found = [(version, path.as_posix()) for version, path in groups("cpu", Path("/r"), own)]
     first = [(1, "/r/cpu"), (1, "/r/cpu/x"), (1, "/r/cpu/x/y")]
     assert found[:5] == [*first, (2, "/r"), (2, "/r/a")]
     assert [*groups("cpu", Path("/r"), tmp_path / "missing")] == []

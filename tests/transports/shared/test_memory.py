@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from support import held
+from support.system import NO_ROOT
 
 from yarpy.errors import LocalProtocolError, RemoteProtocolError
 from yarpy.transports.shared import memory
@@ -310,7 +311,7 @@ def test_a_program_of_another_user_is_not_seen(monkeypatch: pytest.MonkeyPatch) 
     sending.close()
 
 
-@pytest.mark.skipif(os.getuid() != 0, reason="it takes root to be somebody else")
+@pytest.mark.skipif(bool(NO_ROOT), reason=NO_ROOT)
 def test_another_user_who_comes_first_gets_nothing() -> None:
     sending = SendingTransport("/out")
     ready = threading.Thread(target=sending.ready)

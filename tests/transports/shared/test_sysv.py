@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from support.system import NO_ROOT
 from support.wait import wait_until
 
 from yarpy.errors import LocalProtocolError
@@ -95,7 +96,7 @@ def test_no_room(key: int) -> None:
         Segment.create(key, 1 << 60, HEADER)
 
 
-@pytest.mark.skipif(os.getuid() != 0, reason="it takes root to act as somebody else")
+@pytest.mark.skipif(bool(NO_ROOT), reason=NO_ROOT)
 def test_of_somebody_else(key: int, tmp_path: Path) -> None:
     segment = Segment.create(key, 100, HEADER)
     path = tmp_path / "mutex"
