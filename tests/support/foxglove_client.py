@@ -26,7 +26,10 @@ class Client:
         self.line = socket.create_connection((parts.hostname, parts.port or 80), HANG)
         self.talk = WSConnection(ConnectionType.CLIENT)
         extra = [(key.encode(), value.encode()) for key, value in (headers or {}).items()]
-        asked = Request(host=parts.netloc, target="/", subprotocols=[protocol], extra_headers=extra)
+        target = f"/?{parts.query}" if parts.query else "/"
+        asked = Request(
+            host=parts.netloc, target=target, subprotocols=[protocol], extra_headers=extra
+        )
         self.line.sendall(self.talk.send(asked))
         self.protocol: str | None = None
         self.refused = 0

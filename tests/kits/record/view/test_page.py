@@ -16,6 +16,7 @@ import yarpy
 from yarpy import record
 from yarpy.kits.record.capture.subscriptions import PortSelection
 from yarpy.kits.record.mcap.writer import McapWriter
+from yarpy.kits.record.view.beside import BesideSource
 from yarpy.kits.record.view.ring import LiveSource
 from yarpy.kits.record.view.server import View
 from yarpy.kits.record.view.source import FileSource
@@ -213,3 +214,33 @@ def test_files_logs_and_names_of_joints(browser: Browser, tmp_path: Path) -> Non
             lambda: "line2" in card(page, "/log") and "hip position 2.5" in card(page, "/joints")
         )
         assert "line1" in card(page, "/log") and "line0" in card(page, "/log")
+
+
+def test_two_recordings(browser: Browser, tmp_path: Path) -> None:
+    """The same port of both, at one cursor; the second one begins later then."""
+    for name, base in (("one", 0), ("two", 100)):
+        with McapWriter(tmp_path / f"{name}.mcap") as writer:
+            for n in range(10):
+                time = START + (base + n) * SECOND
+                writer.add("/a", f"{n} 1", time, payload_of([base + n]))
+    first, second = (FileSource([tmp_path / f"{name}.mcap"]) for name in ("one", "two"))
+    with BesideSource(first, second) as source, View(source, port=0) as view:
+        page = browser.open(view.url)
+        wait_until(lambda: "100" in card(page, "/B/a"))
+        for _ in range(3):
+            page.keyboard.press("ArrowRight")
+        wait_until(lambda: "103" in card(page, "/B/a") and "3" in text_of(page, "/A/a"))
+        page.fill("#beside input", "2")
+        page.keyboard.press("Enter")
+        wait_until(lambda: "offset=2" in page.url and page.locator("figure").count() == 2)
+        page.keyboard.press("End")
+        wait_until(lambda: text_of(page, "/A/a") == "9" and text_of(page, "/B/a") == "109")
+        assert "of 11.0 s" in state(page)
+        page.keyboard.press("Home")
+        wait_until(lambda: text_of(page, "/A/a") == "0")
+        assert "nothing came until here" in card(page, "/B/a")
+
+
+def text_of(page: Page, name: str) -> str:
+    """The message that is shown of a port."""
+    return page.locator("figure", has_text=name).locator(".text").inner_text().strip()

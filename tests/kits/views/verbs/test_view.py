@@ -174,7 +174,12 @@ def test_a_camera_as_a_source(cli):
 
 def test_a_recording_and_the_last_minutes(cli, names, tmp_path):
     path = recorded(tmp_path / "walk.mcap")
-    for words, title in (((str(path),), "walk.mcap"), (("--keep", "30s", "/a"), "the last 30 s")):
+    both = (str(path), "--beside", str(path), "--offset", "2")
+    for words, title in (
+        ((str(path),), "walk.mcap"),
+        (both, "walk.mcap beside walk.mcap"),
+        (("--keep", "30s", "/a"), "the last 30 s"),
+    ):
         with cli.start("view", *words, "--no-browser") as viewer:
             shown = r"^(.*) is shown at (http://127\.0\.0\.1:\d+/)$"
             found = viewer.wait_line(shown, stream="out", timeout=HANG)
@@ -209,7 +214,9 @@ def test_foxglove_may_read_when_it_is_told_so(cli, names, tmp_path):
 @pytest.mark.parametrize(
     ("words", "said"),
     [(("--keep", "much"), "no time that is kept"), (("--keep", "5MB"), "no time that is kept"),
-     (("none.mcap",), "none.mcap"), (("--foxglove", "/a"), "--keep")],
+     (("none.mcap",), "none.mcap"), (("--foxglove", "/a"), "--keep"),
+     (("/a", "--beside", "x.mcap"), "FILE --beside FILE"),
+     (("x.mcap", "--offset", "1"), "--beside FILE")],
 )  # fmt: skip
 def test_what_cannot_be_looked_back_at(words, said, cli):
     done = cli.run("view", "--no-browser", *words)

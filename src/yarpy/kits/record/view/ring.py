@@ -194,6 +194,10 @@ class LiveSource:
             word = "connected" if event.created else "disconnected"
             self._ring.note(word, port=event.source)
 
+    def at(self, offset: float) -> Self:
+        """Return it: nothing stands beside it."""
+        return self
+
     @property
     def title(self) -> str:
         """Return what people call it."""

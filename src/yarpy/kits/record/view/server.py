@@ -8,6 +8,9 @@
     GET /cut.mcap     ?begin=&end=                         a stretch of time as a recording
     GET / with Upgrade: websocket                          the protocol of Foxglove
 
+Of two recordings `offset`, in each question, tells how many seconds the second one begins after the
+first one.
+
 Rules: begin and end are seconds from `origin`, in nanoseconds: the beginning of the recording
 unless another one is given, since that of what is live goes on. It is the page of this computer
 unless it is told otherwise, and the origin rule is that of all pages of programs
@@ -49,7 +52,7 @@ from yarpy.log import logger
 log = logger("yarpy.view")
 
 _KINDS: Final = {"html": "text/html", "css": "text/css", "js": "text/javascript"}
-_PARTS: Final = ("card", "cloud", "link", "sound", "time")
+_PARTS: Final = ("beside", "card", "cloud", "link", "sound", "time")
 _FILES: Final = frozenset(
     ["look.html", "look.css", "look.js", *(f"look_{part}.js" for part in _PARTS)]
 )
@@ -99,17 +102,21 @@ class View:
 
     # -- what is asked ----------------------------------------------------------------------------
 
+    def of(self, fields: Mapping[str, str]) -> Source:
+        """Return what is asked about. Raises ValueError."""
+        return self.source.at(float(fields["offset"])) if "offset" in fields else self.source
+
     def stretch(self, fields: Mapping[str, str]) -> tuple[int, int]:
         """Return the moments that are asked for, in nanoseconds. Raises ValueError."""
-        origin = self.origin(fields)
+        origin, source = self.origin(fields), self.of(fields)
         begin, end = (float(fields[key]) if key in fields else None for key in ("begin", "end"))
-        first = self.source.begin if begin is None else origin + round(begin * SECOND)
-        last = self.source.end + 1 if end is None else origin + round(end * SECOND)
+        first = source.begin if begin is None else origin + round(begin * SECOND)
+        last = source.end + 1 if end is None else origin + round(end * SECOND)
         return max(0, first), min(max(0, last), 1 << 62)
 
     def origin(self, fields: Mapping[str, str]) -> int:
         """Return the moment from which seconds are counted. Raises ValueError."""
-        return int(fields.get("origin") or self.source.begin)
+        return int(fields.get("origin") or self.of(fields).begin)
 
     def known(self, fields: Mapping[str, str]) -> str:
         """Return the port that is asked for. Raises KeyError."""
@@ -122,18 +129,18 @@ class View:
         """Return the numbers of a port."""
         begin, end = self.stretch(fields)
         points = int(fields.get("points", "1000"))
-        with self.source.open() as recording:
+        with self.of(fields).open() as recording:
             return curves(recording, self.known(fields), self.origin(fields), begin, end, points)
 
     def lines(self, fields: Mapping[str, str]) -> list[dict[str, Any]]:
         """Return the last lines of a log before the end of a stretch."""
         _, end = self.stretch(fields)
-        with self.source.open() as recording:
+        with self.of(fields).open() as recording:
             return lines_before(recording, self.known(fields), self.origin(fields), end)
 
     def csv(self, fields: Mapping[str, str]) -> Iterator[bytes]:
         """Yield the lines of a file."""
-        with self.source.open() as recording:
+        with self.of(fields).open() as recording:
             yield from as_csv(recording, self.known(fields), *self.stretch(fields))
 
     def cut(self, fields: Mapping[str, str], write: Callable[[Path], object]) -> None:
@@ -142,18 +149,18 @@ class View:
         if not self._cutting.acquire(timeout=VIEW_SECONDS):
             raise Timeout("another stretch is being cut out: ask again when it has arrived")
         try:
-            self._cut(begin, end, write)
+            self._cut(self.of(fields), begin, end, write)
         finally:
             self._cutting.release()
 
-    def _cut(self, begin: int, end: int, write: Callable[[Path], object]) -> None:
+    def _cut(self, source: Source, begin: int, end: int, write: Callable[[Path], object]) -> None:
         with (
             tempfile.TemporaryDirectory(prefix="yarpy-cut-") as folder,
-            self.source.open() as recording,
+            source.open() as recording,
         ):
             first = min((storage.begin for storage in recording.storages if storage.end), default=0)
             start, duration = (begin - first) / SECOND, max(0, end - begin) / SECOND
-            ports = [*self.source.kinds]
+            ports = [*source.kinds]
             done = convert(
                 recording, Path(folder) / "cut", ports=ports, start=start, duration=duration
             )
@@ -187,10 +194,14 @@ class _Handler(BaseHTTPRequestHandler):
             return self._say(not_ours(headers.get("host", "")), 421)
         if not origins.shows(headers):
             return self._say(may_not_act(origins, headers), 403)
-        if headers.get("upgrade", "").lower() == "websocket":
-            return self._talk()
         parts = urlsplit(self.path)
         fields = {key: values[-1] for key, values in parse_qs(parts.query).items()}
+        if headers.get("upgrade", "").lower() == "websocket":
+            try:
+                source = self.view.of(fields)
+            except ValueError as error:
+                return self._say(str(error), 400)
+            return self._talk(source)
         try:
             self._answer(parts.path, fields)
         except KeyError as error:
@@ -210,7 +221,7 @@ class _Handler(BaseHTTPRequestHandler):
     def _answer(self, path: str, fields: Mapping[str, str]) -> None:
         view, name = self.view, "look.html" if path == "/" else path[1:]
         if path == "/timeline":
-            self._send(json.dumps(view.source.told()).encode(), "application/json")
+            self._send(json.dumps(view.of(fields).told()).encode(), "application/json")
         elif path == "/curve":
             self._send(json.dumps(view.curve(fields)).encode(), "application/json")
         elif path == "/log":
@@ -266,7 +277,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     # -- the WebSocket ----------------------------------------------------------------------------
 
-    def _talk(self) -> None:
+    def _talk(self, source: Source) -> None:
         from wsproto import ConnectionType, WSConnection
         from wsproto.events import (
             AcceptConnection,
@@ -299,7 +310,7 @@ class _Handler(BaseHTTPRequestHandler):
             else:
                 put(TextMessage(json.dumps(what)))
 
-        session = Session(self.view.source, send)
+        session = Session(source, send)
         sending = threading.Thread(
             target=self._serve, args=(session,), name="yarpy view client", daemon=True
         )

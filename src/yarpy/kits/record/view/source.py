@@ -28,6 +28,10 @@ class Source(Protocol):
 
     live: bool
 
+    def at(self, offset: float) -> Source:
+        """Return it with what stands beside it beginning so many seconds later. Raises
+        ValueError."""
+
     @property
     def title(self) -> str:
         """Return what people call it."""
@@ -111,6 +115,10 @@ class FileSource:
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._look, name="yarpy view", daemon=True)
         self._thread.start()
+
+    def at(self, offset: float) -> Self:
+        """Return it: nothing stands beside it."""
+        return self
 
     @property
     def title(self) -> str:

@@ -1,5 +1,6 @@
 """`yarpy view [PORT...] [--connect SOURCE]...`: look at images, in a browser.
-`yarpy view FILE...`: look back, at what was recorded. `yarpy view --keep 5min PORT...`: at what is.
+`yarpy view FILE...`: look back, at what was recorded; with `--beside FILE` at two recordings.
+`yarpy view --keep 5min PORT...`: at what is.
 
 Opens ports that take images and shows them side by side in a page that the ports serve themselves,
 whose address is printed. With a display a browser opens. A recording, or the last minutes of ports,
@@ -17,6 +18,7 @@ import threading
 import time
 from contextlib import ExitStack, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -28,6 +30,10 @@ from yarpy.cli.source import Source, also_said
 from yarpy.cli.stderr import warn
 from yarpy.errors import LocalProtocolError
 from yarpy.wire.message import Message
+
+if TYPE_CHECKING:
+    from yarpy.kits.record.view.beside import BesideSource
+    from yarpy.kits.record.view.source import FileSource
 
 NAME = "/view"
 
@@ -61,6 +67,9 @@ NAME = "/view"
               help="Let Foxglove's page read a recording or what is kept; open it.")  # fmt: skip
 @click.option("--rerun", is_flag=True,
               help="Show recordings, or what PORTS send, in Rerun's window.")  # fmt: skip
+@click.option("--beside", metavar="FILE", help="Show another recording on the same time line.")
+@click.option("--offset", type=float, metavar="S",
+              help="It begins S seconds after the first one (0: both together).")  # fmt: skip
 @click.option("--lan", is_flag=True, help="Let other computers see a recording, or what is kept.")
 def command(
     ports: tuple[str, ...],
@@ -73,13 +82,19 @@ def command(
     keep: str | None,
     foxglove: bool,
     rerun: bool,
+    beside: str | None,
+    offset: float | None,
     lan: bool,
 ) -> int:
     """Show the images that arrive at PORTS (/view), or recordings, in a browser."""
+    if beside is not None and (keep is not None or rerun or not any(map(is_recording, ports))):
+        raise click.UsageError("--beside shows two recordings: yarpy view FILE --beside FILE")
+    if offset is not None and beside is None:
+        raise click.UsageError("--offset is that of the second recording: --beside FILE")
     if rerun:
         return in_rerun(ports, carrier or "", not no_browser)
     if keep is not None or any(map(is_recording, ports)):
-        look_back(ports, keep, carrier, lan, not no_browser, foxglove)
+        look_back(ports, keep, carrier, lan, not no_browser, foxglove, beside, offset or 0.0)
         return 0
     if foxglove:
         raise click.UsageError("--foxglove shows recordings, or with --keep 1min what PORTS send")
@@ -123,6 +138,8 @@ def look_back(
     lan: bool,
     browser: bool,
     foxglove: bool = False,
+    beside: str | None = None,
+    offset: float = 0.0,
 ) -> None:
     """Show files, or the last minutes of ports, until a signal."""
     from yarpy.kits.record.capture.disk_space import parse_split
@@ -132,9 +149,11 @@ def look_back(
     from yarpy.kits.record.view.server import View
     from yarpy.kits.record.view.source import FileSource
 
-    source: FileSource | LiveSource
+    source: FileSource | LiveSource | BesideSource
     if keep is None:
         source = FileSource(words)
+        if beside is not None:
+            source = _beside(source, beside, offset)
     else:
         seconds = 0.0
         with suppress(LocalProtocolError):
@@ -154,6 +173,22 @@ def look_back(
         if browser:
             open_page(page)
         threading.Event().wait()
+
+
+def _beside(first: FileSource, path: str, offset: float) -> BesideSource:
+    """Return both recordings; close the first one where the other cannot be shown."""
+    from yarpy.kits.record.view.beside import BesideSource
+    from yarpy.kits.record.view.source import FileSource
+
+    with ExitStack() as stack:
+        stack.enter_context(first)
+        second = stack.enter_context(FileSource([path]))
+        try:
+            source = BesideSource(first, second, offset)
+        except ValueError as error:
+            raise LocalProtocolError(str(error)) from None
+        stack.pop_all()
+    return source
 
 
 def in_rerun(words: tuple[str, ...], carrier: str, window: bool) -> int:

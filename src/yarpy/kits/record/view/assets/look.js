@@ -1,6 +1,7 @@
 // A recording, or the last minutes: one time line, and what was said at the cursor.
 
 import {ask, pause, press, say} from "/*/common.js";
+import {beside, query} from "/look_beside.js";
 import {Card} from "/look_card.js";
 import {Link, after, since} from "/look_link.js";
 import {TimeLine} from "/look_time.js";
@@ -128,11 +129,11 @@ function cut() {
   if (!line.chosen) return;
   const [begin, end] = line.chosen;
   const words = {origin: String(origin), begin: begin.toFixed(6), end: end.toFixed(6)};
-  link.href = `/cut.mcap?${new URLSearchParams(words)}`;
+  link.href = `/cut.mcap?${query(words)}`;
   link.download = "cut.mcap";
   say(link, `Cut ${(end - begin).toFixed(2)} s`);
   const shown = `yarpy convert ${told.title} --start ${begin.toFixed(3)} --duration ${(end - begin).toFixed(3)} -o cut`;
-  say(byId("command").firstElementChild, told.live ? "" : shown);
+  say(byId("command").firstElementChild, told.live || told.beside ? "" : shown);
 }
 
 // The files that were given to the recording.
@@ -141,7 +142,7 @@ function files(attached) {
   list.hidden = !attached.length;
   for (const {name, size} of attached) {
     const link = document.createElement("a");
-    link.href = `/attached?${new URLSearchParams({name})}`;
+    link.href = `/attached?${query({name})}`;
     link.download = name;
     say(link, `${name} (${size} bytes)`);
     list.append(link);
@@ -151,7 +152,7 @@ function files(attached) {
 // -- what the program tells --
 
 async function look() {
-  const found = await ask("/timeline");
+  const found = await ask(`/timeline?${query()}`);
   if (!found) return false;
   const began = BigInt(found.begin);
   const initial = told === null;
@@ -162,7 +163,12 @@ async function look() {
   line.told = {
     begin: shift,
     length: found.length,
-    ports: found.ports.map((port) => ({...port, gaps: port.gaps.map((gap) => gap.map((t) => t + shift))})),
+    ports: found.ports.map((port) => ({
+      ...port,
+      from: shift + (port.from ?? 0),
+      length: port.length ?? found.length,
+      gaps: port.gaps.map((gap) => gap.map((t) => t + shift)),
+    })),
     notes: found.notes.map((note) => ({...note, t: note.t + shift})),
   };
   say(byId("title"), found.title);
@@ -170,6 +176,7 @@ async function look() {
   say(byId("trouble"), found.problem || (found.ports.length ? "" : "Nothing came yet."));
   byId("live").hidden = !found.live;
   if (initial) files(found.attached ?? []);
+  if (initial) beside(byId("beside"), found.beside);
   if (initial) following = playing = found.live;
   if (initial || whole) line.whole();
   else if (found.live && following) line.move(shift + found.length - line.view.length);
@@ -180,7 +187,7 @@ async function look() {
 }
 
 function connect() {
-  link = new Link(`${location.origin.replace("http", "ws")}/`, {
+  link = new Link(`${location.origin.replace("http", "ws")}/?${query()}`, {
     channels: () => {
       for (const [name, card] of cards) card.end ??= link.subscribe(name);
     },

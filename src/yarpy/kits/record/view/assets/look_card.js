@@ -3,6 +3,7 @@
 
 import {ask, copyOf, fileName, part, save, say} from "/*/common.js";
 import {Plot, colour} from "/*/plot.js";
+import {query} from "/look_beside.js";
 import {Cloud} from "/look_cloud.js";
 import {pictureOf} from "/look_link.js";
 import {Voice} from "/look_sound.js";
@@ -63,7 +64,7 @@ export class Card {
     this.reading = setTimeout(async () => {
       // A line is asked for by its own time, of which a double has not every nanosecond.
       const words = {port: this.port.name, origin: String(this.origin), end: (time + 1e-6).toFixed(6)};
-      const found = await ask(`/log?${new URLSearchParams(words)}`);
+      const found = await ask(`/log?${query(words)}`);
       if (!found || this.moment !== time) return;
       const text = part(this.figure, "text");
       say(text, found.map((one) => `${one.t.toFixed(3)} ${one.level} ${one.from}: ${one.text}`).join("\n"));
@@ -118,7 +119,7 @@ export class Card {
   show(view, cursor, origin) {
     this.origin = origin;
     if (this.pictured) return;
-    const question = `/curve?${new URLSearchParams({
+    const question = `/curve?${query({
       port: this.port.name,
       origin: String(origin),
       begin: view.start.toFixed(6),

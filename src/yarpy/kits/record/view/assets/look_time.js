@@ -116,18 +116,18 @@ export class TimeLine {
     const room = wide ? left - 20 : right - left;
     context.fillText(cutOff(context, `${this.open.has(port.name) ? "\u25be" : "\u25b8"} ${port.name}`, room), 10, wide ? top + height / 2 : top + 8);
     const most = Math.max(...port.bins, 1);
-    const step = told.length / port.bins.length;
+    const step = port.length / port.bins.length; // what stands beside another one has a length of its own
     context.save();
     context.beginPath();
     context.rect(left, top, right - left, height);
     context.clip();
     context.fillStyle = paint("--screen");
-    context.fillRect(this.x(told.begin), low, this.x(told.begin + told.length) - this.x(told.begin), bar);
+    context.fillRect(this.x(port.from), low, this.x(port.from + port.length) - this.x(port.from), bar);
     context.fillStyle = paint("--link");
     for (const [place, count] of port.bins.entries()) {
       if (!count) continue;
-      const from = this.x(told.begin + place * step);
-      const to = this.x(told.begin + (place + 1) * step);
+      const from = this.x(port.from + place * step);
+      const to = this.x(port.from + (place + 1) * step);
       if (to < left || from > right) continue;
       const part = Math.max(0.25, count / most) * bar;
       context.globalAlpha = 0.75;
