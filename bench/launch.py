@@ -42,7 +42,7 @@ begun = time.time()
 sent = 0
 while (passed := time.time() - begun) < seconds:
     more = range(sent, int(rate * passed))
-    sender.put([Packet(["[{LOG}]", text % (begun + number * 1e-6)]) for number in more])
+    sender.put([Packet(["[{LOG}]", text % (begun + number * 2e-6)]) for number in more])
     sent += len(more)
     time.sleep(0.002)
 took = time.time() - begun
@@ -174,11 +174,8 @@ def _processor(pid: int) -> float:
 def logged(rate: int, seconds: float) -> str:
     """A row: lines of one program, taken and read by the logger."""
     sender = [sys.executable, "-c", SENDER, str(rate), str(seconds)]
-    with (
-        yarpy.BufferedPort("/yarplogger", strict=True) as port,
-        subprocess.Popen(sender, stdout=subprocess.PIPE, text=True) as process,
-    ):
-        intake = Intake(port)
+    intake = Intake(lambda hear: yarpy.Port("/yarplogger", callback=hear))
+    with subprocess.Popen(sender, stdout=subprocess.PIPE, text=True) as process:
         read = told = 0
         while process.poll() is None or intake.waiting:
             for line, _ in intake.read(0.2):

@@ -78,6 +78,20 @@ def test_burst_is_gathered_and_nothing_is_left_behind() -> None:
     link.close()
 
 
+@replaces_a_method
+def test_who_says_that_more_follow_sends_them_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Sender, "_watch", lambda sender: None)  # nobody else sends meanwhile
+    link, transport = open_link(FastTcp)
+    link.sender.more = True
+    for number in range(10):
+        assert link.send(Packet([number]))
+    assert transport.sends == 0 and link.counter.messages == 10
+    link.sender.more = False
+    assert link.send(Packet([10]))
+    assert transport.sends == 1
+    assert transport.said == b"".join(bytes(framing.encode(Packet([n]))[0]) for n in range(11))
+
+
 def test_a_send_takes_no_less_than_its_transport_says() -> None:
     """Most of it may be done in threads of others: then a writer floods that seems slower."""
     link, transport = open_link(FastTcp)

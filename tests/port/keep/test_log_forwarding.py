@@ -70,6 +70,7 @@ def test_a_slow_reader_is_told_what_is_lost(
     names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(log_sender, "LINES", 2)
+    monkeypatch.setattr(log_sender, "AHEAD", 2)
     go = threading.Event()
     real = log_sender.LogSender._send
     monkeypatch.setattr(

@@ -3,13 +3,18 @@
 test_log_forwarding.py has the log of a program.
 """
 
+import threading
 from functools import partial
 
+import pytest
 from support.wait import HANG, wait_until
 
 import yarpy
+from yarpy.link.send.outbound import Outbound
 from yarpy.nameserver.local import LocalNames
 from yarpy.port.assembly import open_hub
+from yarpy.port.hub import Hub
+from yarpy.port.keep import log_sender as module
 from yarpy.port.keep.log_sender import LogSender
 from yarpy.wire.message import Packet
 
@@ -27,6 +32,38 @@ def test_all_lines_come_in_order_and_the_end_waits_for_them() -> None:
         sender.close(HANG)
         assert [logger.read(HANG).value for _ in range(5000)] == [*range(5000)]
     assert names.query("/log") is None
+
+
+def test_a_reader_that_is_behind_gets_what_came_meanwhile_and_is_told_what_is_missing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A program of which a thousand lines are kept lost all that came beyond in a burst."""
+    monkeypatch.setattr(module, "AHEAD", 5000)
+    names, waits, goes_on = LocalNames(), threading.Event(), threading.Event()
+    sender = LogSender(
+        partial(open_hub, names=names), "/log", lambda lost: Packet(-lost), "/logger", 10
+    )
+    send = sender._send
+
+    def held_up(hub: Hub, link: Outbound, lines: list[Packet]) -> int:
+        if lines:
+            waits.set()
+            assert goes_on.wait(HANG)
+        return send(hub, link, lines)
+
+    monkeypatch.setattr(sender, "_send", held_up)
+    with yarpy.BufferedPort("/logger", strict=True, names=names) as logger:
+        sender.open()
+        assert logger.wait_for_inputs(timeout=HANG)
+        sender.put([Packet(1)])
+        assert waits.wait(HANG)
+        sender.put([Packet(number) for number in range(2, 4002)])
+        sender.put([Packet(number) for number in range(4002, 6002)])  # 6000 wait: too many
+        goes_on.set()
+        sender.close(HANG)
+        found = [logger.read(HANG).value for _ in range(5002)]
+        assert found == [1, -1000, *range(1002, 6002)]
+    assert [packet.value for packet in sender._lines] == [*range(5992, 6002)]
 
 
 def test_nobody_has_to_be_there() -> None:

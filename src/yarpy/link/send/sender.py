@@ -2,10 +2,10 @@
 
 Rules: one message at a time, under `lock`: an RLock, so that a signal handler can see that the
 frame beneath it is at work. When messages follow each other without a pause, the first leaves at
-once and those behind it are gathered into one send; a short timer sends what a writer leaves
-behind. When a part of a message has left, its rest waits in the stream and leaves before any other.
-Whatever interrupts a message on its way (Ctrl-C) ends the connection, and is counted. Time limits
-are those of `link/ending.py`.
+once and those behind it are gathered into one send; so is the first if its writer says that `more`
+follow. A short timer sends what a writer leaves behind. When a part of a message has left, its rest
+waits in the stream and leaves before any other. Whatever interrupts a message on its way (Ctrl-C)
+ends the connection, and is counted. Time limits are those of `link/ending.py`.
 """
 
 from __future__ import annotations
@@ -79,6 +79,7 @@ class Sender:
         self.halfway = False  # the rest of a message waits in the stream
         self.window = Window(driver, carrier, self._flush_gathered, self.flush)
         self.confirmation = Confirmation(mute(carrier))  # of a carrier without acknowledgements
+        self.more = False  # its writer says that others follow the next message at once
         self._rush = 0
         # What a send takes when nothing holds it up: the least seen, in seconds. A transport that
         # sends in threads of its own says what it takes at least.
@@ -121,11 +122,11 @@ class Sender:
             gathered, gone = self.gathered, driver.bytes_out
             carrier.encode(driver.stream, packet)
             pause = now - self._left
-            if pause > RUSH * self._cost:
+            if pause > RUSH * self._cost and not self.more:
                 # Who was flooding and paused for less than a burst lasts has been interrupted.
                 self._rush = BURST - 1 if self._rush == BURST and pause < LASTING else 0
                 left = (not self.gathered and driver.push()) or self.flush(until)
-            elif self._rush < BURST:
+            elif self._rush < BURST and not self.more:
                 self._rush += 1
                 left = (not self.gathered and driver.push()) or self.flush(until)
             elif carrier.delivery.coalesces and carrier.gathers(packet):
@@ -328,7 +329,8 @@ class Sender:
         if not self.gathered:
             self._gathered_since = now
             self._watch()
-        if self.gathered + 1 >= GATHER or now - self._gathered_since >= GATHER_SECONDS:
+        late = now - self._gathered_since >= GATHER_SECONDS and not self.more
+        if late or self.gathered + 1 >= GATHER:
             return self.flush(until)
         self.gathered += 1
         return True

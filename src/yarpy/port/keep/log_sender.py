@@ -1,8 +1,9 @@
 """Log sender: a port that tells whoever reads it what was logged, also those who come late.
 
 Rules: who puts lines in never waits; a thread sends them. Who comes late gets the last ones that
-are kept; who is slower than the log is told how much is missing. It connects once, by itself, to
-the logger if that is there; others have to ask.
+are kept. Who is slower than the log gets all from memory, as long as that is not more than AHEAD
+lines, and is told how much is missing then. It connects once, by itself, to the logger if that is
+there; others have to ask.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
+from itertools import islice
 from typing import Final
 
 from yarpy.errors import LinkClosed, YarpError
@@ -25,6 +27,7 @@ from yarpy.wire.message import Packet
 
 LOGGER: Final = "/yarplogger"
 LINES: Final = 1000  # kept for readers that are late
+AHEAD: Final = 20_000  # kept for a reader that is behind
 TIMEOUT: Final = 2.0  # seconds for a reader to take a line
 _BATCH: Final = 500  # lines sent before there is another look at who reads
 
@@ -50,9 +53,11 @@ class LogSender:
     ) -> None:
         self._open, self._name, self._gap, self._target = open_, name, gap, target
         self.closed = False
-        self._lines: deque[Packet] = deque(maxlen=LINES if kept is None else kept)
+        self._kept = LINES if kept is None else kept
+        self._lines: deque[Packet] = deque()
         self._count = 0  # lines that came, the last of which are in `_lines`
-        self._guard = threading.RLock()  # of these two; a signal handler may log as well
+        self._wanted: int | None = None  # the first of them that a reader has not got; None: none
+        self._guard = threading.RLock()  # of these three; a signal handler may log as well
         self._news = Waiter()
         self._thread: threading.Thread | None = None
 
@@ -66,10 +71,21 @@ class LogSender:
         with self._guard:
             self._lines.extend(packets)
             self._count += len(packets)
+            self._forget()
             if self._thread is None and not self.closed:
                 self._thread = Thread(target=self._run, name="yarpy log", daemon=True)
                 self._thread.start()
         self._news.wake()
+
+    def _forget(self) -> None:
+        """Keep no more lines than somebody may want. The lock is held."""
+        lines = self._lines
+        surplus = len(lines) - self._kept
+        if surplus > 0 and self._wanted is not None:
+            unwanted = self._wanted - (self._count - len(lines))
+            surplus = min(surplus, max(unwanted, len(lines) - max(AHEAD, self._kept)))
+        for _ in range(surplus):
+            lines.popleft()
 
     def open(self) -> None:
         """Open the port now, before there is anything to send."""
@@ -118,29 +134,39 @@ class LogSender:
         got, and whether one took less than it could have."""
         sent: dict[Outbound, int] = {}
         stuck = False
-        for link in hub.outputs.links:
+        with self._guard:
+            late = self._count - min(self._kept, len(self._lines))
+            places = {link: before.get(link, late) for link in hub.outputs.links}
+            self._wanted = min(places.values(), default=None)
+        for link, had in places.items():
             with self._guard:
-                count, lines = self._count, [*self._lines]
-            first = count - len(lines)
-            had = before.get(link, first)
-            if had < first:
-                lines.insert(0, self._gap(first - had))
-                first -= 1
-                had = first
-            part = lines[had - first : had - first + _BATCH]
+                first = self._count - len(self._lines)
+                at = max(had, first)
+                part = [*islice(self._lines, at - first, at - first + _BATCH)]
+            gap = at > had
+            if gap:
+                part.insert(0, self._gap(at - had))
             took = self._send(hub, link, part)
             stuck = stuck or took < len(part)
-            sent[link] = had + took
+            sent[link] = had if not took else at + took - gap
+        with self._guard:
+            self._wanted = min(sent.values(), default=None)
+            self._forget()
         return sent, stuck
 
     def _send(self, hub: Hub, link: Outbound, lines: list[Packet]) -> int:
         """Send these lines; how many the reader took."""
         until = time.monotonic() + TIMEOUT
-        for number, packet in enumerate(lines):
-            try:
-                if not link.send(packet, until):
+        sender, last = link.sender, len(lines) - 1
+        try:
+            for number, packet in enumerate(lines):
+                sender.more = number < last
+                try:
+                    if not link.send(packet, until):
+                        return number
+                except YarpError as error:
+                    hub.outputs.drop(link, str(error), lost=isinstance(error, LinkClosed))
                     return number
-            except YarpError as error:
-                hub.outputs.drop(link, str(error), lost=isinstance(error, LinkClosed))
-                return number
+        finally:
+            sender.more = False
         return len(lines)

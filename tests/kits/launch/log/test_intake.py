@@ -27,10 +27,13 @@ def names(monkeypatch: pytest.MonkeyPatch) -> LocalNames:
 
 @pytest.fixture
 def intake(names: LocalNames) -> Iterator[Intake]:
-    with yarpy.BufferedPort("/logger", strict=True, names=names) as port:
-        found = Intake(port, names=names)
-        yield found
-        found.close()
+    found = open_intake(names)
+    yield found
+    found.close()
+
+
+def open_intake(names: LocalNames) -> Intake:
+    return Intake(lambda hear: yarpy.Port("/logger", callback=hear, names=names), names=names)
 
 
 def texts(intake: Intake, count: int) -> list[str]:
@@ -45,10 +48,9 @@ def texts(intake: Intake, count: int) -> list[str]:
 def test_programs_that_were_there_and_that_come(names: LocalNames) -> None:
     with (
         yarpy.Port(ONE, names=names) as one,
-        yarpy.BufferedPort("/logger", strict=True, names=names) as port,
         yarpy.Port("/not/logging", names=names) as other,
     ):
-        intake = Intake(port, names=names)
+        intake = open_intake(names)
         assert one.wait_for_outputs(timeout=HANG)
         one.write(line("here"))
         assert texts(intake, 1) == ["here"]

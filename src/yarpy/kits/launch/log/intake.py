@@ -3,7 +3,8 @@
 Rules: every second it looks for ports that log and asks them to send here; a program that came back
 is asked again. Lines wait in memory, a limited number of them, for whoever reads them; what comes
 beyond that replaces the oldest, and is counted. What a program tells again, since it was asked
-again, is left out.
+again, is left out. What the threads of connections do with a line is to put it down and no more:
+under a flood they take turns, and what they take of the processor is missing to whoever reads.
 """
 
 from __future__ import annotations
@@ -11,9 +12,10 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import yarpy
 from yarpy.kits.launch.log.filter import matches
@@ -28,22 +30,24 @@ AGAIN: Final = 1024  # lines of a program that are known when they come again
 _BATCH: Final = 2000  # lines read at a time
 _BYTES: Final = (memoryview, bytes, bytearray, str)
 
+Open: TypeAlias = Callable[[Callable[[Message[Any]], None]], yarpy.Port[Any]]
+
 
 @dataclass(slots=True)
 class _Origin:
-    """The last entry of a program."""
+    """The last entries of a program: when the newest was, and marks of the last AGAIN at least."""
 
     time: float = 0.0
-    known: deque[int] = field(default_factory=lambda: deque(maxlen=AGAIN))
+    known: set[int] = field(default_factory=set)
+    older: set[int] = field(default_factory=set)
 
 
 class Intake:
-    """Takes lines at `port`, which reads strictly, of the ports that match `pattern`."""
+    """Takes lines of the ports that match `pattern`, at the port that `open_` opens with the
+    callback that it is handed."""
 
-    def __init__(
-        self, port: yarpy.BufferedPort[Any], pattern: str = "", names: NameClient | None = None
-    ) -> None:
-        self._port, self._pattern, self._names = port, pattern, names
+    def __init__(self, open_: Open, pattern: str = "", names: NameClient | None = None) -> None:
+        self._pattern, self._names = pattern, names
         self.taken = 0  # messages
         self.lost = 0  # messages that nobody read in time
         self._waiting: deque[Message] = deque()
@@ -53,12 +57,11 @@ class Intake:
         self._done = threading.Event()
         self._origins: dict[str, _Origin] = {}
         self.joined = 0  # looks for ports that were finished
-        self._threads = [
-            threading.Thread(target=target, name=f"{port.name} {target.__name__}", daemon=True)
-            for target in (self._take, self._join)
-        ]
-        for thread in self._threads:
-            thread.start()
+        self.port = open_(self._hear)
+        self._thread = threading.Thread(
+            target=self._join, name=f"{self.port.name} looks for logs", daemon=True
+        )
+        self._thread.start()
 
     def read(self, timeout: float | None = None) -> list[tuple[LogLine, Message]]:
         """Return the lines that wait, some thousands at most, each with its message; wait for one,
@@ -96,9 +99,8 @@ class Intake:
         """Take no more."""
         self._done.set()
         self._news.set()
-        self._port.interrupt()
-        for thread in self._threads:
-            thread.join()
+        self.port.close()
+        self._thread.join()
 
     def _some(self) -> list[Message]:
         with self._lock:
@@ -129,38 +131,35 @@ class Intake:
         mark = hash((line.time, line.text))
         if line.time > origin.time:
             origin.time = line.time
-        elif mark in origin.known:
+        elif mark in origin.known or mark in origin.older:
             return True
-        origin.known.append(mark)
+        if len(origin.known) >= AGAIN:
+            origin.known, origin.older = set(), origin.known
+        origin.known.add(mark)
         return False
 
     # -- threads ----------------------------------------------------------------------------------
 
-    def _take(self) -> None:
-        try:
-            lock, waiting, news = self._lock, self._waiting, self._news
-            for message in self._port:
-                size = _size(message)
-                with lock:
-                    self.taken += 1
-                    self._bytes += size
-                    waiting.append(message)
-                    while len(waiting) > LOG_WAITING or self._bytes > LOG_WAITING_BYTES:
-                        self._bytes -= _size(waiting.popleft())
-                        self.lost += 1
-                if not news.is_set():  # which costs less than to set it again
-                    news.set()
-        except yarpy.YarpError:
-            pass  # it was interrupted or closed
-        self._done.set()
-        self._news.set()
+    def _hear(self, message: Message[Any]) -> None:
+        """Take a message, in the thread of its connection."""
+        size = _size(message)
+        with self._lock:
+            self.taken += 1
+            self._bytes += size
+            waiting = self._waiting
+            waiting.append(message)
+            while len(waiting) > LOG_WAITING or self._bytes > LOG_WAITING_BYTES:
+                self._bytes -= _size(waiting.popleft())
+                self.lost += 1
+        if not self._news.is_set():  # which costs less than to set it again
+            self._news.set()
 
     def _join(self) -> None:
         """Ask all that log to send here."""
         from yarpy.names.default import DEFAULT
 
         while not self._done.is_set():
-            known = {link.source for link in self._port.inputs}
+            known = {link.source for link in self.port.inputs}
             try:
                 names = DEFAULT.current() if self._names is None else self._names
                 found = [one.name for one in names.list()]
@@ -170,7 +169,7 @@ class Intake:
                 logs = any(part in name for part in PARTS) and matches(self._pattern, name)
                 if logs and name not in known and not self._done.is_set():
                     with suppress(yarpy.YarpError):  # its program is gone, or not ours to ask
-                        yarpy.connect(name, self._port.name, names=self._names)
+                        yarpy.connect(name, self.port.name, names=self._names)
             self.joined += 1
             self._news.set()
             self._done.wait(PERIOD)

@@ -20,7 +20,9 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import click
@@ -87,13 +89,12 @@ def command(
 
     wanted = Filter(level, program, component, expression(grep))
     with ExitStack() as open_:
-        port = _open(name)
         files = []
         for path in paths:
             files.append(open_kept(path))
             open_.callback(files[-1].close)
         shown = _page(open_) if page else None
-        intake = Intake(port, pattern)
+        intake = Intake(partial(_open, name), pattern)
         open_.callback(intake.close)
         screen = _Screen(as_json, _coloured(colour))
         lost = 0
@@ -127,14 +128,14 @@ def command(
     return 0
 
 
-def _open(name: str) -> yarpy.BufferedPort:
+def _open(name: str, hear: Callable[[yarpy.Message], None]) -> yarpy.Port:
     """The port that programs connect to by themselves, or another one if somebody has that."""
     try:
-        return open_port(yarpy.BufferedPort, name or LOGGER, strict=True, limit=LOG_MESSAGE)
+        return open_port(yarpy.Port, name or LOGGER, callback=hear, limit=LOG_MESSAGE)
     except yarpy.AddressError:
         if name:
             raise
-        return open_port(yarpy.BufferedPort, ANY, strict=True, limit=LOG_MESSAGE)
+        return open_port(yarpy.Port, ANY, callback=hear, limit=LOG_MESSAGE)
 
 
 def _page(open_: ExitStack) -> LogPage:
