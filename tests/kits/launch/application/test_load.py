@@ -52,6 +52,14 @@ def test_toml_takes_files_of_both_kinds(tmp_path: Path) -> None:
     assert [(one.label, one.prefix) for one in found.modules] == [("cam", "/p/m"), ("cam-2", "")]
 
 
+def test_many_programs_of_one_name(tmp_path: Path) -> None:
+    names = ["cam", "cam", "cam-3", "x/cam", "cam", "cam-2"]
+    modules = "".join(f"<module><name>{name}</name></module>" for name in names)
+    write(tmp_path, a_xml=f"<application>{modules}</application>")
+    labels = [one.label for one in load(tmp_path / "a.xml").modules]
+    assert labels == ["cam", "cam-4", "cam-3", "cam-5", "cam-6", "cam-2"]
+
+
 def said(path: Path) -> list[str]:
     return [str(one).removeprefix(f"{path.parent}/") for one in load(path).problems]
 

@@ -4,7 +4,8 @@ import pytest
 
 from yarpy.errors import DecodeError
 from yarpy.kits.launch.application.application import Need
-from yarpy.kits.launch.application.toml_file import read
+from yarpy.kits.launch.application.toml_file import _Reading, read
+from yarpy.kits.launch.document.problem import Where
 
 WHOLE = """
 name = "my demo"
@@ -114,3 +115,28 @@ def test_what_is_no_file(data: bytes, said: str) -> None:
     with pytest.raises(DecodeError) as caught:
         read(data, "a.toml", {})
     assert str(caught.value).startswith(said)
+
+
+def test_places_are_searched_for_where_they_are_told_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file of a hundred programs took a quarter of a second, one of a thousand a hundred times
+    that."""
+    searched: list[tuple[str, str]] = []
+    search = _Reading._search
+
+    def noted(reading: _Reading, table: str, key: str) -> Where:
+        searched.append((table, key))
+        return search(reading, table, key)
+
+    monkeypatch.setattr(_Reading, "_search", noted)
+    tables = "".join(f"[programs.p{n}]\ncommand = 'sleep {n}'\n" for n in range(50))
+    text = f"connections = ['/a -> /b', '/c -> /d']\n{tables}odd = 1\n[ 'programs' . q ]\n"
+    found = read(f"{text}command = 'x'".encode(), "a.toml", {}).application
+    assert searched == [("programs.p49", "odd"), ("", "connections")]
+    assert [str(one.where) for one in found.modules[::25]] == [
+        "a.toml:2:1",
+        "a.toml:52:1",
+        "a.toml:103:1",
+    ]
+    assert [str(one) for one in found.problems] == [
+        'a.toml:102:1: warning: "odd" in [programs.p49] is ignored'
+    ]

@@ -3,8 +3,11 @@
 import signal
 import subprocess
 
+import pytest
+
 import yarpy
 from yarpy import Bottle
+from yarpy.kits.launch.supervise import leftover
 from yarpy.kits.launch.supervise.leftover import end_all, end_away, told
 
 
@@ -37,7 +40,8 @@ def test_who_is_gone_is_no_trouble() -> None:
 
 
 class Node:
-    """The answers of a server of programs; SIGTERM ends those that are not deaf."""
+    """The answers of a server of programs; SIGTERM ends those that are not deaf, and
+    nothing those of stone."""
 
     def __init__(self, names: yarpy.LocalNames, *running: str) -> None:
         self.running = {*running}
@@ -50,7 +54,7 @@ class Node:
             return ["running" if tag in self.running else "not running"]
         number = rest[0] if rest else int(signal.SIGTERM)
         self.sent.append((tag, number))
-        if number == 9 or "deaf" not in tag:
+        if "stone" not in tag and (number == 9 or "deaf" not in tag):
             self.running.discard(tag)
         return [f"{word} OK"]
 
@@ -65,3 +69,15 @@ def test_programs_at_servers_end_and_those_of_silent_ones_may_go_on(
         assert ended == ["a:x", "a:deaf"] and node.running == set()
         assert node.sent == [("a:x", 15), ("a:deaf", 15), ("a:deaf", 9)]
         assert [*left] == ["a:far"] and "/gone" in left["a:far"]
+
+
+def test_one_that_does_not_end_holds_up_no_other_and_is_told(
+    network: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(leftover, "_GONE", 0.01)
+    node = Node(network, "a:stone", "a:x")
+    with node.server:
+        ended, left = end_away({"a:stone": "/node", "a:x": "/node"}, 0.01, network)
+    assert ended == ["a:x"] and node.running == {"a:stone"}
+    assert left == {"a:stone": "it does not end, not even when it is killed"}
+    assert node.sent == [("a:stone", 15), ("a:stone", 9), ("a:x", 15)]

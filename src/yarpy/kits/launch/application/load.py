@@ -182,12 +182,17 @@ def _labelled(modules: Sequence[Module]) -> Iterator[Module]:
     """Yield the programs, each with a name of its own: the second `view` is `view-2`."""
     taken: set[str] = {module.label for module in modules}
     seen: set[str] = set()
+    last: dict[str, int] = {}  # numbers of each name: those below are taken for good
     for module in modules:
-        label, number = Path(module.label).name or module.label, 1
+        name = Path(module.label).name
+        label, number = name or module.label, last.get(name, 1)
+        if number > 1:
+            label = f"{name}-{number}"
         while label in seen or (number > 1 and label in taken):
             number += 1
-            label = f"{Path(module.label).name}-{number}"
+            label = f"{name}-{number}"
         seen.add(label)
+        last[name] = number
         yield replace(module, label=label)
 
 

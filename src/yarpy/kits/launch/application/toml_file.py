@@ -19,7 +19,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import Any, Final
 
 from yarpy.errors import DecodeError
@@ -51,6 +52,8 @@ _NEED: Final = ("port", "timeout", "request", "reply")
 _NESTED: Final = ("file", "prefix")
 _AT: Final = re.compile(r"(.*) \(at line (\d+), column (\d+)\)", re.DOTALL)
 _AT_END: Final = " (at end of document)"
+_HEADER: Final = re.compile(r"\s*+\[++([^\]]*+)\]")
+_PLAIN: Final = re.compile(r"[\w.-]+")
 _ARROW: Final = re.compile(r"(\S+)\s*->\s*(\S+)(?:\s+(\S+))?")
 
 
@@ -94,6 +97,12 @@ class _Reading:
         variables: Mapping[str, str],
     ) -> None:
         self.lines = text.splitlines()
+        self._headers: dict[str, int] = {}  # the first lines of tables
+        for number, line in enumerate(self.lines, 1):
+            if header := _HEADER.match(line):
+                names = (one.strip(" \t\"'") for one in header[1].split("."))
+                self._headers.setdefault(".".join(names), number)
+        self._places: dict[tuple[str, str], Where] = {}
         self.file = file
         self.environment = environment
         self.variables = dict(variables)
@@ -104,7 +113,9 @@ class _Reading:
         document = Document(found, variables=self.variables)
         self._known(told, _ROOT, "")
         for name, value in self._table(told, "variables", "").items():
-            self.variables[name] = self._expanded(str(value), self._place("variables", name))
+            self.variables[name] = self._expanded(
+                str(value), partial(self._place, "variables", name)
+            )
         found.name = self._text(told, "name", "").replace(" ", "_")
         found.description = self._text(told, "description", "")
         found.version = self._text(told, "version", "")
@@ -161,7 +172,7 @@ class _Reading:
                 workdir=self._text(told, "workdir", table),
                 stdio=self._text(told, "stdio", table),
                 environment={
-                    name: self._expanded(str(value), self._place(table, "environment"))
+                    name: self._expanded(str(value), partial(self._place, table, "environment"))
                     for name, value in self._table(told, "environment", table).items()
                 },
                 needs=[*self._needs(told, table)],
@@ -177,7 +188,7 @@ class _Reading:
         where = self._place("", "connections")
         if isinstance(told, str):
             where = self._spelled(told)
-            arrow = _ARROW.fullmatch(self._expanded(told, where).strip())
+            arrow = _ARROW.fullmatch(self._expanded(told, lambda: where).strip())
             if arrow is None:
                 self._warn(where, f'"{told}" is no connection: "/a -> /b tcp"', fatal=True)
                 return
@@ -211,8 +222,8 @@ class _Reading:
         )
 
     def _needs(self, told: dict[str, Any], table: str) -> Iterator[Need]:
-        where = self._place(table, "needs")
         for one in self._list(told, "needs", table):
+            where = self._place(table, "needs")
             entry = {"port": one} if isinstance(one, str) else one
             if not (isinstance(entry, dict) and isinstance(entry.get("port"), str)):
                 self._warn(where, 'what is needed is "/port" or { port = "/p" }', fatal=True)
@@ -229,10 +240,10 @@ class _Reading:
         if isinstance(value, dict | list | bool):
             self._warn(self._place(table, key), f'"{key}" is a text', fatal=True)
             return ""
-        return self._expanded(str(value), self._place(table, key))
+        return self._expanded(str(value), partial(self._place, table, key))
 
     def _texts(self, told: dict[str, Any], key: str, table: str) -> list[str]:
-        where = self._place(table, key)
+        where = partial(self._place, table, key)
         return [self._expanded(str(one), where) for one in self._list(told, key, table)]
 
     def _list(self, told: dict[str, Any], key: str, table: str) -> list[Any]:
@@ -268,18 +279,30 @@ class _Reading:
                 text = f'"{key}"{inside} is ignored{advice(key, words)}'
                 self._warn(self._place(table, key), text)
 
-    def _expanded(self, text: str, where: Where) -> str:
+    def _expanded(self, text: str, where: Callable[[], Where]) -> str:
+        """Return a text with its variables; `where` says the place, which takes a search."""
         try:
             text, missing = expand(text, self.variables, self.environment)
         except DecodeError as error:
-            raise DecodeError(f"{where}: {error}") from None
+            raise DecodeError(f"{where()}: {error}") from None
         for spelled in missing:
             if spelled != "$":
-                self._warn(where, f"{spelled} is not defined, and so is empty")
+                self._warn(where(), f"{spelled} is not defined, and so is empty")
         return text
 
     def _place(self, table: str, key: str) -> Where:
         """Return the place of a key of a table, or of the table; TOML itself keeps none."""
+        place = self._places.get((table, key))
+        if place is None:
+            if not key and _PLAIN.fullmatch(table):  # of every program
+                number = self._headers.get(table, 0)
+                place = Where(self.file, number, 1) if number else Where(self.file)
+            else:
+                place = self._search(table, key)
+            self._places[table, key] = place
+        return place
+
+    def _search(self, table: str, key: str) -> Where:
         names = re.escape(table).replace(r"\.", r"\s*\.\s*[\"']?")
         header = re.compile(rf"\s*\[+\s*[\"']?{names}[\"']?\s*\]") if table else None
         spelled = (
