@@ -78,11 +78,11 @@ def test_a_slow_reader_is_told_what_is_lost(
     )
     with yarpy.BufferedPort("/yarplogger", strict=True) as logger:
         log.info("first")
-        assert logger.wait_for_inputs(timeout=HANG)
-        for number in range(5):
-            log.info("line %d", number)
         forwarder = log_forwarding._begun
         assert forwarder is not None
+        wait_until(lambda: forwarder._sender._wanted is not None)  # it knows who reads
+        for number in range(5):
+            log.info("line %d", number)
         wait_until(forwarder._sender._news._lock.locked)  # it has seen them
         go.set()
         log.info("last")

@@ -54,7 +54,7 @@ def test_a_reader_that_is_behind_gets_what_came_meanwhile_and_is_told_what_is_mi
     monkeypatch.setattr(sender, "_send", held_up)
     with yarpy.BufferedPort("/logger", strict=True, names=names) as logger:
         sender.open()
-        assert logger.wait_for_inputs(timeout=HANG)
+        wait_until(lambda: sender._wanted is not None)  # it knows who reads
         sender.put([Packet(1)])
         assert waits.wait(HANG)
         sender.put([Packet(number) for number in range(2, 4002)])
@@ -64,6 +64,20 @@ def test_a_reader_that_is_behind_gets_what_came_meanwhile_and_is_told_what_is_mi
         found = [logger.read(HANG).value for _ in range(5002)]
         assert found == [1, -1000, *range(1002, 6002)]
     assert [packet.value for packet in sender._lines] == [*range(5992, 6002)]
+
+
+def test_where_nobody_reads_few_lines_are_kept_and_no_thread_is_woken() -> None:
+    names = LocalNames()
+    sender = LogSender(partial(open_hub, names=names), "/log", Packet, "", 10)
+    sender.open()
+    wait_until(lambda: sender._hub is not None and sender._news._lock.locked())  # it sleeps
+    for number in range(100):
+        sender.put([Packet(number)])
+    assert sender._news._lock.locked() and len(sender._lines) == 10
+    with yarpy.BufferedPort("/late", strict=True, names=names) as late:
+        late.listen_to("/log", timeout=HANG)
+        assert [late.read(HANG).value for _ in range(10)] == [*range(90, 100)]
+    sender.close(HANG)
 
 
 def test_nobody_has_to_be_there() -> None:

@@ -59,6 +59,7 @@ class LogSender:
         self._wanted: int | None = None  # the first of them that a reader has not got; None: none
         self._guard = threading.RLock()  # of these three; a signal handler may log as well
         self._news = Waiter()
+        self._hub: Hub | None = None  # once it is open
         self._thread: threading.Thread | None = None
 
     @property
@@ -68,14 +69,19 @@ class LogSender:
 
     def put(self, packets: Sequence[Packet]) -> None:
         """Send these. In any thread; nobody waits."""
+        hub = self._hub
+        idle = hub is not None and not hub.outputs.links
         with self._guard:
             self._lines.extend(packets)
             self._count += len(packets)
+            if idle:
+                self._wanted = None
             self._forget()
             if self._thread is None and not self.closed:
                 self._thread = Thread(target=self._run, name="yarpy log", daemon=True)
                 self._thread.start()
-        self._news.wake()
+        if not idle:  # else the thread has nothing to do
+            self._news.wake()
 
     def _forget(self) -> None:
         """Keep no more lines than somebody may want. The lock is held."""
@@ -108,12 +114,14 @@ class LogSender:
             self.closed = True
             log.warning("the log of %s is not sent: %s", self._name, error)
             return
+        self._hub = hub
         try:
             if self._target:
                 try:
                     connecting.connect(hub, self._target, "fast_tcp")
                 except YarpError:
                     pass  # whoever comes later has to ask for it
+            news.wake()  # what came meanwhile
             sent: dict[Outbound, int] = {}
             ended = behind = False
             while not ended:

@@ -173,3 +173,13 @@ def test_nobody_looks_for_a_computer_that_has_enough(node: str, many: int) -> No
     )
     said = 'a.xml:3:1: warning: <computer> chooses none: "sleep" runs on this one, or where'
     assert len(found) == many and all(one.startswith(said) for one in found)
+
+
+@pytest.mark.parametrize(("node", "many"), [("", 1), ("<node>pc1</node>", 0)])
+def test_a_rank_moves_no_program(node: str, many: int) -> None:
+    found = problems(
+        f"<application><name>a</name><module><name>sleep</name>{node}\n<rank>20</rank></module>"
+        "</application>"
+    )
+    said = 'a.xml:2:1: warning: <rank> chooses no computer: "sleep" runs on this one, or where'
+    assert len(found) == many and all(one.startswith(said) for one in found)

@@ -160,6 +160,12 @@ class _Reading:
                         child.where,
                         f'<computer> chooses none: "{name}" runs on this one, or where <node> says',
                     )
+        rank = int(self._number(element, "rank"))
+        if rank and not node:
+            self._warn(
+                next(element.all("rank")).where,
+                f'<rank> chooses no computer: "{name}" runs on this one, or where <node> says',
+            )
         self.found.modules.append(
             Module(
                 label=name,
@@ -174,7 +180,7 @@ class _Reading:
                 needs=[*self._needs(element)],
                 delay=starts,
                 rest=stops,
-                rank=int(self._number(element, "rank")),
+                rank=rank,
                 display=self._single(element, "display"),
                 computer=computer,
                 ports=dict(self._port_map(element)),

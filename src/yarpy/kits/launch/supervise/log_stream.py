@@ -38,13 +38,17 @@ class LogStream:
         self._skipped = forwarding(application)
         name = f"{self._host}/{_word(application.name)}/{os.getpid()}"
         self._header = f"[{name}]"
+        self._headers: dict[str, str] = {}  # of programs
         self._sender = LogSender(partial(open_hub, names=names), name, self._gap, target, KEPT)
 
     def hear(self, label: str, line: str) -> None:
         """Take a line of the program `label`."""
         if label not in self._skipped:
-            header = f"[{self._host}/{_word(label)}/{os.getpid()}]"
-            self._sender.put([Packet(Bottle([header, f"{line}\n"]))])
+            header = self._headers.get(label)
+            if header is None:
+                header = f"[{self._host}/{_word(label)}/{os.getpid()}]"
+                self._headers[label] = header
+            self._sender.put([Packet([header, f"{line}\n"])])
 
     def close(self) -> None:
         """Send what is left, for a moment."""
