@@ -41,7 +41,7 @@ def test_packets_are_written() -> None:
 def test_properties_are_read() -> None:
     said = mqtt.Body(ASKING[2:])
     assert said.string() == b"q"
-    assert said.properties() == {mqtt.CORRELATION: b"c1", mqtt.RESPONSE_TOPIC: b"a"}
+    assert said.properties() == {mqtt.CORRELATION_DATA: b"c1", mqtt.RESPONSE_TOPIC: b"a"}
     assert bytes(said.rest()) == b"[1]"
     assert not said
     every = bytes.fromhex("0101 2100ff 0200000001 0bff01 26000161000162 030001 78".replace(" ", ""))

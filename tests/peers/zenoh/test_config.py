@@ -11,7 +11,7 @@ from yarpy.errors import (
     AddressError,
     MissingFile,
 )
-from yarpy.peers.zenoh.config import ROOM, client
+from yarpy.peers.zenoh.config import WAIT_BEFORE_DROP, client
 from yarpy.peers.zenoh.place import place
 from yarpy.peers.zenoh.transport import share
 
@@ -42,7 +42,7 @@ def test_a_moment_without_room_on_the_way_to_a_router_drops_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     key = "transport/link/tx/queue/congestion_control/drop/wait_before_drop"
-    assert client(place("tcp/127.0.0.1:7447")).get_json(key) == str(ROOM)
+    assert client(place("tcp/127.0.0.1:7447")).get_json(key) == str(WAIT_BEFORE_DROP)
     assert client(place("lan")).get_json(key) == "1000"
     monkeypatch.setenv("ZENOH_CONFIG_OVERRIDE", f"{key}=5")
     assert client(place("tcp/127.0.0.1:7447")).get_json(key) == "5"

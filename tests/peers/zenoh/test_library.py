@@ -35,14 +35,14 @@ def test_the_end_of_a_program_waits_for_those_who_wait_in_zenoh() -> None:
         raise AssertionError("it is over")
 
 
-def test_the_end_of_a_program_waits_for_the_seats_that_are_taken() -> None:
+def test_the_end_of_a_program_waits_for_the_locks_that_are_taken() -> None:
     calls = zenoh_library.Calls()
-    seat, _ = calls.seat(), calls.seat()
-    seat.acquire()
-    threading.Timer(0.05, seat.release).start()
+    lock, _ = calls.new_lock(), calls.new_lock()
+    lock.acquire()
+    threading.Timer(0.05, lock.release).start()
     calls.refuse()
     calls.wait()
-    assert calls.over and not seat.locked()
+    assert calls.over and not lock.locked()
 
 
 def test_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:

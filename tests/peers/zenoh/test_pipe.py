@@ -57,11 +57,11 @@ def test_whatever_goes_in_comes_out(messages: list[bytes], size: int) -> None:
 
 def test_large_messages_go_in_pieces_and_credit_comes_back() -> None:
     wire = Wire()
-    data = bytes(range(256)) * (3 * zenoh_pipe.PIECE // 256)
+    data = bytes(range(256)) * (3 * zenoh_pipe.FRAGMENT // 256)
     for _ in range(8):
         wire.one.send([b"head", data])
         assert read(wire.other, len(data) + 4) == b"head" + data
-    assert max(len(sent) for _, sent in wire.sent) == zenoh_pipe.PIECE + 5
+    assert max(len(sent) for _, sent in wire.sent) == zenoh_pipe.FRAGMENT + 5
 
 
 def test_large_messages_of_all_sizes_follow_each_other() -> None:
@@ -71,7 +71,7 @@ def test_large_messages_of_all_sizes_follow_each_other() -> None:
         data = bytes([size % 251]) * size
         wire.one.send([data[:10], memoryview(data)[10:]])
         assert read(wire.other, size) == data
-    assert len(wire.one._spare) <= zenoh_pipe.SPARE
+    assert len(wire.one._spare) <= zenoh_pipe.POOLED
 
 
 def test_large_messages_are_lent_where_they_lie() -> None:
@@ -130,7 +130,7 @@ def test_a_stream_reads_the_same_whether_it_is_lent_or_copied(
 
 
 def test_a_sender_learns_what_was_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(zenoh_pipe, "SAY", 0.0)
+    monkeypatch.setattr(zenoh_pipe, "CREDIT_INTERVAL", 0.0)
     wire = Wire()
     wire.one.send([b"taken"])
     assert wire.one.taken(5, 0) == (0, False)
@@ -140,7 +140,7 @@ def test_a_sender_learns_what_was_taken(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_nobody_sends_more_than_is_wanted() -> None:
     wire = Wire()
-    piece = bytes(zenoh_pipe.PIECE)
+    piece = bytes(zenoh_pipe.FRAGMENT)
     for _ in range(zenoh_pipe.WINDOW // len(piece)):
         wire.one.send([piece])
     assert wire.one.try_send([b"", b"more"]) == [b"more"]
@@ -159,8 +159,8 @@ def test_nobody_sends_more_than_is_wanted() -> None:
 def test_a_sender_that_is_asked_for_too_much_is_not_believed() -> None:
     wire = Wire()
     wire.one.told(b"\3" + b"\xff" * 12)
-    for _ in range(zenoh_pipe.WINDOW // zenoh_pipe.PIECE):
-        wire.one.send([bytes(zenoh_pipe.PIECE)])
+    for _ in range(zenoh_pipe.WINDOW // zenoh_pipe.FRAGMENT):
+        wire.one.send([bytes(zenoh_pipe.FRAGMENT)])
     assert wire.one.try_send([b"x"]) == [b"x"]
 
 
@@ -174,7 +174,7 @@ def test_small_messages_are_counted_too() -> None:
 
 
 def test_what_is_lost_breaks_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(zenoh_pipe, "GAP", 0.02)
+    monkeypatch.setattr(zenoh_pipe, "REORDER_TIMEOUT", 0.02)
     wire = Wire(lambda data: data[5:] == b"lost")
     for message in (b"came", b"lost", b"late"):
         wire.one.send([message])
@@ -230,7 +230,7 @@ def test_nobody_sends_to_who_has_hung_up() -> None:
 
 
 def test_the_other_end_of_a_broken_pipe_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(zenoh_pipe, "AGAIN", 0.01)
+    monkeypatch.setattr(zenoh_pipe, "RESET_RESEND", 0.01)
     wire = Wire()
     wire.one.break_off("for a test")
     wire.one.close()

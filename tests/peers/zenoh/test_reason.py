@@ -56,7 +56,7 @@ def test_tls_both_ways(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_router_that_speaks_no_tls(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tls.prepare(tmp_path, monkeypatch)
     monkeypatch.setenv("YARPY_TLS", "")
-    monkeypatch.setattr(zenoh_config, "OPENING", 200)
+    monkeypatch.setattr(zenoh_config, "OPEN_TIMEOUT", 200)
     monkeypatch.setattr(zenoh_reason, "HANDSHAKE", 0.2)
     where = f"127.0.0.1:{free_port()}"
     router = open_router([f"tcp/{where}"])

@@ -28,7 +28,7 @@ from yarpy.wire.message import CALL, SMALL, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
-TOGETHER: Final = 20  # messages with QoS 2 under way; of more, mosquitto loses some
+MOST_IN_FLIGHT: Final = 20  # messages with QoS 2 under way; of more, mosquitto loses some
 FOREVER: Final = 0xFFFFFFFF  # seconds of a session that never expires
 KEEP_ALIVE: Final = 60  # seconds of silence that we promise not to exceed
 _REFUSALS: Final = {
@@ -102,7 +102,7 @@ class Client(MqttPeer):
             why = _REFUSALS.get(reason, f"for reason {reason}")
             kind = LoginRefused if reason in _LOGIN else RemoteProtocolError
             raise kind(f"the broker refuses: {why}")
-        ahead = TOGETHER if self.qos == 2 else self.limits.ahead
+        ahead = MOST_IN_FLIGHT if self.qos == 2 else self.limits.ahead
         if self.version == mqtt.V5:
             wishes = said.properties()
             if (wish := wishes.get(mqtt.SERVER_KEEP_ALIVE)) is not None:
@@ -177,7 +177,11 @@ class Client(MqttPeer):
             will = self._one_topic(), unquote_to_bytes(text.encode("utf-8", "surrogateescape"))
             flags |= WILL | (self.qos << 3) | (0x20 if "retain" in route.spec.tokens else 0)
         body = mqtt.string(b"MQTT") + bytes((self.version, flags))
-        kept = b"" if seconds is None else bytes((mqtt.EXPIRY,)) + int(seconds).to_bytes(4, "big")
+        kept = (
+            b""
+            if seconds is None
+            else bytes((mqtt.SESSION_EXPIRY,)) + int(seconds).to_bytes(4, "big")
+        )
         body += KEEP_ALIVE.to_bytes(2, "big") + self._properties(kept)
         body += mqtt.string(client.encode("utf-8", "replace")[:1000])
         if will:
@@ -313,7 +317,7 @@ class Asker(Client):
         if packet.key == CALL:
             self._number = self._number % 65535 + 1
             properties = bytes((mqtt.RESPONSE_TOPIC,)) + mqtt.string(self._answers)
-            properties += bytes((mqtt.CORRELATION,)) + mqtt.string(self._correlation)
+            properties += bytes((mqtt.CORRELATION_DATA,)) + mqtt.string(self._correlation)
         head = mqtt.string(self._topic)
         if packet.key == CALL:  # its acknowledgement tells whether there is anybody
             head += self._correlation
@@ -335,7 +339,7 @@ class Asker(Client):
                     return answer
             elif kind != mqtt.PUBACK:
                 self.aside(stream, first, body)
-            elif bytes(body[:3]) == self._correlation + bytes((mqtt.NOT_HEARD,)):
+            elif bytes(body[:3]) == self._correlation + bytes((mqtt.NO_MATCHING_SUBSCRIBERS,)):
                 topic = readable(self._topic.decode("utf-8", "replace"))
                 why = f"nobody has subscribed to {topic} at the broker"
                 return Message(CALL, b"".join(codec.encode([Vocab("fail"), why])))
@@ -355,7 +359,7 @@ class Asker(Client):
         said.string()
         if first & mqtt.QOS:
             stream.write(mqtt.packet(mqtt.PUBACK, said.take(2)))
-        if said.properties().get(mqtt.CORRELATION) != self._correlation:
+        if said.properties().get(mqtt.CORRELATION_DATA) != self._correlation:
             return None
         payload = said.rest()
         return Message(CALL, payload) if self.raw else message_of(CALL, [payload])

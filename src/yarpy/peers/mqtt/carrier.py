@@ -40,7 +40,7 @@ from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
 
 NOBODY: Final = "mqtt"  # what a client is called
-PATIENCE: Final = 1.5  # times as long as a client has promised to be silent at most
+KEEP_ALIVE_FACTOR: Final = 1.5  # times as long as a client has promised to be silent at most
 
 
 class Mqtt(MqttPeer):
@@ -83,7 +83,7 @@ class Mqtt(MqttPeer):
         if flags & WILL:
             self._will = self._read_will(said)
         if keep_alive:
-            self.limits = Limits(idle_timeout=PATIENCE * keep_alive)
+            self.limits = Limits(idle_timeout=KEEP_ALIVE_FACTOR * keep_alive)
         route = self.route
         route.source = NOBODY
         for right in ("read", "write"):

@@ -24,7 +24,7 @@ from yarpy.port.rpc import RpcClient, RpcServer
 from yarpy.route import parse_carrier
 from yarpy.wire.message import Message
 
-_PAUSE = 0.1  # seconds between two tries to ask who has not subscribed yet
+_RETRY_INTERVAL = 0.1  # seconds between two tries to ask who has not subscribed yet
 
 
 class Mqtt:
@@ -132,10 +132,10 @@ class MqttClient:
             # By the broker: nobody has subscribed. As elsewhere, with a timeout that is waited for,
             # as long as there is time for another answer: without one nobody would know why.
             answered = time.monotonic()
-            enough = _PAUSE + 2 * (answered - asked)
+            enough = _RETRY_INTERVAL + 2 * (answered - asked)
             if deadline is None or answered + enough >= deadline:
                 raise UnknownName(refused.text)
-            time.sleep(_PAUSE)
+            time.sleep(_RETRY_INTERVAL)
         data = message.as_(bytes)
         failed = payload.failure_of(data)
         if failed is not None:

@@ -36,13 +36,13 @@ DISCONNECT: Final = 0xE0
 RETAIN: Final = 0x01
 QOS: Final = 0x06
 
-NOT_HEARD: Final = 0x10  # the reason in a PUBACK: nobody has subscribed
+NO_MATCHING_SUBSCRIBERS: Final = 0x10  # the reason in a PUBACK: nobody has subscribed
 
 WITH_WILL: Final = 0x04  # the reason in a DISCONNECT: the will is to be published all the same
 
 RESPONSE_TOPIC: Final = 0x08
-CORRELATION: Final = 0x09
-EXPIRY: Final = 0x11  # of a session, in seconds
+CORRELATION_DATA: Final = 0x09
+SESSION_EXPIRY: Final = 0x11  # of a session, in seconds
 SERVER_KEEP_ALIVE: Final = 0x13
 RECEIVE_MAXIMUM: Final = 0x21
 RETAIN_AVAILABLE: Final = 0x25

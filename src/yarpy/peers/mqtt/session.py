@@ -125,7 +125,7 @@ class MqttPeer(Carrier):
         if self.version == mqtt.V5:
             properties = said.properties(pairs)
             if mqtt.RESPONSE_TOPIC in properties:
-                asked = properties[mqtt.RESPONSE_TOPIC], properties.get(mqtt.CORRELATION)
+                asked = properties[mqtt.RESPONSE_TOPIC], properties.get(mqtt.CORRELATION_DATA)
         self._asked = asked
         payload = said.rest()
         self._owe(qos, number)
@@ -168,7 +168,7 @@ class MqttPeer(Carrier):
         topic, correlation = self._asked
         properties = b""
         if correlation is not None:
-            properties = bytes((mqtt.CORRELATION,)) + mqtt.string(correlation)
+            properties = bytes((mqtt.CORRELATION_DATA,)) + mqtt.string(correlation)
         head = mqtt.string(topic) + self._properties(properties)
         payload = b"".join(codec.encode(value)) if self.raw else payload_of(value)
         stream.write(*mqtt.publish(head, payload))

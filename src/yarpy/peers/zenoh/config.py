@@ -24,9 +24,11 @@ RETRY: Final = {"period_init_ms": 500, "period_max_ms": 1000, "period_increase_f
 # Microseconds that what is put waits for room on the way to its router, before it is dropped:
 # Zenoh's own thousand pass where this computer is busy for a moment. Routers keep theirs: one
 # reader that stands still would hold up the others.
-ROOM: Final = 50_000
+WAIT_BEFORE_DROP: Final = 50_000
 _WAIT: Final = "transport/link/tx/queue/congestion_control/drop/wait_before_drop"
-OPENING: Final = 4000  # milliseconds for a router to answer; one that speaks no TLS says nothing
+OPEN_TIMEOUT: Final = (
+    4000  # milliseconds for a router to answer; one that speaks no TLS says nothing
+)
 
 
 def client(where: Place) -> Any:
@@ -40,8 +42,8 @@ def client(where: Place) -> Any:
             put(config, "mode", "client")
             put(config, "connect/endpoints", [*where.routers])
             put(config, "connect/retry", RETRY)
-            put(config, "transport/unicast/open_timeout", OPENING)
-            put(config, _WAIT, ROOM)
+            put(config, "transport/unicast/open_timeout", OPEN_TIMEOUT)
+            put(config, _WAIT, WAIT_BEFORE_DROP)
             secure(config, (), where.routers)
     override(config)
     return config

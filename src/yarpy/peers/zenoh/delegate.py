@@ -31,7 +31,7 @@ from yarpy.peers.zenoh.pipe import ZenohPipe
 
 log = logger("yarpy.name_server")
 
-REST: Final = 2.0  # seconds for which a router that is away is asked for no names
+BACKOFF: Final = 2.0  # seconds for which a router that is away is asked for no names
 
 
 class ZenohDelegate:
@@ -76,7 +76,7 @@ class ZenohDelegate:
             number = self._gateway.number(contact.host, contact.port)
             return Contact(contact.carrier, name, self._host, number)
         except NoNameServer as error:
-            self._away = time.monotonic() + REST
+            self._away = time.monotonic() + BACKOFF
             log.warning("%s", error)
         except (YarpError, OSError) as error:
             log.info("%s: %s", name, error)
@@ -85,7 +85,7 @@ class ZenohDelegate:
     def close(self) -> None:
         """Tell of nothing any more."""
         self._work.put(None)
-        self._thread.join(REST)
+        self._thread.join(BACKOFF)
         self._gateway.close()
         self.names.close()
 

@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 log = logger("yarpy.zenoh")
 
 MOST: Final = 1024  # pipes of a program that others opened
-LOOK: Final = 0.05  # seconds between looks whether it is still wanted
-SIGHT: Final = 5.0  # seconds for the token of a caller to come
+POLL_INTERVAL: Final = 0.05  # seconds between looks whether it is still wanted
+LIVELINESS_TIMEOUT: Final = 5.0  # seconds for the token of a caller to come
 
 _HELLO = re.compile(rb"([0-9a-f]{1,32}) ([0-9a-f]{16}) ([0-9a-f]{16})")
 
@@ -67,7 +67,7 @@ class _Line:
         )
         self._recv, self._try_recv = self._subscriber.recv, self._subscriber.try_recv
         self._publisher: Any = None
-        self._reading, self._writing = CALLS.seat(), CALLS.seat()
+        self._reading, self._writing = CALLS.new_lock(), CALLS.new_lock()
         self.prefer("DATA")
 
     def prefer(self, priority: str) -> None:
@@ -221,7 +221,7 @@ class Exchange:
         except Exception as error:  # the session was closed, or the caller knows no good names
             log.debug("a call could not be answered: %s", error)
             return
-        if self._is_seen(zid, pipe, SIGHT):
+        if self._is_seen(zid, pipe, LIVELINESS_TIMEOUT):
             welcome(pipe)
         else:
             pipe.break_off("the caller was not seen")
@@ -317,7 +317,7 @@ class Exchange:
         """Wait for the token of a program while the pipe stands; return whether it has come."""
         peer = self._peers.get(zid)
         deadline = time.monotonic() + timeout
-        while peer is not None and not peer.seen.wait(LOOK):
+        while peer is not None and not peer.seen.wait(POLL_INTERVAL):
             if pipe.ended() or time.monotonic() > deadline:
                 return False
         return peer is not None

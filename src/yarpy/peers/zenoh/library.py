@@ -17,7 +17,7 @@ from weakref import WeakSet
 from yarpy.errors import UnknownPlugin
 
 ENDING: Final = "the program ends"
-FAREWELL: Final = 2.0  # seconds for threads to come back from Zenoh when the program ends
+SHUTDOWN_GRACE: Final = 2.0  # seconds for threads to come back from Zenoh when the program ends
 
 
 def load() -> Any:
@@ -40,8 +40,8 @@ class Calls:
     """Threads that wait in Zenoh: the interpreter may not end meanwhile. To be used as `with
     CALLS:` around what waits there. `waking` are called when the program ends.
 
-    Where one thread at a time waits, and often, a `seat` of its own costs less: a lock to be held
-    meanwhile, by whoever has seen that it is not `over`.
+    Where one thread at a time waits, and often, a lock of its own (`new_lock`) costs less: it is
+    held meanwhile, by whoever has seen that it is not `over`.
     """
 
     def __init__(self) -> None:
@@ -49,7 +49,7 @@ class Calls:
         self._waiting = 0
         self.over = False
         self._lock = threading.RLock()
-        self._seats = WeakSet[threading.Lock]()
+        self._locks = WeakSet[threading.Lock]()
 
     def __enter__(self) -> None:
         with self._lock:
@@ -61,12 +61,12 @@ class Calls:
         with self._lock:
             self._waiting -= 1
 
-    def seat(self) -> threading.Lock:
+    def new_lock(self) -> threading.Lock:
         """A lock for one thread at a time."""
-        seat = threading.Lock()
+        lock = threading.Lock()
         with self._lock:
-            self._seats.add(seat)
-        return seat
+            self._locks.add(lock)
+        return lock
 
     def refuse(self) -> None:
         """Nobody may wait any more."""
@@ -77,17 +77,17 @@ class Calls:
 
     def wait(self) -> None:
         """Wait until everybody has come back, but not for ever."""
-        deadline = time.monotonic() + FAREWELL
+        deadline = time.monotonic() + SHUTDOWN_GRACE
         with self._lock:
-            seats = [*self._seats]
-        while self._waiting or any(seat.locked() for seat in seats):
+            locks = [*self._locks]
+        while self._waiting or any(lock.locked() for lock in locks):
             if time.monotonic() > deadline:
                 return
             time.sleep(0.001)
 
     def start_over(self) -> None:
         """In a forked process: those threads are not here."""
-        self._waiting, self._lock, self._seats = 0, threading.RLock(), WeakSet()
+        self._waiting, self._lock, self._locks = 0, threading.RLock(), WeakSet()
 
 
 CALLS: Final = Calls()

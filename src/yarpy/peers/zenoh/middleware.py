@@ -21,7 +21,7 @@ from yarpy.peers.zenoh.library import CALLS, load
 from yarpy.peers.zenoh.transport import SharedSession, share
 
 _LONGEST = 3600.0  # seconds: of a question without a timeout
-_MOMENT = 0.1  # seconds: until it is known who serves a key
+_DISCOVERY = 0.1  # seconds: until it is known who serves a key
 _MOST_QUESTIONS = 100  # that wait for an answer
 
 log = logger("yarpy.zenoh")
@@ -227,7 +227,7 @@ class ZenohClient:
     def _is_served(self, deadline: float | None) -> bool:
         """Return whether anybody serves the key; waits a moment, for the routers need one to
         tell."""
-        end = time.monotonic() + _MOMENT
+        end = time.monotonic() + _DISCOVERY
         if deadline is not None:
             end = min(end, deadline)
         while (querier := self._querier) is not None:

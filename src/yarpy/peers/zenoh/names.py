@@ -44,8 +44,8 @@ if TYPE_CHECKING:
 log = logger("yarpy.names")
 
 TIMEOUT: Final = 3.0  # seconds for an answer; those that are there answer in milliseconds
-FUTURE: Final = 60 * 10**9  # ns by which the clocks of two computers may differ
-KEEP: Final = 1.0  # seconds for which the addresses of this computer are believed
+CLOCK_SKEW: Final = 60 * 10**9  # ns by which the clocks of two computers may differ
+CACHE_TTL: Final = 1.0  # seconds for which the addresses of this computer are believed
 ANSWERS: Final = 100_000  # programs that may answer one question
 LISTED: Final = 200_000  # names in a list
 
@@ -135,7 +135,7 @@ class ZenohNames:
         if time.monotonic() >= until:  # many ports open at once
             every = (one for one in local_addresses() if not is_loopback(one))
             found = tuple(every)[: zenoh_key.ADDRESSES]
-            self._addresses = found, time.monotonic() + KEEP
+            self._addresses = found, time.monotonic() + CACHE_TTL
         return found
 
     def unregister(self, name: str) -> None:
@@ -353,7 +353,7 @@ class ZenohNames:
 
     def _yield(self, own: _Own, entry: Entry | None) -> None:
         name = own.entry.contact.name
-        if entry is None or entry.age <= own.entry.age or entry.start > time.time_ns() + FUTURE:
+        if entry is None or entry.age <= own.entry.age or entry.start > time.time_ns() + CLOCK_SKEW:
             return
         with self._lock:
             if self._own.get(name) is not own:

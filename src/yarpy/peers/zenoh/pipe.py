@@ -12,10 +12,11 @@ The first three come to the reader, who waits in Zenoh itself, so that a message
 and not two; the others to the exchange, in a thread of Zenoh.
 
 Rules: Zenoh keeps the order and loses nothing as long as all the links on the way stand and the
-priority is the same. What comes too early waits for what is missing, for `GAP` seconds: then it was
-lost with a link, and the pipe is broken; the ports make a new connection, and count. A sender has
-at most `WINDOW` bytes and `MESSAGES` messages on their way, so that a slow reader holds up its own
-sender alone, and nobody has to keep more. Errors are OSError, as everywhere in this room.
+priority is the same. What comes too early waits for what is missing, for `REORDER_TIMEOUT` seconds:
+then it was lost with a link, and the pipe is broken; the ports make a new connection, and count. A
+sender has at most `WINDOW` bytes and `MESSAGES` messages on their way, so that a slow reader holds
+up its own sender alone, and nobody has to keep more. Errors are OSError, as everywhere in this
+room.
 """
 
 from __future__ import annotations
@@ -33,12 +34,12 @@ from yarpy.wire.stream import Buffer
 DATA, END, WAKE, CREDIT, CLOSED, RESET = range(6)
 WINDOW: Final = 1 << 23  # bytes on their way to a reader
 MESSAGES: Final = 1024
-PIECE: Final = 1 << 21  # bytes of one message of Zenoh
+FRAGMENT: Final = 1 << 21  # bytes of one message of Zenoh
 LARGE: Final = 1 << 16  # bytes of a message from which on its memory is kept for the next
-SPARE: Final = 2  # such messages of different sizes: of one in pieces, the first and the last
-SAY: Final = 0.1  # seconds after which a reader says what it has taken, or a quarter of the above
-AGAIN: Final = 5.0  # seconds after which the other end is told once more of the end
-GAP: Final = 2.0  # seconds in which messages may overtake each other
+POOLED: Final = 2  # such messages of different sizes: of one in pieces, the first and the last
+CREDIT_INTERVAL: Final = 0.1  # seconds until a reader says what it has taken, if not a quarter
+RESET_RESEND: Final = 5.0  # seconds after which the other end is told once more of the end
+REORDER_TIMEOUT: Final = 2.0  # seconds in which messages may overtake each other
 
 _HEAD: Final = struct.Struct("<BI")
 _SIZE: Final = _HEAD.size
@@ -237,7 +238,7 @@ class ZenohPipe(Answerable):
             self._lose("what comes is no message")
         elif number != self._next:
             if not self._early:
-                self._gap = time.monotonic() + GAP
+                self._gap = time.monotonic() + REORDER_TIMEOUT
             self._early[number] = data
             if len(self._early) > MESSAGES:
                 self._lose("too much was lost on the way")
@@ -245,7 +246,7 @@ class ZenohPipe(Answerable):
             self._over = self._ended = True
         else:
             self._next = (number + 1) % _ALL
-            self._gap = time.monotonic() + GAP if self._early else 0.0
+            self._gap = time.monotonic() + REORDER_TIMEOUT if self._early else 0.0
             self._whole, self._chunk = data, memoryview(data)[_SIZE:]
 
     def _lose(self, reason: str) -> None:
@@ -304,7 +305,11 @@ class ZenohPipe(Answerable):
             or self._taken - self._said >= WINDOW // 4
             or (self._next - self._said_number) % _ALL >= MESSAGES // 4
         ) and not self._broken:
-            self._said, self._said_number, self._due = self._taken, self._next, now + SAY
+            self._said, self._said_number, self._due = (
+                self._taken,
+                self._next,
+                now + CREDIT_INTERVAL,
+            )
             self._tell(_COUNT.pack(CREDIT, self._taken, self._next))
 
     def _tell(self, data: bytes) -> None:
@@ -341,7 +346,7 @@ class ZenohPipe(Answerable):
             try:
                 room = self._confirmed + WINDOW - self._sent
                 if (  # as nearly always
-                    0 < size <= PIECE
+                    0 < size <= FRAGMENT
                     and size <= room
                     and (self._number - self._confirmed_number) % _ALL < MESSAGES
                     and not (self._silent or self._deaf)
@@ -356,7 +361,7 @@ class ZenohPipe(Answerable):
         while left:
             if self._silent or self._deaf:
                 raise BrokenPipeError(self._broken or "the connection is closed")
-            room = min(self._room(), PIECE)
+            room = min(self._room(), FRAGMENT)
             if not room:
                 break
             pieces: list[Buffer] = []
@@ -390,7 +395,7 @@ class ZenohPipe(Answerable):
         costs several times as much as copying does."""
         data = self._spare.get(size)
         if data is None:
-            if len(self._spare) == SPARE:
+            if len(self._spare) == POOLED:
                 self._spare.clear()
             data = self._spare[size] = bytearray(_SIZE + size)
         with memoryview(data) as view:
@@ -451,7 +456,7 @@ class ZenohPipe(Answerable):
             if self._broken or self._halfway:  # beneath a signal handler, and will not end it
                 self._tell(bytes([RESET]))
                 # Again, when a link may be back: it may not know.
-                CLOCK.set(time.monotonic() + AGAIN, lambda: self._tell(bytes([RESET])))
+                CLOCK.set(time.monotonic() + RESET_RESEND, lambda: self._tell(bytes([RESET])))
             else:
                 try:
                     self._line.put(_HEAD.pack(END, self._number))

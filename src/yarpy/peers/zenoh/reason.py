@@ -14,7 +14,7 @@ from yarpy.errors import LinkClosed, RemoteProtocolError
 from yarpy.peers.zenoh.place import parts
 from yarpy.transports.tls_setting import folder
 
-LOOK: Final = 2.0  # seconds to find out
+PROBE_TIMEOUT: Final = 2.0  # seconds to find out
 HANDSHAKE: Final = 1.0  # seconds for TLS, behind those that Zenoh has waited
 REFUSAL: Final = 0.5  # seconds within which a router says that it refuses a certificate
 
@@ -25,7 +25,7 @@ def reason(where: str) -> Exception:
     if kind in ("quic", "udp") or not port.isdigit():
         return LinkClosed("no answer")
     try:
-        sock = socket.create_connection((host, int(port)), LOOK)
+        sock = socket.create_connection((host, int(port)), PROBE_TIMEOUT)
     except (OSError, UnicodeError) as error:
         return LinkClosed(str(getattr(error, "strerror", "") or error))
     with sock:

@@ -30,7 +30,7 @@ from yarpy.peers.zenoh.reason import reason
 if TYPE_CHECKING:
     import zenoh
 
-LAST: Final = 0.05  # seconds in which callbacks that had begun come to their end
+DRAIN: Final = 0.05  # seconds in which callbacks that had begun come to their end
 
 
 class SharedSession:
@@ -143,7 +143,7 @@ class _Pool:
             close(held.session)
         CALLS.wait()
         if all_:
-            time.sleep(LAST)
+            time.sleep(DRAIN)
 
     def forget(self) -> None:
         """In a forked process: the sessions' threads are not here, so nobody may even close

@@ -27,7 +27,7 @@ from yarpy.transports.tls_setting import required
 TIMEOUT: Final = (
     0.4  # seconds to reach a port directly: networks where it takes longer have routers
 )
-KEEP: Final = 10.0  # seconds for which what was found is believed
+CACHE_TTL: Final = 10.0  # seconds for which what was found is believed
 ANYWHERE: Final = "0"  # instead of what tells a computer, where that is not known
 _MOST: Final = 10_000  # programs that are remembered
 _LINE: Final = 4096  # bytes of an answer that are looked at
@@ -71,7 +71,7 @@ class Ways:
             with self._lock:
                 if len(self._hosts) >= _MOST:
                     self._hosts.clear()
-                self._hosts[key] = host, time.monotonic() + KEEP
+                self._hosts[key] = host, time.monotonic() + CACHE_TTL
         return replace(entry.contact, host=host) if host else entry.through
 
 
