@@ -31,7 +31,7 @@ def test_a_mistake_does_not_mean_no(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_certificates_lie_beside_the_configuration(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str
 ) -> None:
-    for each in ("YARPY_TLS_DIR", "YARP_CONFIG_HOME", "XDG_CONFIG_HOME", "HOME"):
+    for each in ("YARPY_TLS_DIR", "YARP_CONFIG_HOME", "XDG_CONFIG_HOME", "APPDATA", "HOME"):
         monkeypatch.delenv(each, raising=False)
     monkeypatch.setenv(name, str(tmp_path))
     assert folder() == conf_directory(os.environ) / "tls"

@@ -82,7 +82,10 @@ class Polling:
                 return True
             left, mine = until - time.monotonic(), [number]
             reading, writing = (mine, []) if reads else ([], mine)
-            if any(select.select(reading, writing, [], min(SLICE, max(0.0, left)))):
-                return True
+            try:
+                if any(select.select(reading, writing, [], min(SLICE, max(0.0, left)))):
+                    return True
+            except OSError:
+                return True  # closed meanwhile
             if left <= SLICE:
                 return False
