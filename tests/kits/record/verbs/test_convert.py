@@ -1,5 +1,6 @@
 """`yarpy convert`; tests/kits/record/test_convert.py has what it writes."""
 
+import pytest
 from support.recordings import START, STEP, payload_of, recorded
 
 from yarpy import record
@@ -36,3 +37,27 @@ def test_several_as_one(here, tmp_path) -> None:
         assert [one.value for one in found] == [[n] for n in range(10)]
     said = here("convert", *map(str, paths), "-o", str(out))
     assert said.code == 1 and "there already" in said.err
+
+
+def test_a_data_set_of_lerobot(here, tmp_path) -> None:
+    pytest.importorskip("pyarrow", reason="data sets need pyarrow: pip install 'yarpy[table]'")
+    path, folder = str(recorded(tmp_path / "x.mcap")), str(tmp_path / "set")
+    words = ("convert", path, path, "-o", folder, "--format", "lerobot", "--fps", "100")
+    said = here(*words, "--state", "/a", "--action", "/b", "--task", "Wave")
+    assert (said.code, said.err) == (0, "") and said.out.startswith(f"{folder}: 2 episodes, ")
+    said = here(*words, "--state", "/a")
+    assert said.code == 1 and "is there already: choose another name" in said.err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ((), "--state /PORT"),
+        (("--state", "/a", "--ports", "/a"), "--state --action"),
+        (("--state", "/a", "--image", "/cam"), "--image /cam/left=left"),
+    ],
+)
+def test_what_is_no_data_set(words, said, here, tmp_path) -> None:
+    path = str(recorded(tmp_path / "x.mcap"))
+    done = here("convert", path, "-o", str(tmp_path / "set"), "--format", "lerobot", *words)
+    assert done.code == 1 and said in done.err

@@ -1,0 +1,1 @@
+"""Data sets of LeRobot, written from recordings."""
