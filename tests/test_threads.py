@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import signal
+import sys
 import threading
 from functools import partial
+from pathlib import Path
 
 import pytest
 from support.build import COMPILED
 from support.moments import Cut, cut, moments
 from support.wait import HANG, wait_until
 
-from yarpy.threads import Thread, undisturbed
+from yarpy.threads import Thread, imported, undisturbed
 
 
 def test_it_is_a_thread_as_others_are() -> None:
@@ -82,3 +84,36 @@ def test_what_it_returns_and_raises() -> None:
     thread.start()
     thread.join()
     assert found == [True]
+
+
+@pytest.mark.skipif(
+    not hasattr(signal, "pthread_kill"), reason="this system sends no signal to a thread"
+)
+def test_a_module_is_imported_whole_whatever_a_handler_raises(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As numpy is, which cannot be imported a second time after that."""
+    begun = threading.Event()
+    monkeypatch.setattr(threading, "begun_in_a_test", begun, raising=False)
+    (tmp_path / "slow_one_of_a_test.py").write_text(
+        "import threading, time\nthreading.begun_in_a_test.set()\ntime.sleep(0.1)\nwhole = True\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def ring(*_: object) -> None:
+        raise Alarm
+
+    before = signal.signal(signal.SIGUSR1, ring)
+    bell = threading.Thread(
+        target=lambda: (begun.wait(HANG), signal.pthread_kill(main.ident, signal.SIGUSR1))
+    )
+    main = threading.main_thread()
+    try:
+        bell.start()
+        with pytest.raises(Alarm):
+            imported("slow_one_of_a_test")
+        bell.join(HANG)
+        assert imported("slow_one_of_a_test").whole
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+        sys.modules.pop("slow_one_of_a_test", None)

@@ -8,10 +8,13 @@ cuts, starts it; that one begins within a single call of the interpreter.
 
 from __future__ import annotations
 
+import sys
 import threading
 from _thread import allocate_lock, start_new_thread
 from collections.abc import Callable
-from typing import TypeVar
+from functools import partial
+from importlib import import_module
+from typing import Any, TypeVar
 
 from yarpy.scope import Flag
 
@@ -67,3 +70,12 @@ def undisturbed(function: Callable[[], T], name: str = "yarpy undisturbed") -> T
     if failed:
         raise failed.pop()  # it would keep itself, and what its frames have, otherwise
     return found[0]
+
+
+def imported(name: str) -> Any:
+    """Return a module, which is imported if need be. An exception out of a signal handler in the
+    middle of that would leave it half done: numpy can then not be imported any more, and other
+    threads may wait for its lock for ever."""
+    if name in sys.modules:
+        return import_module(name)  # once it is whole, if another thread is about to
+    return undisturbed(partial(import_module, name))

@@ -13,12 +13,13 @@ import time
 import weakref
 from collections.abc import Callable
 from functools import partial
-from queue import Empty, SimpleQueue
+from queue import Empty
 from typing import Any, ClassVar, Final, TypeAlias
 
 from yarpy.errors import PortClosed, YarpError
 from yarpy.link.receive.inbound import Inbound
 from yarpy.log import logger
+from yarpy.platform.timed_queue import TimedQueue
 from yarpy.scope import Waiter
 from yarpy.wire.message import Message
 
@@ -42,7 +43,7 @@ class Mailbox:
         self.notify: Callable[[], None] | None = None  # there is something to take, or an end
         self.why = "the port is closed or interrupted"  # what readers are told then
         self.held: dict[threading.Thread, Question] = {}  # questions of readers, by their thread
-        self._ready: SimpleQueue[object] = SimpleQueue()
+        self._ready: TimedQueue[object] = TimedQueue()
         self.empty = self._ready.empty  # whether readers would have to wait
         # A message goes in, or the mailbox stops: what came in between would wait for ever.
         # Signal handlers may call `interrupt` above a frame that is inside.
@@ -68,8 +69,7 @@ class Mailbox:
         timeout = None if timeout is None else max(0.0, timeout)
         try:
             while True:
-                # What `get` returns is in the list in one step: no signal comes in between.
-                got.extend(map(self._ready.get, (True,), (timeout,)))
+                self._ready.take(got, timeout)
                 if got[0] is not _STOP:
                     break
                 if self.stopped:
@@ -145,7 +145,7 @@ class Mailbox:
     def abandon(self, why: str) -> None:
         """Stop for ever, in a process where threads that had a lock may be missing."""
         self._gate = threading.RLock()
-        self._ready = SimpleQueue()
+        self._ready = TimedQueue()
         self.empty = self._ready.empty
         self.why = why
         self.stopped = True
@@ -158,7 +158,7 @@ class Mailbox:
         got: list[object] = []
         try:
             while True:
-                got.extend(map(self._ready.get, (False,)))  # in one step, as in `take`
+                self._ready.take(got, 0.0)
                 if got[0] is not _STOP:
                     self._discard(got[0])
                 got.clear()

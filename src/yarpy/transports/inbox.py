@@ -9,10 +9,11 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Sequence
-from queue import Empty, SimpleQueue
+from queue import Empty
 from typing import Any, Final
 
 from yarpy.errors import YarpError
+from yarpy.platform.timed_queue import TimedQueue
 from yarpy.transports.base import ObjectTransport
 
 MOST_BYTES: Final = 1 << 28  # of messages that wait to be read
@@ -27,7 +28,7 @@ class Inbox(ObjectTransport):
     def __init__(self) -> None:
         self.dropped = 0
         self._greeted = False
-        self._inbox: SimpleQueue[Any] = SimpleQueue()
+        self._inbox: TimedQueue[Any] = TimedQueue()
         self._bytes = 0  # of what waits there
         self._over = False
         self._counting = threading.RLock()
@@ -62,10 +63,12 @@ class Inbox(ObjectTransport):
             return (self,)  # what `greet` reads
         if self._over:
             return None
+        came: list[Any] = []
         try:
-            item = self._inbox.get(wait, self._timeout)
+            self._inbox.take(came, self._timeout if wait else 0.0)
         except Empty:
             raise BlockingIOError("nothing has come") from None
+        (item,) = came
         if self._over:
             return None
         with self._counting:

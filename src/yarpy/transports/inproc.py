@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from queue import Empty, SimpleQueue
+from queue import Empty
 from typing import Any
 
 from yarpy import fork
 from yarpy.errors import RemoteProtocolError
+from yarpy.platform.timed_queue import TimedQueue
 from yarpy.scope import Flag
 from yarpy.transports.base import Address, ObjectTransport, Transport
 from yarpy.transports.opener import Elsewhere, Opener
@@ -52,7 +53,7 @@ class InprocTransport(ObjectTransport):
     def __init__(self, local: Address, remote: Address) -> None:
         self._local = local
         self._remote = remote
-        self._inbox: SimpleQueue[object] = SimpleQueue()
+        self._inbox: TimedQueue[object] = TimedQueue()
         self._came: list[object] = []  # taken out of it, and not handed on yet
         self._peer: InprocTransport | None = None
         self._timeout: float | None = None
@@ -92,8 +93,8 @@ class InprocTransport(ObjectTransport):
     def receive(self, wait: bool = True) -> tuple[object] | None:
         came = self._came
         try:
-            if not came:  # in one step: an exception out of a signal handler loses nothing
-                came.extend(map(self._inbox.get, (wait,), (self._timeout,)))
+            if not came:
+                self._inbox.take(came, self._timeout if wait else 0.0)
         except Empty:
             raise BlockingIOError("nothing has come") from None
         if came[0] is _END:  # which stays, as long as this end does
@@ -101,7 +102,7 @@ class InprocTransport(ObjectTransport):
             while len(came) < 2 or came[1] is _END:
                 del came[1:]
                 try:
-                    came.extend(map(self._inbox.get, (False,)))
+                    self._inbox.take(came, 0.0)
                 except Empty:
                     return None
         item = (came[-1],)

@@ -18,6 +18,7 @@ from yarpy import registry
 from yarpy.errors import YarpError
 from yarpy.kits.doctor.case import Case
 from yarpy.kits.doctor.finding import LEVELS, Finding
+from yarpy.platform.timed_queue import TimedQueue
 
 TIMEOUT: Final = 10.0  # seconds for a family
 MOST: Final = 200  # findings of one family
@@ -35,7 +36,7 @@ def examine(case: Case, timeout: float = TIMEOUT) -> list[Finding]:
 
 def _of_family(name: str, case: Case, timeout: float) -> list[Finding]:
     found: list[Finding] = []
-    end: queue.SimpleQueue[str] = queue.SimpleQueue()
+    end: TimedQueue[str] = TimedQueue()
 
     def look() -> None:
         try:
@@ -49,8 +50,10 @@ def _of_family(name: str, case: Case, timeout: float) -> list[Finding]:
             end.put(f"{type(error).__name__}: {error}")
 
     threading.Thread(target=look, name=f"yarpy doctor {name}", daemon=True).start()
+    said: list[str] = []
     try:
-        why = end.get(timeout=timeout)
+        end.take(said, timeout)
+        (why,) = said
     except queue.Empty:
         why = f"it takes longer than {timeout:g} s"
     if why:

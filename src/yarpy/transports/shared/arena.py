@@ -28,6 +28,7 @@ from weakref import WeakValueDictionary
 from yarpy import fork
 from yarpy.errors import LocalProtocolError
 from yarpy.log import logger
+from yarpy.threads import imported
 from yarpy.transports.descriptor import Descriptor, opened
 from yarpy.transports.shared.cgroup import free_memory
 from yarpy.transports.shared.lease import HEADROOM, Source, address_of, lease_type, place_of
@@ -402,8 +403,7 @@ def _copy(room: memoryview, block: Buffer) -> None:
     if len(block) < _LARGE:
         room[:] = block
         return
-    import numpy as np
-
+    np = imported("numpy")
     np.copyto(np.frombuffer(room, np.uint8), np.frombuffer(block, np.uint8))
 
 

@@ -16,6 +16,7 @@ from typing import Any, Final, Protocol, TypeAlias
 from weakref import WeakSet
 
 from yarpy import fork
+from yarpy.threads import imported
 from yarpy.wire.stream import LARGE, Buffer
 
 HEADROOM: Final = 256  # bytes before an array that is filled in place: for a message's head
@@ -66,9 +67,9 @@ Place: TypeAlias = tuple[Source, int, object]
 @cache
 def lease_type() -> Any:
     """The class: an array, since these can be over a part of a file."""
-    import numpy as np
+    np = imported("numpy")
 
-    class Lease(np.ndarray[Any, np.dtype[np.uint8]]):
+    class Lease(np.ndarray):  # type: ignore[misc, name-defined]
         """Bytes of shared memory; or, without a source, bytes in place of such."""
 
         source: Source | None = None
@@ -156,8 +157,7 @@ def _forbid(one: Any) -> None:
 
 def address_of(memory: mmap.mmap) -> int:
     """Where a file is mapped."""
-    import numpy as np
-
+    np = imported("numpy")
     address: int = np.frombuffer(memory, np.uint8).__array_interface__["data"][0]
     return address
 
