@@ -112,8 +112,6 @@ def test_devices() -> None:
     driver = factory.open("(device fakeBattery)")
     assert driver.isValid() and factory.open("(device bogus)") is None
     driver.close()
-    with pytest.raises(NotImplementedError, match="attach"):
-        factory.add(None)
     device = yarp.DeviceDriver()
     device.setId("arm")
     assert device.id() == "arm" and device.getImplementation() is device and device.open()

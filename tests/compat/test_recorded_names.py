@@ -16,7 +16,8 @@ def test_every_recorded_name_is_here(generate: ModuleType, version: str) -> None
     found = generate.score(version)
     assert found.missing == []
     assert found.members == 1.0
-    assert found.working >= 0.97, found.refusing
+    assert found.working >= 0.995, found.refusing
+    assert {name.partition(".")[2] for name in found.refusing} == {"get_allocator"}
 
 
 def test_what_refuses_says_what_to_do(generate: ModuleType) -> None:
@@ -27,7 +28,7 @@ def test_what_refuses_says_what_to_do(generate: ModuleType) -> None:
         with pytest.raises(NotImplementedError, match=r".{20}"):
             refuse(*[None] * count)
     with pytest.raises(NotImplementedError, match="means nothing in Python"):
-        yarp.Wire()
+        yarp.LogStream()
 
 
 def test_a_topic_of_a_node() -> None:

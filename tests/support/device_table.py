@@ -58,7 +58,7 @@ OWN: Final = (
         "frameGrabber_nws_yarp",
         "frameGrabber_nwc_yarp",
         "fakeFrameGrabber",
-        "IFrameGrabberControls IFrameGrabberImage IRgbVisualParams",
+        "IFrameGrabberControls IFrameGrabberControlsDC1394 IFrameGrabberImage IRgbVisualParams",
     ),
     (
         "MultiSensor",
@@ -110,7 +110,7 @@ ALSO: Final = {"IRGBDSensor": "IDepthVisualParams"}
 #: What no C++ here has, or was not asked for when it was recorded.
 _SINCE: Final = (
     *("ILinearVelocitySensors", "IThreeAxisAngularAccelerometers"),
-    *("IJointBrake", "IVelocityDirect"),
+    *("IJointBrake", "IVelocityDirect", "IFrameGrabberControlsDC1394"),
 )
 
 _ALONE: Final = "C++ has no server or client of it: it stays within a program"
@@ -125,7 +125,6 @@ WHY: Final = {
     "IControlDebug": _ALONE,
     "IDeviceDriverParams": "options of devices of C++: here they are arguments of classes",
     "IFrameGrabber": _OLD,
-    "IFrameGrabberControlsDC1394": "not yet: of cameras at FireWire",
     "IFrameGrabberRgb": _OLD,
     "IFrameTransformClientControl": "starts what C++ connects later; here it is connected at once",
     "IFrameWriterAudioVisual": _ALONE,

@@ -1,13 +1,6 @@
 """Written by generate.py: the names of `yarp`, for type checkers."""
 
-from yarp._absent import DriverCreator as DriverCreator
-from yarp._absent import IControlDebug as IControlDebug
-from yarp._absent import IFrameGrabberControlsDC1394 as IFrameGrabberControlsDC1394
 from yarp._absent import LogStream as LogStream
-from yarp._absent import NameStore as NameStore
-from yarp._absent import StubDriverCreator as StubDriverCreator
-from yarp._absent import Wire as Wire
-from yarp._absent import WireLink as WireLink
 from yarp._abstract_contactable import AbstractContactable as AbstractContactable
 from yarp._abstract_contactable import UnbufferedContactable as UnbufferedContactable
 from yarp._bottle import Bottle as Bottle
@@ -71,11 +64,14 @@ from yarp._controller_view import ICartesianControl as ICartesianControl
 from yarp._device import DeprecatedDeviceDriver as DeprecatedDeviceDriver
 from yarp._device import DeviceDriver as DeviceDriver
 from yarp._device import DeviceResponder as DeviceResponder
-from yarp._device import Drivers as Drivers
 from yarp._device import IConfig as IConfig
 from yarp._device_view import IAnalogSensor as IAnalogSensor
+from yarp._device_view import IControlDebug as IControlDebug
 from yarp._device_view import IFrameWriterImage as IFrameWriterImage
 from yarp._device_view import IJointCoupling as IJointCoupling
+from yarp._drivers import DriverCreator as DriverCreator
+from yarp._drivers import Drivers as Drivers
+from yarp._drivers import StubDriverCreator as StubDriverCreator
 from yarp._environment import cachehome as cachehome
 from yarp._environment import configdirs as configdirs
 from yarp._environment import confighome as confighome
@@ -106,6 +102,7 @@ from yarp._file import read as read
 from yarp._file import read_bytestream as read_bytestream
 from yarp._file import write as write
 from yarp._file import write_bytestream as write_bytestream
+from yarp._firewire_view import IFrameGrabberControlsDC1394 as IFrameGrabberControlsDC1394
 from yarp._gaze_view import GazeEvent as GazeEvent
 from yarp._gaze_view import GazeEventParameters as GazeEventParameters
 from yarp._gaze_view import GazeEventVariables as GazeEventVariables
@@ -172,6 +169,7 @@ from yarp._motion_view import IPositionDirect as IPositionDirect
 from yarp._motion_view import ITorqueControl as ITorqueControl
 from yarp._motion_view import IVelocityControl as IVelocityControl
 from yarp._motion_view import MotorTorqueParameters as MotorTorqueParameters
+from yarp._name_server import NameStore as NameStore
 from yarp._navigation_view import INavigation2D as INavigation2D
 from yarp._navigation_view import INavigation2DControlActions as INavigation2DControlActions
 from yarp._navigation_view import INavigation2DExtraActions as INavigation2DExtraActions
@@ -335,6 +333,8 @@ from yarp._vocab import decode as decode
 from yarp._vocab import decode64 as decode64
 from yarp._vocab import encode as encode
 from yarp._vocab import encode64 as encode64
+from yarp._wire import Wire as Wire
+from yarp._wire import WireLink as WireLink
 
 YARP_VERSION: str
 YARP_VERSION_SHORT: str
@@ -722,6 +722,7 @@ Contact_convertHostToIp = Contact.convertHostToIp
 Contact_fromConfig = Contact.fromConfig
 Contact_fromString = Contact.fromString
 Drivers_factory = Drivers.factory
+Drivers_yarpdev = Drivers.yarpdev
 FlexImage_copyPortable = FlexImage.copyPortable
 Image_copyPortable = Image.copyPortable
 ImageFloat_copyPortable = ImageFloat.copyPortable

@@ -7,10 +7,9 @@ collects; what it holds is sent when the method that it was given to returns.
 from __future__ import annotations
 
 import struct
-from typing import Any, NoReturn
+from typing import Any
 
 import yarpy
-from yarp._refusal import refuses
 
 
 class ConnectionWriter:
@@ -20,12 +19,14 @@ class ConnectionWriter:
         self._object: Any = None
         self._bytes = bytearray()
         self._reference: Any = None
+        self._handler: Any = None
 
     def _put(self, writer: Any) -> None:
         self._object = writer._outgoing()
 
     def _outgoing(self) -> Any:
-        return Raw(bytes(self._bytes)) if self._object is None else self._object
+        found = Raw(bytes(self._bytes)) if self._object is None else self._object
+        return found if self._handler is None else Asking(found, self._handler)
 
     @property
     def _empty(self) -> bool:
@@ -54,12 +55,9 @@ class ConnectionWriter:
         """Name the object that is written; a reader of what was written here is given it."""
         self._reference = obj
 
-    @refuses
-    def setReplyHandler(self, reader: Any) -> NoReturn:
-        """Refuse: who asks is told the answer."""
-        raise NotImplementedError(
-            "an answer goes to who asks for it: port.write(question, answer) of a Port or RpcClient"
-        )
+    def setReplyHandler(self, reader: Any) -> None:
+        """Let the message be a question: each answer is read by `reader`."""
+        self._handler = reader
 
     def requestDrop(self) -> None:
         """The receiver ends the connection itself."""
@@ -136,6 +134,16 @@ class Raw:
 
     def to_wire(self) -> tuple[bytes, ...]:
         return (self._data,)
+
+
+class Asking(Raw):
+    """A message whose answers somebody reads."""
+
+    def __init__(self, message: Any, reader: Any) -> None:
+        from yarp._memory import encoded
+
+        super().__init__(encoded(message))
+        self.reader = reader
 
 
 class ConnectionReader:

@@ -160,7 +160,8 @@ class Contactable:
     def _leaving(self, writer: Any) -> Any:
         """Return what is sent; a copy where the reader would get the object itself."""
         native = writer._outgoing()
-        return Raw(encoded(native)) if self._locals else native
+        held = self._locals and not isinstance(native, Raw)
+        return Raw(encoded(native)) if held else native
 
     def resetReporter(self) -> None:
         """Report no more."""

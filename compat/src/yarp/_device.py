@@ -1,7 +1,7 @@
-"""DeviceDriver and Drivers: a device without a view, and what there is to open.
+"""DeviceDriver and its like: a device without a view.
 
 Rules: a subclass of DeviceDriver with the members that `yarpy.devices` describes is a device that a
-server takes (`PolyDriver.attach`); devices of Python have no factories.
+server takes (`PolyDriver.attach`).
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Any, Self
 
 from yarp._portable import PortReader
-from yarp._refusal import refuses
 
 
 class IConfig:
@@ -95,59 +94,3 @@ class DeviceResponder(PortReader):
     def attach(self, port: Any) -> None:
         """Answer what a port is asked: `responder.attach(port)` instead of `setReader`."""
         port.setReader(self)
-
-
-class Drivers:
-    """The devices that PolyDriver opens, by name."""
-
-    @staticmethod
-    def factory() -> Drivers:
-        """Return the only one."""
-        return Drivers()
-
-    def toString(self) -> str:
-        """The names of all devices."""
-        from yarp._poly_driver import DEVICES
-
-        return "\n".join(f"Device {name!r}" for name in sorted(DEVICES))
-
-    toString_c = toString
-
-    def find(self, name: str) -> str | None:
-        """Return the name if there is such a device, else None."""
-        from yarp._poly_driver import DEVICES
-
-        return name if name in DEVICES else None
-
-    def open(self, config: Any) -> Any:
-        """Return a PolyDriver that is open, or None."""
-        from yarp._poly_driver import PolyDriver
-
-        driver = PolyDriver()
-        return driver if driver.open(config) else None
-
-    @refuses
-    def add(self, creator: Any) -> None:
-        """Refuse: devices of Python are served by `PolyDriver.attach`."""
-        raise NotImplementedError(
-            "a class of yours is a device without a factory: "
-            'yarp.PolyDriver("(device controlBoard_nws_yarp) (name /arm)").attach(Arm())'
-        )
-
-    def remove(self, name: str) -> bool:
-        """Nothing was added, so nothing is removed."""
-        return False
-
-    def addDeprecatedAlias(self, old_name: str, new_name: str) -> bool:
-        """Let a device be opened by another name, too, as it was once called."""
-        from yarp._poly_driver import ALIASES, DEVICES
-
-        if new_name not in DEVICES or old_name in DEVICES:
-            return False
-        ALIASES[old_name] = new_name
-        return True
-
-    @refuses
-    def yarpdev(self, argc: int, argv: Any) -> int:
-        """Refuse: the command is `yarpdev`."""
-        raise NotImplementedError("yarpdev is a command of yarpy-compat: yarpdev --device NAME")

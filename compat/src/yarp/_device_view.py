@@ -1,11 +1,13 @@
-"""IAnalogSensor, IJointCoupling and IFrameWriterImage: views of a device in the same program, an
-object of Python (`PolyDriver.give`). Nothing of them goes over a network.
+"""IAnalogSensor, IJointCoupling, IFrameWriterImage and IControlDebug: views of a device in the same
+program, an object of Python (`PolyDriver.give`). Nothing of them goes over a network.
 
     channels()                          a number for each channel; states(), calibrate(values) and
                                         calibrate_channel(channel, value) if it has them
     joint_names, axis_names,            of a coupling, with joint_limits, and what turns positions
     coupled_joints, coupled_axes        into others: axis_positions(joints), joint_speeds(axes, ...)
     show(image)                         shows a picture
+    load_boot_memory(), save_boot_memory()
+                                        of a motor's board; print_function takes what it prints
 
 Rules: as `_view`: what a device does not have is False, or AS_ERROR.
 """
@@ -155,6 +157,22 @@ class IFrameWriterImage(View):
     def putImage(self, image: Any) -> bool:
         """Show a picture."""
         return self._tell(lambda: self._board.show(image._image()))
+
+
+class IControlDebug(View):
+    """The memory of a motor's board, from which it starts."""
+
+    def setPrintFunction(self, f: Callable[[str], object]) -> bool:
+        """Let the device print by a function of yours, which is given text."""
+        return self._tell(lambda: setattr(self._board, "print_function", f))
+
+    def loadBootMemory(self) -> bool:
+        """Let the board work with what is in its memory."""
+        return self._tell(lambda: self._board.load_boot_memory())
+
+    def saveBootMemory(self) -> bool:
+        """Keep in the memory how the board is set now."""
+        return self._tell(lambda: self._board.save_boot_memory())
 
 
 def _index(number: int) -> int:

@@ -1,16 +1,16 @@
-"""Messages of `Network` to a name server, and where it is: `writeToNameServer` and its like."""
+"""Messages of `Network` to a name server, and where it is: `writeToNameServer` and its like;
+NameStore, a source of names of your own."""
 
 from __future__ import annotations
 
 import os
-from typing import Any, NoReturn
+from typing import Any
 
 import yarpy
 from yarp import _names
 from yarp._contact import Contact, ContactStyle
 from yarp._log import say
 from yarp._numbers import store
-from yarp._refusal import refuses
 from yarpy.config.configuration import (
     Server,
     conf_directory,
@@ -96,19 +96,52 @@ def detect_name_server(
     return found
 
 
-@refuses
-def query_bypass(store: Any) -> NoReturn:
-    """Refuse: a source of names of your own is a name client."""
-    raise NotImplementedError(
-        "names of another source come from a name client of yarpy (entry point yarpy.names), not "
-        "from a NameStore"
+class NameStore:
+    """A source of names: a subclass defines `query`, and is used by `Network.queryBypass`."""
+
+    def query(self, name: str) -> Contact:
+        """Return where a port is, a Contact that is not valid if that is not known."""
+        raise NotImplementedError(f"{type(self).__name__} has to define query")
+
+    def announce(self, name: str, activity: int) -> bool:
+        """Hear that a port was opened (1) or closed (-1); False: nobody wants to know."""
+        return False
+
+    def process(self, in_: Any, out: Any, source: Contact) -> bool:
+        """Answer a message of a name server's words; False: it is not understood."""
+        return False
+
+
+def query_bypass(store: NameStore | None) -> None:
+    """Look names up in a source of yours instead of the name server, where they are registered as
+    before; None: no more. As in C++, it is not told what is opened."""
+    _names.bypass(None if store is None else lambda name: _native_of(store.query(name)))
+
+
+def _native_of(contact: Contact) -> yarpy.Contact | None:
+    if not contact.isValid():
+        return None
+    return yarpy.Contact(
+        contact.getRegName(), contact.getCarrier(), contact.getHost(), contact.getPort()
     )
 
 
-@refuses
-def register_carrier(name: str, dll: str) -> NoReturn:
-    """Refuse: carriers are classes of Python, found by their entry point."""
-    raise NotImplementedError(
-        f"{name!r} cannot be loaded from {dll!r}: carriers of yarpy are packages of Python with "
-        "the entry point yarpy.carriers; `yarpy plugin` lists those that are here"
-    )
+def register_carrier(name: str, dll: str) -> bool:
+    """Let connections use a carrier of yours. `dll` is where its class is: `package.module:Class`,
+    as in the entry point yarpy.carriers, by which packages bring theirs."""
+    from importlib import import_module
+
+    from yarpy.carriers.base import Carrier
+    from yarpy.registry import carriers
+
+    module, _, attribute = dll.partition(":")
+    try:
+        found = getattr(import_module(module), attribute or name)
+    except (ImportError, AttributeError, ValueError) as error:
+        say("ERROR", f"|yarp.os.Network| no carrier {name} in {dll}: {error}")
+        return False
+    if not (isinstance(found, type) and issubclass(found, Carrier)):
+        say("ERROR", f"|yarp.os.Network| {dll} is no carrier: see CONTRIBUTING.md of yarpy")
+        return False
+    carriers.add(name, found)
+    return True

@@ -7,13 +7,14 @@ members that `devices.control_board.interface` describes is a device as well: `a
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, TypeVar
 
 import yarpy
 from yarp import _names, _network_device
 from yarp._camera_view import IFrameGrabberControls, IFrameGrabberImage, IFrameGrabberRgb
 from yarp._control_view import IControlLimits, IControlMode, IInteractionMode
-from yarp._device_view import IAnalogSensor, IJointCoupling
+from yarp._device import DeviceDriver
 from yarp._log import say
 from yarp._measuring_view import (
     IAmplifierControl,
@@ -38,25 +39,13 @@ from yarp._motion_view import (
 from yarp._pid_view import IPidControl
 from yarp._property import Property
 from yarp._searchable import Searchable
-from yarp._sensor_view import (
-    IContactLoadCellArrays,
-    IEncoderArrays,
-    IOrientationSensors,
-    IPositionSensors,
-    ISixAxisForceTorqueSensors,
-    ISkinPatches,
-    ITemperatureSensors,
-    IThreeAxisGyroscopes,
-    IThreeAxisLinearAccelerometers,
-    IThreeAxisMagnetometers,
-)
 from yarp._table import NOT_HERE
 from yarp._value import Value
-from yarp._view import FAILURES, View
+from yarp._view import FAILURES
 from yarpy.kits import devices
 from yarpy.registry import devices as installed
 
-V = TypeVar("V", bound=View)
+V = TypeVar("V")
 
 
 class PolyDriver(MirrorViews):
@@ -82,7 +71,7 @@ class PolyDriver(MirrorViews):
         if name in ALIASES:
             name = ALIASES[name]
             self._options.put("device", name)
-        make = DEVICES.get(name)
+        make = PolyDriver._open_added if name in ADDED else DEVICES.get(name)
         if make is None and name in installed.names():
             make = PolyDriver._open_installed
         if make is None:
@@ -90,7 +79,7 @@ class PolyDriver(MirrorViews):
             return False
         try:
             make(self)
-        except (*FAILURES, ValueError) as error:
+        except (*FAILURES, ValueError, ImportError) as error:
             say("ERROR", f"|yarp.dev.PolyDriver| Could not open device <{name}>: {error}")
             self.close()
             return False
@@ -134,7 +123,7 @@ class PolyDriver(MirrorViews):
 
     def give(self, dd: Any, own: bool = True) -> bool:
         """Be this device, an object of Python."""
-        self._device = dd
+        self._device = dd.getImplementation() if isinstance(dd, DeviceDriver) else dd
         return dd is not None
 
     def take(self) -> Any:
@@ -161,7 +150,7 @@ class PolyDriver(MirrorViews):
     def getComment(self, option: str) -> str:
         return ""
 
-    def _view(self, kind: type[V], member: str) -> V | None:
+    def _view(self, kind: Callable[[Any], V], member: str) -> V | None:
         """A view, if the device has a member of that interface."""
         device = self._device
         found = device is not None and (hasattr(type(device), member) or hasattr(device, member))
@@ -249,42 +238,6 @@ class PolyDriver(MirrorViews):
 
     viewIFrameGrabberControls2 = viewIFrameGrabberControls
 
-    def viewIThreeAxisGyroscopes(self) -> IThreeAxisGyroscopes | None:
-        return self._view(IThreeAxisGyroscopes, IThreeAxisGyroscopes.kind)
-
-    def viewIThreeAxisLinearAccelerometers(self) -> IThreeAxisLinearAccelerometers | None:
-        return self._view(IThreeAxisLinearAccelerometers, IThreeAxisLinearAccelerometers.kind)
-
-    def viewIThreeAxisMagnetometers(self) -> IThreeAxisMagnetometers | None:
-        return self._view(IThreeAxisMagnetometers, IThreeAxisMagnetometers.kind)
-
-    def viewIOrientationSensors(self) -> IOrientationSensors | None:
-        return self._view(IOrientationSensors, IOrientationSensors.kind)
-
-    def viewITemperatureSensors(self) -> ITemperatureSensors | None:
-        return self._view(ITemperatureSensors, ITemperatureSensors.kind)
-
-    def viewISixAxisForceTorqueSensors(self) -> ISixAxisForceTorqueSensors | None:
-        return self._view(ISixAxisForceTorqueSensors, ISixAxisForceTorqueSensors.kind)
-
-    def viewIPositionSensors(self) -> IPositionSensors | None:
-        return self._view(IPositionSensors, IPositionSensors.kind)
-
-    def viewIContactLoadCellArrays(self) -> IContactLoadCellArrays | None:
-        return self._view(IContactLoadCellArrays, IContactLoadCellArrays.kind)
-
-    def viewIEncoderArrays(self) -> IEncoderArrays | None:
-        return self._view(IEncoderArrays, IEncoderArrays.kind)
-
-    def viewISkinPatches(self) -> ISkinPatches | None:
-        return self._view(ISkinPatches, ISkinPatches.kind)
-
-    def viewIAnalogSensor(self) -> IAnalogSensor | None:
-        return self._view(IAnalogSensor, "channels")
-
-    def viewIJointCoupling(self) -> IJointCoupling | None:
-        return self._view(IJointCoupling, "coupled_joints")
-
     # -- devices ------------------------------------------------------------------------------
 
     def _text(self, key: str, default: str = "") -> str:
@@ -351,6 +304,12 @@ class PolyDriver(MirrorViews):
             raise ValueError(f"it uses other devices: yarpdev --device {name} --subdevice TYPE")
         self._device = getattr(device, "served", device)
 
+    def _open_added(self) -> None:
+        device = ADDED[self._text("device")].create()
+        if hasattr(device, "open") and device.open(self._options) is False:
+            raise ValueError("it does not open with these options")
+        self.give(device)
+
     def _open_fake_camera(self) -> None:
         width, height = (self._options.find(key).asInt32() for key in ("width", "height"))
         self._device = devices.SimulatedCamera(width or 320, height or 240)
@@ -389,12 +348,17 @@ SERVERS = {
 }
 #: Devices that somebody has to serve, and who does unless the options say.
 WRAPPERS = {
+    "fakeBattery": "battery_nws_yarp",
+    "fakeLaser": "rangefinder2D_nws_yarp",
+    "fakeIMU": "multipleanalogsensorsserver",
     "fakeFrameGrabber": "frameGrabber_nws_yarp",
     "test_grabber": "frameGrabber_nws_yarp",
     "fakeMotionControl": "controlBoard_nws_yarp",
 }
 #: Other names of devices, see `Drivers.addDeprecatedAlias`.
 ALIASES: dict[str, str] = {}
+#: What makes devices of other types, see `Drivers.add`.
+ADDED: dict[str, Any] = {}
 DEVICES = {
     "fakeFrameGrabber": PolyDriver._open_fake_camera,
     "test_grabber": PolyDriver._open_fake_camera,

@@ -6,6 +6,7 @@ from typing import Any
 
 import yarpy
 from yarp._abstract_contactable import UnbufferedContactable
+from yarp._connection import Asking
 from yarp._contact import Contact
 from yarp._log import say
 from yarp._portable import PortReader, PortWriter
@@ -28,11 +29,14 @@ class Port(UnbufferedContactable):
         if not isinstance(writer, PortWriter):
             raise TypeError(f"a port writes a Bottle, an image and the like, not {writer!r}")
         if reader is not None and isinstance(reader, PortReader):
-            return self._ask(writer, reader)
+            return self._answered(writer._outgoing(), reader)
         port = self._port
         if port is not None:
             try:
-                port.write(self._leaving(writer), self._envelope)
+                found = self._leaving(writer)
+                if isinstance(found, Asking):
+                    return self._answered(found, found.reader)
+                port.write(found, self._envelope)
             except yarpy.PortClosed:
                 return False
             except (ValueError, OverflowError) as error:  # too deep, too large
@@ -42,11 +46,12 @@ class Port(UnbufferedContactable):
                 reader.onCompletion()
         return True
 
-    def _ask(self, writer: Any, reader: Any) -> bool:
+    def _answered(self, message: Any, reader: Any) -> bool:
+        """Ask, and let `reader` read the answer; whether there is one."""
         if self._port is None:
             return False
         try:
-            answers = self._port.ask(writer._outgoing(), self._timeout)
+            answers = self._port.ask(message, self._timeout)
         except yarpy.PortClosed:
             return False
         if not answers:

@@ -6,6 +6,7 @@ from typing import Any
 
 import yarpy
 from yarp._abstract_contactable import AbstractContactable
+from yarp._connection import Asking
 from yarp._log import say
 from yarp._port import Port
 
@@ -47,9 +48,12 @@ class RpcClient(AbstractContactable):
         if self._port is None:
             return False
         try:
-            answer = self._port.ask(writer._outgoing(), self._timeout)
+            question = writer._outgoing()
+            answer = self._port.ask(question, self._timeout)
             if answer is None:
                 return False
+            if isinstance(question, Asking) and reader is None:
+                reader = question.reader
             if reader is not None:
                 reader._take(answer)
         except yarpy.YarpError:

@@ -58,7 +58,8 @@ _MODULES = {
     "PixelRgbSigned PixelRgbInt",
     "_net_int": "NetInt16 NetInt32 NetInt64 UnionNetInt64",
     "_qos": "QosStyle",
-    "_device": "IConfig DeviceDriver DeprecatedDeviceDriver DeviceResponder Drivers",
+    "_device": "IConfig DeviceDriver DeprecatedDeviceDriver DeviceResponder",
+    "_drivers": "Drivers DriverCreator StubDriverCreator",
     "_return_value": "ReturnValue",
     "_map_grid": "MapGrid2D",
     "_image": "Image ImageRgb ImageRgba ImageRgbFloat ImageMono ImageMono16 ImageInt ImageFloat "
@@ -99,9 +100,11 @@ _MODULES = {
     "IThreeAxisAngularAccelerometers",
     "_camera_view": "IFrameGrabberImageBase IFrameGrabber IFrameGrabberImage IFrameGrabberRgb "
     "IFrameGrabberControls CameraDescriptor",
-    "_device_view": "IAnalogSensor IJointCoupling IFrameWriterImage",
-    "_absent": "NameStore Wire WireLink DriverCreator StubDriverCreator LogStream IControlDebug "
-    "IFrameGrabberControlsDC1394",
+    "_device_view": "IAnalogSensor IJointCoupling IFrameWriterImage IControlDebug",
+    "_firewire_view": "IFrameGrabberControlsDC1394",
+    "_name_server": "NameStore",
+    "_wire": "Wire WireLink",
+    "_absent": "LogStream",
 }
 WHERE = {name: module for module, names in _MODULES.items() for name in names.split()}
 
@@ -110,14 +113,5 @@ CLASSES = frozenset(name for name in WHERE if name[0].isupper() and not name.isu
 
 #: What the bindings of C++ have and means nothing here, and why: it refuses when it is called.
 NOT_HERE: dict[str, str] = {
-    "IFrameGrabberControlsDC1394": "it sets registers of FireWire cameras, which nobody has here: "
-    "viewIFrameGrabberControls has brightness, gain and the rest",
-    "NameStore": "a program that answers for names in C++; yarpy has name clients, see "
-    "CONTRIBUTING.md",
-    "Wire": "it is the base of what C++ makes of Thrift files: yarpidl_thrift makes Python",
-    "WireLink": "it is a part of what C++ makes of Thrift files: yarpidl_thrift makes Python",
-    "DriverCreator": "a class of Python is a device without a factory: PolyDriver.attach serves it",
-    "StubDriverCreator": "types of devices in Python are found by the entry point yarpy.devices",
     "LogStream": "it is the << of C++: yarp.Log().info(text)",
-    "IControlDebug": "no device tells of the memory from which a motor's board starts",
 }

@@ -55,17 +55,17 @@ class Yarpdev(yarpy.Module):
         print("yarpdev is finished.", flush=True)
 
 
-def main() -> NoReturn:
-    """The program `yarpdev`."""
-    if "--list" in sys.argv[1:]:
+def run(arguments: list[str]) -> int:
+    """Be the program with these arguments; return its exit code."""
+    if "--list" in arguments:
         print_lines(["Here are devices listed for your system:", "", *lines()])
-        sys.exit(0)
+        return 0
     try:
-        finder = yarpy.ResourceFinder(sys.argv[1:])
+        finder = yarpy.ResourceFinder(arguments)
         if not finder.find("device"):
             print_lines([__doc__ or ""])
             print("[WARNING] --device option not specified. Closing.", file=sys.stderr)
-            sys.exit(0)
+            return 0
         code = Yarpdev().run(finder)
     except Exception as error:  # whatever a driver raises
         print(f"error: yarpdev: {error or type(error).__name__}", file=sys.stderr)
@@ -75,4 +75,9 @@ def main() -> NoReturn:
             "yarpdev: ***ERROR*** device not available. yarpdev --list shows those that are.",
             file=sys.stderr,
         )
-    sys.exit(code)
+    return code
+
+
+def main() -> NoReturn:
+    """The program `yarpdev`."""
+    sys.exit(run(sys.argv[1:]))

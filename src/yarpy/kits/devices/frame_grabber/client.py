@@ -25,6 +25,7 @@ from yarpy.data.stamp import Stamp
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, RemoteProtocolError, Timeout
 from yarpy.kits.devices.closeable import Closeable, local_prefix, prefix
+from yarpy.kits.devices.frame_grabber.firewire import FUNCTIONS, RemoteRegisters
 from yarpy.kits.devices.frame_grabber.interface import FEATURES
 from yarpy.kits.devices.frame_grabber.responder import BUSES, MODES
 from yarpy.kits.devices.frame_grabber.yarp4.requests import FunctionRequests
@@ -144,6 +145,11 @@ class FrameGrabber(Closeable):
         return BUSES[bus] if bus in range(len(BUSES)) else "unknown", str(text)
 
     @property
+    def firewire(self) -> RemoteRegisters:
+        """The registers of a camera at FireWire; others refuse each of them."""
+        return RemoteRegisters(self._register)
+
+    @property
     def features(self) -> Features:
         """Values by name (`FEATURES`): a number, or two."""
         return Features(self, "feat", "feat")
@@ -192,6 +198,17 @@ class FrameGrabber(Closeable):
         if reply[2:] != [1]:
             given = " ".join(map(str, values))
             raise LocalProtocolError(f'"{self.remote}" does not accept {item} {given}')
+
+    def _register(self, name: str, numbers: Sequence[int]) -> list[int]:
+        function = FUNCTIONS[name]
+        reply = self._send("fgfw", function.word, *numbers)
+        if reply == ["nak"]:
+            raise LocalProtocolError(f'"{self.remote}" is no camera at FireWire')
+        if not function.gives and reply != [1]:
+            raise LocalProtocolError(f'"{self.remote}" does not accept {name}{(*numbers,)}')
+        if len(reply) < function.gives or not all(isinstance(each, int) for each in reply):
+            raise RemoteProtocolError(f'"{self.remote}" answers {Bottle(reply).to_text()[:100]}')
+        return reply
 
     def _picture(self, reply: list[Any]) -> Image:
         payload = self._payload(reply, 1)[0]

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from yarpy.data.sig.image import Image
+    from yarpy.kits.devices.frame_grabber.firewire import Registers
 
 #: What a camera can adjust; the index here is the number in the protocol.
 FEATURES = (
@@ -63,3 +64,4 @@ class FrameGrabberLike(Camera, Protocol):
         """Adjust a feature automatically, once."""
 
     description: tuple[str, str]  # "usb", "firewire" or "unknown"; which camera it is
+    firewire: Registers  # of a camera at FireWire

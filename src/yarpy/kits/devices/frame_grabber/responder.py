@@ -22,6 +22,7 @@ from yarpy.data.sig.image import Image
 from yarpy.data.value import Vocab
 from yarpy.data.writer import dict_elements
 from yarpy.kits.devices.access import Access
+from yarpy.kits.devices.frame_grabber import firewire
 from yarpy.kits.devices.frame_grabber.interface import FEATURES
 from yarpy.kits.devices.kind import items, number, whole, word
 from yarpy.kits.devices.refusal import Refused
@@ -51,7 +52,8 @@ class FrameGrabberResponder:
     def answer(self, request: Request) -> Bottle:
         """The reply to a request."""
         group = word(request[0]) if request else ""
-        if group not in ("fgi", "fgir", "visr", "fgc"):
+        known = (*("fgi", "fgir", "visr", "fgc"), *(["fgfw"] if self.at_firewire else []))
+        if group not in known:
             return Bottle([_NAK])
         try:
             return self.carry_out(group, request)
@@ -64,9 +66,35 @@ class FrameGrabberResponder:
 
     def carry_out(self, group: str, request: Request) -> Bottle:
         """The reply to a request for one of the groups. Raises Refused."""
+        if group == "fgfw":
+            return self._registers(request)
         groups = {"fgi": self._images, "fgir": self._images, "visr": self._lens, "fgc": self._knobs}
         verb, item = (word(e) for e in [*request[1:3], "", ""][:2])
         return Bottle(groups[group](group, verb, item, request[3:]))
+
+    # -- registers of FireWire ------------------------------------------------------------------
+
+    @property
+    def at_firewire(self) -> bool:
+        """Return whether the camera has registers of FireWire."""
+        return self._camera.has("firewire")
+
+    def register(self, name: str, arguments: Request) -> list[int]:
+        """Carry out a function of FireWire. Raises Refused."""
+        return firewire.answer(self._camera, firewire.FUNCTIONS[name], arguments)
+
+    def _registers(self, request: Request) -> Bottle:
+        name = firewire.BY_WORD.get(word(request[1]) if len(request) > 1 else "")
+        if name is None:
+            raise Refused("it is no function of cameras at FireWire")
+        if firewire.FUNCTIONS[name].gives:
+            return Bottle(self.register(name, request[2:]))
+        try:
+            self.register(name, request[2:])
+        except Refused as refusal:
+            log.info("%s: %s: %s", self._name, name, refusal)
+            return Bottle([0])
+        return Bottle([1])
 
     # -- images -------------------------------------------------------------------------------
 

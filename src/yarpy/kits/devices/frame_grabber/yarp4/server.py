@@ -3,8 +3,9 @@
     getRgbResolution()        a Size: [ok] 320 240
     setFeature1(1, 0.5)       a Status: [ok]; [err5] if the camera cannot, and the log says why
 
-Rules: `table` says which request each function stands for; the others, of cameras at
-FireWire, are answered with [err2]. An answer always has all its fields: C++ reads them first.
+Rules: `table` says which request each function stands for; the others are of cameras at
+FireWire; other cameras answer them with [err2]. An answer always has all its fields: C++ reads
+them first.
 """
 
 from __future__ import annotations
@@ -36,10 +37,12 @@ class Functions(FrameGrabberMsgs):
         fields: Sequence[Any] = ()
         code = "ok"
         try:
-            if row is None:
-                code = "err2"
-            else:
+            if row is not None:
                 fields = self._fields(row, arguments)
+            elif self._responder.at_firewire:
+                fields = self._responder.register(name, arguments)
+            else:
+                code = "err2"
         except Refused as refusal:
             log.info("%s: %s: %s", self._name, name, refusal)
             code = "err5"
