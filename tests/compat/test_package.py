@@ -34,6 +34,7 @@ ALLOWED = {
     "yarpy.kits.devices.catalogue",
     "yarpy.kits.devices.frame_grabber.firewire",
     "yarpy.kits.devices.interfaces",
+    "yarpy.kits.devices.interfaces.grid_file",
     "yarpy.kits.devices.refusal",
     "yarpy.kits.devices.status",
     "yarpy.kits.devices.wrapper",

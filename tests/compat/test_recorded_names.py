@@ -199,6 +199,23 @@ def test_maps_as_pictures() -> None:
     assert grid.setOccupancyGrid(seen) and grid.getOccupancyData((0, 0)) == 0
 
 
+def test_maps_in_files(tmp_path: Path) -> None:
+    grid, again = yarp.MapGrid2D(), yarp.MapGrid2D()
+    grid.setMapName("kitchen")
+    grid.setSize_in_cells(3, 2)
+    grid.setResolution(0.5)
+    grid.setOrigin(1.0, 2.0, 0.0)
+    grid.setMapFlag((2, 1), grid.MAP_CELL_WALL)
+    grid.setOccupancyData((2, 1), 60)
+    path = str(tmp_path / "kitchen.map")
+    assert grid.saveToFile(path) and again.loadFromFile(path) and again.isIdenticalTo(grid)
+    assert not again.loadFromFile(str(tmp_path / "none.map"))
+    grid.setMapName("a/b")
+    assert not grid.saveToFile(path)
+    (tmp_path / "kitchen_grid.pgm").write_bytes(b"")
+    assert not again.loadFromFile(path) and again.getMapName() == "kitchen"
+
+
 def test_poses_and_rotations_of_frames() -> None:
     class Frames:
         def pose(self, target: str, source: str) -> list[list[float]]:

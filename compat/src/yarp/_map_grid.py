@@ -1,7 +1,7 @@
 """MapGrid2D: a map of cells, as `yarpy.devices.Grid`.
 
 Rules: a cell is a pair of numbers, x to the right and y down, from the upper left corner. Flags are
-numbers of `Grid`. What is outside is False or -1. It has no files.
+numbers of `Grid`. What is outside is False or -1.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from typing import Any
 
 import yarpy
 from yarp._log import say
-from yarp._map_image import coloured, flags_of
 from yarp._numbers import store
 from yarp._portable import Portable
 from yarpy.kits import devices
+from yarpy.kits.devices.interfaces.grid_file import coloured, flags_of
 
 Cell = Any  # a pair of numbers
 _UNSEEN = 255
@@ -40,14 +40,18 @@ class MapGrid2D(Portable):
         self._occupied = np.zeros((2, 2), "u1")
         self._compress = True
 
-    def _outgoing(self) -> Any:
-        found = devices.Grid.of(
+    def _grid(self) -> devices.Grid:
+        return devices.Grid.of(
             self._name, self._occupied, self._resolution, self._origin, self._flags
         )
-        return found.squeezed() if self._compress else found
+
+    def _outgoing(self) -> Any:
+        return self._grid().squeezed() if self._compress else self._grid()
 
     def _take(self, message: yarpy.Message) -> None:
-        found = message.as_(devices.Grid)
+        self._be(message.as_(devices.Grid))
+
+    def _be(self, found: devices.Grid) -> None:
         self._name, self._resolution = found.name, found.resolution
         self._origin = (found.x, found.y, found.theta)
         self._flags, self._occupied = found.cells().copy(), found.occupied().copy()
@@ -250,9 +254,19 @@ class MapGrid2D(Portable):
         return all(a.shape == b.shape and bool((a == b).all()) for a, b in pairs)
 
     def loadFromFile(self, map_filename: str) -> bool:
-        """Refuse: maps come from a server of maps."""
-        raise NotImplementedError("maps are read from a server of maps: viewIMap2D().get_map")
+        """Read a .map file of YARP, with the pictures that it names."""
+        try:
+            self._be(devices.load_grid(map_filename))
+        except (OSError, yarpy.DecodeError) as error:
+            say("ERROR", f"|yarp.dev.MapGrid2D| {error}")
+            return False
+        return True
 
     def saveToFile(self, map_filename: str) -> bool:
-        """Refuse, as `loadFromFile`."""
-        raise NotImplementedError("maps are kept by a server of maps: viewIMap2D().store_map")
+        """Write a .map file of YARP, and three beside it that are named after the map."""
+        try:
+            devices.save_grid(self._grid(), map_filename)
+        except (OSError, ValueError) as error:
+            say("ERROR", f"|yarp.dev.MapGrid2D| {error}")
+            return False
+        return True

@@ -79,7 +79,7 @@ class PolyDriver(MirrorViews):
             return False
         try:
             make(self)
-        except (*FAILURES, ValueError, ImportError) as error:
+        except (*FAILURES, ValueError, ImportError, OSError) as error:
             say("ERROR", f"|yarp.dev.PolyDriver| Could not open device <{name}>: {error}")
             self.close()
             return False

@@ -95,8 +95,10 @@ _WHERE = {
     "TransformClient": "transforms.client",
     "TransformServer": "transforms.server",
     "World": "interfaces.world",
+    "load_grid": "interfaces.grid_file",
     "remap": "control_board.remap",
     "remap_remote": "control_board.remap",
+    "save_grid": "interfaces.grid_file",
 }
 
 __all__ = [
@@ -172,8 +174,10 @@ __all__ = [
     "TransformClient",
     "TransformServer",
     "World",
+    "load_grid",
     "remap",
     "remap_remote",
+    "save_grid",
 ]
 
 if TYPE_CHECKING:
@@ -201,6 +205,8 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.interfaces.audio import AudioRecorder as AudioRecorder
     from yarpy.kits.devices.interfaces.depth import DepthCamera as DepthCamera
     from yarpy.kits.devices.interfaces.grid import Grid as Grid
+    from yarpy.kits.devices.interfaces.grid_file import load_grid as load_grid
+    from yarpy.kits.devices.interfaces.grid_file import save_grid as save_grid
     from yarpy.kits.devices.interfaces.joypad import Joypad as Joypad
     from yarpy.kits.devices.interfaces.joypad import JoypadState as JoypadState
     from yarpy.kits.devices.interfaces.localization import Localization2D as Localization2D

@@ -1,5 +1,6 @@
 """Devices without hardware as devices of a robot's file."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -45,7 +46,29 @@ def test_an_inertial_unit_and_a_laser() -> None:
     with pytest.raises(ValueError, match="clip_max far is no number"):
         plugin.laser(Property(clip_max="far"))
     with pytest.raises(ValueError, match="no scene"):
+        plugin.laser(Property(test="use_nothing"))
+    with pytest.raises(ValueError, match="needs a parameter map_file"):
         plugin.laser(Property(test="use_mapfile"))
+
+
+def test_a_laser_in_a_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    grid = devices.Grid.of("kitchen", [[0, 100]], 0.5)
+    (tmp_path / "contexts" / "rooms").mkdir(parents=True)
+    path = tmp_path / "contexts" / "rooms" / "kitchen.map"
+    devices.save_grid(grid, path)
+    sensor = "(SENSOR (min_angle 0) (max_angle 90) (resolution 90.0))"
+    named: Any = plugin.laser(
+        Property.from_text(f'(test use_mapfile) (map_file "{path}") {sensor}')
+    )
+    named.place = (0.25, 0.25, 0.0)
+    assert named.ranges() == [0.25]
+    monkeypatch.setenv("YARP_DATA_HOME", str(tmp_path))
+    text = f"(test use_mapfile) (map_file kitchen.map) (map_context rooms) {sensor}"
+    assert plugin.laser(Property.from_text(text)).ranges() == [0.5]  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match=r"no file hall\.map in the context rooms"):
+        plugin.laser(Property.from_text(text.replace("kitchen", "hall")))
+    with pytest.raises(FileNotFoundError):
+        plugin.laser(Property.from_text(text.replace(" (map_context rooms)", "")))
 
 
 def test_joints_have_names() -> None:

@@ -7,8 +7,8 @@
 
 Rules: cameras take `width` and `height`, joints the group GENERAL with `Joints` and `AxisName`, an
 inertial unit `sensorName`, `frameName` and `constantValue`, a laser `test`, `const_distance`,
-`clip_min`, `clip_max` and the group SENSOR with `min_angle`, `max_angle` and `resolution`; the
-others take nothing.
+`map_file` (with `map_context` or without), `clip_min`, `clip_max` and the group SENSOR with
+`min_angle`, `max_angle` and `resolution`; the others take nothing.
 """
 
 from __future__ import annotations
@@ -88,18 +88,37 @@ def imu(options: Property, *, names: NameClient | None = None) -> object:
 
 
 def laser(options: Property, *, names: NameClient | None = None) -> object:
-    """Return `fakeLaser`. Raises ValueError for settings that make no scan."""
-    from yarpy.kits.devices import SimulatedLaser
+    """Return `fakeLaser`. Raises ValueError for settings that make no scan, OSError for a map that
+    cannot be read."""
+    from yarpy.kits.devices import SimulatedLaser, load_grid
 
+    scene = str(options.find("test", "use_pattern"))
+    grid = load_grid(_map_file(options)) if scene == "use_mapfile" else None
     sensor = Property.from_bottle(options.group("SENSOR") or ())
     constant = Property.from_bottle(options.group("CONSTANT_MODE") or ())
     return SimulatedLaser(
-        str(options.find("test", "use_pattern")),
+        scene,
+        grid=grid,
         angles=(_number(sensor, "min_angle", 0.0), _number(sensor, "max_angle", 360.0)),
         distances=(_number(options, "clip_min", 0.1), _number(options, "clip_max", 3.5)),
         step=_number(sensor, "resolution", 1.0),
         distance=_number(constant, "const_distance", _number(options, "const_distance", 1.0)),
     )
+
+
+def _map_file(options: Property) -> str:
+    """Return the path of the map. Raises ValueError for none."""
+    from yarpy.resource import ResourceFinder
+
+    name, context = (str(options.find(key, "") or "") for key in ("map_file", "map_context"))
+    if not name:
+        raise ValueError("use_mapfile needs a parameter map_file, a .map file of YARP")
+    if not context:
+        return name
+    found = ResourceFinder(context=context).file(name)
+    if found is None:
+        raise ValueError(f"there is no file {name} in the context {context}")
+    return str(found)
 
 
 def values(options: Property, key: str) -> list[Any]:
