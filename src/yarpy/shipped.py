@@ -260,10 +260,10 @@ _FINDINGS: Final = (
 
 # Devices of robots, by the names of C++: without hardware, served, and those of other programs.
 _SIMULATED: Final = (
-    *("fakeBattery", "fakeChatBotDevice", "fakeJoypad", "fakeLLMDevice", "fakeLocalizer"),
-    *("fakeMicrophone", "fakeNavigation", "fakeOdometry2D", "fakeSerialPort"),
-    *("fakeSimulatedWorld", "fakeSpeaker", "fakeSpeechSynthesizer", "fakeSpeechTranscription"),
-    *("map2DStorage", "robotDescriptionStorage"),
+    *("fakeBattery", "fakeChatBotDevice", "fakeJointCoupling", "fakeJoypad", "fakeLLMDevice"),
+    *("fakeLocalizer", "fakeMicrophone", "fakeNavigation", "fakeOdometry2D", "fakePositionSensor"),
+    *("fakeSerialPort", "fakeSimulatedWorld", "fakeSpeaker", "fakeSpeechSynthesizer"),
+    *("fakeSpeechTranscription", "map2DStorage", "robotDescriptionStorage"),
 )
 _KINDS: Final = (
     *("LLM", "RGBDSensor", "audioRecorder", "chatBot", "joypadControl", "localization2D", "map2D"),

@@ -65,7 +65,7 @@ OWN: Final = (
         "multipleanalogsensorsserver",
         "multipleanalogsensorsclient",
         "",
-        "IContactLoadCellArrays IEncoderArrays IPositionSensors ISixAxisForceTorqueSensors "
+        "IContactLoadCellArrays IEncoderArrays ISixAxisForceTorqueSensors "
         "ISkinPatches ITemperatureSensors ILinearVelocitySensors IThreeAxisAngularAccelerometers",
     ),
     (
@@ -75,6 +75,13 @@ OWN: Final = (
         "fakeIMU",
         "IOrientationSensors IThreeAxisGyroscopes IThreeAxisLinearAccelerometers "
         "IThreeAxisMagnetometers",
+    ),
+    (
+        "MultiSensor",
+        "multipleanalogsensorsserver",
+        "multipleanalogsensorsclient",
+        "fakePositionSensor",
+        "IPositionSensors",
     ),
     ("Battery", "battery_nws_yarp", "battery_nwc_yarp", "fakeBattery", "IBattery"),
     ("Laser", "rangefinder2D_nws_yarp", "rangefinder2D_nwc_yarp", "fakeLaser", "IRangefinder2D"),
@@ -132,7 +139,7 @@ WHY: Final = {
     "IGenericSensor": _ALONE,
     "IHapticDevice": _ALONE,
     "IJacobianCoupling": _ALONE,
-    "IJointCoupling": _ALONE,
+    "IJointCoupling": f"{_ALONE}; `fakeJointCoupling`",
     "IMultipleWrapper": "how devices are attached in C++: here they are arguments of servers",
     "IVirtualAnalogSensor": "not yet",
     "IVisualParams": _OLD,

@@ -351,6 +351,7 @@ WRAPPERS = {
     "fakeBattery": "battery_nws_yarp",
     "fakeLaser": "rangefinder2D_nws_yarp",
     "fakeIMU": "multipleanalogsensorsserver",
+    "fakePositionSensor": "multipleanalogsensorsserver",
     "fakeFrameGrabber": "frameGrabber_nws_yarp",
     "test_grabber": "frameGrabber_nws_yarp",
     "fakeMotionControl": "controlBoard_nws_yarp",

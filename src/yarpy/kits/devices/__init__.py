@@ -76,6 +76,7 @@ _WHERE = {
     "SimulatedBattery": "simulated.battery",
     "SimulatedCamera": "simulated.camera",
     "SimulatedChatBot": "simulated.talk",
+    "SimulatedCoupling": "simulated.coupling",
     "SimulatedDepthCamera": "simulated.depth_camera",
     "SimulatedHead": "simulated.head",
     "SimulatedImu": "simulated.imu",
@@ -84,6 +85,7 @@ _WHERE = {
     "SimulatedLanguageModel": "simulated.talk",
     "SimulatedLaser": "simulated.laser",
     "SimulatedMicrophone": "simulated.audio",
+    "SimulatedPositionSensor": "simulated.position_sensor",
     "SimulatedSerialPort": "simulated.serial",
     "SimulatedSpeaker": "simulated.audio",
     "SimulatedSynthesizer": "simulated.speech",
@@ -155,6 +157,7 @@ __all__ = [
     "SimulatedBattery",
     "SimulatedCamera",
     "SimulatedChatBot",
+    "SimulatedCoupling",
     "SimulatedDepthCamera",
     "SimulatedHead",
     "SimulatedImu",
@@ -163,6 +166,7 @@ __all__ = [
     "SimulatedLanguageModel",
     "SimulatedLaser",
     "SimulatedMicrophone",
+    "SimulatedPositionSensor",
     "SimulatedSerialPort",
     "SimulatedSpeaker",
     "SimulatedSynthesizer",
@@ -243,6 +247,7 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.simulated.base import SimulatedBase as SimulatedBase
     from yarpy.kits.devices.simulated.battery import SimulatedBattery as SimulatedBattery
     from yarpy.kits.devices.simulated.camera import SimulatedCamera as SimulatedCamera
+    from yarpy.kits.devices.simulated.coupling import SimulatedCoupling as SimulatedCoupling
     from yarpy.kits.devices.simulated.depth_camera import (
         SimulatedDepthCamera as SimulatedDepthCamera,
     )
@@ -252,6 +257,9 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.simulated.joypad import SimulatedJoypad as SimulatedJoypad
     from yarpy.kits.devices.simulated.laser import SimulatedLaser as SimulatedLaser
     from yarpy.kits.devices.simulated.map_storage import MapStorage as MapStorage
+    from yarpy.kits.devices.simulated.position_sensor import (
+        SimulatedPositionSensor as SimulatedPositionSensor,
+    )
     from yarpy.kits.devices.simulated.serial import SimulatedSerialPort as SimulatedSerialPort
     from yarpy.kits.devices.simulated.speech import SimulatedSynthesizer as SimulatedSynthesizer
     from yarpy.kits.devices.simulated.speech import SimulatedTranscription as SimulatedTranscription

@@ -61,6 +61,9 @@ _CLIENTS: Final = {
 _OTHERS: Final = {
     "controlboardremapper": "the joints of the boards that are attached, as one board",
     "fakeIMU": "simulated inertial unit: served by multipleanalogsensorsserver",
+    "fakeJointCoupling": "simulated coupling of joints, for programs in the same process",
+    "fakePositionSensor": "simulated position and orientation: "
+    "served by multipleanalogsensorsserver",
     "fakeSimulatedWorld": "a world without a simulator: served by simulatedWorld_nws_yarp",
     "fakeSpeaker": "simulated loudspeaker: served by audioPlayerWrapper",
     "frameTransformServer": "knows where frames are, and tells who asks; serves itself",
