@@ -78,6 +78,7 @@ def test_a_map_of_yarp(place: Path) -> None:
         ("MapName a\nRosMapData a.map", "resolution .* is not 1 numbers"),
         ("MapName a\nYarpMapData a.ppm\norigin (1 2)", "origin 1 2 is not 3 numbers"),
         ("MapName a\nYarpMapData a.ppm\nresolution 0", "a resolution of 0"),
+        ("MapName a\nYarpMapData a\0.ppm", "needs a line YarpMapData"),
         ("MapName a\nRosMapData odd.yaml", "needs a line image"),
         ("x" * 70000, "too large"),
     ],

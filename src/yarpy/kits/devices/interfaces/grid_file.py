@@ -152,10 +152,10 @@ def _facts(path: Path) -> dict[str, list[Any]]:
 
 
 def _word(facts: dict[str, list[Any]], key: str, path: Path) -> str:
-    values = facts.get(key)
-    if not values:
+    found = " ".join(map(str, facts.get(key, [])))
+    if not found or "\0" in found:
         raise DecodeError(f"{path}: a map needs a line {key}")
-    return " ".join(map(str, values))
+    return found
 
 
 def _numbers(facts: dict[str, list[Any]], key: str, path: Path, count: int) -> list[float]:
