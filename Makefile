@@ -106,7 +106,8 @@ fuzz: $(VENV)/.ready
 life: $(VENV)/.ready
 	$(BIN)/python tests/life/property.py $(SECONDS) $(if $(SEED),--seed $(SEED))
 
-# The README's program and tests of bytes with the Python of Windows, under wine; PATHS="tests/port".
+# The README's program, and tests of bytes, links and names, with the Python of Windows, under wine;
+# PATHS="tests/port" runs others.
 windows: $(VENV)/.ready
 	$(BIN)/python tests/support/windows.py $(PATHS)
 

@@ -11,6 +11,7 @@ import contextlib
 import math
 import os
 import socket
+import sys
 import time
 from typing import Final, Literal
 
@@ -21,6 +22,9 @@ from yarpy.limit import NAME_REPLY
 from yarpy.names.registration_line import END, PREFIX
 
 _ACK: Final = "<ACK>"
+# Python waits for a socket with a time limit by select, which on Windows does not see that this
+# side was shut down: there a wait comes in slices.
+SLICE: Final[float | None] = 0.25 if sys.platform == "win32" else None  # seconds
 
 
 class Gone(Exception):
@@ -37,6 +41,7 @@ class Line:
         self.process = os.getpid()
         self.until = math.inf  # of what is being said, as of time.monotonic()
         self._buffer = bytearray()
+        self._woken = False
 
     def send(self, data: bytes) -> None:
         try:
@@ -55,8 +60,7 @@ class Line:
             if start > NAME_REPLY:
                 raise RemoteProtocolError(f"a name server's line of more than {NAME_REPLY} bytes")
             try:
-                self.connection.settimeout(self._left())
-                data = self.connection.recv(65_536)
+                data = self._receive()
             except TimeoutError:
                 raise
             except OSError as error:
@@ -67,6 +71,19 @@ class Line:
         text = bytes(self._buffer[:end]).rstrip(b"\r")
         del self._buffer[: end + 1]
         return text.decode("utf-8", "surrogateescape")
+
+    def _receive(self) -> bytes:
+        while not self._woken:
+            left = self._left()
+            if SLICE is not None:
+                left = SLICE if left is None else min(left, SLICE)
+            self.connection.settimeout(left)
+            try:
+                return self.connection.recv(65_536)
+            except TimeoutError:
+                if SLICE is None:
+                    raise
+        return b""
 
     def _left(self) -> float | None:
         """The seconds for what comes next. Raises TimeoutError."""
@@ -79,6 +96,7 @@ class Line:
 
     def wake(self) -> None:
         """Free a thread that waits for the server."""
+        self._woken = True
         with contextlib.suppress(OSError):
             self.connection.shutdown(socket.SHUT_RDWR)
 
