@@ -355,7 +355,7 @@ def _open_output(
             Thread(target=hub.inputs.serve, args=(source,), daemon=True).start()
             return route.spec
         if speaker.delivery.broadcast or spec.recv:
-            _wait_for_member(hub, contact, speaker.name)
+            _wait_for_member(hub, contact, speaker, driver)
         link = Outbound(driver, speaker)
         try:
             link.ride(chain)
@@ -396,18 +396,22 @@ def _greet(
     )
 
 
-def _wait_for_member(hub: Hub, contact: Contact, carrier: str) -> None:
-    """Wait until the receiver says that it has our connection.
+def _wait_for_member(hub: Hub, contact: Contact, carrier: Carrier, driver: Driver) -> None:
+    """Wait until the receiver says that it has our connection, or ends it.
 
     It does not say so by itself: a multicast greeting has no answer, so the first messages would
-    be lost; and the monitors at its end are set up only after the greeting was answered.
+    be lost; and the monitors at its end are set up only after the greeting was answered, which may
+    take it some time.
     """
-    deadline = time.monotonic() + JOINING
+    alone = carrier.delivery.connectionless
+    deadline = time.monotonic() + (JOINING if alone else GREETING)
     question = [Vocab("list"), Vocab("in"), hub.name]
     try:
         while time.monotonic() < deadline and scope.left():
+            if not alone and driver.transport.ended():
+                return
             input_ = probe.ask(contact, question, timeout=JOINING, secret_=hub.key)
-            if input_ and parse_carrier(plain_text(input_.find("carrier", ""))).base == carrier:
+            if input_ and parse_carrier(plain_text(input_.find("carrier", ""))).base == carrier.name:
                 return
             time.sleep(0.002)
     except (YarpError, OSError):
