@@ -59,8 +59,6 @@ def test_map() -> None:
     assert again.setMapFlag((0, 0), grid.MAP_CELL_TEMPORARY_OBSTACLE)
     again.clearMapTemporaryFlags()
     assert again.isFree((0, 0)) and again.getMapName() == "kitchen"
-    with pytest.raises(NotImplementedError, match="server of maps"):
-        grid.loadFromFile("kitchen.map")
 
 
 def test_a_map_from_a_server_of_maps() -> None:

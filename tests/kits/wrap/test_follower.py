@@ -33,7 +33,7 @@ def test_priorities_are_given(names: yarpy.LocalNames) -> None:
     with yarpy.BufferedPort("") as port, yarpy.Port("/topic"):
         follower = Follower(port, "/topic", qos=yarpy.Qos(packets="HIGH"))
         assert follower.wait(HANG)
-        wait_until(lambda: port.inputs[0].qos.packets == "AF42")
+        wait_until(lambda: [link.qos.packets for link in port.inputs] == ["AF42"])
         follower.close()
 
 
