@@ -411,7 +411,10 @@ def _wait_for_member(hub: Hub, contact: Contact, carrier: Carrier, driver: Drive
             if not alone and driver.transport.ended():
                 return
             input_ = probe.ask(contact, question, timeout=JOINING, secret_=hub.key)
-            if input_ and parse_carrier(plain_text(input_.find("carrier", ""))).base == carrier.name:
+            if (
+                input_
+                and parse_carrier(plain_text(input_.find("carrier", ""))).base == carrier.name
+            ):
                 return
             time.sleep(0.002)
     except (YarpError, OSError):

@@ -47,7 +47,7 @@ def place(tmp_path: Path) -> Path:
 
 
 def test_a_map_of_ros(place: Path) -> None:
-    place.write_text("MapName: a\nRosMapData: b.yaml\n")
+    place.write_text("MapName: a\nRosMapData: b.yaml\n", encoding="utf-8")
     grid = load_grid(str(place))
     assert (grid.name, grid.resolution, grid.x, grid.y) == ("a", 0.1, 1.0, 2.0)
     assert math.isclose(grid.theta, 180.0)
@@ -55,11 +55,14 @@ def test_a_map_of_ros(place: Path) -> None:
 
 
 def test_a_map_of_yarp(place: Path) -> None:
-    place.write_text("MapName a\nYarpMapData a.ppm\n")
+    place.write_text("MapName a\nYarpMapData a.ppm\n", encoding="utf-8")
     grid = load_grid(place)
     assert grid.occupied().tolist() == [[100, 0]] and grid.cells().tolist() == [[4, 0]]
     assert (grid.resolution, grid.x) == (1.0, 0.0)
-    place.write_text(f"{place.read_text()}RosMapData b.yaml\nresolution 0.5\norigin (7 8 9.5)\n")
+    place.write_text(
+        f"{place.read_text(encoding='utf-8')}RosMapData b.yaml\nresolution 0.5\norigin (7 8 9.5)\n",
+        encoding="utf-8",
+    )
     grid = load_grid(place)
     assert grid.occupied().tolist() == [[100, 255]] and grid.cells().tolist() == [[4, 0]]
     assert (grid.resolution, grid.x, grid.y, grid.theta) == (0.5, 7.0, 8.0, 9.5)
@@ -88,7 +91,7 @@ def test_what_is_no_map(place: Path, text: str, why: str) -> None:
     (place.parent / "large.ppm").write_bytes(b"P6 999999999 999999999 255\n")
     (place.parent / "tall.ppm").write_bytes(b"P6 1 2 255\n" + bytes(6))
     (place.parent / "odd.yaml").write_text("resolution: 1\norigin: [0, 0, 0]\n")
-    place.write_text(text)
+    place.write_text(text, encoding="utf-8")
     with pytest.raises(DecodeError, match=why):
         load_grid(place)
 
