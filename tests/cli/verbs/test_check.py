@@ -76,5 +76,5 @@ def test_files(here, tmp_path):
     assert said.code == 0
     assert said.out.splitlines() == [
         f'{file}:1:1: warning: "nmae" is ignored: did you mean "name"?',
-        "a: 1 programs, 0 connections, 1 problem",
+        "a: 1 program, 0 connections, 1 problem",
     ]

@@ -35,9 +35,9 @@ def test_an_application_and_a_robot(tmp_path) -> None:
     assert lines == [
         f'{one}:3:27: warning: <Node> in <module> is ignored: write it in lower case, "node"',
         f'{one}:4:1: warning: <conection> in <application> is ignored: did you mean "connection"?',
-        "app: 1 programs, 0 connections, 2 problems",
+        "app: 1 program, 0 connections, 2 problems",
         f'{two}:3:39: error: there is no phase "startupp": did you mean "startup"?',
-        "r: 1 devices, 1 problem",
+        "r: 1 device, 1 problem",
     ]
 
 

@@ -45,7 +45,7 @@ def test_files_are_looked_at_first(cli) -> None:
     lines = done.stdout.splitlines()
     assert lines[1] == 'bad.xml:3:1: warning: attach: no device here is called "b"'
     assert lines[2].startswith('bad.xml:2:1: error: no device of type "simulatedHed" is installed')
-    assert lines[3] == "r: 1 devices, 3 problems"
+    assert lines[3] == "r: 1 device, 3 problems"
     done = cli.run("robot", "bad.xml")
     assert done.returncode == 1 and "bad.xml:2:1: no device of type" in done.stderr
     path.write_text(path.read_text().replace("simulatedHed", "simulatedInertial"))

@@ -108,10 +108,10 @@ def test_check(cli) -> None:
     first, second, last = done.stdout.splitlines()
     assert first == f'{path}:1:1: warning: "nmae" is ignored: did you mean "name"?'
     assert 'error: "a": there is no program "no-such-program" on the PATH' in second
-    assert last == "app: 1 programs, 0 connections, 2 problems"
+    assert last == "app: 1 program, 0 connections, 2 problems"
     fine = write(cli, "[programs]\na = 'sleep 1'\n", "fine.toml")
     done = cli.run("up", fine, "--check")
-    assert (done.returncode, done.stdout) == (0, "fine: 1 programs, 0 connections, no problems\n")
+    assert (done.returncode, done.stdout) == (0, "fine: 1 program, 0 connections, no problems\n")
 
 
 def test_a_file_with_errors_starts_nothing(cli) -> None:

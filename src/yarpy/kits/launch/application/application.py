@@ -123,6 +123,13 @@ class Application:
         """Return whether it cannot run as it is written."""
         return any(problem.fatal for problem in self.problems)
 
+    @property
+    def summary(self) -> str:
+        """Its name, and how much of what it has."""
+        has = {"program": len(self.modules), "connection": len(self.connections)}
+        counts = (f"{many} {what}{'' if many == 1 else 's'}" for what, many in has.items())
+        return f"{self.name}: {', '.join(counts)}"
+
 
 def split_words(text: str) -> list[str]:
     """Return the words of a command line, as C++ splits them: blanks separate, and what stands in

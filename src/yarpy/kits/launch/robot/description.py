@@ -109,6 +109,12 @@ class Description:
         """Return whether it cannot run as it is written."""
         return any(problem.fatal for problem in self.problems)
 
+    @property
+    def summary(self) -> str:
+        """Its name, and how many devices it has."""
+        many = len(self.devices)
+        return f"{self.name}: {many} device{'' if many == 1 else 's'}"
+
     def options(self, device: Device) -> Property:
         """Return what a device is opened with: its parameters, its type, its name, the prefix."""
         found = Property(device=device.type, id=device.name, robotName=self.portprefix)

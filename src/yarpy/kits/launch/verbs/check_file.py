@@ -86,7 +86,7 @@ def _robot(file: Path) -> Checked:
     problems = [one for one in found.problems if one not in absent]
     problems += [*folded(absent, "devices that others hand in, as a simulator does")]
     problems += [*folded([*unknown_types(found)], "devices that this computer cannot open")]
-    return problems, f"{found.name}: {len(found.devices)} devices"
+    return problems, found.summary
 
 
 def folded(problems: Sequence[Problem], what: str) -> Iterator[Problem]:
@@ -109,6 +109,4 @@ def _application(file: Path, offline: bool) -> Checked:
 
     found = load(file)
     later = checking.here(found) if offline else checking.checked(found)
-    return [*found.problems, *later], (
-        f"{found.name}: {len(found.modules)} programs, {len(found.connections)} connections"
-    )
+    return [*found.problems, *later], found.summary

@@ -103,10 +103,7 @@ def _checked(description: Description, problems: list[Problem]) -> int:
     for problem in problems:
         print_line(str(problem))
     many = len(problems)
-    print_line(
-        f"{description.name}: {len(description.devices)} devices, "
-        f"{many or 'no'} problem{'' if many == 1 else 's'}"
-    )
+    print_line(f"{description.summary}, {many or 'no'} problem{'' if many == 1 else 's'}")
     return 1 if any(problem.fatal for problem in problems) else 0
 
 

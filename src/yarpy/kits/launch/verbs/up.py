@@ -98,11 +98,7 @@ def command(
         for problem in problems:
             print_line(str(problem))
         many = len(problems)
-        print_line(
-            f"{application.name}: {len(application.modules)} programs, "
-            f"{len(application.connections)} connections, "
-            f"{many or 'no'} problem{'' if many == 1 else 's'}"
-        )
+        print_line(f"{application.summary}, {many or 'no'} problem{'' if many == 1 else 's'}")
         return 1 if any(problem.fatal for problem in problems) else 0
     for problem in application.problems:
         (complain if problem.fatal else warn)(f"{problem.where}: {problem.text}")
