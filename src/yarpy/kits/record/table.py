@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from yarpy.data.bottle import Bottle
 from yarpy.errors import UnknownPlugin, YarpError
 from yarpy.kits.record.recording import Recording
 
@@ -66,5 +67,7 @@ def table(recording: Recording, port: str) -> pyarrow.Table:
         raise UnknownPlugin('a Table needs pyarrow: pip install "yarpy[table]"') from None
     found = columns(recording, port)
     if "value" in found:
-        found["value"] = [*map(str, found["value"])]
+        found["value"] = [
+            one.to_text() if isinstance(one, Bottle) else str(one) for one in found["value"]
+        ]
     return pyarrow.table(found)
