@@ -69,11 +69,12 @@ class LogSender:
 
     def put(self, packets: Sequence[Packet]) -> None:
         """Send these. In any thread; nobody waits."""
-        hub = self._hub
-        idle = hub is not None and not hub.outputs.links
         with self._guard:
             self._lines.extend(packets)
             self._count += len(packets)
+            hub = self._hub
+            # Looked at when the lines are there: whoever connects from now on wakes the thread.
+            idle = hub is not None and not hub.outputs.links
             if idle:
                 self._wanted = None
             self._forget()
