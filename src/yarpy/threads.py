@@ -25,6 +25,10 @@ class Thread(threading.Thread):
     """As `threading.Thread`; an exception out of a signal handler in `start` leaves it running, or
     not begun."""
 
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._turn = allocate_lock()  # who was cut may start it once more: one after the other
+
     def start(self) -> None:
         """Begin. Raises RuntimeError where threads have run out, or if it has begun before."""
         if threading.current_thread() is not threading.main_thread():
@@ -34,7 +38,8 @@ class Thread(threading.Thread):
 
         def begin() -> None:
             try:
-                threading.Thread.start(self)
+                with self._turn:
+                    threading.Thread.start(self)
             except BaseException as error:
                 failed.append(error)
             finally:

@@ -32,7 +32,11 @@ class Sweeper:
     def watch(self) -> None:
         """Something was gathered."""
         if self.thread.ident is None and not self._stopped:
-            self.thread.start()
+            try:
+                self.thread.start()
+            except RuntimeError:
+                if self.thread.ident is None:
+                    raise  # threads have run out; else a start that a signal had cut was done
         if self._asleep:
             self._asleep = False
             self._rouse()
