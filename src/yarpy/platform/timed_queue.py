@@ -20,7 +20,7 @@ _AGAIN: Final = 0.05  # seconds until a reader looks by itself: who woke it may 
 
 
 class TimedQueue(Generic[T]):
-    """What was put in first is taken first. Any thread may call anything."""
+    """First in, first out. Any thread may call anything."""
 
     __slots__ = ("_items", "_waiting", "empty", "get_nowait", "qsize")
 

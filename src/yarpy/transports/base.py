@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
+from yarpy.transports.descriptor import has_input
 from yarpy.transports.polling import Polling
 from yarpy.wire.stream import Buffer
 
@@ -269,11 +270,7 @@ class SocketTransport(Answerable):
         number = self.sock.fileno()
         if number < 0:
             return True  # closed, as reading tells
-        if sys.platform == "win32" or not hasattr(select, "poll"):
-            return bool(select.select([number], [], [], seconds)[0])
-        poll = select.poll()
-        poll.register(number, select.POLLIN)
-        return bool(poll.poll(seconds * 1000))
+        return has_input(number, seconds)
 
     def limit_waiting(self, seconds: float | None, sends: bool = True) -> None:
         if self._polling is not None:

@@ -218,7 +218,7 @@ class ReadingTransport(MemoryTransport):
         self._aside: socket.socket | None = None  # where descriptors come from
 
     def ready(self, look: Callable[[], object] | None = None) -> None:
-        if not has_input(self.sock.fileno(), TIMEOUT):
+        if not self.wait_readable(TIMEOUT):
             raise TimeoutError("the sender does not share its memory")
         undisturbed(self._adopt)
 

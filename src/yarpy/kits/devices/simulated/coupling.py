@@ -15,8 +15,8 @@ Numbers = Sequence[float]
 
 
 class SimulatedCoupling:
-    """What `viewIJointCoupling` of `import yarp` looks at. Raises LocalProtocolError for a wrong
-    number of values."""
+    """The device behind `viewIJointCoupling` of `import yarp`, in degrees and seconds. Raises
+    LocalProtocolError for a wrong number of values."""
 
     joint_names = ("phys_joint_0", "phys_joint_1", "phys_joint_2", "phys_joint_3")
     axis_names = ("act_axes_0", "act_axes_1", "act_axes_2")

@@ -34,8 +34,9 @@ _INDEXES: Final = ("frame_index", "episode_index", "index", "task_index")
 
 @dataclass(frozen=True)
 class Plan:
-    """What a data set is made of. states, actions: ports of numbers; images: ports of pictures, by
-    the names that they get. task: what the robot does, as a sentence."""
+    """The ports that a data set is made of. states, actions: ports of numbers; images: ports of
+    pictures, by the names that they get. fps: frames a second. task: what the robot does, as a
+    sentence."""
 
     states: Sequence[str]
     actions: Sequence[str] = ()

@@ -1,5 +1,5 @@
-"""What a data set of LeRobot says of each feature, so that policies scale what they see: min, max,
-mean, std, count and five quantiles, of each episode and of all.
+"""Statistics of a data set of LeRobot, by which policies scale what they see: min, max, mean, std,
+count and five quantiles of each feature, of each episode and of all.
 
 Rules: pure. Numbers are taken one by one of a vector; pictures by channel, from 0 to 1, of some
 frames that are made small.
