@@ -78,7 +78,7 @@ UPWARD: set[tuple[str, str]] = set()
 # the kit asks for it by name.
 BROUGHT = {
     *((f"peers/{name}/middleware.py", "kits.wrap") for name in PEERS),
-    ("peers/ros/method_service.py", "kits.wrap"),
+    ("peers/ros/service/method.py", "kits.wrap"),
     ("peers/zmq/broker.py", "kits.wrap"),
     ("peers/zmq/link.py", "kits.wrap"),
     ("peers/ros/robot.py", "kits.sim"),
@@ -100,7 +100,7 @@ PURE = ("wire/", "data/", "carriers/", "peers/ros/message/", "peers/ros2/message
 PURE_FILES = {
     *(f"peers/{name}/carrier.py" for name in PEERS),
     *(f"peers/mqtt/{name}.py" for name in ("broker", "packet", "session")),
-    *(f"peers/ros/{name}.py" for name in ("body", "greeting", "header", "service_carrier")),
+    *(f"peers/ros/{name}.py" for name in ("body", "greeting", "header", "service/carrier")),
     *("peers/ros2/body.py", "peers/zmq/zmtp.py"),
 }
 IMPURE_MODULES = {"socket", "threading", "asyncio", "time", "select", "selectors", "queue"}

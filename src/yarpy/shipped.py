@@ -100,7 +100,7 @@ CARRIERS: Final[Mapping[str, CarrierRow]] = _table(
     ),
     CarrierRow("ros2", f"{_PEERS}.ros2.carrier:Ros2", "ros2", reaches=TOPIC, over="ros2"),
     CarrierRow("zenoh", f"{_PEERS}.zenoh.carrier:Zenoh", "zenoh", reaches=TOPIC, over="zenoh"),
-    CarrierRow("rossrv", f"{_PEERS}.ros.service_carrier:RosSrv", "ros", reaches=SERVER),
+    CarrierRow("rossrv", f"{_PEERS}.ros.service.carrier:RosSrv", "ros", reaches=SERVER),
     CarrierRow(
         "tcpros",
         f"{_PEERS}.ros.carrier:TcpRos",
@@ -338,7 +338,7 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     "contents": _table(Row("application/x-thrift", f"{_KITS}.thrift.apache.body:Body")),
     # What messages of other systems are in recordings, by the encoding of their channel in MCAP.
     "encodings": _table(
-        Row("ros1", f"{_PEERS}.ros.recorded:reader"),
+        Row("ros1", f"{_PEERS}.ros.bag.recorded:reader"),
         Row("cdr", f"{_PEERS}.ros2.recorded:reader"),
     ),
     # What `yarpy check FILE` asks.

@@ -68,8 +68,8 @@ from yarpy.monitors.stock import png
 from yarpy.monitors.stock.zlib_limit import unpacked
 from yarpy.names.discovery import respond
 from yarpy.peers.mqtt.carrier import Mqtt, Reader
-from yarpy.peers.ros.bag_reader import BagReader
-from yarpy.peers.ros.bag_writer import BagWriter
+from yarpy.peers.ros.bag.reader import BagReader
+from yarpy.peers.ros.bag.writer import BagWriter
 from yarpy.peers.ros.header import LENGTH, encode_header
 from yarpy.peers.ros.message.library import Library
 from yarpy.peers.ros.message.native import to_value

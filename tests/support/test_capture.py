@@ -23,7 +23,7 @@ REPLAYS = [
     TESTS / "carriers" / "web" / "test_xmlrpc.py",
     TESTS / "interop" / "test_camera.py",
     TESTS / "peers" / "ros" / "test_carrier.py",
-    TESTS / "peers" / "ros" / "test_service_carrier.py",
+    TESTS / "peers" / "ros" / "service" / "test_carrier.py",
 ]
 # Groups and prefixes from which a replay takes every capture there is.
 WHOLE_GROUPS = {"administration", "telnet", "malformed"}

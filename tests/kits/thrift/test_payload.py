@@ -2,8 +2,8 @@
 
 from yarpy.data import codec
 from yarpy.data.bottle import Bottle
-from yarpy.kits.thrift.extent import version_ending
 from yarpy.kits.thrift.payload import Payload
+from yarpy.kits.thrift.wire.extent import version_ending
 from yarpy.wire.message import Packet
 
 

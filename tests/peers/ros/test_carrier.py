@@ -25,7 +25,7 @@ import yarpy
 from yarpy.errors import AccessRefused, DecodeError, RemoteProtocolError, YarpError
 from yarpy.peers.ros.carrier import TcpRos
 from yarpy.peers.ros.header import encode_header, parse_header
-from yarpy.peers.ros.service_carrier import RosSrv
+from yarpy.peers.ros.service.carrier import RosSrv
 from yarpy.route import UNDECLARED, Declared, Route
 from yarpy.testing import CarrierConformance, End
 from yarpy.wire.effects import HEAR, May

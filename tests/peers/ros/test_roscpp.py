@@ -12,8 +12,8 @@ from support.ros_graph import RosGraph
 from support.wait import HANG, wait_until
 
 import yarpy
-from yarpy.peers.ros.bag_reader import BagReader
-from yarpy.peers.ros.bag_writer import BagWriter
+from yarpy.peers.ros.bag.reader import BagReader
+from yarpy.peers.ros.bag.writer import BagWriter
 from yarpy.peers.ros.message.library import Library
 from yarpy.peers.ros.message.native import to_value
 from yarpy.peers.ros.message.source import Texts

@@ -25,13 +25,13 @@ from yarpy.errors import (
     Timeout,
     YarpError,
 )
-from yarpy.kits.thrift import reader
 from yarpy.kits.thrift.apache import client as apache
-from yarpy.kits.thrift.extent import is_version, version_ending
 from yarpy.kits.thrift.kind import BOOL, VOCAB, flat
 from yarpy.kits.thrift.method import Method
 from yarpy.kits.thrift.payload import FAILURE, VERSION, Payload
-from yarpy.kits.thrift.writer import FAIL
+from yarpy.kits.thrift.wire import reader
+from yarpy.kits.thrift.wire.extent import is_version, version_ending
+from yarpy.kits.thrift.wire.writer import FAIL
 
 _FAILED: Final = (LIST + VOCAB32, 1, FAIL)
 _HEAD: Final = Packing("<iii").unpack_from

@@ -21,9 +21,9 @@ from yarpy import registry
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import GROUP_MASK, LIST, STRING, VOCAB32, Buffer, Vocab
 from yarpy.errors import DecodeError, RemoteProtocolError, Timeout
-from yarpy.kits.thrift import reader, writer
 from yarpy.kits.thrift.kind import flat, is_struct, name_of
 from yarpy.kits.thrift.payload import Payload, many, word_at
+from yarpy.kits.thrift.wire import reader, writer
 from yarpy.log import logger
 
 log = logger("yarpy.idl")

@@ -23,8 +23,6 @@ from yarpy.data import codec
 from yarpy.data.value import LIST, STRING, VOCAB32, Buffer, vocab_code
 from yarpy.data.yarp4 import to_yarp3, to_yarp4
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift import fast_reader, fast_writer, reader
-from yarpy.kits.thrift.extent import Ending, ending_of
 from yarpy.kits.thrift.kind import (
     External,
     Kind,
@@ -37,6 +35,8 @@ from yarpy.kits.thrift.kind import (
     name_of,
 )
 from yarpy.kits.thrift.structure import _New
+from yarpy.kits.thrift.wire import fast_reader, fast_writer, reader
+from yarpy.kits.thrift.wire.extent import Ending, ending_of
 from yarpy.kits.thrift.word import SERVICE, original
 
 F = TypeVar("F", bound=Callable[..., Any])

@@ -12,7 +12,7 @@ from typing import Any
 from yarpy.data.bottle import Bottle
 from yarpy.data.value import Buffer
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift import reader
+from yarpy.kits.thrift.wire import reader
 
 #: the name of the service, of the method, and the arguments
 Observed = tuple[str, str, Bottle]

@@ -29,12 +29,12 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.failure import answer_of, error_of, mark, raised
 from yarpy.data.value import LIST, STRING, Int16, Vocab
 from yarpy.errors import DecodeError, LocalProtocolError, RemoteError, YarpError
-from yarpy.kits.thrift import reader
 from yarpy.kits.thrift.apache import serve
 from yarpy.kits.thrift.apache.message import Call
 from yarpy.kits.thrift.kind import namespace_of
 from yarpy.kits.thrift.method import Method, first_word
 from yarpy.kits.thrift.payload import FAILURE, VERSION, Payload, many
+from yarpy.kits.thrift.wire import reader
 from yarpy.log import logger
 
 log = logger("yarpy.idl")

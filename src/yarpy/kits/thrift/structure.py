@@ -23,7 +23,6 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.generated import Code
 from yarpy.data.value import Blocks, Buffer, Vocab
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift import fast_reader, fast_writer, reader
 from yarpy.kits.thrift.editor import Editor, editor_of
 from yarpy.kits.thrift.key import fingerprint
 from yarpy.kits.thrift.kind import (
@@ -45,6 +44,7 @@ from yarpy.kits.thrift.kind import (
     namespace_of,
     without_none,
 )
+from yarpy.kits.thrift.wire import fast_reader, fast_writer, reader
 from yarpy.kits.thrift.word import ERROR, STRUCT, original
 from yarpy.limit import THRIFT_VALUES
 

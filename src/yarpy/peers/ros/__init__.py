@@ -4,7 +4,7 @@
         chatter = node.publisher("/chatter", "std_msgs/String")
         chatter.write("hello")
 
-`node` is what programs use; `bag_reader` and `bag_writer` are for the files of rosbag. Ports whose
+`node` is what programs use; `bag/reader` and `bag/writer` are for the files of rosbag. Ports whose
 names are those of topics (`/chatter+@/talker`) belong to nodes as well; `membership` says how.
 """
 
@@ -27,8 +27,8 @@ __all__ = [
 _WHERE = {
     "ActionClient": "yarpy.peers.ros.action.client",
     "ActionServer": "yarpy.peers.ros.action.server",
-    "BagReader": "yarpy.peers.ros.bag_reader",
-    "BagWriter": "yarpy.peers.ros.bag_writer",
+    "BagReader": "yarpy.peers.ros.bag.reader",
+    "BagWriter": "yarpy.peers.ros.bag.writer",
     "Node": "yarpy.peers.ros.node",
     "Publisher": "yarpy.peers.ros.node",
     "Subscriber": "yarpy.peers.ros.node",
@@ -39,8 +39,8 @@ _WHERE = {
 if TYPE_CHECKING:
     from yarpy.peers.ros.action.client import ActionClient as ActionClient
     from yarpy.peers.ros.action.server import ActionServer as ActionServer
-    from yarpy.peers.ros.bag_reader import BagReader as BagReader
-    from yarpy.peers.ros.bag_writer import BagWriter as BagWriter
+    from yarpy.peers.ros.bag.reader import BagReader as BagReader
+    from yarpy.peers.ros.bag.writer import BagWriter as BagWriter
     from yarpy.peers.ros.node import Node as Node
     from yarpy.peers.ros.node import Publisher as Publisher
     from yarpy.peers.ros.node import Subscriber as Subscriber

@@ -114,7 +114,7 @@ class TcpRos(Carrier):
         stream.unread(len(first))
         self.fields = fields = yield from read_header(stream)
         if "service" in fields:
-            from yarpy.peers.ros.service_carrier import RosSrv
+            from yarpy.peers.ros.service.carrier import RosSrv
 
             route = self.route
             spec = route.spec.over(RosSrv.name)

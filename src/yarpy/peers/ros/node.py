@@ -34,7 +34,6 @@ from yarpy.names.base import NameClient
 from yarpy.names.node_name import PUBLISHER, SERVER, SUBSCRIBER, Category, NodeName
 from yarpy.peers.ros.arguments import expand, parse_arguments
 from yarpy.peers.ros.body import has_header
-from yarpy.peers.ros.calls import Calls
 from yarpy.peers.ros.carrier import TcpRos
 from yarpy.peers.ros.graph import GRAPH, GraphNode, join
 from yarpy.peers.ros.graph_name import master_type
@@ -45,6 +44,7 @@ from yarpy.peers.ros.message.message import Message as RosMessage
 from yarpy.peers.ros.message.message import Time
 from yarpy.peers.ros.role import RosRole, services, without_masters
 from yarpy.peers.ros.rosout import Rosout
+from yarpy.peers.ros.service.calls import Calls
 from yarpy.peers.ros.type_server import ask_type_server
 from yarpy.port.assembly import open_hub
 from yarpy.port.base import BasePort

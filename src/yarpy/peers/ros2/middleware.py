@@ -14,8 +14,8 @@ from yarpy.errors import LinkClosed, UnknownName, YarpError
 from yarpy.kits.wrap.middleware import Answer, Way
 from yarpy.kits.wrap.shape import Shape
 from yarpy.link.begin.handshake import find_carrier
-from yarpy.peers.ros.method_service import Service, Types, error_of, handled
 from yarpy.peers.ros.middleware import Reader, Writer, topic_of, type_of
+from yarpy.peers.ros.service.method import Service, Types, error_of, handled
 from yarpy.peers.ros2.carrier import GONE
 from yarpy.peers.ros2.message.library import default_library
 from yarpy.port.port import BufferedPort

@@ -165,7 +165,7 @@ def _interface(client: type[Any]) -> type[Interface]:
 
 def _class_of(each: Member) -> Any:
     from yarpy.kits.thrift.kind import External, Scalar, kind_of
-    from yarpy.kits.thrift.reader import class_of
+    from yarpy.kits.thrift.wire.reader import class_of
 
     annotation = each.results[0]
     try:

@@ -1,6 +1,6 @@
 """Values of kinds to the bytes of a protocol.
 
-Rules: TypeError and OverflowError begin with the path, as those of `yarpy.kits.thrift.writer`. A
+Rules: TypeError and OverflowError begin with the path, as those of `wire/writer.py`. A
 field that is None is left out, unless it is required. Unsigned types and vocabs go as the signed
 numbers of the same bits, an enum as an i32, sets and maps in sorted order where there is one.
 """
@@ -30,7 +30,16 @@ from yarpy.kits.thrift.kind import (
     SetOf,
     is_enum,
 )
-from yarpy.kits.thrift.writer import blob, numbers, payload, shown, sized, sorted_items, truth, word
+from yarpy.kits.thrift.wire.writer import (
+    blob,
+    numbers,
+    payload,
+    shown,
+    sized,
+    sorted_items,
+    truth,
+    word,
+)
 from yarpy.limit import THRIFT_LEVELS
 
 Writer: TypeAlias = BinaryWriter | CompactWriter

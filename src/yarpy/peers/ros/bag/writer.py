@@ -18,7 +18,7 @@ from typing import Any, Final, Literal, Self
 
 from yarpy.data.stamp import Stamp
 from yarpy.errors import LocalProtocolError, UnknownPlugin
-from yarpy.peers.ros.bag_reader import NEEDED
+from yarpy.peers.ros.bag.reader import NEEDED
 from yarpy.peers.ros.graph_name import check_graph_name
 from yarpy.peers.ros.message.library import default_library
 from yarpy.peers.ros.message.message import Message, Time

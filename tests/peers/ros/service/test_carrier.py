@@ -13,7 +13,7 @@ from yarpy.data.bottle import Bottle
 from yarpy.data.value import Vocab
 from yarpy.errors import AccessRefused, LocalProtocolError, RemoteProtocolError
 from yarpy.link.begin.handshake import asked_carrier
-from yarpy.peers.ros.service_carrier import RosSrv
+from yarpy.peers.ros.service.carrier import RosSrv
 from yarpy.route import UNDECLARED, Declared, Route, parse_carrier
 from yarpy.testing import CarrierConformance, End
 from yarpy.wire.effects import May

@@ -59,7 +59,7 @@ from yarpy.kits.thrift.kind import (
     is_enum,
     name_of,
 )
-from yarpy.kits.thrift.writer import FAIL
+from yarpy.kits.thrift.wire.writer import FAIL
 from yarpy.limit import THRIFT_LISTS, limits
 
 _I32: Final = Packing("<i").unpack_from

@@ -14,7 +14,7 @@ from yarpy.data.value import Float32, Int8, Int16, Int64, Vocab
 from yarpy.errors import DecodeError, Truncated
 from yarpy.kits.thrift import kind as kinds
 from yarpy.kits.thrift.kind import External, Kind, ListOf, MapOf, SetOf
-from yarpy.kits.thrift.reader import Cursor, get, pair, skip, spread
+from yarpy.kits.thrift.wire.reader import Cursor, get, pair, skip, spread
 
 
 def read(kind: Kind, *items: Any) -> Any:

@@ -14,7 +14,7 @@ from yarpy.kits import wrap
 from yarpy.kits.wrap.method import Method
 from yarpy.kits.wrap.middleware import Failure, Item, Way
 from yarpy.peers.ros.message.library import Library
-from yarpy.peers.ros.method_service import Service, Types, error_of, handled, topic_and_type
+from yarpy.peers.ros.service.method import Service, Types, error_of, handled, topic_and_type
 
 Picture = Annotated[np.ndarray, wrap.Image("bgr")]
 

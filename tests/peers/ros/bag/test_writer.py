@@ -13,8 +13,8 @@ from support.wait import HANG
 import yarpy
 from yarpy import idl
 from yarpy.errors import AddressError, LocalProtocolError, UnknownType
-from yarpy.peers.ros.bag_reader import BagReader, Topic
-from yarpy.peers.ros.bag_writer import BagWriter
+from yarpy.peers.ros.bag.reader import BagReader, Topic
+from yarpy.peers.ros.bag.writer import BagWriter
 from yarpy.peers.ros.message.message import Time
 from yarpy.peers.ros.node import Node
 

@@ -14,7 +14,7 @@ from yarpy import idl, record
 from yarpy.errors import DecodeError, UnknownType
 from yarpy.kits.record.mcap.layout import Channel, Other, Schema
 from yarpy.kits.record.mcap.writer import McapWriter
-from yarpy.peers.ros.recorded import reader
+from yarpy.peers.ros.bag.recorded import reader
 
 OWN = "Header header\nint32 x\nmy_msgs/In[] more\n" + "=" * 80 + "\nMSG: my_msgs/In\nstring word\n"
 

@@ -12,7 +12,7 @@ from yarpy.data.sig.vector import Vector
 from yarpy.data.value import Vocab
 from yarpy.kits.thrift import kind as kinds
 from yarpy.kits.thrift.kind import External, Kind, ListOf, MapOf, SetOf
-from yarpy.kits.thrift.writer import put
+from yarpy.kits.thrift.wire.writer import put
 from yarpy.limit import THRIFT_LISTS
 
 

@@ -14,7 +14,6 @@ from typing import Any, Final
 
 from yarpy.data.generated import Code
 from yarpy.data.value import LIST, Buffer
-from yarpy.kits.thrift import writer
 from yarpy.kits.thrift.kind import (
     BOOL,
     SIZE,
@@ -29,7 +28,8 @@ from yarpy.kits.thrift.kind import (
     is_struct,
     size_of,
 )
-from yarpy.kits.thrift.writer import FAIL, OK
+from yarpy.kits.thrift.wire import writer
+from yarpy.kits.thrift.wire.writer import FAIL, OK
 
 #: structs in a struct are written in the same function up to so many values of them
 INLINE: Final = 100

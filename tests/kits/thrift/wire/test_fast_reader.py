@@ -7,8 +7,8 @@ import pytest
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError
 from yarpy.kits.thrift import kind as kinds
-from yarpy.kits.thrift.fast_reader import load, load_struct, surplus
 from yarpy.kits.thrift.kind import ListOf, Part
+from yarpy.kits.thrift.wire.fast_reader import load, load_struct, surplus
 
 
 def test_missing_and_surplus_values() -> None:

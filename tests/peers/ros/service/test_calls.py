@@ -13,9 +13,9 @@ from support.wait import HANG, wait_until
 from yarpy import idl
 from yarpy.errors import LinkClosed, NoNameServer, Timeout
 from yarpy.link.begin import handshake
-from yarpy.peers.ros.calls import ENOUGH, LOOK, Calls
 from yarpy.peers.ros.master import RosMaster
 from yarpy.peers.ros.node import Node
+from yarpy.peers.ros.service.calls import ENOUGH, LOOK, Calls
 
 TRIGGER: Any = idl.load("std_srvs/Trigger")
 
@@ -145,7 +145,7 @@ def test_waiting_for_a_service_asks_the_master_now_and_then(
             asked.append(timeout)
             return "there" if len(asked) == 4 else None
 
-    monkeypatch.setattr("yarpy.peers.ros.calls.time.sleep", slept.append)
+    monkeypatch.setattr("yarpy.peers.ros.service.calls.time.sleep", slept.append)
     calls = Calls("/waiting", Master("http://127.0.0.1:1/"))
     assert calls.wait("/any", None)
     assert slept == [LOOK] * 3

@@ -11,8 +11,8 @@ from support.thrift import CALLS
 from yarpy.data.bottle import Bottle
 from yarpy.errors import DecodeError
 from yarpy.kits.thrift import kind as kinds
-from yarpy.kits.thrift.extent import Extent, ending_of, version_ending
 from yarpy.kits.thrift.kind import ListOf, MapOf
+from yarpy.kits.thrift.wire.extent import Extent, ending_of, version_ending
 
 FAILED = bytes.fromhex("09010000010000006661696c")
 
@@ -62,8 +62,8 @@ def test_who_needs_it(capt: ModuleType) -> None:
 @settings(max_examples=200)
 @given(st.lists(st.lists(st.lists(st.text(max_size=3), max_size=3), max_size=3), max_size=3))
 def test_any_depth(items: Any) -> None:
-    from yarpy.kits.thrift.fast_writer import dump
     from yarpy.kits.thrift.kind import Part
+    from yarpy.kits.thrift.wire.fast_writer import dump
 
     kind = ListOf(ListOf(ListOf(kinds.TEXT)))
     data = dump("v", [Part("", kind)], b"\0\1\0\0\1\0\0\0")(items)

@@ -13,9 +13,9 @@ from support.ros import PYTHON
 
 from yarpy import idl
 from yarpy.errors import DecodeError, UnknownName, UnknownPlugin
-from yarpy.peers.ros import bag_reader
-from yarpy.peers.ros.bag_reader import BagReader, Recorded, Topic
-from yarpy.peers.ros.bag_writer import BagWriter
+from yarpy.peers.ros.bag import reader as bag_reader
+from yarpy.peers.ros.bag.reader import BagReader, Recorded, Topic
+from yarpy.peers.ros.bag.writer import BagWriter
 from yarpy.peers.ros.message.message import Time
 
 THEIRS = """

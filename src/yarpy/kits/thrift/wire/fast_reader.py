@@ -14,7 +14,6 @@ from typing import Any, Final, Protocol
 from yarpy.data.generated import Code
 from yarpy.data.value import LIST, Buffer, Vocab
 from yarpy.errors import DecodeError
-from yarpy.kits.thrift import reader
 from yarpy.kits.thrift.kind import (
     BOOL,
     SIZE,
@@ -30,7 +29,8 @@ from yarpy.kits.thrift.kind import (
     is_struct,
     size_of,
 )
-from yarpy.kits.thrift.writer import FAIL, OK
+from yarpy.kits.thrift.wire import reader
+from yarpy.kits.thrift.wire.writer import FAIL, OK
 
 #: structs in a struct are read in the same function up to so many values of them
 _INLINE: Final = 100

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from yarpy.kits.thrift import kind as kinds
-from yarpy.kits.thrift.fast_reader import load
-from yarpy.kits.thrift.fast_writer import dump, slow_dump
 from yarpy.kits.thrift.kind import ListOf, MapOf, Part
+from yarpy.kits.thrift.wire.fast_reader import load
+from yarpy.kits.thrift.wire.fast_writer import dump, slow_dump
 
 i32 = st.integers(-(1 << 31), (1 << 31) - 1)
 texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=5)
