@@ -483,9 +483,14 @@ def test_works_without_numpy():
 
 
 @pytest.mark.parametrize(
-    "value", [[1, 2, 3], [1.5, -2.5], [Int8(1)] * 9, [Int16(7)] * 3, [Int64(1)] * 2], ids=str
+    "value",
+    [
+        *([1, 2, 3], [1.5, -2.5], [Int8(1)] * 9, [Int16(7)] * 3, [Int64(1)] * 2),
+        *(["one word"], ["several", "", "words"], [Vocab("ok")], [Vocab("ok"), Vocab("set")]),
+    ],
+    ids=str,
 )
-def test_what_a_list_of_numbers_takes_is_known_at_once(value: list[object]) -> None:
+def test_what_a_list_of_one_kind_takes_is_known_at_once(value: list[object]) -> None:
     message = b"".join(codec.encode(value))
     found = codec.decode_leading(message + b"next")
     assert found is not None

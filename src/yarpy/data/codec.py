@@ -47,6 +47,7 @@ from yarpy.data.value import (
     FLOAT64,
     GROUP_MASK,
     LIST,
+    STRING,
     VOCAB32,
     Blocks,
     Buffer,
@@ -80,6 +81,7 @@ _read_i32 = Struct("<i").unpack_from
 _MAT: Final = 0x0074616D
 _KEY: Final = description.KEY.encode()
 _EMPTY: Final = Struct("<ii").pack(LIST, 0)
+_READ_SMALL: Final = (LIST, LIST + STRING)
 LISTS: Final = frozenset((list, tuple, Bottle))  # what `list_blocks` encodes, with a step less
 _BYTES: Final = frozenset((bytes, bytearray, memoryview))
 _OWN_TEXT: Final = (list, tuple, dict, Stamp, str, int, float, bytes)
@@ -234,7 +236,7 @@ def decode(view: Buffer) -> Any:
                     return Sound.from_wire(view)
         elif count and (code == LIST + FLOAT64 or code == LIST + FLOAT32):
             return Vector.from_wire(view)
-        if code == LIST and len(view) <= SMALL:  # as nearly always, with a step less
+        if code in _READ_SMALL and len(view) <= SMALL:  # as nearly always, with a step less
             small = view if type(view) is bytes else bytes(view)
             return read_small(Bottle, Property.from_bottle, small, Numbers.over)[0]
         return read_bottle(view)
@@ -258,7 +260,7 @@ def _decode_older(view: Buffer) -> Any:
 def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
     """The natural value of the message that `buffer` begins with, and the bytes it takes.
 
-    None if it is incomplete, or is not of the usual kinds: lists, those of numbers, single values.
+    None if it is incomplete, or is not of the usual kinds: lists, those of one kind, single values.
     """
     if not 12 <= len(buffer) <= SMALL:
         return None
@@ -266,7 +268,7 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
     if code - LIST in KEPT and count > 0:  # numbers alone, whose length their count says
         end = 8 + count * FIXED[code - LIST][1]
         return (decode(buffer[:end]), end) if 12 <= end <= len(buffer) else None
-    if code != LIST or count == 4:  # four elements may be an Image or a Sound
+    if code == LIST and count == 4:  # which may be an Image or a Sound
         return None
     if len(buffer) >= description.SMALLEST and buffer.find(_KEY) >= 0:
         return None  # perhaps a description; `in` would try to make a number of the key first
@@ -274,7 +276,7 @@ def decode_leading(buffer: bytes) -> tuple[Any, int] | None:
         found = read_small(Bottle, Property.from_bottle, buffer)
     except DecodeError:
         return None
-    if count != 1 or _read_i32(buffer, 8)[0] & GROUP_MASK:
+    if code != LIST or count != 1 or _read_i32(buffer, 8)[0] & GROUP_MASK:
         return found
     return found[0][0], found[1]
 
