@@ -95,7 +95,11 @@ class World:
         if message is None:
             return
         life.got += 1
-        writer, stream, number, *_ = message.value
+        value = message.value
+        if len(value) != 4:
+            self.fail(f"{life.slot.name}: {value!r} from {message.source}, which nobody wrote")
+            return
+        writer, stream, number, _ = value
         key = (f"{life.slot.name}.{life.number}.{reader}", f"{writer}.{stream}")
         with self.seeing:
             before = self.seen.get(key, -1)
