@@ -20,7 +20,8 @@ Form: TypeAlias = Literal["stamp", "none", "text"]
 
 SECOND: Final = 1_000_000_000  # nanoseconds
 LENGTH: Final = Struct("<I")  # of the text in front of a message
-_STAMP: Final = re.compile(r"(\d{1,10}) (\d{1,11})(?:\.(\d{1,9}))?", re.ASCII)
+# As `stamp_text` writes them: no zero more than it takes.
+_STAMP: Final = re.compile(r"(0|[1-9]\d{0,9}) (0|[1-9]\d{0,10})(?:\.(\d{0,8}[1-9]))?", re.ASCII)
 _LAST_COUNT: Final = (1 << 32) - 1
 _LAST_TIME: Final = (1 << 64) - 1
 
@@ -35,8 +36,8 @@ def fields_of(envelope: str, received: int, number: int) -> tuple[Form, int, int
     match = _STAMP.fullmatch(envelope)
     if match is not None:
         count = int(match[1])
-        sent = int(match[2]) * SECOND + int((match[3] or "").ljust(9, "0"))
-        if count <= _LAST_COUNT and sent <= _LAST_TIME and stamp_text(count, sent) == envelope:
+        sent = int(match[2] + (match[3] or "").ljust(9, "0"))
+        if count <= _LAST_COUNT and sent <= _LAST_TIME:
             return "stamp", count, sent
     try:
         stamp = Stamp.from_text(envelope)

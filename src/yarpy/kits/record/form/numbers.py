@@ -5,6 +5,7 @@ Rules: pure. A vector or matrix of float64 is there once, all others a second ti
 
 from __future__ import annotations
 
+import struct
 from struct import Struct
 from typing import Final
 
@@ -62,5 +63,6 @@ def _split(payload: Bytes, start: int, count: int) -> Spelled:
 
 def numbers(values: tuple[float, ...], payload: Bytes) -> Spelled:
     """Return a message of any numbers."""
-    doubles = Struct(f"<{len(values)}d").pack(*values)
-    return Spelled(NUMBERS, _head(len(values)) + doubles, b"", payload)
+    count = len(values)
+    front = struct.pack(f"{CDR_HEAD.format}{count}d", 0, 1, 0, 0, 0, count, *values)
+    return Spelled(NUMBERS, front, b"", payload)

@@ -7,10 +7,10 @@ https://mcap.dev/spec.
 
 from __future__ import annotations
 
-import zlib
 from struct import Struct
 from typing import Final, NamedTuple
 
+from yarpy.kits.record.mcap.checksum import crc32
 from yarpy.kits.record.mcap.layout import HEAD, Bytes, Cursor, Damaged
 from yarpy.limit import RECORDED_CHUNK, RECORDED_TEXT
 
@@ -46,6 +46,6 @@ def content_of(found: Attachment, body: bytes) -> bytes:
     """Return what is in an attachment, whose record is `body`. Raises Damaged if it has changed."""
     content = body[found.length - found.size - _CHECKSUM.size : -_CHECKSUM.size]
     (checksum,) = _CHECKSUM.unpack(body[-_CHECKSUM.size :])
-    if checksum and zlib.crc32(body[: -_CHECKSUM.size]) != checksum:
+    if checksum and crc32(body[: -_CHECKSUM.size]) != checksum:
         raise Damaged(found.place, f'the attachment "{found.name}" has changed')
     return content

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 import sys
-import zlib
 from array import array
 from collections.abc import Iterator
 from struct import Struct
@@ -26,6 +25,7 @@ from yarpy.kits.record.mcap.attachment import (
     content_of,
     parse_attachment,
 )
+from yarpy.kits.record.mcap.checksum import crc32
 from yarpy.kits.record.mcap.layout import (
     ATTACHMENT,
     CHANNEL,
@@ -176,7 +176,7 @@ def _summary(window: Window) -> Index | None:
         raise Damaged(place, f"the summary is said to begin at byte {start}")
     data = window.at(start, place - start)
     signed = _SIGNED.pack(FOOTER, FOOTER_BODY.size, start, offsets)
-    if checksum and zlib.crc32(signed, zlib.crc32(data)) != checksum:
+    if checksum and crc32(signed, crc32(data)) != checksum:
         raise Damaged(start, "the summary has changed: its checksum is another one")
     index = Index()
     counted = False

@@ -11,12 +11,12 @@ not fit is a Damaged, which says at which byte.
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Callable
 from struct import Struct, error
 from typing import Final, NamedTuple, TypeAlias
 
 from yarpy.errors import DecodeError, UnknownPlugin
+from yarpy.kits.record.mcap.checksum import crc32
 from yarpy.limit import RECORDED_CHUNK, RECORDED_TEXT
 
 Bytes: TypeAlias = bytes | bytearray | memoryview
@@ -208,7 +208,7 @@ def unpacked(head: ChunkHead, packed: Bytes, place: int) -> Bytes:
         raise Damaged(place, f"a chunk with the unknown compression {head.compression[:20]!r}")
     if len(data) != head.size:
         raise Damaged(place, f"a chunk has {len(data)} bytes instead of {head.size}")
-    if head.checksum and zlib.crc32(data) != head.checksum:
+    if head.checksum and crc32(data) != head.checksum:
         raise Damaged(place, "a chunk whose bytes have changed: its checksum is another one")
     return data
 

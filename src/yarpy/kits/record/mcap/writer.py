@@ -19,7 +19,6 @@ import io
 import json
 import os
 import time
-import zlib
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -32,6 +31,7 @@ from yarpy.kits.record.envelope import LENGTH, fields_of
 from yarpy.kits.record.form.form import FORM, Form
 from yarpy.kits.record.form.spell import Spell
 from yarpy.kits.record.kind import kind_of
+from yarpy.kits.record.mcap.checksum import crc32
 from yarpy.kits.record.mcap.layout import MAGIC, MESSAGE, WHOLE_MESSAGE, Bytes, Other
 from yarpy.kits.record.mcap.pieces import compressor, joined, write_all
 from yarpy.limit import RECORDED_CHUNK
@@ -43,6 +43,7 @@ ENCODING: Final = "yarp"  # of messages
 _NOTE: Final = Form("", "json", "yarpy.Note", "", b"")
 _CHANNELS: Final = 0xFFFF
 _ENTRY: Final = Struct("<QQ")
+_NEVER: Final = (1 << 64) - 1  # a time
 
 
 class McapWriter:
@@ -97,7 +98,7 @@ class McapWriter:
     def _begin_chunk(self) -> None:
         self._parts: list[Bytes] = []
         self._chunk_size = 0
-        self._chunk_span: tuple[int, int] | None = None
+        self._first, self._last = _NEVER, 0  # receipt
         self._entries: dict[int, bytearray] = {}
 
     @property
@@ -170,18 +171,13 @@ class McapWriter:
         if entries is None:
             entries = self._entries[channel] = bytearray()
         entries += _ENTRY.pack(received, self._chunk_size)
-        self._parts.append(
-            WHOLE_MESSAGE.pack(MESSAGE, size + 22, channel, sequence, received, sent)
-        )
-        self._parts += parts
+        head = WHOLE_MESSAGE.pack(MESSAGE, size + 22, channel, sequence, received, sent)
+        self._parts += (head, *parts)
         self._chunk_size += whole
-        span = self._chunk_span
-        self._chunk_span = (
-            (received, received)
-            if span is None
-            else (min(span[0], received), max(span[1], received))
-        )
-        self._counts[channel] = self._counts.get(channel, 0) + 1
+        if received > self._last:
+            self._last = received
+        if received < self._first:
+            self._first = received
         self.messages += 1
         if self._chunk_size >= CHUNK_SIZE:
             self._end_chunk()
@@ -253,15 +249,15 @@ class McapWriter:
             getattr(os, "fdatasync", os.fsync)(self._file.fileno())
 
     def _end_chunk(self) -> None:
-        span, size = self._chunk_span, self._chunk_size
-        if span is None:
+        span, size, entries = (self._first, self._last), self._chunk_size, self._entries
+        if not entries:
             return  # at most descriptions, which wait for the first message
         parts = joined(self._parts)
-        entries, messages = self._entries, sum(map(len, self._entries.values())) // _ENTRY.size
+        counts = {channel: len(listed) // _ENTRY.size for channel, listed in entries.items()}
         self._begin_chunk()
         checksum = 0
         for part in parts:
-            checksum = zlib.crc32(part, checksum)
+            checksum = crc32(part, checksum)
         packed = size
         if self._compress is not None:
             parts = [self._compress(b"".join(parts))]
@@ -285,10 +281,10 @@ class McapWriter:
         try:
             self._append([head, *parts, b"".join(indexes)])
         except OSError:
-            self.messages -= messages
-            for channel, listed in entries.items():
-                self._counts[channel] -= len(listed) // _ENTRY.size
+            self.messages -= sum(counts.values())
             raise
+        for channel, count in counts.items():
+            self._counts[channel] = self._counts.get(channel, 0) + count
         self._span = (
             (min(self._span[0], span[0]), max(self._span[1], span[1])) if self._chunks else span
         )
@@ -377,7 +373,7 @@ class McapWriter:
         whole = [*(data for _, data in groups), *offsets]
         checksum = 0
         for part in (*whole, Struct("<BQQQ").pack(2, 20, start, place)):
-            checksum = zlib.crc32(part, checksum)
+            checksum = crc32(part, checksum)
         footer = records.Footer(
             summary_start=start, summary_offset_start=place, summary_crc=checksum
         )
