@@ -23,8 +23,9 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 CORE = (
     *("data/codec", "data/reader", "data/walker", "data/writer"),
-    *("wire/aside_stream", "wire/framing", "wire/lending_stream", "wire/shared_stream"),
-    *("wire/stream", "link/byte_driver", "link/counter", "link/driver", "link/object_driver"),
+    *("wire/aside_stream", "wire/frame_stream", "wire/framing", "wire/lending_stream"),
+    *("wire/shared_stream", "wire/stream"),
+    *("link/byte_driver", "link/counter", "link/driver", "link/object_driver"),
     *("link/receive/receiver", "link/receive/turn"),
     *(
         "link/send/backlog",

@@ -93,13 +93,14 @@ class Row:
 class CarrierRow(Row):
     """A carrier. `magic`: the ways in which connections of it may begin; of their bits only those
     in `mask` count, if there is one. What begins so may still be another carrier's: the class
-    decides."""
+    decides. `subprotocol`: of a WebSocket in whose frames it may come, too."""
 
     magic: tuple[bytes, ...] = ()
     mask: bytes = b""
     push: bool = True
     reaches: Reach = PORT
     over: str = ""
+    subprotocol: str = ""
 
     def may_begin(self, first: bytes) -> bool:
         """Return whether these eight bytes may begin a connection of it."""
@@ -117,6 +118,7 @@ class CarrierRow(Row):
             push=bool(plugin.push),
             reaches=plugin.reaches,
             over=plugin.over,
+            subprotocol=plugin.subprotocol,
         )
 
 

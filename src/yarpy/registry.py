@@ -142,6 +142,15 @@ class CarrierRegistry(Registry[CarrierRow]):
                 pass  # whoever loads it is told
         return row or CarrierRow(name)
 
+    def subprotocol(self, offered: Iterable[str]) -> str | None:
+        """Return the name of the carrier that may come in a WebSocket with one of these
+        subprotocols, or None."""
+        wanted = set(offered)
+        return next(
+            (name for name in self.names() if wanted and self.facts(name).subprotocol in wanted),
+            None,
+        )
+
     def beginning(self, first: bytes) -> Iterator[Any]:
         """Yield every carrier that a connection with these first eight bytes may be of, ours first;
         nothing else is imported. Strangers are asked where ours are not certain."""

@@ -97,6 +97,7 @@ CARRIERS: Final[Mapping[str, CarrierRow]] = _table(
         f"{_PEERS}.mqtt.carrier:Mqtt",
         magic=(b"\x10",),
         reaches=Reach(BROKER.what, number=1883, number_tls=8883),
+        subprotocol="mqtt",
     ),
     CarrierRow("ros2", f"{_PEERS}.ros2.carrier:Ros2", "ros2", reaches=TOPIC, over="ros2"),
     CarrierRow("zenoh", f"{_PEERS}.zenoh.carrier:Zenoh", "zenoh", reaches=TOPIC, over="zenoh"),

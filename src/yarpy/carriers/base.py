@@ -102,6 +102,8 @@ class Carrier:
     reaches: ClassVar[Reach] = PORT  # what is at the other end of one that we dial
     words: ClassVar[tuple[str, ...] | None] = None  # what may be added to its name; None: anything
     over: ClassVar[str] = ""  # the transport of its messages, if they leave where it has greeted
+    # Of a WebSocket in whose frames it may come, too; it then writes by `stream.write` alone.
+    subprotocol: ClassVar[str] = ""
     # What a peer that we have dialled wants to hear, and how often, in seconds; 0: never.
     ping: tuple[bytes, float] = (b"", 0.0)
     delivery: Delivery = Delivery()

@@ -20,6 +20,7 @@ from yarpy.link.driver import Driver, is_foreign, link_error
 from yarpy.link.ending import NOW
 from yarpy.transports.base import MSG_DONTWAIT, SocketTransport, Transport
 from yarpy.wire.aside_stream import AsideStream
+from yarpy.wire.frame_stream import FrameStream
 from yarpy.wire.stream import Buffer, ByteStream
 
 SOON: Final = 200e-6
@@ -41,6 +42,8 @@ class ByteDriver(Driver):
         super().__init__(transport, stream)
         self._beside = stream if isinstance(stream, AsideStream) else None
         self._plain = type(stream) is ByteStream  # its calls may be spelled out
+        if isinstance(stream, FrameStream):
+            self.whole = False  # what is inside the frames is found in many steps
         system = transport if isinstance(transport, SocketTransport) else None
         self._recv = None if system is None else system.recv_call
         self._send = system.send_call if system is not None and MSG_DONTWAIT else None

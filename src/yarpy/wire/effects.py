@@ -34,7 +34,8 @@ class Open(Effect):
 
 @dataclass(frozen=True, slots=True)
 class Switch(Effect):
-    """Leave TCP: from here on this connection's bytes move by `handle`, buffered in `stream`."""
+    """Leave TCP: from here on this connection's bytes move by `handle`, buffered in `stream`. With
+    None they stay where they are, and pass through `stream` alone."""
 
     handle: Any
     stream: ByteStream

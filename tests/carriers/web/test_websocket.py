@@ -303,13 +303,19 @@ def test_other_origins(monkeypatch: pytest.MonkeyPatch) -> None:
         ("", "http://h:1", "", "", True),
         ("*", "http://bad", "", "", True),
         ("", "http://h.evil.test", "&read", "127.0.0.1", False),  # a name that points to us
+        ("", "http://bad", "&read mqtt", "", False),
+        ("", "http://h:1", " mqtt", "", True),
     ):
         monkeypatch.setenv("YARPY_WEB_ORIGINS", setting)
         end, carrier = End(), WebSocket(Route("", "/p", "websocket", 0, host))
         ws = WSConnection(ConnectionType.CLIENT)
         headers = [(b"Origin", origin.encode())]
         name = "h.evil.test" if host else "h:1"
-        request = ws.send(Request(host=name, target=f"/?ws{options}", extra_headers=headers))
+        wished, _, guest = options.partition(" ")
+        offered = [guest] if guest else []
+        target = f"/?ws{wished}"
+        said = Request(host=name, target=target, subprotocols=offered, extra_headers=headers)
+        request = ws.send(said)
         end.begin(carrier.welcome(end.stream, request[:8]))
         end.feed(request[8:])
         ws.receive_data(end.take())

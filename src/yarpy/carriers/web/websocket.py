@@ -3,6 +3,7 @@
     new WebSocket("ws://host:port/?ws")                     port commands and binary Bottles, as C++
     new WebSocket("ws://host:port/?ws", "yarp.json")        each text frame is a message in JSON
     new WebSocket("ws://host:port/?ws&read", "yarp.json")   everything that the port writes, as JSON
+    new WebSocket("ws://host:port/", "mqtt")                the protocol of another carrier
 
 Rules: in binary, the payloads of all frames form one byte stream, as on a unix_stream connection;
 each outgoing block is a frame. In JSON each frame is a message or a reply; `&admin` sends them to
@@ -14,23 +15,36 @@ pages may write. wsproto reads and writes the frames.
 
 from __future__ import annotations
 
-import os
-from base64 import b64encode
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, TypeVar
 
+from yarpy import registry
 from yarpy.carriers.base import OVER_TCP, Carrier, Delivery
 from yarpy.carriers.web.http.header import read_headers
 from yarpy.carriers.web.http.refusal import refuse, screen, screen_page
+from yarpy.carriers.web.http.token import claim
+from yarpy.carriers.web.upgrade import ask_for_websocket, grant_websocket
 from yarpy.data import codec
 from yarpy.data.json import from_json, to_json
 from yarpy.data.value import Vocab
-from yarpy.errors import DecodeError, LinkClosed, RemoteProtocolError
-from yarpy.facts import Reach
+from yarpy.errors import AccessRefused, DecodeError, LinkClosed, RemoteProtocolError
+from yarpy.facts import MAGIC_SIZE, Reach
 from yarpy.limit import HTTP_LINE, WEBSOCKET_TEXT
 from yarpy.route import Route
 from yarpy.wire import framing
-from yarpy.wire.effects import HEAR
+from yarpy.wire.effects import HEAR, Switch
+from yarpy.wire.frame_stream import (
+    BINARY,
+    CLOSE,
+    CONTINUATION,
+    PING,
+    PONG,
+    PROTOCOL_ERROR,
+    TEXT,
+    FrameStream,
+    frame,
+)
 from yarpy.wire.message import ADMIN, CALL, QUIT, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
@@ -41,14 +55,6 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 JSON: Final = "yarp.json"
-_CONTINUATION = 0x0
-_TEXT = 0x1
-_BINARY = 0x2
-_CLOSE = 0x8
-_PING = 0x9
-_PONG = 0xA
-_PROTOCOL_ERROR = (1002).to_bytes(2, "big")
-_NO_MASK = bytes(4)  # a mask that changes nothing: there is no proxy to protect from us
 
 
 class WebSocket(Carrier):
@@ -80,60 +86,51 @@ class WebSocket(Carrier):
     # -- beginning --------------------------------------------------------------------------------
 
     def greet(self, stream: ByteStream) -> Steps[None]:
-        from wsproto.utilities import generate_accept_token
-
-        route = self.route
-        key = b64encode(os.urandom(16))
-        host = f"[{route.host}]" if ":" in route.host else route.host
-        stream.write(
-            f"GET /?ws HTTP/1.1\r\nHost: {host}:{route.port}\r\nUpgrade: websocket\r\n"
-            f"Connection: Upgrade\r\nSec-WebSocket-Key: {key.decode()}\r\n"
-            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: yarp\r\n\r\n".encode()
-        )
-        line = yield from stream.read_line(HTTP_LINE)
-        headers = yield from read_headers(stream)
-        accepted = generate_accept_token(key)
-        if (
-            line.split()[1:2] != [b"101"]
-            or headers.get("sec-websocket-accept") != accepted.decode()
-        ):
-            text = line[:80].decode("utf-8", "replace")
-            raise RemoteProtocolError(f'the peer offers no WebSocket; it answered "{text}"')
+        yield from ask_for_websocket(stream, self.route, "/?ws", "yarp")
         self._masks = True
         self._begin(stream)
 
-    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
-        from wsproto.utilities import generate_accept_token
-
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[Carrier | None]:
         line = yield from stream.read_line(HTTP_LINE)
         headers = yield from read_headers(stream)
         self.route.source = "web"
-        wished = line.decode("latin-1").partition(" ")[0]
-        options = wished.split("&")
+        target = (first + line).decode("latin-1").split(" ")[1]
+        offered = headers.get("sec-websocket-protocol", "").replace(",", " ").split()
+        guest = registry.carriers.subprotocol(offered)
+        if guest is not None:
+            return (yield from self._hand_over(stream, headers, target, guest))
+        options = target.removeprefix("/?ws").split("&")
         self.push = "read" not in options
         self._key = ADMIN if "admin" in options else CALL
         self.enveloped = "envelope" in options
         self.pixels = "pixels" in options
-        key = headers.get("sec-websocket-key", "")
-        known = headers.get("sec-websocket-version", "13") == "13"
-        if not (key and known and "websocket" in headers.get("upgrade", "").lower()):
-            more = [("Upgrade", "websocket"), ("Sec-WebSocket-Version", "13")]
-            yield from refuse(stream, 426, "this address is for WebSockets", more)
         yield from screen_page(stream, headers, self.route, acts=self.push)
         right = HEAR if not self.push else "write" if self._key == CALL else "ask"
-        yield from screen(stream, f"/?ws{wished}", headers, right)
-        offered = headers.get("sec-websocket-protocol", "").replace(",", " ").split()
+        yield from screen(stream, target, headers, right)
         self.json = JSON in offered
-        answer = (
-            "HTTP/1.1 101 Switching Protocols\r\nUpgrade: WebSocket\r\nConnection: Upgrade\r\n"
-            f"Sec-WebSocket-Accept: {generate_accept_token(key.encode('latin-1')).decode()}\r\n"
-        )
-        if offered:
-            answer += f"Sec-WebSocket-Protocol: {JSON if self.json else offered[0]}\r\n"
-        stream.write(answer.encode("latin-1") + b"\r\n")
+        chosen = JSON if self.json else offered[0] if offered else ""
+        yield from grant_websocket(stream, headers, chosen)
         self.delivery = replace(self.delivery, lossy=True)
         self._page = True
         self._begin(stream)
+        return None
+
+    def _hand_over(
+        self, stream: ByteStream, headers: Mapping[str, str], target: str, guest: str
+    ) -> Steps[Carrier]:
+        """Return the carrier whose bytes come in the frames of this page or program."""
+        kind: type[Carrier] = registry.carriers.load(guest)
+        yield from screen_page(stream, headers, self.route, acts=True)
+        shown = yield from claim(target, headers)
+        if shown.refusal:
+            yield from refuse(stream, 403, shown.refusal, error=AccessRefused)
+        yield from grant_websocket(stream, headers, kind.subprotocol)
+        inside = FrameStream(stream, masks=False)
+        yield Switch(None, inside)
+        first = bytes((yield from inside.read_exact(MAGIC_SIZE)))
+        if not kind.recognises(first):
+            raise RemoteProtocolError(f"a WebSocket for {kind.subprotocol} that begins otherwise")
+        return kind(self.route)
 
     def _begin(self, stream: ByteStream) -> None:
         from wsproto.frame_protocol import FrameDecoder
@@ -145,11 +142,11 @@ class WebSocket(Carrier):
 
     def encode(self, stream: ByteStream, packet: Packet) -> None:
         if self.json:
-            self._write(stream, _TEXT, self._as_json(packet))
+            self._write(stream, TEXT, self._as_json(packet))
             return
-        self._write(stream, _BINARY, framing.encode_command(packet.key, packet.envelope))
+        self._write(stream, BINARY, framing.encode_command(packet.key, packet.envelope))
         for block in packet.blocks:
-            self._write(stream, _BINARY, block)
+            self._write(stream, BINARY, block)
 
     def prepare(self, packet: Packet) -> bool:
         if self.json:
@@ -170,15 +167,15 @@ class WebSocket(Carrier):
 
     def encode_quit(self, stream: ByteStream) -> None:
         if self._masks:
-            self._write(stream, _BINARY, framing.encode_command("q"))
-        self._write(stream, _CLOSE, b"")
+            self._write(stream, BINARY, framing.encode_command("q"))
+        self._write(stream, CLOSE, b"")
 
     def encode_reply(self, stream: ByteStream, value: object) -> None:
         if self.json:
-            self._write(stream, _TEXT, to_json(value).encode())
+            self._write(stream, TEXT, to_json(value).encode())
             return
         for block in codec.encode(value):
-            self._write(stream, _BINARY, block)
+            self._write(stream, BINARY, block)
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         try:
@@ -227,7 +224,7 @@ class WebSocket(Carrier):
                 self._text += self._rest
                 self._rest = memoryview(b"")
                 if len(self._text) > min(WEBSOCKET_TEXT, stream.limit):
-                    self._write(stream, _CLOSE, (1009).to_bytes(2, "big"))
+                    self._write(stream, CLOSE, (1009).to_bytes(2, "big"))
                     raise RemoteProtocolError(f"a JSON message of more than {WEBSOCKET_TEXT} bytes")
             text, self._text = self._text, bytearray()
             try:
@@ -243,20 +240,7 @@ class WebSocket(Carrier):
     def _write(
         self, stream: ByteStream, kind: int, payload: bytes | bytearray | memoryview
     ) -> None:
-        size, mask = len(payload), 0x80 if self._masks else 0
-        head = bytes((0x80 | kind,))
-        if size < 126:
-            head += bytes((mask | size,))
-        elif size < 1 << 16:
-            head += bytes((mask | 126,)) + size.to_bytes(2, "big")
-        else:
-            head += bytes((mask | 127,)) + size.to_bytes(8, "big")
-        if mask:
-            head += _NO_MASK
-        if size < 1 << 12:
-            stream.write(head + payload)
-        else:
-            stream.write(head, payload)
+        stream.write(*frame(kind, self._masks, payload))
 
     def _through(self, stream: ByteStream, steps: Steps[T]) -> Steps[T]:
         """Run `steps`, which read the frames' payloads."""
@@ -286,30 +270,30 @@ class WebSocket(Carrier):
         assert frames is not None
         while True:
             try:
-                frame = frames.process_buffer()
+                found = frames.process_buffer()
             except ParseFailed as error:
-                self._write(stream, _CLOSE, _PROTOCOL_ERROR)
+                self._write(stream, CLOSE, PROTOCOL_ERROR)
                 raise RemoteProtocolError(f"a broken WebSocket frame: {error}") from error
-            if frame is None:
+            if found is None:
                 yield from stream.more(1)
                 frames.receive_bytes(bytes(stream.buffer[stream.head : stream.tail]))
                 stream.head = stream.tail
                 continue
-            payload = frame.payload
+            payload = found.payload
             assert isinstance(payload, bytes)
-            if frame.opcode == _CLOSE:
+            if found.opcode == CLOSE:
                 self._ended = True
-                self._write(stream, _CLOSE, payload[:2])
+                self._write(stream, CLOSE, payload[:2])
                 return True
-            elif frame.opcode in (_PING, _PONG):
-                if frame.opcode == _PING:
-                    self._write(stream, _PONG, payload)
+            elif found.opcode in (PING, PONG):
+                if found.opcode == PING:
+                    self._write(stream, PONG, payload)
                 if not (self._inside or self._begun):
                     stream.pause()
             else:
-                if (frame.opcode == _CONTINUATION) != self._inside:
-                    self._write(stream, _CLOSE, _PROTOCOL_ERROR)
+                if (found.opcode == CONTINUATION) != self._inside:
+                    self._write(stream, CLOSE, PROTOCOL_ERROR)
                     raise RemoteProtocolError("WebSocket frames of two messages are mixed")
                 self._rest = memoryview(payload)
-                self._inside = not (frame.frame_finished and frame.message_finished)
+                self._inside = not (found.frame_finished and found.message_finished)
                 return not self._inside

@@ -99,15 +99,19 @@ class Greeting:
         return self._group()
 
     def _move(self, move: Switch) -> None:
-        """Go on over another transport."""
+        """Go on over another transport, or through another stream."""
         old, handle = self.driver, move.handle
-        try:
-            handle.ready(_watch(old))
-        except BaseException:
-            handle.close()
-            raise
-        old.transport.close()
-        self.driver = driver_of(handle, stream=move.stream)
+        if handle is None:
+            self.driver = driver_of(old.transport, stream=move.stream)
+            self.driver.bytes_in, self.driver.bytes_out = old.bytes_in, old.bytes_out
+        else:
+            try:
+                handle.ready(_watch(old))
+            except BaseException:
+                handle.close()
+                raise
+            old.transport.close()
+            self.driver = driver_of(handle, stream=move.stream)
         self.driver.admission = old.admission
         self.driver.silence, self.driver.room = old.silence, old.room
         self.driver.rival = old.rival

@@ -3,7 +3,8 @@
 Rules: version 3.1.1, which every broker understands; 5 for questions and sessions, and with `+v5`.
 Sessions are clean, unless `+session.SECONDS` says for how long the broker keeps what comes while
 the port is away: then the port has the same name there each time. The broker is promised a sign of
-life within KEEP_ALIVE, or what it wishes instead; the port sends it (`ping`).
+life within KEEP_ALIVE, or what it wishes instead; the port sends it (`ping`). `+ws` comes in the
+frames of a WebSocket.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from zlib import crc32
 
 from yarpy.carriers.base import Limits, refuse_unknown
 from yarpy.carriers.payload import message_of, to_payload
+from yarpy.carriers.web.upgrade import ask_for_websocket
 from yarpy.data import codec
 from yarpy.data.value import Vocab
 from yarpy.errors import LocalProtocolError, LoginRefused, RemoteProtocolError
@@ -24,6 +26,8 @@ from yarpy.log import readable
 from yarpy.peers.mqtt import packet as mqtt
 from yarpy.peers.mqtt.session import BROKER, CLEAN, RPC, SESSION, WILL, MqttPeer
 from yarpy.route import CarrierSpec, Route
+from yarpy.wire.effects import Switch
+from yarpy.wire.frame_stream import BINARY, FrameStream, frame
 from yarpy.wire.message import CALL, SMALL, Message, Packet
 from yarpy.wire.steps import Steps
 from yarpy.wire.stream import Buffer, ByteStream
@@ -31,6 +35,7 @@ from yarpy.wire.stream import Buffer, ByteStream
 MOST_IN_FLIGHT: Final = 20  # messages with QoS 2 under way; of more, mosquitto loses some
 FOREVER: Final = 0xFFFFFFFF  # seconds of a session that never expires
 KEEP_ALIVE: Final = 60  # seconds of silence that we promise not to exceed
+WEBSOCKET: Final = "ws"
 _REFUSALS: Final = {
     1: "it does not speak version 3.1.1: say +v5",
     2: "it does not like the client's name",
@@ -43,7 +48,7 @@ _REFUSALS: Final = {
 }
 _WORDS: Final = (
     *("sub", RPC, "session.SECONDS", "qos.1", "qos.2", "retain", "will.TEXT"),
-    *("user.NAME", "password.WORD", "v5", "raw"),
+    *("user.NAME", "password.WORD", "v5", "raw", "ws", "ws.PATH"),
 )
 _LOGIN: Final = frozenset((4, 5, 0x86, 0x87))
 
@@ -89,6 +94,23 @@ class Client(MqttPeer):
     """A port that has dialled a broker."""
 
     ping = (mqtt.packet(mqtt.PINGREQ), KEEP_ALIVE / 2)
+
+    def _enter(self, stream: ByteStream) -> Steps[ByteStream]:
+        """Return the stream of what the broker says: that of the connection, or of what is in the
+        frames of a WebSocket."""
+        from urllib.parse import quote, unquote
+
+        path = self.route.spec.value(WEBSOCKET)
+        if path is None and WEBSOCKET not in self.route.spec.tokens:
+            return stream
+        path = quote(unquote(path or "/mqtt"))
+        if not path.startswith("/"):
+            path = f"/{path}"
+        yield from ask_for_websocket(stream, self.route, path, self.subprotocol)
+        inside = FrameStream(stream, masks=True)
+        self.ping = b"".join(frame(BINARY, True, self.ping[0])), self.ping[1]
+        yield Switch(None, inside)
+        return inside
 
     def _connect(self, stream: ByteStream) -> Steps[bool]:
         """Become a client of the broker; return whether it knows us from before."""
@@ -218,6 +240,7 @@ class Publisher(Client):
     def greet(self, stream: ByteStream) -> Steps[None]:
         self.acks = bool(self.qos)
         self._head = mqtt.string(self._one_topic())
+        stream = yield from self._enter(stream)
         retain = mqtt.RETAIN if "retain" in self.route.spec.tokens else 0
         self._first = mqtt.PUBLISH | (self.qos << 1) | retain
         yield from self._connect(stream)
@@ -276,6 +299,7 @@ class Subscriber(Client):
         topic = self._topic
         if not topic or len(topic) > MQTT_TOPIC:
             raise LocalProtocolError("the topic stands behind the broker: mqtt+sub://HOST/TOPIC")
+        stream = yield from self._enter(stream)
         known = yield from self._connect(stream)
         self._subscribe(stream, topic, self.qos)
         if known:  # what it has kept may come before its answer
@@ -308,6 +332,7 @@ class Asker(Client):
 
     def greet(self, stream: ByteStream) -> Steps[None]:
         self._topic = self._one_topic()
+        stream = yield from self._enter(stream)
         yield from self._connect(stream)
         self._subscribe(stream, self._answers, 1)  # answered before any question is
 

@@ -35,6 +35,7 @@ class MqttPeer(Carrier):
 
     name = "mqtt"
     magic = b""
+    subprotocol = "mqtt"
     reaches = Reach("broker", number=1883, number_tls=8883)
     acks = True
 

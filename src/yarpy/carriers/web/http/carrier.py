@@ -19,6 +19,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from yarpy import registry
 from yarpy.carriers.base import OVER_TCP, Carrier, Delivery, Limits
 from yarpy.carriers.web.http.client import ENVELOPE, HttpClient
 from yarpy.carriers.web.http.message import CONTINUE, LAST_CHUNK, chunk, next_event, two_lengths
@@ -38,6 +39,7 @@ from yarpy.carriers.web.http.response import (
     sent_on,
 )
 from yarpy.carriers.web.http.token import claim, cookie
+from yarpy.carriers.web.upgrade import offered_subprotocols
 from yarpy.errors import LinkClosed, LocalProtocolError, RemoteProtocolError, Timeout, YarpError
 from yarpy.facts import MAGIC_SIZE, Reach
 from yarpy.limit import HTTP_BODY, HTTP_HEAD
@@ -101,8 +103,9 @@ class Http(Carrier):
 
     # -- reading requests -------------------------------------------------------------------------
 
-    def welcome(self, stream: ByteStream, first: bytes) -> Steps[None]:
-        """Wait for the head of the first request, within the time limit of a greeting."""
+    def welcome(self, stream: ByteStream, first: bytes) -> Steps[Carrier | None]:
+        """Wait for the head of the first request, within the time limit of a greeting. One for a
+        WebSocket in which another carrier comes is the carrier `websocket`'s."""
         self.route.source = "web"
         stream.unread(len(first))
         try:
@@ -111,6 +114,11 @@ class Http(Carrier):
         except Timeout:
             self._respond(stream, LATE)
             raise
+        if registry.carriers.subprotocol(offered_subprotocols(stream)) is None:
+            return None
+        stream.head += len(first)
+        websocket: Carrier = registry.carriers.load("websocket")(self.route)
+        return websocket
 
     def decode(self, stream: ByteStream) -> Steps[Message]:
         while not self._finished:
