@@ -186,6 +186,7 @@ PEERS: dict[str, Callable[[], str]] = {
     "image_view": _files("/usr/lib/image_view/image_saver", package="ros-image-view"),
     "thrift": _made(thrift_venv.prepare),
     "torch": _torch,
+    "tsc": _programs("tsc", package="node-typescript"),
     "wrapyfi": _made(wrapyfi_venv.prepare),
     "wrapyfi_plugins": _made(wrapyfi_plugins_venv.ready),
     "wrk": _programs("wrk", package="wrk"),

@@ -1,12 +1,13 @@
 """`yarpy idl thrift`: Python for .thrift files.
 
     idl thrift FILE...              a Python module and its stubs for each .thrift file
+    idl thrift --gen ts FILE...     a module of TypeScript for each, and yarpy.ts, which they import
     idl thrift --check FILE...      whether they are right, and what is in them
 
 Files that a .thrift file includes are looked for beside it, then in the folders of --folder; they
 are written, too.
 
-Differs from C++ (yarpidl_thrift): Python is written, not C++.
+Differs from C++ (yarpidl_thrift): Python or TypeScript is written, not C++.
 Exit codes: 0 done; 1 not found, or wrong.
 """
 
@@ -21,9 +22,12 @@ from yarpy.cli.stderr import complain_of
 from yarpy.errors import YarpError
 
 
-@click.command(short_help="Write Python for .thrift files, or check them.")
+@click.command(short_help="Write Python or TypeScript for .thrift files, or check them.")
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @click.option("--check", is_flag=True, help="Write nothing, only say what is in them.")
+@click.option(
+    "--gen", type=click.Choice(("py", "ts")), default="py", help="The language to write (py)."
+)
 @click.option("--out", default=".", metavar="DIR", help="Where to write (here).")
 @click.option(
     "--folder",
@@ -33,20 +37,27 @@ from yarpy.errors import YarpError
     type=click.Path(exists=True, file_okay=False),
     help="A folder of files to include.",
 )
-def command(files: tuple[str, ...], check: bool, out: str, folders: tuple[str, ...]) -> int:
-    """Write a Python module and its stubs for .thrift files, or check them."""
+def command(
+    files: tuple[str, ...], check: bool, gen: str, out: str, folders: tuple[str, ...]
+) -> int:
+    """Write a Python module and its stubs for .thrift files, or one of TypeScript; or check them."""
     from yarpy.kits.thrift.interface import Interface, read_interface
     from yarpy.kits.thrift.module import python, stubs, summary
+    from yarpy.kits.thrift.typescript import RUNTIME, runtime, typescript
 
     places = [Path(folder) for folder in folders]
     found: dict[Path | None, Interface] = {}
-    texts: dict[str, tuple[str, str]] = {}
+    texts: dict[str, dict[str, str]] = {}  # of each module, by the names of its files
     wrong = 0
     for file in files:  # all are right before one is written
         try:
             all_ = read_interface(Path(file), places).all()
             for each in all_:
-                texts[each.module_name] = python(each), stubs(each)
+                name, module = each.module_name, python(each)
+                if gen == "ts":
+                    texts[name] = {f"{name}.ts": typescript(each)}
+                else:
+                    texts[name] = {f"{name}.py": module, f"{name}.pyi": stubs(each)}
         except (YarpError, OSError) as error:
             complain_of(error)
             wrong += 1
@@ -59,8 +70,10 @@ def command(files: tuple[str, ...], check: bool, out: str, folders: tuple[str, .
         return 1 if wrong else 0
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    for name, (module, stub) in texts.items():
-        (folder / f"{name}.py").write_text(module)
-        (folder / f"{name}.pyi").write_text(stub)
-        print_line(f"{folder / name}.py, {folder / name}.pyi")
+    if gen == "ts":
+        texts[RUNTIME] = {f"{RUNTIME}.ts": runtime()}
+    for written in texts.values():
+        for file, text in written.items():
+            (folder / file).write_text(text, "utf-8")
+        print_line(", ".join(str(folder / file) for file in written))
     return 0
