@@ -160,8 +160,8 @@ def compiled(folder: Path) -> None:
     """Compile what is in a folder, as strictly as the compiler can."""
     (folder / "yarpy.ts").write_text(runtime())
     (folder / "package.json").write_text('{"type": "module"}')
-    words = "--strict --noUnusedLocals --noImplicitOverride --noUncheckedIndexedAccess".split()
-    words += "--target es2022 --lib es2024,dom --module nodenext".split()
+    words = ["--strict", "--noUnusedLocals", "--noImplicitOverride", "--noUncheckedIndexedAccess"]
+    words += ["--target", "es2022", "--lib", "es2024,dom", "--module", "nodenext"]
     files = [str(path) for path in sorted(folder.glob("*.ts"))]
     done = subprocess.run(
         [program("tsc"), *words, *files], capture_output=True, text=True, timeout=4 * HANG

@@ -45,13 +45,17 @@ _NAMES: Final = {
     kinds.FLOAT: "double", kinds.DOUBLE: "double", BOOL: "bool", TEXT: "string", BINARY: "binary",
 }  # fmt: skip
 # Words that no variable and no class can be called.
-_RESERVED: Final = frozenset(
-    "arguments await break case catch class const continue debugger default delete do else enum "
-    "eval export extends false finally for function if implements import in instanceof interface "
-    "let new null package private protected public return static super switch this throw true try "
-    "typeof undefined var void while with yield any bigint boolean never number object string "
-    "symbol unknown".split()
-)
+_RESERVED: Final = frozenset((
+    *("arguments", "await", "break", "case", "catch", "class", "const"),
+    *("continue", "debugger", "default", "delete", "do", "else", "enum"),
+    *("eval", "export", "extends", "false", "finally", "for", "function"),
+    *("if", "implements", "import", "in", "instanceof", "interface", "let"),
+    *("new", "null", "package", "private", "protected", "public", "return"),
+    *("static", "super", "switch", "this", "throw", "true", "try"),
+    *("typeof", "undefined", "var", "void", "while", "with", "yield"),
+    *("any", "bigint", "boolean", "never", "number", "object", "string"),
+    *("symbol", "unknown"),
+))  # fmt: skip
 # What the modules themselves mention.
 _TAKEN: Final = _RESERVED | {
     *("Error", "Map", "Object", "Partial", "Promise", "Set", "Uint8Array", RUNTIME)

@@ -1,7 +1,10 @@
 """Classes that carry finished bytes."""
 
+from cyclonedds.idl.types import sequence, uint32
+
+from yarpy.peers.ros.message.source import Texts
 from yarpy.peers.ros2.dds.raw import raw_class
-from yarpy.peers.ros2.message.library import default_library
+from yarpy.peers.ros2.message.library import Library, default_library
 
 
 def test_bytes_go_and_come_as_they_are() -> None:
@@ -19,3 +22,9 @@ def test_services_have_a_header() -> None:
     action = default_library().service("example_interfaces/action/Fibonacci_SendGoal")
     made = raw_class(action.Response._definition.struct, "srv")
     assert made.__idl_typename__ == "example_interfaces.action.dds_.Fibonacci_SendGoal_Response_"
+
+
+def test_wide_strings_have_the_bytes_of_numbers() -> None:
+    library = Library([Texts({"p/T": "wstring a"}, "here")])
+    made = raw_class(library.message("p/T")._definition.struct)
+    assert made.__annotations__ == {"a": sequence[uint32]}

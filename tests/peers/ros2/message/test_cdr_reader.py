@@ -143,3 +143,31 @@ def test_bounds_of_lists_hold() -> None:
     assert cls.from_ros(b"\0\1\0\0\2\0\0\0ab").a.tolist() == [97, 98]  # type: ignore[attr-defined]
     with pytest.raises(DecodeError, match="3 elements, of 2 that the type allows"):
         cls.from_ros(b"\0\1\0\0\3\0\0\0abc")  # type: ignore[attr-defined]
+
+
+WIDE = 'uint8 a\nwstring b\nwstring[] c\nuint8 d\nfloat64 e\nwstring<=4 f "hi"\nwstring G=x\n'
+
+
+def test_wide_strings() -> None:
+    """As rosidl's type support for Fast CDR writes them: a count, and a uint32 for each unit."""
+    cls = of(WIDE)
+    said = bytes.fromhex(
+        "00010000 05000000 03000000 61000000 3dd80000 00de0000"  # "a" and a smile, of two units
+        "02000000 01000000 ac200000 00000000 07000000"
+        "00000000 0000f83f 02000000 68000000 69000000"
+    )
+    found = cls(5, "a\U0001f600", ["\u20ac", ""], 7, 1.5)  # type: ignore[call-arg]
+    assert b"".join(found.to_ros()) == said  # type: ignore[attr-defined]
+    assert cls.from_ros(said) == found  # type: ignore[attr-defined]
+    assert (found.b, found.f, found.G) == ("a\U0001f600", "hi", "x")  # type: ignore[attr-defined]
+    alone = cls(b="\ud83d")  # type: ignore[call-arg]  # half a pair may come
+    assert cls.from_ros(b"".join(alone.to_ros())).b == "\ud83d"  # type: ignore[attr-defined]
+
+
+def test_wide_strings_that_are_wrong() -> None:
+    cls = of("wstring a")
+    with pytest.raises(DecodeError, match=r"p/T\.a: a wide string with a unit of more"):
+        cls.from_ros(bytes.fromhex("00010000 01000000 00000100"))  # type: ignore[attr-defined]
+    for size in range(4, 16):
+        with pytest.raises(Truncated):
+            cls.from_ros(bytes.fromhex("00010000 03000000 61000000 61")[:size])  # type: ignore[attr-defined]

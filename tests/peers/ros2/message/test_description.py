@@ -15,6 +15,7 @@ LIBRARY = Library([Rosbags("jazzy"), Standard()])
 Answer: Any = LIBRARY.service(SERVICE).Response
 ODD = (
     "string<=8 a\nstring<=3[<=2] b\nfloat64[9] c\nstd_msgs/Empty d\nbyte[] e\nint8[<=4] f\nbool g\n"
+    "wstring h\nwstring<=8[] i\n"
 )
 
 
@@ -66,7 +67,7 @@ def test_what_is_wrong() -> None:
     ("path", "value"),
     [
         *(("type_name", "a b"), ("type_name", "p/msg/A\nint8 x"), ("name", "a b"), ("name", "")),
-        *(("type_id", 0), ("type_id", 255), ("type_id", 18), ("nested", "x")),
+        *(("type_id", 0), ("type_id", 255), ("type_id", 19), ("nested", "x")),
     ],
 )
 def test_nonsense_is_refused(path: str, value: Any) -> None:

@@ -42,6 +42,13 @@ def test_published_hashes(name: str) -> None:
     assert hash_of(JAZZY.load(name)) == f"RIHS01_{PUBLISHED[name]}"
 
 
+def test_the_published_hash_of_a_wide_string() -> None:
+    name = "example_interfaces/WString"
+    published = "32033e06d9dfe5468c5d6e1dc8b7a23c8910bad071cfd4e151a951d580e68dd8"
+    found = Library([Texts({name: "wstring data"}, "here")]).message(name)
+    assert hash_of(found) == f"RIHS01_{published}"
+
+
 def test_service_of_type_descriptions() -> None:
     """Its request has no field of ROS's own types, its response has many."""
     text = """\
@@ -94,7 +101,15 @@ def test_bounds_count() -> None:
         return hash_of(Library([Texts({"p/T": text}, "here")]).message("p/T"))
 
     texts = ("string a", "string<=3 a", "string<=4 a", "string[] a", "string[2] a", "string[<=2] a")
-    others = ("string<=3[] a", "byte a", "uint8 a", "int8 a", "string b")
+    others = (
+        "string<=3[] a",
+        "wstring a",
+        "wstring<=3 a",
+        "byte a",
+        "uint8 a",
+        "int8 a",
+        "string b",
+    )
     assert len({hash_(text) for text in (*texts, *others)}) == len(texts) + len(others)
     assert hash_("uint8 a") == hash_("char a")
 

@@ -65,7 +65,6 @@ def test_service() -> None:
     ("line", "says"),
     [
         ("int32", "a type and a name are expected"),
-        ("wstring a", "wstring is not supported"),
         ("int32<=3 a", "only strings"),
         ("int32[0] a", "no elements"),
         ("int32 a b", "no value of a int32"),

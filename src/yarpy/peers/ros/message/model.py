@@ -17,11 +17,13 @@ from typing import Any, Final, TypeAlias
 
 @dataclass(frozen=True, slots=True)
 class Primitive:
-    """`name` as numpy calls numbers; `letters` as the struct module does, "" if the size varies."""
+    """`name` as numpy calls numbers; `letters` as the struct module does, "" if the size varies.
+    `wide`: text that ROS 2 sends in UTF-16."""
 
     name: str
     letters: str = ""
     size: int = 0
+    wide: bool = False
 
     @property
     def is_number(self) -> bool:
@@ -50,7 +52,7 @@ PRIMITIVES: Final = {
         Primitive("time", "II", 8),
         Primitive("duration", "ii", 8),
     )
-}
+} | {"wstring": Primitive("string", wide=True)}
 
 
 @dataclass(frozen=True, slots=True)

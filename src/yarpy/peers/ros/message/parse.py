@@ -56,7 +56,7 @@ class FieldText:
     @property
     def builtin(self) -> str | None:
         """The name of the primitive, if it is one."""
-        return BUILTIN.get(self.base)
+        return self.base if self.base == "wstring" else BUILTIN.get(self.base)
 
 
 @dataclass(frozen=True, slots=True)

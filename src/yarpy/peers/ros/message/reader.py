@@ -188,7 +188,7 @@ class Reader:
             self.code.line(f"_x, _p = {read}(_b, _p, _size, _room)")
         else:
             self.displaced()
-            self.string("_x", path)
+            self.value(element, "_x", path)
         self.code.line("_add(_x)")
         self.code.indent(-1)
         self.displaced()

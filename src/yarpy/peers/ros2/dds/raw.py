@@ -54,6 +54,8 @@ def _dds_type(kind: Type) -> Any:
             return types.sequence[element, kind.most]
         return types.sequence[element]
     assert isinstance(kind, Primitive)
+    if kind.wide:
+        return types.sequence[types.uint32]  # which the library has, and which is the same bytes
     if kind.name in ("bool", "string"):
         return {"bool": bool, "string": str}[kind.name]
     return getattr(types, kind.name)

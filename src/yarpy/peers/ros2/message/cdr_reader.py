@@ -1,13 +1,15 @@
 """The bytes of ROS 2 to a message: CDR, by a function for each type that is compiled once.
 
     00 01 00 00, then fields; a number of n bytes begins at a multiple of n, counted from behind
-    these four; a string is uint32 length with the zero behind it, and bytes; a list uint32 count
-    and elements; a message without fields is one byte
+    these four; a string is uint32 length with the zero behind it, and bytes; a wstring uint32
+    count and units of UTF-16, four bytes each; a list uint32 count and elements; a message without
+    fields is one byte
 
 Rules: as in `rosmsg/reader.py`: every count is checked against the bytes that are there, and
 against the limit of elements, before memory is taken. Only DecodeError and Truncated come out.
 Arrays of numbers look at the bytes. Where the compiler knows how a position is aligned, padding
-costs nothing. (OMG CDR, as rmw uses it: XCDR1 without options.)
+costs nothing. (OMG CDR, as rmw uses it: XCDR1 without options. Wide strings are as all rmw agree to
+have them, with two bytes more for each unit than OMG says.)
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from yarpy.data.value import Buffer
 from yarpy.errors import DecodeError, Truncated
 from yarpy.limit import limits
 from yarpy.peers.ros.message.message import Message
-from yarpy.peers.ros.message.model import Primitive, Struct
+from yarpy.peers.ros.message.model import Primitive, Struct, Type
 from yarpy.peers.ros.message.reader import SMALL, Read, Reader
 
 HEAD: Final = b"\0\1\0\0"  # little-endian, plain
@@ -86,7 +88,7 @@ def _refuse(name: str, head: bytes) -> None:
 class _Reader(Reader):
     def __init__(self, classes: Mapping[Struct, type[Message]]) -> None:
         super().__init__(classes)
-        self.code.globals["_text"] = _text
+        self.code.globals.update(_text=_text, _wide=_wide)
         self.alignment = Alignment()
 
     def text(self, path: str) -> str:
@@ -94,6 +96,16 @@ class _Reader(Reader):
 
     def displaced(self) -> None:
         self.alignment.forget()
+
+    def value(self, kind: Type, target: str, path: str) -> None:
+        if not (isinstance(kind, Primitive) and kind.wide):
+            super().value(kind, target, path)
+            return
+        count = self.count()
+        self.room(f"_p + 4 * {count}", path)
+        self.code.line(f"{target} = _wide(_b[_p:_e], {self.code.name(path)})")
+        self.code.line("_p = _e")
+        self.alignment.forget(4)
 
     def align(self, size: int) -> None:
         """Go on at a multiple of `size`, within the run if that can be."""
@@ -129,6 +141,16 @@ class _Reader(Reader):
             self.alignment.advance(length * size)
         else:
             self.alignment.forget(min(size, 4))
+
+
+def _wide(view: memoryview, path: str) -> str:
+    """A string of UTF-16, each unit of which has four bytes."""
+    data = bytes(view)
+    if any(data[2::4]) or any(data[3::4]):
+        raise DecodeError(f"{path}: a wide string with a unit of more than 16 bits")
+    units = bytearray(len(data) // 2)
+    units[0::2], units[1::2] = data[0::4], data[1::4]
+    return units.decode("utf-16-le", "surrogatepass")
 
 
 def _text(view: memoryview, path: str) -> str:

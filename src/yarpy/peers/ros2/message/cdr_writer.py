@@ -13,7 +13,7 @@ from typing import Any, Final
 from yarpy.data.value import Blocks
 from yarpy.peers.ros.message import writer as packed
 from yarpy.peers.ros.message.message import Message
-from yarpy.peers.ros.message.model import Primitive, Struct
+from yarpy.peers.ros.message.model import Primitive, Struct, Type
 from yarpy.peers.ros.message.writer import Write, Writer
 from yarpy.peers.ros2.message.cdr_reader import HEAD, Alignment
 
@@ -33,7 +33,7 @@ def whole(struct: Struct, write: Write) -> Callable[[Any], Blocks]:
 class _Writer(Writer):
     def __init__(self, classes: Mapping[Struct, type[Message]]) -> None:
         super().__init__(classes)
-        self.code.globals["_zeros"] = _ZEROS
+        self.code.globals.update(_zeros=_ZEROS, _wide=_wide)
         self.alignment = Alignment()
 
     def moved(self, size: str) -> None:
@@ -41,6 +41,18 @@ class _Writer(Writer):
 
     def displaced(self) -> None:
         self.alignment.forget()
+
+    def value(self, kind: Type, source: str, path: str) -> None:
+        if not (isinstance(kind, Primitive) and kind.wide):
+            super().value(kind, source, path)
+            return
+        text = self.code.variable()
+        self.code.line(f"{text} = _wide({source})")
+        self.number("I", 4, f"_len({text}) // 4")
+        self.flush()
+        self.code.line(f"_add({text})")
+        self.moved(f"_len({text})")
+        self.alignment.forget(4)
 
     def text(self, source: str) -> str:
         return f"{super().text(source)} + b'\\0'"
@@ -86,3 +98,11 @@ class _Writer(Writer):
             self.alignment.advance(length * size)
         else:
             self.alignment.forget(min(size, 4))
+
+
+def _wide(text: str) -> bytes:
+    """The units of a text in UTF-16, four bytes each."""
+    units = text.encode("utf-16-le", "surrogatepass")
+    found = bytearray(2 * len(units))
+    found[0::4], found[1::4] = units[0::2], units[1::2]
+    return bytes(found)

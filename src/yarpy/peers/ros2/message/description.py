@@ -22,7 +22,7 @@ from yarpy.peers.ros2.message.parse import BUILTIN
 SERVICE: Final = "type_description_interfaces/GetTypeDescription"
 
 _WORDS: Final = {number: word for word, (number, _) in BUILTIN.items() if word != "char"}
-_LIMITED: Final = 21  # a string of limited length
+_LIMITED: Final = {21: "string", 22: "wstring"}  # of limited length
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*+(?:/[A-Za-z][A-Za-z0-9_]*+){2}")
 _FIELD = re.compile(r"[A-Za-z][A-Za-z0-9_]*+")
 
@@ -77,8 +77,8 @@ def _spelled(item: Any) -> str:
     brackets = {0: "", 1: f"[{capacity}]", 2: f"[<={capacity}]", 3: "[]"}.get(rest)
     if base == NESTED:
         word = item.type.nested_type_name if _NAME.fullmatch(item.type.nested_type_name) else ""
-    elif base == _LIMITED:
-        word = f"string<={item.type.string_capacity}"
+    elif base in _LIMITED:
+        word = f"{_LIMITED[base]}<={item.type.string_capacity}"
     else:
         word = _WORDS.get(base, "")
     if brackets is None or not word or not _FIELD.fullmatch(item.name):

@@ -4,8 +4,7 @@
     const = TYPE NAME = VALUE      strings stand in quotes, or take the rest of the line
 
 Rules: as in `rosmsg/parse.py`, whose results these are; `#` begins a comment outside of quotes.
-What counts in the type hash keeps its spelling. `wstring` is refused: nobody could be asked how it
-looks on the wire. (Language: rosidl, and REP 2016 for what it means.)
+What counts in the type hash keeps its spelling. (Language: rosidl, and REP 2016 for what it means.)
 """
 
 from __future__ import annotations
@@ -34,7 +33,9 @@ BUILTIN: Final = {
     "bool": (15, "bool"),
     "byte": (16, "uint8"),
     "string": (17, "string"),
+    "wstring": (18, "wstring"),
 }
+_TEXTS: Final = ("string", "wstring")
 
 _WORD: Final = r"[A-Za-z][A-Za-z0-9_]*+"
 _LINE: Final = re.compile(
@@ -116,9 +117,7 @@ def _declaration(code: str, package: str, doc: str) -> FieldText | ConstantText:
     if found is None:
         raise ValueError(f"a type and a name are expected, not {code[:80]!r}")
     base, name, rest = found["base"], found["name"], found["rest"].strip()
-    if base == "wstring":
-        raise ValueError("wstring is not supported: take string, which is UTF-8")
-    if found["chars"] is not None and base != "string":
+    if found["chars"] is not None and base not in _TEXTS:
         raise ValueError(f"{base}<={found['chars']}: only strings are limited so")
     if rest and found["rest"][0] not in " \t=":
         raise ValueError(f"{code[:80]!r}: letters, digits and _ make the name of a field")
@@ -128,7 +127,8 @@ def _declaration(code: str, package: str, doc: str) -> FieldText | ConstantText:
         if builtin is None or found["list"]:
             raise ValueError(f"a constant is a number, a bool or a string, not {spelled[:80]!r}")
         text = rest[1:].strip()
-        return ConstantText(builtin[1], name, _value(builtin[1], text), text, doc)
+        kind = builtin[1].removeprefix("w")
+        return ConstantText(kind, name, _value(kind, text), text, doc)
     if builtin is not None:
         base = builtin[1]
     elif "/" not in base:
@@ -161,13 +161,13 @@ def _default(builtin: tuple[int, str] | None, is_list: bool, fixed: int | None, 
     if not isinstance(items, list) or (fixed is not None and len(items) != fixed):
         raise ValueError(f"{text[:80]!r} is no list of {builtin[1]} of that length")
     return tuple(
-        item if isinstance(item, str) and builtin[1] == "string" else _value(builtin[1], str(item))
+        item if isinstance(item, str) and builtin[1] in _TEXTS else _value(builtin[1], str(item))
         for item in items
     )
 
 
 def _value(kind: str, text: str) -> Any:
-    if kind == "string":
+    if kind in _TEXTS:
         quoted = len(text) > 1 and text[0] == text[-1] and text[0] in "\"'"
         return text[1:-1] if quoted else text
     wrong = ValueError(f"{text[:80]!r} is no value of a {kind}")
