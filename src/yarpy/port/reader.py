@@ -79,7 +79,7 @@ class Reader:
         Where a message is returned, nothing is called after it was released: until then whoever
         reads next gets it, should an exception come out of a signal handler.
         """
-        until = moment(timeout)
+        until = None if timeout is None else moment(timeout)
         mailbox = self._mailbox
         if mailbox.held:
             mailbox.settle()
