@@ -24,7 +24,6 @@ TypeError that says what can be sent. Large data are not copied, on the way out 
 from __future__ import annotations
 
 import reprlib
-import sys
 from collections.abc import Callable
 from struct import Struct
 from typing import Any, Final, TypeVar, cast
@@ -35,6 +34,7 @@ from yarpy.data.embedded import instead, with_article
 from yarpy.data.python import described, description, restored, typed
 from yarpy.data.python.array import array_of, scalar
 from yarpy.data.python.array import blocks as array_blocks
+from yarpy.data.python.loaded import loaded
 from yarpy.data.python.place import located
 from yarpy.data.reader import KEPT, SMALL, read_small
 from yarpy.data.sig.image import Image
@@ -112,7 +112,7 @@ def encode(obj: Any) -> Blocks:
         return list_blocks(obj, any_list)
     if obj is None:
         return (_EMPTY,)
-    numpy = sys.modules.get("numpy")
+    numpy = loaded("numpy")
     if numpy is not None and isinstance(obj, (numpy.ndarray, numpy.generic)):
         if isinstance(obj, numpy.ndarray) and obj.ndim:
             return array_blocks(obj)

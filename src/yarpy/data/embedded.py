@@ -6,14 +6,15 @@ is the list that its message is. numpy is not imported for it: who has an array 
 
 from __future__ import annotations
 
-import sys
 from enum import Enum
 from typing import Any
+
+from yarpy.data.python.loaded import loaded
 
 
 def plain(value: Any) -> Any:
     """The Python number that a numpy scalar holds; any other value as it is."""
-    numpy = sys.modules.get("numpy")
+    numpy = loaded("numpy")
     if numpy is not None and isinstance(value, (numpy.generic, numpy.ndarray)) and not value.ndim:
         from yarpy.data.python import array
 
@@ -23,7 +24,7 @@ def plain(value: Any) -> Any:
 
 def message_of(value: Any) -> bytes:
     """The message that a value is as an element, which is a list then; TypeError if it is none."""
-    numpy = sys.modules.get("numpy")
+    numpy = loaded("numpy")
     if numpy is not None and isinstance(value, numpy.ndarray):
         from yarpy.data.python import array
 

@@ -6,6 +6,8 @@ import gc
 import logging
 import mmap
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -87,6 +89,20 @@ def test_large_blocks_too() -> None:
     placed = arena.place([b"head", data], 4 + len(data))
     assert placed is not None
     assert os.pread(arena.number, placed.size, placed.offset) == b"head" + data
+
+
+def test_a_writer_does_not_wait_for_the_import_of_numpy() -> None:
+    """Which takes seconds in a program whose threads are busy."""
+    program = (
+        "import sys\n"
+        "from yarpy.transports.shared.arena import Arena\n"
+        "arena = Arena('/out', 1 << 20)\n"
+        "placed = arena.place([memoryview(bytes(500_000) + b'end')], 500_003)\n"
+        "assert placed is not None\n"
+        "assert arena.view[placed.offset + 500_000 : placed.offset + 500_003] == b'end'\n"
+        "assert 'numpy' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=30)
 
 
 def test_nobody_can_shorten_or_write_it() -> None:

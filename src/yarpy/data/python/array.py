@@ -12,12 +12,12 @@ dates and objects are a TypeError: they hold no numbers.
 
 from __future__ import annotations
 
-import sys
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
 from yarpy.data.numbers import DTYPES
 from yarpy.data.python import description
+from yarpy.data.python.loaded import loaded
 from yarpy.data.sig.image import QUANTUM, image_blocks
 from yarpy.data.sig.pixel import NATURAL, pixel_of
 from yarpy.data.value import BIG, BLOB, LIST, Blocks, Float32, Int8, Int16
@@ -189,7 +189,7 @@ def _array_of_tensor(tensor: Any) -> NDArray[Any]:
 
 def is_array(value: Any) -> TypeGuard[NDArray[Any]]:
     """Return whether `value` is an array of numpy; numpy is not imported for it."""
-    numpy = sys.modules.get("numpy")
+    numpy = loaded("numpy")
     return numpy is not None and isinstance(value, numpy.ndarray)
 
 

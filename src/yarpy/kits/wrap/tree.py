@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from yarpy.data import codec
 from yarpy.data.python.array import array_of
+from yarpy.data.python.loaded import loaded
 from yarpy.data.sig.image import Image
 from yarpy.data.sig.jpeg import decode as decode_jpeg
 from yarpy.errors import DecodeError
@@ -95,7 +96,7 @@ class Planter:
         to_wire = getattr(value, "to_wire", None)
         if to_wire is not None and not isinstance(value, (list, type)) and self.buffers is not None:
             return tagged("yarp", self._buffer(b"".join(codec.encode(value))))
-        numpy = sys.modules.get("numpy")
+        numpy = loaded("numpy")
         if numpy is not None and isinstance(value, (numpy.ndarray, numpy.generic)):
             return self._plant_numpy(value, numpy)
         if isinstance(value, bool | int | float | str):

@@ -26,9 +26,9 @@ from typing import Any, Final
 from weakref import WeakValueDictionary
 
 from yarpy import fork
+from yarpy.data.python.loaded import loaded
 from yarpy.errors import LocalProtocolError
 from yarpy.log import logger
-from yarpy.threads import imported
 from yarpy.transports.descriptor import Descriptor, opened
 from yarpy.transports.shared.cgroup import free_memory
 from yarpy.transports.shared.lease import HEADROOM, Source, address_of, lease_type, place_of
@@ -403,8 +403,11 @@ def _copy(room: memoryview, block: Buffer) -> None:
     if len(block) < _LARGE:
         room[:] = block
         return
-    np = imported("numpy")
-    np.copyto(np.frombuffer(room, np.uint8), np.frombuffer(block, np.uint8))
+    np = loaded("numpy")
+    if np is None:  # its import may take longer than the writer has
+        room[:] = block
+    else:  # other threads go on meanwhile
+        np.copyto(np.frombuffer(room, np.uint8), np.frombuffer(block, np.uint8))
 
 
 class _Arenas:

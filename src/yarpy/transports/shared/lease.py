@@ -9,9 +9,7 @@ by its address, and nothing has to be registered.
 from __future__ import annotations
 
 import mmap
-import sys
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any, Final, Protocol, TypeAlias
 from weakref import WeakSet
 
@@ -64,9 +62,15 @@ Place: TypeAlias = tuple[Source, int, object]
 """Where a payload lies already: in what, at which offset; and what keeps it there."""
 
 
-@cache
+_MADE: Final[dict[str, Any]] = {}  # the class, once somebody wants one
+
+
 def lease_type() -> Any:
     """The class: an array, since these can be over a part of a file."""
+    return _MADE.get("class") or _MADE.setdefault("class", _make())
+
+
+def _make() -> Any:
     np = imported("numpy")
 
     class Lease(np.ndarray):  # type: ignore[misc, name-defined]
@@ -92,7 +96,7 @@ def place_of(blocks: Sequence[Buffer]) -> Place | None:
     put there.
     """
     block = blocks[-1] if blocks else b""
-    if type(block) is not memoryview or len(block) < LARGE or "numpy" not in sys.modules:
+    if type(block) is not memoryview or len(block) < LARGE:
         return None
     lease = _lease_of(block.obj)
     if lease is None or lease.source is None:
@@ -130,7 +134,10 @@ def freeze(value: object, blocks: Sequence[Buffer]) -> None:
 def _lease_of(one: Any) -> Any:
     """Return the lease that something is a view of, by way of the arrays between; None if it is a
     view of something else."""
-    lease, array = lease_type(), sys.modules["numpy"].ndarray
+    lease = _MADE.get("class")
+    if lease is None:
+        return None  # there is none yet, and a writer need not wait for the import of numpy
+    array = lease.__base__
     while type(one) is not lease:
         if isinstance(one, array):
             one = one.base
@@ -163,7 +170,7 @@ def address_of(memory: mmap.mmap) -> int:
 
 
 def _address(block: memoryview) -> int:
-    numpy = sys.modules["numpy"]
+    numpy = imported("numpy")
     whole: Any = block.obj
     if not (isinstance(whole, numpy.ndarray) and whole.nbytes == len(block)):
         whole = numpy.frombuffer(block, numpy.uint8)
