@@ -27,6 +27,7 @@ TESTS = ROOT / "tests"
 CORE_LAYERS: list[set[str]] = [
     {"errors", "log", "fork", "linger", "platform", "callback_thread", "installed"},
     {"limit", "facts"},
+    {"shipped_devices"},
     {"shipped"},
     {"registry", "route", "scope", "threads"},
     {"contact"},

@@ -23,6 +23,7 @@ from yarpy.facts import (
     Row,
     TransportRow,
 )
+from yarpy.shipped_devices import DEVICES
 
 R = TypeVar("R", bound=Row)
 
@@ -259,30 +260,6 @@ _FINDINGS: Final = (
     *("carrier", "content", "dialect", "priority", "kernel"),
 )
 
-# Devices of robots, by the names of C++: without hardware, served, and those of other programs.
-_SIMULATED: Final = (
-    *("fakeBattery", "fakeChatBotDevice", "fakeJointCoupling", "fakeJoypad", "fakeLLMDevice"),
-    *("fakeLocalizer", "fakeMicrophone", "fakeNavigation", "fakeOdometry2D", "fakePositionSensor"),
-    *("fakeSerialPort", "fakeSimulatedWorld", "fakeSpeaker", "fakeSpeechSynthesizer"),
-    *("fakeSpeechTranscription", "map2DStorage", "robotDescriptionStorage"),
-)
-_KINDS: Final = (
-    *("LLM", "RGBDSensor", "audioRecorder", "chatBot", "joypadControl", "localization2D", "map2D"),
-    *("mobileBaseVelocityControl", "navigation2D", "odometry2D", "robotDescription"),
-    *("serialPort", "simulatedWorld", "speechSynthesizer", "speechTranscription"),
-)
-_SERVERS: Final = (
-    *(f"{kind}_nws_yarp" for kind in _KINDS),
-    *("AudioPlayerWrapper", "JoypadControlServer", "audioPlayerWrapper"),
-)
-_CLIENTS: Final = (
-    *(f"{kind}_nwc_yarp" for kind in _KINDS),
-    *("battery_nwc_yarp", "controlBoard_nwc_yarp", "frameGrabber_nwc_yarp"),
-    *("rangefinder2D_nwc_yarp", "JoypadControlClient", "RGBDSensorClient", "RemoteFrameGrabber"),
-    *("cartesiancontrollerclient", "clientcontrolboard", "gazecontrollerclient"),
-    *("multipleanalogsensorsclient", "remote_controlboard", "remote_grabber"),
-)
-
 SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     "carriers": CARRIERS,
     "transports": TRANSPORTS,
@@ -355,41 +332,7 @@ SHIPPED: Final[Mapping[str, Mapping[str, Row]]] = {
     # What tells the questions of a typed connection apart, by the ending of a file of types.
     "interfaces": _table(Row("thrift", f"{_KITS}.thrift.observed:read", "idl")),
     # Types of devices in the files of robots (`kits/launch/robot/contract.py`).
-    "devices": _table(
-        *_rows(
-            f"{_KITS}.devices",
-            (
-                ("battery_nws_yarp", "wrapper:Battery"),
-                ("controlBoard_nws_yarp", "wrapper:ControlBoard"),
-                ("controlboardremapper", "control_board.remapper:Remapper"),
-                ("controlboardwrapper2", "wrapper:ControlBoard"),
-                ("fakeDepthCamera", "simulated.plugin:depth_camera"),
-                ("fakeFrameGrabber", "simulated.plugin:camera"),
-                ("fakeIMU", "simulated.plugin:imu"),
-                ("fakeLaser", "simulated.plugin:laser"),
-                ("fakeMotionControl", "simulated.plugin:joints"),
-                ("frameGrabber_nws_yarp", "wrapper:FrameGrabber"),
-                ("frameTransformClient", "remote:transforms"),
-                ("frameTransformServer", "remote:transform_server"),
-                ("multipleanalogsensorsremapper", "multi_sensor.remapper:Remapper"),
-                ("multipleanalogsensorsserver", "wrapper:MultiSensor"),
-                ("rangefinder2D_nws_yarp", "wrapper:Laser"),
-                ("remotecontrolboardremapper", "control_board.remapper:remote_remapper"),
-                ("test_grabber", "simulated.plugin:camera"),
-                *((name, "simulated.plugin:simulated") for name in _SIMULATED),
-                *((name, "wrapper:Served") for name in _SERVERS),
-                *((name, "remote:remote") for name in _CLIENTS),
-            ),
-        ),
-        *_rows(
-            f"{_KITS}.sim",
-            (
-                ("simulatedEye", "device:SimulatedEye"),
-                ("simulatedHead", "device:simulated_head"),
-                ("simulatedInertial", "device:SimulatedInertial"),
-            ),
-        ),
-    ),
+    "devices": DEVICES,
     # Graphs in which a simulated robot is shown, too (`kits/sim/guest.py`).
     "robots": _table(Row("ros", f"{_PEERS}.ros.robot:RosGuest")),
     # What ports may be part of beside their connections; it has ports of its own, too.

@@ -5,7 +5,7 @@
         ...
 
 The package with the C++ programs brings its devices as static libraries and with headers, but has
-linked none of them into its `yarpdev`. So one is linked here, from a main function of a few lines.
+linked none of them into its `yarpdev`. So one is linked here, from a few lines.
 """
 
 import contextlib
@@ -35,6 +35,20 @@ DEVICES = (
     "map2DStorage",
     "controlboardremapper",
     "remotecontrolboardremapper",
+    "analogServer",
+    "analogsensorclient",
+    "batteryClient",
+    "batteryWrapper",
+    "Rangefinder2DClient",
+    "rangefinder2D_nws_yarp",
+    "RGBDSensorClient",
+    "rgbdSensor_nws_yarp",
+    "JoypadControlClient",
+    "JoypadControlServer",
+    "AudioRecorderWrapper",
+    "AudioPlayerWrapper",
+    "audioFromFileDevice",
+    "audioToFileDevice",
 )
 #: in the library of another
 _WITHIN = {"remotecontrolboardremapper": "controlboardremapper"}
@@ -43,16 +57,53 @@ _LIBRARIES = [f"yarp_{name}" for name in DEVICES if name not in _WITHIN] + [
     for name in ("dev", "sig", "math", "os", "init", "gsl", "priv_hmac", "wire_rep_utils")
 ]
 
+#: A device of our own in C++: what `inner` names, opened, and given on once it has channels.
+PATIENT = "patientAnalogSensor"
+
 _SOURCE = """
+#include <yarp/dev/DeviceDriver.h>
 #include <yarp/dev/Drivers.h>
+#include <yarp/dev/IAnalogSensor.h>
+#include <yarp/dev/PolyDriver.h>
 #include <yarp/os/Network.h>
+#include <yarp/os/Property.h>
+#include <yarp/os/Time.h>
 {declarations}
+class Patient : public yarp::dev::DeviceDriver, public yarp::dev::IAnalogSensor {{
+    yarp::dev::PolyDriver driver;
+    yarp::dev::IAnalogSensor* sensor = nullptr;
+public:
+    bool open(yarp::os::Searchable& config) override {{
+        yarp::os::Property options;
+        options.fromString(config.toString());
+        options.put("device", config.find("inner").asString());
+        if (!driver.open(options) || !driver.view(sensor)) return false;
+        for (int wait = 0; wait < 2000 && sensor->getChannels() == 0; wait++)
+            yarp::os::Time::delay(0.01);
+        return sensor->getChannels() > 0;
+    }}
+    bool close() override {{ return driver.close(); }}
+    int read(yarp::sig::Vector& out) override {{ return sensor->read(out); }}
+    int getState(int channel) override {{ return sensor->getState(channel); }}
+    int getChannels() override {{ return sensor->getChannels(); }}
+    int calibrateSensor() override {{ return sensor->calibrateSensor(); }}
+    int calibrateSensor(const yarp::sig::Vector& values) override {{
+        return sensor->calibrateSensor(values);
+    }}
+    int calibrateChannel(int channel) override {{ return sensor->calibrateChannel(channel); }}
+    int calibrateChannel(int channel, double value) override {{
+        return sensor->calibrateChannel(channel, value);
+    }}
+}};
 int main(int argc, char* argv[]) {{
     yarp::os::Network network;
     {additions}
+    yarp::dev::Drivers::factory().add(
+        new yarp::dev::DriverCreatorOf<Patient>("{patient}", "", "Patient"));
     return yarp::dev::Drivers::factory().yarpdev(argc, argv);
 }}
 """.format(
+    patient=PATIENT,
     declarations="\n".join(f"void add_owned_{name}(const char* owner);" for name in DEVICES),
     additions="\n    ".join(f'add_owned_{name}("host");' for name in DEVICES),
 )

@@ -23,6 +23,7 @@ SERVED = {each.NWS: each for each in INTERFACES.values()}
 SERVED |= {"JoypadControlServer": devices.Joypad, "AudioPlayerWrapper": devices.AudioPlayer}
 #: Clients with classes of their own.
 OWN: dict[str, Any] = {
+    "analogsensorclient": devices.AnalogSensor,
     "battery_nwc_yarp": devices.Battery,
     "rangefinder2D_nwc_yarp": devices.Laser,
     "cartesiancontrollerclient": devices.CartesianController,

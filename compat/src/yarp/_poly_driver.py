@@ -109,6 +109,8 @@ class PolyDriver(MirrorViews):
             if name in _network_device.SERVED:
                 self._device = _network_device.serve(name, inner, **self._waiting)
             else:
+                if name == "frameWriter_nws_yarp":  # pictures come to it
+                    del self._waiting["period"]
                 self._device = getattr(devices, SERVERS[name])(device=inner, **self._waiting)
         except (*FAILURES, ValueError) as error:
             say("ERROR", f"|yarp.dev.PolyDriver| {error}")
@@ -345,10 +347,14 @@ SERVERS = {
     "multipleanalogsensorsserver": "MultiSensorServer",
     "battery_nws_yarp": "BatteryServer",
     "rangefinder2D_nws_yarp": "LaserServer",
+    "analogServer": "AnalogSensorServer",
+    "frameWriter_nws_yarp": "FrameWriterServer",
 }
 #: Devices that somebody has to serve, and who does unless the options say.
 WRAPPERS = {
+    "fakeAnalogSensor": "analogServer",
     "fakeBattery": "battery_nws_yarp",
+    "fakeFrameWriter": "frameWriter_nws_yarp",
     "fakeLaser": "rangefinder2D_nws_yarp",
     "fakeIMU": "multipleanalogsensorsserver",
     "fakePositionSensor": "multipleanalogsensorsserver",
@@ -364,6 +370,8 @@ DEVICES = {
     "fakeFrameGrabber": PolyDriver._open_fake_camera,
     "test_grabber": PolyDriver._open_fake_camera,
     "fakeMotionControl": PolyDriver._open_fake_motors,
+    "fakeAnalogSensor": PolyDriver._open_installed,
+    "fakeFrameWriter": PolyDriver._open_installed,
     "fakeIMU": PolyDriver._open_installed,
     "fakeLaser": PolyDriver._open_installed,
     "remote_controlboard": PolyDriver._open_board,

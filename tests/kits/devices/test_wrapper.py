@@ -43,6 +43,8 @@ class Sensor:
         (wrapper.Laser, Laser(), "/x"),
         (wrapper.MultiSensor, Sensor(), "/x/measures:o"),
         (wrapper.Battery, Battery(), "/x/data:o"),
+        (wrapper.Analog, devices.SimulatedAnalogSensor(), "/x/rpc:i"),
+        (wrapper.FrameWriter, devices.SimulatedFrameWriter(), "/x/rpc"),
     ],
 )
 def test_ports_are_open_while_a_device_is_attached(
@@ -81,6 +83,26 @@ def test_only_that_of_sensors_counts_milliseconds() -> None:
     assert wrapper.Laser(Property(name="/x"))._values == {}
 
 
+def test_parts_of_a_sensor_with_channels() -> None:
+    names = yarpy.LocalNames()
+    text = "(name /skin) (period 20) (ports (hand arm)) (hand 0 1 0 1) (arm (2 3 0 1))"
+    opened = wrapper.Analog(Property.from_text(text), names=names)
+    assert opened._values == {"period": 0.02, "parts": {"hand": range(2), "arm": range(2, 4)}}
+    opened.attach({"...": devices.SimulatedAnalogSensor(4)})
+    assert names.query("/skin/hand") is not None and names.query("/skin") is None
+    opened.close()
+    with pytest.raises(ValueError, match="arm has not as many channels"):
+        wrapper.Analog(Property.from_text("(name /skin) (ports (arm)) (arm 2 3 0 5)"))
+
+
+def test_a_screen_has_a_name_without_any() -> None:
+    names = yarpy.LocalNames()
+    opened = wrapper.FrameWriter(Property(), names=names)
+    opened.attach({"...": devices.SimulatedFrameWriter()})
+    assert names.query("/writer") is not None
+    opened.close()
+
+
 def test_servers_of_one_class_are_told_by_their_type() -> None:
     names = yarpy.LocalNames()
     for kind, device, port in (
@@ -104,6 +126,8 @@ def test_the_server_that_a_device_wants() -> None:
     assert wrapper.server_of(Camera()) == "frameGrabber_nws_yarp"
     assert wrapper.server_of(Battery()) == "battery_nws_yarp"
     assert wrapper.server_of(Sensor()) == "multipleanalogsensorsserver"
+    assert wrapper.server_of(devices.SimulatedAnalogSensor()) == "analogServer"
+    assert wrapper.server_of(devices.SimulatedFrameWriter()) == "frameWriter_nws_yarp"
     assert wrapper.server_of(devices.SimulatedJoypad()) == "joypadControl_nws_yarp"
     # It localizes, navigates and measures: its type says what for.
     base = devices.SimulatedBase()

@@ -7,7 +7,7 @@ import pytest
 from yarpy.errors import UnknownPlugin
 from yarpy.kits.sim.mujoco.model import mujoco
 
-ARM = Path(__file__).parents[2] / "support" / "arm.xml"
+MODELS = Path(__file__).parents[2] / "support"
 
 
 class Clock:
@@ -27,9 +27,19 @@ def clock() -> Clock:
 
 @pytest.fixture
 def arm() -> Path:
-    """The file of the model."""
+    """The file of a model that stands."""
+    return _model("arm.xml")
+
+
+@pytest.fixture
+def rover() -> Path:
+    """The file of a model that moves freely."""
+    return _model("rover.xml")
+
+
+def _model(name: str) -> Path:
     try:
         mujoco()
     except UnknownPlugin as error:
         pytest.skip(str(error))
-    return ARM
+    return MODELS / name

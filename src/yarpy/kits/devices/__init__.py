@@ -5,6 +5,7 @@
     multi_sensor        sensors, such as inertial units
     battery             batteries
     laser               laser scanners
+    analog              sensors with channels, as older robots have them
     transforms          frames, and where they are
     controllers         where a hand is, and where a head looks
 
@@ -23,6 +24,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 _WHERE = {
+    "AnalogSensor": "analog.client",
+    "AnalogSensorServer": "analog.server",
     "Area": "interfaces.place",
     "AudioPlayer": "interfaces.audio",
     "AudioRecorder": "interfaces.audio",
@@ -43,6 +46,7 @@ _WHERE = {
     "FEATURES": "frame_grabber.interface",
     "FrameGrabber": "frame_grabber.client",
     "FrameGrabberServer": "frame_grabber.server",
+    "FrameWriterServer": "frame_grabber.writer",
     "Gains": "control_board.interface",
     "GazeController": "controllers.gaze",
     "GazeServer": "controllers.gaze_server",
@@ -56,6 +60,7 @@ _WHERE = {
     "LaserServer": "laser.server",
     "Line": "interfaces.talk",
     "Localization2D": "interfaces.localization",
+    "LocalizedLaser": "simulated.localized_laser",
     "Map2D": "interfaces.map2d",
     "MapStorage": "simulated.map_storage",
     "MobileBase": "interfaces.mobile_base",
@@ -71,6 +76,7 @@ _WHERE = {
     "Refused": "refusal",
     "Scan": "laser.interface",
     "SerialPort": "interfaces.serial",
+    "SimulatedAnalogSensor": "simulated.analog",
     "SimulatedArm": "simulated.arm",
     "SimulatedBase": "simulated.base",
     "SimulatedBattery": "simulated.battery",
@@ -78,6 +84,7 @@ _WHERE = {
     "SimulatedChatBot": "simulated.talk",
     "SimulatedCoupling": "simulated.coupling",
     "SimulatedDepthCamera": "simulated.depth_camera",
+    "SimulatedFrameWriter": "simulated.frame_writer",
     "SimulatedHead": "simulated.head",
     "SimulatedImu": "simulated.imu",
     "SimulatedJoints": "simulated.joints",
@@ -96,6 +103,7 @@ _WHERE = {
     "Thing": "interfaces.place",
     "TransformClient": "transforms.client",
     "TransformServer": "transforms.server",
+    "VirtualAnalogServer": "analog.virtual",
     "World": "interfaces.world",
     "load_grid": "interfaces.grid_file",
     "remap": "control_board.remap",
@@ -106,6 +114,8 @@ _WHERE = {
 __all__ = [
     "BATTERY",
     "FEATURES",
+    "AnalogSensor",
+    "AnalogSensorServer",
     "Area",
     "AudioPlayer",
     "AudioRecorder",
@@ -124,6 +134,7 @@ __all__ = [
     "Descriptions",
     "FrameGrabber",
     "FrameGrabberServer",
+    "FrameWriterServer",
     "Gains",
     "GazeController",
     "GazeServer",
@@ -137,6 +148,7 @@ __all__ = [
     "LaserServer",
     "Line",
     "Localization2D",
+    "LocalizedLaser",
     "Map2D",
     "MapStorage",
     "MobileBase",
@@ -152,6 +164,7 @@ __all__ = [
     "Refused",
     "Scan",
     "SerialPort",
+    "SimulatedAnalogSensor",
     "SimulatedArm",
     "SimulatedBase",
     "SimulatedBattery",
@@ -159,6 +172,7 @@ __all__ = [
     "SimulatedChatBot",
     "SimulatedCoupling",
     "SimulatedDepthCamera",
+    "SimulatedFrameWriter",
     "SimulatedHead",
     "SimulatedImu",
     "SimulatedJoints",
@@ -177,6 +191,7 @@ __all__ = [
     "Thing",
     "TransformClient",
     "TransformServer",
+    "VirtualAnalogServer",
     "World",
     "load_grid",
     "remap",
@@ -185,6 +200,9 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from yarpy.kits.devices.analog.client import AnalogSensor as AnalogSensor
+    from yarpy.kits.devices.analog.server import AnalogSensorServer as AnalogSensorServer
+    from yarpy.kits.devices.analog.virtual import VirtualAnalogServer as VirtualAnalogServer
     from yarpy.kits.devices.battery.client import Battery as Battery
     from yarpy.kits.devices.battery.interface import BATTERY as BATTERY
     from yarpy.kits.devices.battery.server import BatteryServer as BatteryServer
@@ -205,6 +223,7 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.frame_grabber.client import FrameGrabber as FrameGrabber
     from yarpy.kits.devices.frame_grabber.interface import FEATURES as FEATURES
     from yarpy.kits.devices.frame_grabber.server import FrameGrabberServer as FrameGrabberServer
+    from yarpy.kits.devices.frame_grabber.writer import FrameWriterServer as FrameWriterServer
     from yarpy.kits.devices.interfaces.audio import AudioPlayer as AudioPlayer
     from yarpy.kits.devices.interfaces.audio import AudioRecorder as AudioRecorder
     from yarpy.kits.devices.interfaces.depth import DepthCamera as DepthCamera
@@ -241,6 +260,7 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.multi_sensor.server import MultiSensorServer as MultiSensorServer
     from yarpy.kits.devices.network.model import Interface as Interface
     from yarpy.kits.devices.refusal import Refused as Refused
+    from yarpy.kits.devices.simulated.analog import SimulatedAnalogSensor as SimulatedAnalogSensor
     from yarpy.kits.devices.simulated.arm import SimulatedArm as SimulatedArm
     from yarpy.kits.devices.simulated.audio import SimulatedMicrophone as SimulatedMicrophone
     from yarpy.kits.devices.simulated.audio import SimulatedSpeaker as SimulatedSpeaker
@@ -251,11 +271,15 @@ if TYPE_CHECKING:
     from yarpy.kits.devices.simulated.depth_camera import (
         SimulatedDepthCamera as SimulatedDepthCamera,
     )
+    from yarpy.kits.devices.simulated.frame_writer import (
+        SimulatedFrameWriter as SimulatedFrameWriter,
+    )
     from yarpy.kits.devices.simulated.head import SimulatedHead as SimulatedHead
     from yarpy.kits.devices.simulated.imu import SimulatedImu as SimulatedImu
     from yarpy.kits.devices.simulated.joints import SimulatedJoints as SimulatedJoints
     from yarpy.kits.devices.simulated.joypad import SimulatedJoypad as SimulatedJoypad
     from yarpy.kits.devices.simulated.laser import SimulatedLaser as SimulatedLaser
+    from yarpy.kits.devices.simulated.localized_laser import LocalizedLaser as LocalizedLaser
     from yarpy.kits.devices.simulated.map_storage import MapStorage as MapStorage
     from yarpy.kits.devices.simulated.position_sensor import (
         SimulatedPositionSensor as SimulatedPositionSensor,

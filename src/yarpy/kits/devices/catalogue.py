@@ -40,13 +40,16 @@ _KINDS: Final = {
     "speechTranscription": ("speech recognition", "fakeSpeechTranscription"),
 }
 _SERVERS: Final = {
+    "analogServer": "a sensor with channels, as older robots have it",
     "audioPlayerWrapper": "a loudspeaker",
+    "frameWriter_nws_yarp": "a screen: shows the pictures that come to its port",
     "controlboardwrapper2": "joints, as older YARP called it",
     "AudioPlayerWrapper": "a loudspeaker, as older YARP called it",
     "JoypadControlServer": "a joypad, as older YARP called it",
     "multipleanalogsensorsserver": "sensors, such as an inertial unit",
 }
 _CLIENTS: Final = {
+    "analogsensorclient": "a sensor with channels, as older robots have it",
     "JoypadControlClient": "a joypad, as older YARP called it",
     "RGBDSensorClient": "a camera with distances, as older YARP called it",
     "RemoteFrameGrabber": "a camera, as older YARP called it",
@@ -60,6 +63,8 @@ _CLIENTS: Final = {
 }
 _OTHERS: Final = {
     "controlboardremapper": "the joints of the boards that are attached, as one board",
+    "fakeAnalogSensor": "simulated sensor with channels: served by analogServer",
+    "fakeFrameWriter": "a screen without hardware: served by frameWriter_nws_yarp",
     "fakeIMU": "simulated inertial unit: served by multipleanalogsensorsserver",
     "fakeJointCoupling": "simulated coupling of joints, for programs in the same process",
     "fakePositionSensor": "simulated position and orientation: "
@@ -74,6 +79,7 @@ _OTHERS: Final = {
     "simulatedEye": "eye of the simulated iCub: attach simulatedHead",
     "simulatedHead": "joints of the simulated iCub's head: served by controlBoard_nws_yarp",
     "simulatedInertial": "inertial unit of the simulated iCub: attach simulatedHead",
+    "virtualAnalogServer": "torques that another program estimates, for what is attached",
     "test_grabber": "fakeFrameGrabber, as older YARP called it",
 }
 

@@ -20,6 +20,7 @@ from yarpy.names.base import NameClient
 
 #: What each is in `yarpy.kits.devices`; those of `interfaces` say it themselves.
 _CLASSES: Final = {
+    "analogsensorclient": "AnalogSensor",
     "battery_nwc_yarp": "Battery",
     "cartesiancontrollerclient": "CartesianController",
     "clientcontrolboard": "ControlBoard",

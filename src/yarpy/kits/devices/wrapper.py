@@ -7,9 +7,9 @@
     </device>
 
 Rules: `name` is that of the ports, `period` the seconds between messages (milliseconds for
-`multipleanalogsensorsserver`, as in C++). The ports are open while a device is attached;
-whatever has the interface of its kind can be, one at a time. Those of `interfaces` are all
-`Served`, which is told by the type that is opened.
+`multipleanalogsensorsserver` and `analogServer`, as in C++). The ports are open while a device is
+attached; whatever has the interface of its kind can be, one at a time. Those of `interfaces` are
+all `Served`, which is told by the type that is opened.
 """
 
 from __future__ import annotations
@@ -124,6 +124,47 @@ class Battery(Wrapper):
         return BatteryServer(name, device, **values)
 
 
+class FrameWriter(Wrapper):
+    """`frameWriter_nws_yarp`; its ports are called /writer where no name is given."""
+
+    def __init__(self, options: Property, *, names: NameClient | None = None) -> None:
+        named = Property(name=options.find("name", "") or "/writer")
+        super().__init__(named, names=names)
+
+    def serve(self, name: str, device: Any, **values: Any) -> Closeable:
+        """Return a server for a screen."""
+        from yarpy.kits.devices.frame_grabber.writer import FrameWriterServer
+
+        return FrameWriterServer(name, device, **values)
+
+
+class Analog(Wrapper):
+    """`analogServer`. The list `ports` names parts, each with four numbers: its first and last
+    channel, and what these are within the part. Raises ValueError for parts that are none."""
+
+    unit = 0.001
+
+    def __init__(self, options: Property, *, names: NameClient | None = None) -> None:
+        from yarpy.kits.devices.analog.plugin import network_of
+        from yarpy.kits.devices.simulated.plugin import values
+
+        super().__init__(options, names=names)
+        parts = {}
+        for key in map(str, values(options, "ports")):
+            first, last, base, top = network_of(key, values(options, key))
+            if last - first != top - base:
+                raise ValueError(f"the part {key} has not as many channels here as there")
+            parts[key] = range(first, last + 1)
+        if parts:
+            self._values["parts"] = parts
+
+    def serve(self, name: str, device: Any, **values: Any) -> Closeable:
+        """Return a server for a sensor with channels."""
+        from yarpy.kits.devices.analog.server import AnalogSensorServer
+
+        return AnalogSensorServer(name, device, **values)
+
+
 class Served(Wrapper):
     """The servers of `interfaces`, such as `speechSynthesizer_nws_yarp`. Raises LookupError for a
     type that is none of them."""
@@ -157,6 +198,8 @@ def server_of(device: object, kind: str = "") -> str:
     known = [*interfaces().values()]
     # What each needs; a class may be more than that.
     for server, members in (
+        ("frameWriter_nws_yarp", ("show",)),
+        ("analogServer", ("channels",)),
         ("controlBoard_nws_yarp", ("axis_names",)),
         ("frameGrabber_nws_yarp", ("image",)),
         ("rangefinder2D_nws_yarp", ("ranges",)),

@@ -3,8 +3,8 @@
     with Robot("/icubSim", icub_head()):             # /icubSim/head/rpc:i, /icubSim/cam/left ...
         ...
 
-Rules: a robot is just its devices: control boards, cameras, sensors. How their ports talk to
-browsers, C++ programs or people is up to the ports.
+Rules: a robot is just its devices: control boards, cameras, sensors, lasers, a base. How their
+ports talk to browsers, C++ programs or people is up to the ports.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import time
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Protocol
 
 from yarpy.kits.devices.closeable import Closeable, prefix
 from yarpy.kits.devices.control_board.interface import Joints
@@ -25,12 +25,21 @@ from yarpy.kits.sim.icub import ICUB_BODY, ICUB_HEAD
 from yarpy.kits.sim.joint import Joint
 
 if TYPE_CHECKING:
+    from yarpy.kits.devices.interfaces.place import Odometry, Place
     from yarpy.names.base import NameClient
     from yarpy.port.base import BasePort
 
 NAME: Final = "/icubSim"
 FPS: Final = 30.0
 SIZE: Final = (320, 240)
+
+
+class Localized(Protocol):
+    """A base: how it has moved, and where it is (`Odometry2D`, `Localization2D`)."""
+
+    def odometry(self) -> Odometry: ...
+
+    def position(self) -> Place: ...
 
 
 @dataclass(frozen=True)
@@ -40,6 +49,8 @@ class Parts:
     boards: Mapping[str, Joints] = field(default_factory=dict)
     cameras: Mapping[str, Camera] = field(default_factory=dict)
     sensors: Mapping[str, object] = field(default_factory=dict)
+    lasers: Mapping[str, object] = field(default_factory=dict)
+    base: Localized | None = None
 
 
 def icub_head(size: tuple[int, int] = SIZE, clock: Clock = time.time) -> Parts:
@@ -80,7 +91,14 @@ class Robot(Closeable):
     def __init__(
         self, name: str, parts: Parts, fps: float = FPS, *, names: NameClient | None = None
     ) -> None:
-        from yarpy.kits.devices import ControlBoardServer, FrameGrabberServer, MultiSensorServer
+        from yarpy.kits.devices import (
+            ControlBoardServer,
+            FrameGrabberServer,
+            LaserServer,
+            Localization2D,
+            MultiSensorServer,
+            Odometry2D,
+        )
 
         self.name = name = prefix(name)
         self.parts = parts
@@ -97,4 +115,12 @@ class Robot(Closeable):
             for part, sensors in parts.sensors.items():
                 measures = MultiSensorServer(f"{name}/{part}", sensors, names=names)
                 self.ports.append(resources.enter_context(measures).name)
+            for part, laser in parts.lasers.items():
+                scans = LaserServer(f"{name}/{part}", laser, names=names)
+                self.ports.append(resources.enter_context(scans).name)
+            if parts.base is not None:
+                for part, interface in (("odometry", Odometry2D), ("localization", Localization2D)):
+                    served = interface.serve(f"{name}/{part}", parts.base, names=names)
+                    resources.enter_context(served)
+                    self.ports.append(f"{name}/{part}")
             self._resources = resources.pop_all()

@@ -42,6 +42,14 @@ def test_both_ways(
     assert words.results(each, form, failed) is None
 
 
+def test_what_is_about_no_member() -> None:
+    request = Bottle.from_text("[rgdb] [get] [prot]")
+    found = words.fixed(DepthCamera.TOLD, request)
+    assert found == Bottle.from_text("[rgdb] [prot] [is] 1 0")
+    assert words.fixed(Joypad.TOLD, request) is None
+    assert words.fixed(DepthCamera.TOLD, Bottle.from_text("[rgdb] [get]")) is None
+
+
 def test_nobody_is_meant() -> None:
     for text in ("[ijpc]", "[visd] [get]", "[visd] [get] [bogu]", "hello", "1 2 3", "[get] [axis]"):
         assert words.asked(DEPTH.values(), Bottle.from_text(text)) is None

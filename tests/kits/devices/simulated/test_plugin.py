@@ -51,6 +51,20 @@ def test_an_inertial_unit_and_a_laser() -> None:
         plugin.laser(Property(test="use_mapfile"))
 
 
+def test_a_sensor_with_channels_and_a_screen() -> None:
+    sensor: Any = plugin.analog(Property(channelsNum=3))
+    assert len(sensor.channels()) == 3
+    assert len(plugin.analog(Property()).channels()) == 1  # type: ignore[attr-defined]
+    for many in (0, "many", True, 5000):
+        with pytest.raises(ValueError, match="there are 1 to 1000"):
+            plugin.analog(Property(channelsNum=many))
+    assert plugin.frame_writer(Property()).size is None  # type: ignore[attr-defined]
+    screen: Any = plugin.frame_writer(Property(width=32, height=16))
+    assert screen.size == (32, 16)
+    with pytest.raises(ValueError, match="each side must be"):
+        plugin.frame_writer(Property(width=-1, height=16))
+
+
 def test_a_laser_in_a_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     grid = devices.Grid.of("kitchen", [[0, 100]], 0.5)
     (tmp_path / "contexts" / "rooms").mkdir(parents=True)

@@ -4,9 +4,9 @@ import pytest
 
 import yarpy
 from yarpy.errors import UnknownPlugin
-from yarpy.kits.devices import ControlBoard
+from yarpy.kits.devices import ControlBoard, Laser, Localization2D, MultiSensor, Odometry2D
 from yarpy.kits.sim.mujoco import robot as module
-from yarpy.kits.sim.mujoco.robot import mujoco_robot
+from yarpy.kits.sim.mujoco.robot import mujoco_robot, scene_in
 from yarpy.kits.sim.robot import Robot
 
 
@@ -54,3 +54,36 @@ def test_on_ports(arm):
         assert "/little_arm/inertial" in robot.ports
         assert list(board.axis_names) == ["shoulder", "elbow", "rail"]
         assert list(board.axis_types)[2] == "prismatic"
+
+
+def test_a_folder_of_menagerie(arm, rover, tmp_path, clock):
+    """Its scene includes the robot, which lies beside it."""
+    (tmp_path / "rover.xml").write_text(rover.read_text())
+    assert scene_in(tmp_path) == tmp_path / "rover.xml"
+    (tmp_path / "scene.xml").write_text(
+        '<mujoco model="rover scene"><include file="rover.xml"/></mujoco>'
+    )
+    name, parts = mujoco_robot(tmp_path, (80, 60), clock)
+    assert name == "rover_scene" or name == "rover"
+    assert [*parts.lasers] == ["laser_front"] and parts.base is not None
+    assert scene_in(arm) == arm
+    (tmp_path / "scene.xml").rename(tmp_path / "other.xml")
+    with pytest.raises(ValueError, match=r"no scene.xml; models: other.xml, rover.xml"):
+        scene_in(tmp_path)
+
+
+def test_what_moves_freely_is_on_ports(rover):
+    names = yarpy.LocalNames()
+    name, parts = mujoco_robot(rover, (80, 60))
+    with (
+        Robot(name, parts, names=names) as robot,
+        Laser("/rover/laser_front", timeout=10.0, names=names) as laser,
+        Odometry2D.connect("/rover/odometry", names=names) as odometry,
+        Localization2D.connect("/rover/localization", names=names) as localization,
+        MultiSensor("/rover/inertial", timeout=10.0, names=names) as sensors,
+    ):
+        assert {"/rover/laser_front", "/rover/odometry", "/rover/localization"} <= {*robot.ports}
+        assert laser.scan().ranges[0] == pytest.approx(2.0, abs=0.2)
+        assert abs(odometry.odometry().odom_x) < 0.2
+        assert abs(localization.position().x) < 0.2
+        assert len(sensors.force_torques()["shoulder_ft"]) == 6

@@ -38,3 +38,18 @@ def test_moving(model, clock):
     run(model, clock, 2.0)
     assert sensors.orientations()["attitude"] == pytest.approx((0, 45, 0), abs=6)
     assert sensors.accelerometers()["accelerometer"] == pytest.approx((-6.94, 0, 6.94), abs=0.8)
+
+
+def test_a_shoulder_that_carries_an_arm(rover, clock):
+    model = load(rover, clock)
+    sensors = Sensors(model)
+    assert sensors.count == 1 and [*sensors.force_torques()] == ["shoulder_ft"]
+    run(model, clock, 2.0)
+    force, torque = (
+        sensors.force_torques()["shoulder_ft"][:3],
+        sensors.force_torques()["shoulder_ft"][3:],
+    )
+    # A kilogram hangs there, and its middle is 15 cm ahead.
+    assert sum(part**2 for part in force) ** 0.5 == pytest.approx(9.81, rel=0.05)
+    assert abs(torque[1]) == pytest.approx(9.81 * 0.15, rel=0.1)
+    assert torque[0] == pytest.approx(0.0, abs=0.05)

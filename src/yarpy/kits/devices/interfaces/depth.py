@@ -11,6 +11,8 @@ Source: IRGBDSensor, IRgbVisualParams, IDepthVisualParams and IFrameGrabberContr
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import yarpy
 from yarpy.kits.devices.interfaces.media import Configuration, Table, Transform, When
 from yarpy.kits.devices.network.model import Interface, call, published
@@ -28,6 +30,8 @@ class DepthCamera(Interface):
     VIEW = "IRGBDSensor"
     RPC = "rpc:i"
     WORDS = "is"
+    # The version of the protocol, which clients of C++ 3 ask for first.
+    TOLD: ClassVar = {"rgdb get prot": (1, 0)}
 
     @published("rgbImage:o", cpp="getRgbImage")
     def colour(self) -> yarpy.Image:

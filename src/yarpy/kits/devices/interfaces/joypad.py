@@ -194,7 +194,7 @@ class Joypad(Interface):
         """Return where all sticks are."""
         raise NotImplementedError
 
-    @published("trackball:o")
+    @published("trackball:o", also="trackballs:o")
     def trackballs(self) -> Points:
         """Return how all trackballs have moved."""
         raise NotImplementedError

@@ -151,7 +151,8 @@ class Laser(Closeable):
         item, function = _NAMES[member]
         if self._version is None:
             words = [Vocab("set"), Vocab("ilas"), Vocab(item)]
-            if self._ask([*words, *values])[:1] == ["ok"]:
+            # C++ of 3.9 and earlier says nothing once it is done.
+            if self._ask([*words, *values])[:1] in (["ok"], []):
                 return
         code, _ = split(self._ask([f"set{function}", Vocab("RPC"), *values]))
         if code != OK:

@@ -70,9 +70,10 @@ def sent(port: str) -> Callable[[F], F]:
     return _mark(copy=port)
 
 
-def published(port: str, cpp: str = "") -> Callable[[F], F]:
-    """Mark a member whose result is sent by a port."""
-    return _mark(source=port, **({"cpp": cpp} if cpp else {}))
+def published(port: str, cpp: str = "", also: str = "") -> Callable[[F], F]:
+    """Mark a member whose result is sent by a port. also: one more, where programs of C++ look for
+    another than their servers have."""
+    return _mark(source=port, also=also, **({"cpp": cpp} if cpp else {}))
 
 
 def taken(port: str, kind: type[Any], cpp: str = "") -> Callable[[F], F]:
@@ -104,6 +105,7 @@ class Member:
     words: tuple[str, ...] = ()
     copy: str = ""
     source: str = ""
+    also: str = ""
     sink: str = ""
     sink_kind: type[Any] | None = None
 
@@ -131,6 +133,8 @@ class Interface:
     RPC: ClassVar[str] = "rpc"
     #: how YARP 3 answers where it is asked by words: `is` or `ok`, see `network.words`
     WORDS: ClassVar[str] = ""
+    #: what is answered to words that are about no member: the numbers behind `is`
+    TOLD: ClassVar[dict[str, tuple[int, ...]]] = {}
     #: the members, by name
     members: ClassVar[dict[str, Member]] = {}
 

@@ -24,7 +24,7 @@ from yarpy.kits.devices.access import Access
 from yarpy.kits.devices.closeable import Closeable, prefix
 from yarpy.kits.devices.network.functions import Status, functions_of
 from yarpy.kits.devices.network.model import Interface, Member
-from yarpy.kits.devices.network.words import answer, arguments, asked
+from yarpy.kits.devices.network.words import answer, arguments, asked, fixed
 from yarpy.kits.devices.publisher import Publisher
 from yarpy.kits.devices.refusal import Complaints, Refused
 from yarpy.kits.devices.status import FAILED, MISSING, OK, older, oldest
@@ -83,8 +83,8 @@ class Server(Closeable):
                     take = partial(self._take, each)
                     sink = f"{name}/{each.sink}".rstrip("/")
                     resources.enter_context(BufferedPort(sink, callback=take, names=names))
-                if each.source:
-                    port = BufferedPort(f"{name}/{each.source}", names=names)
+                for source in filter(None, (each.source, each.also)):
+                    port = BufferedPort(f"{name}/{source}", names=names)
                     resources.enter_context(port)
                     self._sources.append((each, Dialects(port)))
             if self._sources:
@@ -129,6 +129,8 @@ class Server(Closeable):
             request = message.as_(Bottle)
         except DecodeError:
             return None
+        if (told := fixed(self.interface.TOLD, request)) is not None:
+            return told
         each = asked(self.interface.members.values(), request)
         if each is None:
             return None

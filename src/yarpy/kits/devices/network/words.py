@@ -15,7 +15,7 @@ Source: RGBDSensor_nws_yarp and JoypadControlServer of YARP 3.9.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any, Final, get_args, get_origin
 
 from yarpy.data.bottle import Bottle, Property
@@ -38,6 +38,16 @@ def asked(members: Iterable[Member], request: Sequence[Any]) -> Member | None:
     said = tuple(word(each) for each in request[:4])
     found = [each for each in members if each.words and said[: len(each.words)] == each.words]
     return max(found, key=lambda each: len(each.words), default=None)
+
+
+def fixed(told: Mapping[str, Sequence[int]], request: Sequence[Any]) -> Bottle | None:
+    """Return the answer to a request that is about no member: `[rgdb] [get] [prot]`; None if
+    `told`, the numbers by such words, has none."""
+    words = [word(each) for each in request]
+    numbers = told.get(" ".join(words))
+    if numbers is None:
+        return None
+    return Bottle([Vocab(words[0]), *map(Vocab, words[2:]), _IS, *numbers])
 
 
 def arguments(each: Member, request: Sequence[Any]) -> tuple[Any, ...]:

@@ -22,6 +22,7 @@ class SimulatedJoints:
         self.velocity_limits = [(0.0, 100.0)] * count
         self.automatic_brakes = [False] * count
         self._at = [0.0] * count
+        self._torques = [0.0] * count
         self._braked = [False] * count
         self._modes = ["pos"] * count
         self._stiff = ["stif"] * count
@@ -31,6 +32,13 @@ class SimulatedJoints:
 
     def encoder_speeds(self) -> list[float]:
         return [0.0] * len(self._at)
+
+    def torques(self) -> list[float]:
+        return [*self._torques]
+
+    def update_measures(self, values: Sequence[float]) -> None:
+        """Take these torques for measured, from the first joint on (`analog.virtual`)."""
+        self._torques[: len(values)] = values[: len(self._torques)]
 
     def control_modes(self) -> list[str]:
         return [*self._modes]

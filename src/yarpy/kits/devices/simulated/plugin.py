@@ -6,14 +6,16 @@
     </device>
 
 Rules: cameras take `width` and `height`, joints the group GENERAL with `Joints` and `AxisName`, an
-inertial unit `sensorName`, `frameName` and `constantValue`, a laser `test`, `const_distance`,
-`map_file` (with `map_context` or without), `clip_min`, `clip_max` and the group SENSOR with
-`min_angle`, `max_angle` and `resolution`; the others take nothing.
+inertial unit `sensorName`, `frameName` and `constantValue`, a sensor with channels `channelsNum`, a
+screen `width` and `height`, a laser `test`, `const_distance`, `map_file` (with `map_context` or
+without), `localization_port` or `localization_server`, `clip_min`, `clip_max` and the group SENSOR
+with `min_angle`, `max_angle` and `resolution`; the others take nothing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Final
 
 from yarpy.data.bottle import Bottle, Property
@@ -39,7 +41,7 @@ _WITHOUT_OPTIONS: Final = {
     "map2DStorage": "MapStorage",
     "robotDescriptionStorage": "DescriptionStorage",
 }
-_JOINTS: Final = 1000  # more than any robot has
+_MOST: Final = 1000  # joints or channels: more than any robot has
 
 
 def simulated(options: Property, *, names: NameClient | None = None) -> object:
@@ -69,9 +71,7 @@ def joints(options: Property, *, names: NameClient | None = None) -> object:
     from yarpy.kits.devices import SimulatedJoints
 
     general = Property.from_bottle(options.group("GENERAL") or ())
-    many = general.find("Joints", 4)
-    if not isinstance(many, int) or isinstance(many, bool) or not 0 < many <= _JOINTS:
-        raise ValueError(f"GENERAL Joints {many}: there are 1 to {_JOINTS}")
+    many = _count(general, "Joints", 4)
     called = [str(one) for one in values(general, "AxisName")]
     if called and len(called) != many:
         raise ValueError(f"GENERAL AxisName has {len(called)} names for {many} joints")
@@ -89,16 +89,38 @@ def imu(options: Property, *, names: NameClient | None = None) -> object:
     )
 
 
+def analog(options: Property, *, names: NameClient | None = None) -> object:
+    """Return `fakeAnalogSensor`. Raises ValueError for a number of channels that is none."""
+    from yarpy.kits.devices import SimulatedAnalogSensor
+
+    return SimulatedAnalogSensor(_count(options, "channelsNum", 1))
+
+
+def frame_writer(options: Property, *, names: NameClient | None = None) -> object:
+    """Return `fakeFrameWriter`. Raises ValueError for a size that is too large."""
+    from yarpy.kits.devices import SimulatedFrameWriter
+
+    width, height = (options.find(key, 0) or 0 for key in ("width", "height"))
+    return SimulatedFrameWriter(_size(options) if width or height else None)
+
+
 def laser(options: Property, *, names: NameClient | None = None) -> object:
     """Return `fakeLaser`. Raises ValueError for settings that make no scan, OSError for a map that
-    cannot be read."""
-    from yarpy.kits.devices import SimulatedLaser, load_grid
+    cannot be read, YarpError for who should say where it is."""
+    from yarpy.kits.devices import LocalizedLaser, SimulatedLaser, load_grid
 
     scene = str(options.find("test", "use_pattern"))
     grid = load_grid(_map_file(options)) if scene == "use_mapfile" else None
     sensor = Property.from_bottle(options.group("SENSOR") or ())
     constant = Property.from_bottle(options.group("CONSTANT_MODE") or ())
-    return SimulatedLaser(
+    where = {
+        key: str(options.find(f"localization_{key}", "") or "")
+        for key in ("port", "server", "client")
+    }
+    make: Callable[..., object] = SimulatedLaser
+    if scene == "use_mapfile" and (where["port"] or where["server"]):
+        make = partial(LocalizedLaser, **where, names=names)
+    return make(
         scene,
         grid=grid,
         angles=(_number(sensor, "min_angle", 0.0), _number(sensor, "max_angle", 360.0)),
@@ -138,6 +160,13 @@ def _number(options: Property, key: str, default: float) -> float:
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         raise ValueError(f"{key} {value} is no number")
     return float(value)
+
+
+def _count(options: Property, key: str, default: int) -> int:
+    many = options.find(key, default)
+    if not isinstance(many, int) or isinstance(many, bool) or not 0 < many <= _MOST:
+        raise ValueError(f"{key} {many}: there are 1 to {_MOST}")
+    return many
 
 
 def _said(options: Property, key: str) -> bool:

@@ -1,4 +1,8 @@
-"""Inertial sensors of a MuJoCo model, for `yarpy.devices.MultiSensorServer`."""
+"""Inertial and force sensors of a MuJoCo model, for `yarpy.devices.MultiSensorServer`.
+
+Rules: a force and a torque sensor at the same site are one of six axes, with the site's name; N and
+Nm, in the axes of the site, as the body with the site pushes and turns what it is fixed to.
+"""
 
 from __future__ import annotations
 
@@ -19,6 +23,7 @@ KINDS: Final = {
 }
 
 Values = dict[str, Vector]
+Wrenches = dict[str, tuple[float, ...]]
 
 
 class Sensors:
@@ -34,7 +39,8 @@ class Sensors:
             if method is not None:
                 name = model.name_of("sensor", number)
                 self._places[method][name] = int(model.model.sensor_adr[number])
-        self.count = sum(map(len, self._places.values()))
+        self._wrenches = _wrenches(model)
+        self.count = sum(map(len, self._places.values())) + len(self._wrenches)
 
     def gyroscopes(self) -> Values:
         return self._values("gyroscopes", lambda data: _three([degrees(x) for x in data[:3]]))
@@ -51,6 +57,14 @@ class Sensors:
     def position_sensors(self) -> Values:
         return self._values("position_sensors", _three)
 
+    def force_torques(self) -> Wrenches:
+        with self._model.present():
+            data: Any = self._model.data.sensordata
+            return {
+                name: (*data[force : force + 3].tolist(), *data[torque : torque + 3].tolist())
+                for name, (force, torque) in self._wrenches.items()
+            }
+
     def _values(self, method: str, read: Callable[[list[float]], Vector]) -> Values:
         with self._model.present():
             data: Any = self._model.data.sensordata
@@ -58,6 +72,22 @@ class Sensors:
                 name: read(data[place : place + 4].tolist())
                 for name, place in self._places[method].items()
             }
+
+
+def _wrenches(model: Model) -> dict[str, tuple[int, int]]:
+    """Return where force and torque at each site are in the data of the sensors."""
+    kinds = mujoco().mjtSensor
+    found: dict[int, dict[int, int]] = {int(kinds.mjSENS_FORCE): {}, int(kinds.mjSENS_TORQUE): {}}
+    for number in range(model.model.nsensor):
+        at = found.get(int(model.model.sensor_type[number]))
+        if at is not None:
+            at[int(model.model.sensor_objid[number])] = int(model.model.sensor_adr[number])
+    forces, torques = found.values()
+    return {
+        model.name_of("site", site): (forces[site], torques[site])
+        for site in forces
+        if site in torques
+    }
 
 
 def _three(values: list[float]) -> Vector:

@@ -4,7 +4,8 @@
     --fps HZ          pictures per second of its cameras (30)
     --size WxH        of its pictures, in pixels (320x240)
     --whole           torso, arms and legs too, the boards of a whole iCub
-    --mujoco FILE     this model instead of the head: joints, cameras, inertial sensors
+    --mujoco FILE     this model instead of the head: joints, cameras, sensors, lasers, a base; or a
+                      folder with its scene.xml, as in MuJoCo Menagerie
     --ros             as a node of ROS 1 too: pictures, joint states, a service that moves joints
 
 Exit codes: 0 ended by a signal; 1 the names are in use, the file is no model, MuJoCo is missing.
@@ -61,9 +62,9 @@ class Size(_Type):
 @click.option(
     "--mujoco",
     "model",
-    type=click.Path(exists=True, dir_okay=False),
+    type=click.Path(exists=True),
     metavar="FILE",
-    help="Simulate this MuJoCo model (XML) instead.",
+    help="Simulate this MuJoCo model (XML, or its folder) instead.",
 )
 def command(
     robot: str | None,

@@ -1,0 +1,140 @@
+"""Sensors, cameras and sounds between yarpy and C++, both ways in one chain each.
+
+our server -> client of C++ -> server of C++ -> our client
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from support.cpp import CppYarp
+from support.cpp_device import PATIENT, cpp_device, device_host
+from support.wait import wait_until
+
+from yarpy.kits import devices
+
+pytestmark = pytest.mark.peer("g++")
+
+
+@contextmanager
+def between(network: CppYarp, server: str, client: str, **options: object) -> Iterator[None]:
+    """C++ in the middle: its client of /ours, served again as /cpp."""
+    options = {"name": "/cpp", "local": "/between", "remote": "/ours", **options}
+    with cpp_device(network, server, subdevice=client, **options) as process:
+        assert "not available" not in process.stdout, process.stdout + process.stderr
+        yield
+
+
+def test_channels(network: CppYarp) -> None:
+    device_host(network)
+    sensor = Still()
+    inner = {"inner": "analogsensorclient", "carrier": "tcp", "period": 10}
+    with (
+        devices.AnalogSensorServer("/ours", sensor, 0.01),
+        between(network, "analogServer", PATIENT, **inner),
+        devices.AnalogSensor("/cpp", timeout=10.0) as client,
+    ):
+        wait_until(lambda: client.channels() == [1.5, -2.0])
+        client.calibrate()
+        client.calibrate([3.0, 4.0])
+        client.calibrate_channel(1, 0.5)
+        client.calibrate_channel(0)
+        assert sensor.done == [None, [3.0, 4.0], (1, 0.5), (0, None)]
+
+
+class Still:
+    def __init__(self) -> None:
+        self.done: list[object] = []
+
+    def channels(self) -> list[float]:
+        return [1.5, -2.0]
+
+    def calibrate(self, values: object) -> None:
+        self.done.append(values)
+
+    def calibrate_channel(self, channel: int, value: float | None) -> None:
+        self.done.append((channel, value))
+
+
+def test_a_battery(network: CppYarp) -> None:
+    device_host(network)
+    with (
+        devices.BatteryServer("/ours", Pack(), 0.02),
+        between(network, "batteryWrapper", "batteryClient", period=0.02),
+        devices.Battery("/cpp", timeout=10.0) as client,
+    ):
+        wait_until(lambda: client.charge() == 80.5)
+        assert client.voltage() == 24.5 and client.current() == 1.5
+        assert client.temperature() == 20.0 and client.status() == "charging"
+        assert client.info == "24 V"
+
+
+class Pack:
+    info = "24 V"
+
+    def charge(self) -> float:
+        return 80.5
+
+    def voltage(self) -> float:
+        return 24.5
+
+    def current(self) -> float:
+        return 1.5
+
+    def temperature(self) -> float:
+        return 20.0
+
+    def status(self) -> str:
+        return "charging"
+
+
+def test_a_laser(network: CppYarp) -> None:
+    device_host(network)
+    laser = devices.SimulatedLaser("use_constant", distance=0.5, step=30.0)
+    with (
+        devices.LaserServer("/ours", laser, 0.02),
+        between(network, "rangefinder2D_nws_yarp", "Rangefinder2DClient", period=0.02),
+        devices.Laser("/cpp", timeout=10.0) as client,
+    ):
+        wait_until(lambda: [*client.scan().ranges] == [0.5] * 12)
+        assert client.angles == (0.0, 360.0) and client.distances == (0.1, 3.5)
+        client.distances = (1.0, 3.0)  # in between they are whole numbers
+        assert laser.distances == (1.0, 3.0)
+
+
+def test_a_camera_with_distances(network: CppYarp) -> None:
+    device_host(network)
+    camera = devices.SimulatedDepthCamera(32, 16)
+    remote = {
+        "localImagePort": "/between/colour",
+        "localDepthPort": "/between/depth",
+        "localRpcPort": "/between/rpc",
+        "remoteImagePort": "/ours/rgbImage:o",
+        "remoteDepthPort": "/ours/depthImage:o",
+        "remoteRpcPort": "/ours/rpc:i",
+    }
+    with (
+        devices.DepthCamera.serve("/ours", camera),
+        between(network, "rgbdSensor_nws_yarp", "RGBDSensorClient", period=0.03, **remote),
+        devices.DepthCamera.connect("/cpp") as client,
+    ):
+        colour, depth = client.colour(), client.depth()
+        assert (colour.width, colour.height) == (32, 16) == (depth.width, depth.height)
+        assert np.isfinite(depth.array).any()
+        assert client.clip_planes() == camera.clip_planes()
+
+
+def test_a_joypad(network: CppYarp) -> None:
+    device_host(network)
+    options = {"period": 10, "use_separate_ports": 1}
+    with (
+        devices.Joypad.serve("/ours", devices.SimulatedJoypad()),
+        between(network, "JoypadControlServer", "JoypadControlClient", **options),
+        devices.Joypad.connect("/cpp") as client,
+    ):
+        pad = devices.SimulatedJoypad()
+        assert client.button_count() == pad.button_count()
+        assert client.axis_count() == pad.axis_count()
