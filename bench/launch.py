@@ -26,34 +26,29 @@ from yarpy.kits.launch.console import control
 from yarpy.kits.launch.log.intake import Intake
 
 SLEEP = ["sleep", "100000"]
-LOG = "/log/bench/sender/1"
-SENDER = f"""
-import sys, time
-from yarpy.port.assembly import open_hub
-from yarpy.port.keep.log_sender import LogSender
-from yarpy.wire.message import Packet
+SENDER = """
+import logging, sys, time, yarpy
 rate, seconds = int(sys.argv[1]), float(sys.argv[2])
-text = '(level INFO) (systemtime %.6f) (message "a small line, as programs print them")'
-gap = lambda count: Packet(["[{LOG}]", f"(level WARNING) (message {{count}})"])
-sender = LogSender(open_hub, "{LOG}", gap, "/yarplogger")
-sender.open()
-time.sleep(2)  # it connects meanwhile
-begun = time.time()
-sent = 0
-while (passed := time.time() - begun) < seconds:
-    more = range(sent, int(rate * passed))
-    sender.put([Packet(["[{LOG}]", text % (begun + number * 2e-6)]) for number in more])
-    sent += len(more)
-    time.sleep(0.002)
-took = time.time() - begun
-sender.close()
-print(sent, took)
+log = logging.getLogger("bench")
+log.setLevel(logging.INFO)
+log.propagate = False
+log.addHandler(logging.NullHandler())
+with yarpy.Port("..."):
+    log.info("it connects")
+    time.sleep(2)  # ... meanwhile
+    begun, used, sent = time.time(), time.process_time(), 0
+    while (passed := time.time() - begun) < seconds:
+        for sent in range(sent, int(rate * passed)):
+            log.info("a small line, number %d", sent)
+        sent = max(sent, int(rate * passed))
+        time.sleep(0.002)
+    print(sent, sent / (time.time() - begun), 1e6 * (time.process_time() - used) / sent)
 """
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--programs", type=int, nargs="+", default=[100, 200])
+    parser.add_argument("--programs", type=int, nargs="*", default=[100, 200])
     parser.add_argument("--watch", type=float, default=20.0, help="seconds")
     parser.add_argument("--kills", type=int, default=10)
     parser.add_argument("--lines", type=int, default=50_000, help="a second")
@@ -66,7 +61,8 @@ def main() -> None:
         os.environ.update(server.environment, YARP_RUNTIME_DIR=place)
         for count in options.programs:
             many(Path(place), count, options.watch, options.kills)
-        print(logged(options.lines, options.seconds))
+        for count in (1, 10):
+            print(logged(count, options.lines, options.seconds), flush=True)
 
 
 def many(place: Path, count: int, seconds: float, kills: int) -> None:
@@ -171,24 +167,26 @@ def _processor(pid: int) -> float:
     return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def logged(rate: int, seconds: float) -> str:
-    """A row: lines of one program, taken and read by the logger."""
-    sender = [sys.executable, "-c", SENDER, str(rate), str(seconds)]
+def logged(programs: int, rate: int, seconds: float) -> str:
+    """A row: lines that programs log, taken and read by the logger."""
+    sender = [sys.executable, "-c", SENDER, str(rate // programs), str(seconds)]
+    os.environ["YARP_FORWARD_LOG_ENABLE"] = "1"
     intake = Intake(lambda hear: yarpy.Port("/yarplogger", callback=hear))
-    with subprocess.Popen(sender, stdout=subprocess.PIPE, text=True) as process:
-        read = told = 0
-        while process.poll() is None or intake.waiting:
-            for line, _ in intake.read(0.2):
-                told += int(line.text) if line.text.isdecimal() else 0
-                read += not line.text.isdecimal()
-        assert process.stdout is not None
-        sent, took = process.stdout.read().split()
-        lost = intake.lost
-        intake.close()
-    missing = int(sent) - read - lost - told
+    running = [subprocess.Popen(sender, stdout=subprocess.PIPE, text=True) for _ in range(programs)]
+    read = told = 0
+    while intake.waiting or any(process.poll() is None for process in running):
+        for line, _ in intake.read(0.2):
+            gap = line.text.partition(" lines before this one are lost")
+            told += int(gap[0]) if gap[1] else 0
+            read += line.text.startswith("a small line")
+    lost = intake.lost
+    intake.close()
+    counts = [list(map(float, process.communicate()[0].split())) for process in running]
+    sent, came, cost = (sum(column) for column in zip(*counts, strict=True))
     return (
-        f"| {int(sent) / float(took):.0f} lines a second, for {seconds:g} s | {read} read, {told} "
-        f"lost by the sender, {lost} by the logger, {missing} waited at its end |"
+        f"| {programs} log {came:.0f} lines a second, {seconds:g} s, {cost / programs:.0f} us of a "
+        f"processor each | {read} read, {told} lost by programs, {lost} by the logger, "
+        f"{sent - read - told - lost:.0f} not accounted for |"
     )
 
 

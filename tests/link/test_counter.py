@@ -20,6 +20,14 @@ def test_regular_messages_have_a_period_and_no_jitter() -> None:
     assert counter.jitter == pytest.approx(0.0, abs=1e-9)
 
 
+def test_messages_that_come_together_share_their_period() -> None:
+    counter = Counter()
+    for number in range(100):
+        counter.messages += 50
+        counter.count(number * 0.5, 0, 50)
+    assert counter.period == pytest.approx(0.01, rel=0.01)
+
+
 def test_irregular_messages_have_jitter() -> None:
     counter = Counter()
     now = 0.0

@@ -159,6 +159,13 @@ class Carrier:
         """Write one message."""
         stream.output += packet.framed or framing.encode(packet)
 
+    def frames(self, packets: Sequence[Packet]) -> list[bytes] | None:
+        """Return each of these messages as `encode` would write it; None where more belongs to a
+        message than its bytes."""
+        if self.acks or type(self).encode is not Carrier.encode:
+            return None
+        return [b"".join(packet.framed or framing.encode(packet)) for packet in packets]
+
     def gathers(self, packet: Packet) -> bool:
         """Return whether what `encode` has just written may wait for more messages of a burst: it
         is small, and in memory that the writer cannot change."""

@@ -232,7 +232,7 @@ def default_port(environment: Mapping[str, str]) -> int:
 def flag(environment: Mapping[str, str], name: str, default: bool) -> bool:
     """A yes or no among the variables; anything else counts as not said."""
     text = environment.get(name, "").lower()
-    return default if text not in _YES | _NO else text in _YES
+    return text in _YES or (default and text not in _NO)
 
 
 def port_name(name: str, environment: Mapping[str, str]) -> str:

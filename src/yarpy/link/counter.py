@@ -39,10 +39,11 @@ class Counter:
     since: float = 0.0
     last: float = 0.0
 
-    def count(self, now: float, more: int = 1) -> None:
-        """Count a message at time `now` (time.perf_counter); 0 `more`: it is counted already."""
+    def count(self, now: float, more: int = 1, together: int = 1) -> None:
+        """Count a message at time `now` (time.perf_counter); 0 `more`: it is counted already.
+        `together`: so many came at once."""
         self.messages += more
-        gap = now - self.last
+        gap = (now - self.last) / together
         if self.messages > 2:
             change = gap - self.period
             self.period += change * _SMOOTHING

@@ -368,6 +368,24 @@ def test_encoded_messages_leave_at_once() -> None:
     assert transport.said == b""
 
 
+def test_a_burst_leaves_in_one_piece_and_is_counted_by_message() -> None:
+    link, transport = open_link(FastTcp)
+    sends = []
+    send = transport.try_send
+    transport.try_send = lambda buffers: sends.append(1) or send(buffers)  # type: ignore[func-returns-value, method-assign]
+    packets = [Packet(["a", "line"]), Packet(["b", "another"]), Packet(["c"])]
+    assert link.send_burst(packets)
+    frames = [b"".join(framing.encode(packet)) for packet in packets]
+    assert (len(sends), transport.said) == (1, b"".join(frames))
+    assert link.counter.messages == 3
+    first, second, third = map(len, frames)
+    assert [*link.sender.confirmation.ends] == [first, first + second, first + second + third]
+    assert not link.send_burst([])
+    waiting, transport = open_link(Tcp)
+    assert not waiting.send_burst(packets), "each of them is acknowledged"
+    assert transport.said == b""
+
+
 def test_the_rest_of_an_encoded_message_follows() -> None:
     """Nothing is begun where the reader takes nothing; the rest of what has begun is waited for."""
     data = bytes(range(256)) * 256

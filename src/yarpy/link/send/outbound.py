@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import sys
 import threading
+from collections.abc import Sequence
 from contextlib import suppress
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any, Final
 
 from yarpy import scope
@@ -143,13 +145,20 @@ class Outbound:
         """Send one message; return False if it was dropped or replaced. See `Outbox.offer`."""
         return self.box.offer(packet, until) is True
 
-    def send_whole(self, data: bytes) -> bool:
-        """Send a message that is encoded already; return False, and do nothing, where `send` has
-        more to do than that. Raises LinkClosed."""
+    def send_whole(self, data: bytes, ends: Sequence[int] = ()) -> bool:
+        """Send a message that is encoded already, or several that have these `ends` in it; return
+        False, and do nothing, where `send` has more to do than that. Raises LinkClosed."""
         box, queue = type(self.box), self._queue
         at_once = box is Direct or (box is Recent and queue is not None and not queue.pending)
         simple = at_once and self.chain is None and not self.carrier.acks
-        return simple and self.sender.send_whole(data)
+        return simple and self.sender.send_whole(data, ends)
+
+    def send_burst(self, packets: Sequence[Packet]) -> bool:
+        """Send messages in one piece; return False, and do nothing, as `send_whole`."""
+        frames = self.carrier.frames(packets)
+        if not frames:
+            return False
+        return self.send_whole(b"".join(frames), [*accumulate(map(len, frames))])
 
     def expect(self, wanted: Qos) -> None:
         """Note how messages should arrive from now on. The receiver counts; we do not send what is

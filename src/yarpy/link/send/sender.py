@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import Enum, auto
 from typing import TYPE_CHECKING, Any, Final
 
@@ -256,8 +256,9 @@ class Sender:
             self.driver.stream.snapshot_output()
             self._watch()
 
-    def send_whole(self, data: bytes) -> bool:
-        """Send a message that is encoded already, over a connection without acknowledgements.
+    def send_whole(self, data: bytes, ends: Sequence[int] = ()) -> bool:
+        """Send a message that is encoded already, over a connection without acknowledgements; or
+        several, which have these `ends` in it.
 
         False, and nothing has left, where something is in its way: another message, a reader that
         takes nothing just now, an error. Then `transmit` says what, or waits. What has begun
@@ -272,12 +273,13 @@ class Sender:
             unsent = self._begin(data)
             if unsent == len(data):
                 return False
-            self.confirmation.ends.append(driver.bytes_out + unsent)
+            start, ends = driver.bytes_out + unsent - len(data), ends or (len(data),)
+            self.confirmation.ends.extend([start + end for end in ends])
             if self._judged:  # as in `transmit`
-                counter.unconfirmed += 1
+                counter.unconfirmed += len(ends)
             else:
-                counter.messages += 1
-            counter.count(time.perf_counter(), 0)
+                counter.messages += len(ends)
+            counter.count(time.perf_counter(), 0, len(ends))
             if unsent:
                 self._watch()
             return True

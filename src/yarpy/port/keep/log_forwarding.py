@@ -72,6 +72,8 @@ class Forwarder:
     def _start_over(self) -> None:
         self._process = os.getpid()
         self._name = port_name(os.environ)
+        # Of the start, as in C++; looking them up for each line takes longer than to write it.
+        self._environment = {k: v for k, v in os.environ.items() if k.startswith("YARP_FORWARD_")}
         self._sender = LogSender(self._open, self._name, self._gap, LOGGER)
 
     def attach(self) -> None:
@@ -95,7 +97,7 @@ class Forwarder:
             self._start_over()
         if self._sender.ident == threading.get_ident():
             return
-        self._sender.put([Packet(message_of(record, self._name, os.environ))])
+        self._sender.put([Packet(message_of(record, self._name, self._environment))])
 
     def close(self) -> None:
         """Send what is left, and give the name back."""
@@ -106,4 +108,4 @@ class Forwarder:
 
     def _gap(self, lost: int) -> Packet:
         told = {"levelno": logging.WARNING, "msg": f"{lost} lines before this one are lost"}
-        return Packet(message_of(logging.makeLogRecord(told), self._name, os.environ))
+        return Packet(message_of(logging.makeLogRecord(told), self._name, self._environment))

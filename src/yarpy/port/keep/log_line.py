@@ -15,12 +15,13 @@ import socket
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Final
 
 from yarpy.config.configuration import flag
 from yarpy.data.bottle import Bottle
-from yarpy.data.text import plain_text
+from yarpy.data.text import plain_text, print_text
 from yarpy.data.value import LIST, STRING
 from yarpy.errors import DecodeError
 
@@ -74,31 +75,36 @@ def port_name(environment: Mapping[str, str]) -> str:
 def message_of(record: LogRecord, port: str, environment: Mapping[str, str]) -> Bottle:
     """A record of Python's logging. YARP_FORWARD_CODEINFO_ENABLE, YARP_FORWARD_HOSTNAME_ENABLE and
     YARP_FORWARD_PROCESSINFO_ENABLE have it tell more, as in C++."""
-    told: list[list[Any]] = [["level", level_of(record.levelno)], ["systemtime", record.created]]
+    told: list[tuple[str, Any]] = []
     if flag(environment, "YARP_FORWARD_CODEINFO_ENABLE", False):
-        told.append(["filename", record.pathname])
-        told.append(["line", record.lineno])
-        told.append(["function", record.funcName or ""])
+        told += ("filename", record.pathname), ("line", record.lineno)
+        told.append(("function", record.funcName or ""))
     if flag(environment, "YARP_FORWARD_HOSTNAME_ENABLE", False):
-        told.append(["hostname", socket.gethostname()])
+        told.append(("hostname", socket.gethostname()))
     if flag(environment, "YARP_FORWARD_PROCESSINFO_ENABLE", False):
-        told.append(["pid", os.getpid()])
-        told.append(["cmd", sys.orig_argv[0] if sys.orig_argv else ""])
-        told.append(["args", " ".join(sys.orig_argv[1:])[:LONGEST]])
-        told.append(["thread_id", f"0x{(record.thread or 0) & 0xFFFFFFFF:08x}"])
+        told += ("pid", os.getpid()), ("cmd", sys.orig_argv[0] if sys.orig_argv else "")
+        told.append(("args", " ".join(sys.orig_argv[1:])[:LONGEST]))
+        told.append(("thread_id", f"0x{(record.thread or 0) & 0xFFFFFFFF:08x}"))
     if record.name not in ("root", "yarp", None):  # yarp: what compat prints has no component
-        told.append(["component", record.name])
+        told.append(("component", record.name))
     try:
         text = record.getMessage()
     except Exception as error:  # as logging itself: a wrong format is no end of a program
         text = f"{record.msg} ({error})"
     if text:
-        told.append(["message", text[:LONGEST]])
+        told.append(("message", text[:LONGEST]))
     if record.exc_info and record.exc_info[0] is not None:
         import traceback
 
-        told.append(["backtrace", "".join(traceback.format_exception(*record.exc_info))[-LONGEST:]])
-    return Bottle([f"[{port}]", Bottle(told).to_text()])
+        trace = "".join(traceback.format_exception(*record.exc_info))[-LONGEST:]
+        told.append(("backtrace", trace))
+    # Written by hand: a Bottle of Bottles takes three times as long, and there are many lines.
+    start = f"(level {level_of(record.levelno)}) (systemtime {print_text((record.created,))})"
+    return Bottle([f"[{port}]", start + "".join([_pair_text(*each) for each in told])])
+
+
+def _pair_text(key: str, value: Any) -> str:
+    return f" ({key} {print_text((value,))})"
 
 
 def level_of(number: int) -> str:
@@ -146,9 +152,8 @@ def read_line(value: object, source: str = "") -> LogLine | None:
 
 
 def _line(header: str, text: str, source: str) -> LogLine:
-    header, text = header[:LONGEST].rstrip("\0"), text[:LONGEST].rstrip("\0")
-    origin = header[1:-1] if header.startswith("[") and header.endswith("]") else source
-    usual = _USUAL.fullmatch(text)
+    origin = _origin(header, source)
+    usual = _USUAL.fullmatch(text) if len(text) <= LONGEST else None
     if usual is not None:
         level, moment, network, component, id_, quoted, word = usual.groups()
         more: dict[str, Any] = {}
@@ -161,6 +166,7 @@ def _line(header: str, text: str, source: str) -> LogLine:
         return LogLine(
             origin, level, said, seconds if seconds < LATEST else 0.0, component or "", more
         )
+    text = text[:LONGEST].rstrip("\0")
     found = _fields(text) if text.startswith("(") else {}
     if "level" not in found:
         match = _LEVEL.match(text)
@@ -178,6 +184,13 @@ def _line(header: str, text: str, source: str) -> LogLine:
         component,
         found,
     )
+
+
+@lru_cache(maxsize=1024)
+def _origin(header: str, source: str) -> str:
+    """The port that a header tells, else the one that the message came from."""
+    header = header[:LONGEST].rstrip("\0")
+    return header[1:-1] if header.startswith("[") and header.endswith("]") else source
 
 
 def _time(seconds: float) -> float:

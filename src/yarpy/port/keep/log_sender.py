@@ -29,6 +29,7 @@ LOGGER: Final = "/yarplogger"
 LINES: Final = 1000  # kept for readers that are late
 AHEAD: Final = 20_000  # kept for a reader that is behind
 TIMEOUT: Final = 2.0  # seconds for a reader to take a line
+GATHER: Final = 0.01  # seconds between sends, where lines come without a pause
 _BATCH: Final = 500  # lines sent before there is another look at who reads
 
 Open = Callable[..., Hub]
@@ -125,9 +126,13 @@ class LogSender:
             news.wake()  # what came meanwhile
             sent: dict[Outbound, int] = {}
             ended = behind = False
+            again = 0.0  # when lines are sent again: a burst leaves in few sends
             while not ended:
                 if not behind:
                     news.wait()
+                    if not self.closed and (rest := again - time.monotonic()) > 0:
+                        time.sleep(rest)
+                again = time.monotonic() + GATHER
                 ended = self.closed
                 sent, stuck = self._send_all(hub, sent)
                 behind = any(number < self._count for number in sent.values())
@@ -165,6 +170,8 @@ class LogSender:
 
     def _send(self, hub: Hub, link: Outbound, lines: list[Packet]) -> int:
         """Send these lines; how many the reader took."""
+        if lines and self._send_burst(hub, link, lines):
+            return len(lines)
         until = time.monotonic() + TIMEOUT
         sender, last = link.sender, len(lines) - 1
         try:
@@ -179,3 +186,11 @@ class LogSender:
         finally:
             sender.more = False
         return len(lines)
+
+    def _send_burst(self, hub: Hub, link: Outbound, lines: list[Packet]) -> bool:
+        """Send these lines in one piece; False where each has to be sent by itself."""
+        try:
+            return link.send_burst(lines)
+        except YarpError as error:
+            hub.outputs.drop(link, str(error), lost=isinstance(error, LinkClosed))
+            return False

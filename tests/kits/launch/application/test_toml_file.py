@@ -1,11 +1,15 @@
 """Applications in TOML: the same as in XML, and every slip with its place."""
 
+import sys
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
+
 import pytest
 
 from yarpy.errors import DecodeError
 from yarpy.kits.launch.application.application import Need
-from yarpy.kits.launch.application.toml_file import _Reading, read
-from yarpy.kits.launch.document.problem import Where
+from yarpy.kits.launch.application.toml_file import read
 
 WHOLE = """
 name = "my demo"
@@ -117,26 +121,35 @@ def test_what_is_no_file(data: bytes, said: str) -> None:
     assert str(caught.value).startswith(said)
 
 
-def test_places_are_searched_for_where_they_are_told_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file of a hundred programs took a quarter of a second, one of a thousand a hundred times
-    that."""
-    searched: list[tuple[str, str]] = []
-    search = _Reading._search
+@pytest.mark.parametrize("extra", ["needs = ['/p0']", "odd = 1", "after = ['p0']\nneeds = '${x}'"])
+def test_a_file_twice_as_long_is_twice_the_work(extra: str) -> None:
+    """A search for each program made it four times the work."""
+    once, twice = work(1000, extra), work(2000, extra)
+    assert 1.9 * once < twice < 2.1 * once
 
-    def noted(reading: _Reading, table: str, key: str) -> Where:
-        searched.append((table, key))
-        return search(reading, table, key)
 
-    monkeypatch.setattr(_Reading, "_search", noted)
-    tables = "".join(f"[programs.p{n}]\ncommand = 'sleep {n}'\n" for n in range(50))
-    text = f"connections = ['/a -> /b', '/c -> /d']\n{tables}odd = 1\n[ 'programs' . q ]\n"
-    found = read(f"{text}command = 'x'".encode(), "a.toml", {}).application
-    assert searched == [("programs.p49", "odd"), ("", "connections")]
-    assert [str(one.where) for one in found.modules[::25]] == [
-        "a.toml:2:1",
-        "a.toml:52:1",
-        "a.toml:103:1",
-    ]
-    assert [str(one) for one in found.problems] == [
-        'a.toml:102:1: warning: "odd" in [programs.p49] is ignored'
-    ]
+def work(count: int, extra: str) -> int:
+    """Return how many lines of code it takes to read a file of so many programs and connections."""
+    tables = "".join(f"[programs.p{n}]\ncommand = 'sleep {n}'\n{extra}\n" for n in range(count))
+    wires = ", ".join(f"'/a{n} -> /b{n}'" for n in range(count))
+    data = f"connections = [{wires}]\n{tables}".encode()
+    lines = 0
+
+    def step(frame: FrameType, event: str, value: object) -> Callable[..., Any] | None:
+        nonlocal lines
+        if "kits/launch/application" not in frame.f_code.co_filename.replace("\\", "/"):
+            return None
+        lines += event == "line"
+        return step
+
+    before = sys.gettrace()
+    sys.settrace(step)
+    try:
+        found = read(data, "a.toml", {}).application
+    finally:
+        sys.settrace(before)
+    assert (len(found.modules), len(found.connections)) == (count, count)
+    last = found.modules[-1]
+    assert last.where.line == 2 + (count - 1) * (3 + extra.count("\n"))
+    assert all(need.where.line > last.where.line for need in last.needs)
+    return lines

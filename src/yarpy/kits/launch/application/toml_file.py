@@ -33,6 +33,7 @@ from yarpy.kits.launch.application.application import (
     split_words,
 )
 from yarpy.kits.launch.application.manager_file import Document, Nested, node_name
+from yarpy.kits.launch.application.toml_place import Places
 from yarpy.kits.launch.application.variable import expand
 from yarpy.kits.launch.document.advice import advice
 from yarpy.kits.launch.document.element import BadFile, decoded
@@ -52,8 +53,6 @@ _NEED: Final = ("port", "timeout", "request", "reply")
 _NESTED: Final = ("file", "prefix")
 _AT: Final = re.compile(r"(.*) \(at line (\d+), column (\d+)\)", re.DOTALL)
 _AT_END: Final = " (at end of document)"
-_HEADER: Final = re.compile(r"\s*+\[++([^\]]*+)\]")
-_PLAIN: Final = re.compile(r"[\w.-]+")
 _ARROW: Final = re.compile(r"(\S+)\s*->\s*(\S+)(?:\s+(\S+))?")
 
 
@@ -96,13 +95,8 @@ class _Reading:
         environment: Mapping[str, str],
         variables: Mapping[str, str],
     ) -> None:
-        self.lines = text.splitlines()
-        self._headers: dict[str, int] = {}  # the first lines of tables
-        for number, line in enumerate(self.lines, 1):
-            if header := _HEADER.match(line):
-                names = (one.strip(" \t\"'") for one in header[1].split("."))
-                self._headers.setdefault(".".join(names), number)
-        self._places: dict[tuple[str, str], Where] = {}
+        self._places = Places(text, file)
+        self._place = self._places.of
         self.file = file
         self.environment = environment
         self.variables = dict(variables)
@@ -187,7 +181,7 @@ class _Reading:
     def _connection(self, told: Any) -> None:
         where = self._place("", "connections")
         if isinstance(told, str):
-            where = self._spelled(told)
+            where = self._places.spelled(told) or where
             arrow = _ARROW.fullmatch(self._expanded(told, lambda: where).strip())
             if arrow is None:
                 self._warn(where, f'"{told}" is no connection: "/a -> /b tcp"', fatal=True)
@@ -280,7 +274,7 @@ class _Reading:
                 self._warn(self._place(table, key), text)
 
     def _expanded(self, text: str, where: Callable[[], Where]) -> str:
-        """Return a text with its variables; `where` says the place, which takes a search."""
+        """Return a text with its variables; `where` says the place."""
         try:
             text, missing = expand(text, self.variables, self.environment)
         except DecodeError as error:
@@ -289,43 +283,6 @@ class _Reading:
             if spelled != "$":
                 self._warn(where(), f"{spelled} is not defined, and so is empty")
         return text
-
-    def _place(self, table: str, key: str) -> Where:
-        """Return the place of a key of a table, or of the table; TOML itself keeps none."""
-        place = self._places.get((table, key))
-        if place is None:
-            if not key and _PLAIN.fullmatch(table):  # of every program
-                number = self._headers.get(table, 0)
-                place = Where(self.file, number, 1) if number else Where(self.file)
-            else:
-                place = self._search(table, key)
-            self._places[table, key] = place
-        return place
-
-    def _search(self, table: str, key: str) -> Where:
-        names = re.escape(table).replace(r"\.", r"\s*\.\s*[\"']?")
-        header = re.compile(rf"\s*\[+\s*[\"']?{names}[\"']?\s*\]") if table else None
-        spelled = (
-            re.compile(rf"\s*\[*(?:{names}\s*\.\s*)?[\"']?{re.escape(key)}\b") if key else None
-        )
-        inside, place = header is None, Where(self.file)
-        for number, line in enumerate(self.lines, 1):
-            if header is not None and header.match(line):
-                inside, place = True, Where(self.file, number, 1)
-                if spelled is None:
-                    return place
-            elif inside and spelled is not None and (found := spelled.match(line)):
-                return Where(self.file, number, found.end() - len(key) + 1)
-            elif header is not None and line.lstrip().startswith("["):
-                inside = False
-        return place
-
-    def _spelled(self, text: str) -> Where:
-        for number, line in enumerate(self.lines, 1):
-            for quote in "\"'":
-                if (place := line.find(f"{quote}{text}{quote}")) >= 0:
-                    return Where(self.file, number, place + 2)
-        return self._place("", "connections")
 
     def _warn(self, where: Where, text: str, fatal: bool = False) -> None:
         self.found.problems.append(Problem(where, text, fatal))

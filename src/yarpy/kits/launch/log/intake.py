@@ -169,7 +169,7 @@ class Intake:
                 logs = any(part in name for part in PARTS) and matches(self._pattern, name)
                 if logs and name not in known and not self._done.is_set():
                     with suppress(yarpy.YarpError):  # its program is gone, or not ours to ask
-                        yarpy.connect(name, self.port.name, names=self._names)
+                        yarpy.connect(name, self.port.name, "fast_tcp", names=self._names)
             self.joined += 1
             self._news.set()
             self._done.wait(PERIOD)
