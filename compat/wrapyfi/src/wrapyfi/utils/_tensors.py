@@ -12,11 +12,11 @@ of the user's for the same type comes first.
 from __future__ import annotations
 
 import io
-import sys
 from base64 import b64decode, b64encode
 from typing import Any
 
 from yarpy.data.python.array import array_of
+from yarpy.data.python.loaded import loaded
 from yarpy.kits.wrap.npy import to_npy
 from yarpy.kits.wrap.tensor import read
 from yarpy.kits.wrap.tree import untag
@@ -29,11 +29,18 @@ _TAGS = {
     "mxnet": "MXNetTensor",
     "cupy": "CuPyArray",
 }
+_LIBRARIES = {
+    "PytorchTensor": "torch",
+    "JAXTensor": "jax",
+    "TensorflowTensor": "tensorflow",
+    "MXNetTensor": "mxnet",
+    "CuPyArray": "cupy",
+}
 
 
 def planted(value: Any) -> list[Any] | None:
     """The tag and what belongs to it; None for what is no tensor."""
-    torch = sys.modules.get("torch")
+    torch = loaded("torch")
     if torch is not None and isinstance(value, torch.Tensor):
         out = io.BytesIO()
         torch.save(value, out)
@@ -55,23 +62,22 @@ def planted(value: Any) -> list[Any] | None:
 def gathered(content: list[Any], options: dict[str, Any]) -> Any:
     """The tensor of a tag, where its library is loaded; None for everything else."""
     tag = content[0]
-    if tag == "PytorchTensor" and "torch" in sys.modules:
-        return _torch(sys.modules["torch"], content, options)
-    if tag == "JAXTensor" and "jax" in sys.modules:
-        return sys.modules["jax"].numpy.array(_array(content))
-    if tag == "TensorflowTensor" and "tensorflow" in sys.modules:
-        return sys.modules["tensorflow"].convert_to_tensor(_array(content))
-    if tag == "CuPyArray" and "cupy" in sys.modules:
-        cupy = sys.modules["cupy"]
+    library = loaded(_LIBRARIES.get(tag, ""))
+    if library is None:
+        return None
+    if tag == "PytorchTensor":
+        return _torch(library, content, options)
+    if tag == "JAXTensor":
+        return library.numpy.array(_array(content))
+    if tag == "TensorflowTensor":
+        return library.convert_to_tensor(_array(content))
+    if tag == "CuPyArray":
         device = _device(content, options, "cupy") or "cuda:0"
-        with cupy.cuda.Device(int(str(device).rpartition(":")[2])):
-            return cupy.array(_array(content))
-    if tag == "MXNetTensor" and "mxnet" in sys.modules:
-        mxnet = sys.modules["mxnet"]
-        name, _, number = str(_device(content, options, "mxnet") or "cpu:0").partition(":")
-        place = mxnet.context.Context(name.replace("cuda", "gpu"), int(number or 0))
-        return mxnet.nd.array(_array(content), ctx=place)
-    return None
+        with library.cuda.Device(int(str(device).rpartition(":")[2])):
+            return library.array(_array(content))
+    name, _, number = str(_device(content, options, "mxnet") or "cpu:0").partition(":")
+    place = library.context.Context(name.replace("cuda", "gpu"), int(number or 0))
+    return library.nd.array(_array(content), ctx=place)
 
 
 def _array(content: list[Any]) -> Any:
