@@ -16,7 +16,7 @@ from yarpy.peers.ros2.kind import (
     named,
     shown,
 )
-from yarpy.peers.ros2.message.library import Library, hash_of
+from yarpy.peers.ros2.message.library import Library, default_library, hash_of
 from yarpy.peers.ros2.message.source import Rosbags
 from yarpy.peers.ros2.token import Token, parse_token
 
@@ -90,6 +90,8 @@ def test_parts_of_actions_are_types_as_others(kind: str, type_: str) -> None:
 
 def test_what_is_written() -> None:
     assert chosen("hi") is chosen(yarpy.Bottle(["hi"])) is String
+    own = default_library().message_of("own_msgs/Text", "string data")
+    assert chosen(own(data="hi")) is own
     for numbers in (yarpy.Vector([1.0]), yarpy.Bottle([1.0, 2.5]), [1, 2]):
         assert chosen(numbers) is ros2.load("std_msgs/Float64MultiArray")
     for value in (yarpy.Bottle([1, "a"]), yarpy.Bottle(), {"a": 1}, None):

@@ -97,6 +97,8 @@ def chosen(value: object) -> type[Message]:
     DecodeError."""
     while isinstance(value, list) and len(value) == 1:
         value = value[0]
+    if isinstance(value, Message) and is_hash(value._md5sum):
+        return type(value)  # of ROS 2 already, perhaps one that only a file defines
     name = type_for(Vector([*value]) if are_numbers(value) else value)  # type: ignore[misc]
     if name is None:
         raise DecodeError(

@@ -10,7 +10,7 @@ import yarpy
 from yarpy import record
 from yarpy.errors import LocalProtocolError
 from yarpy.kits.record.playback.player import Player
-from yarpy.kits.record.verbs.play import Keys, parse_node, parse_rename, progress, summary
+from yarpy.kits.record.verbs.play import Keys, parse_rename, progress, summary
 
 
 def test_from_the_command_line(cli, names, tmp_path) -> None:
@@ -63,13 +63,6 @@ def test_names_of_ports() -> None:
     for text in ("/a", "a=/b", "/a=b", "="):
         with pytest.raises(LocalProtocolError):
             parse_rename(text)
-
-
-def test_names_of_nodes() -> None:
-    assert parse_node("/robot/player") == "/robot/player"
-    for text in ("player", "/", "/a//b", "/a b", "/a+@/b"):
-        with pytest.raises(LocalProtocolError, match="no name of a node"):
-            parse_node(text)
 
 
 def test_keys(names, tmp_path) -> None:

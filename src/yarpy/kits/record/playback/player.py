@@ -24,7 +24,8 @@ from yarpy.kits.record.envelope import SECOND
 from yarpy.kits.record.mcap.storage import FOREVER
 from yarpy.kits.record.playback.read_ahead import ReadAhead
 from yarpy.kits.record.playback.timeline import Timeline
-from yarpy.kits.record.recorded import Recorded
+from yarpy.kits.record.playback.topic import open_topic
+from yarpy.kits.record.recorded import PortFacts, Recorded
 from yarpy.kits.record.recording import Recording
 from yarpy.names.base import NameClient
 from yarpy.port.port import Port
@@ -41,7 +42,8 @@ class Player:
     ports: which of them, None for all. rate: 2 plays twice as fast. loop: begin again at the end.
     start: seconds of the recording that are left out; duration: how many are played, None for all.
     rename: other names for ports; prefix: what is put before those that are not renamed.
-    node: a node of ROS, whose topics the ports are, by the names that they have then; "" for none.
+    node: a node whose topics the ports are, by the names that they have then: `/player` of ROS 1,
+    `ros2://player` or `ros2+dds://player` of ROS 2; "" for none.
     clock: a port that sends the time of the recording, for programs with YARP_CLOCK; "" for none.
     taken: called with a port of the recording whose name lives, and why: it is played to nobody;
     None: that is an error. `loop`, `muted` (ports that are not sent) and `reader_timeout` may be
@@ -91,14 +93,14 @@ class Player:
         self.played = 0
         self.dropped = 0
         self.latest = 0.0  # seconds that a message was late, at most
-        self._chosen = _chosen(recording, ports)
+        self._facts = recording.ports
+        self._chosen = _chosen(self._facts, ports)
         with ExitStack() as stack:
             stack.callback(self._close_ports)
             for name in self._chosen:
                 new = (rename or {}).get(name, f"{prefix}{name}")
-                new = f"{new}+@{node}" if node else new
                 try:
-                    self._ports[name] = Port(new, callback=_ignore, names=names)
+                    self._ports[name] = open_topic(new, node, self._facts[name], names)
                 except AddressError as error:
                     if taken is not None:
                         taken(name, error)
@@ -108,7 +110,7 @@ class Player:
                         f"or --rename {name}=/other"
                     ) from error
             if clock:
-                port = stack.enter_context(Port(clock, callback=_ignore, names=names))
+                port = stack.enter_context(open_topic(clock, "", PortFacts(clock), names))
                 ticking = threading.Thread(
                     target=self._tick, args=(port,), name="yarpy play clock", daemon=True
                 )
@@ -126,7 +128,7 @@ class Player:
         UnknownName, AddressError, NoNameServer; the port that there was stays then."""
         if port not in self._chosen:
             raise UnknownName(f'"{port}" is not played: there are {" ".join(self._chosen)}')
-        opened = Port(new, callback=_ignore, names=self._names)
+        opened = open_topic(new, self._node, self._facts[port], self._names)
         before = self._ports.get(port)
         self._ports[port] = opened
         if before is not None:
@@ -369,18 +371,13 @@ class Payload:
         return self._parts
 
 
-def _ignore(message: object) -> None:
-    """A port of a player is written to by mistake: nobody who does so waits."""
-
-
 def _checked(rate: float) -> float:
     if not RATES[0] <= rate <= RATES[1]:
         raise LocalProtocolError(f"a rate of {rate}: it is from {RATES[0]} to {RATES[1]:.0f}")
     return rate
 
 
-def _chosen(recording: Recording, ports: Collection[str] | None) -> list[str]:
-    known = recording.ports
+def _chosen(known: Mapping[str, PortFacts], ports: Collection[str] | None) -> list[str]:
     chosen = [name for name in known if known[name].playable] if ports is None else list(ports)
     for name in chosen:
         if name not in known:

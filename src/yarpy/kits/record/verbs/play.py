@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import os
 import queue
-import re
 import sys
 import threading
 from typing import TYPE_CHECKING, Final
@@ -39,7 +38,6 @@ if TYPE_CHECKING:
 RPC: Final = "/play/rpc:i"
 SWITCH: Final = 0.0005  # seconds that a thread of this program keeps others waiting, at most
 JUMP: Final = 5.0  # seconds
-NODE: Final = re.compile(r"(/[A-Za-z][A-Za-z0-9_]*+)++")
 PERIOD: Final = 0.2  # seconds between looks at the keys, and lines of progress
 
 
@@ -56,7 +54,8 @@ PERIOD: Final = 0.2  # seconds between looks at the keys, and lines of progress
 @click.option("--prefix", default="", show_default=False, metavar="/P",
               help="Put this before the other names.")  # fmt: skip
 @click.option("--as-node", "node", metavar="NODE",
-              help="Publish the topics of ROS 1 with these names, as the node NODE.")  # fmt: skip
+              help="Publish topics with these names, as the node /NODE of ROS 1, "
+              "ros2://NODE or ros2+dds://NODE of ROS 2.")  # fmt: skip
 @click.option("--clock", is_flag=False, flag_value="/clock", default="", show_default=False,
               metavar="[PORT]", help="Send its time, from /clock or PORT.")  # fmt: skip
 @click.option("--from", "mark", metavar="MARK", help="Begin at the mark with this note.")
@@ -83,6 +82,7 @@ def command(
     """Send what FILEs have recorded again, each message in its time."""
     from yarpy.kits.record.commands import player_commands
     from yarpy.kits.record.playback.player import Player
+    from yarpy.kits.record.playback.topic import checked_node
     from yarpy.kits.record.recording import open_recording
 
     live = sys.stdin.isatty() and sys.stderr.isatty()
@@ -101,7 +101,7 @@ def command(
                 duration=duration,
                 rename=dict(map(parse_rename, renamed)),
                 prefix=prefix,
-                node="" if node is None else parse_node(node),
+                node="" if node is None else checked_node(node),
                 clock=clock,
             )
             with player, open_rpc(name, player_commands(player)):
@@ -131,13 +131,6 @@ def parse_rename(text: str) -> tuple[str, str]:
     if not (equals and old.startswith("/") and new.startswith("/")):
         raise LocalProtocolError(f'"{text}" does not rename a port: /old=/new')
     return old, new
-
-
-def parse_node(text: str) -> str:
-    """Return the name of a node. Raises LocalProtocolError."""
-    if not NODE.fullmatch(text):
-        raise LocalProtocolError(f'"{text}" is no name of a node: /player')
-    return text
 
 
 def summary(player: Player, ended: bool) -> str:
