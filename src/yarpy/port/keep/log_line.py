@@ -152,7 +152,7 @@ def read_line(value: object, source: str = "") -> LogLine | None:
 
 
 def _line(header: str, text: str, source: str) -> LogLine:
-    origin = _origin(header, source)
+    origin = (_known_origin if len(header) <= _SHORT else _origin)(header, source)
     usual = _USUAL.fullmatch(text) if len(text) <= LONGEST else None
     if usual is not None:
         level, moment, network, component, id_, quoted, word = usual.groups()
@@ -186,11 +186,14 @@ def _line(header: str, text: str, source: str) -> LogLine:
     )
 
 
-@lru_cache(maxsize=1024)
 def _origin(header: str, source: str) -> str:
     """The port that a header tells, else the one that the message came from."""
     header = header[:LONGEST].rstrip("\0")
     return header[1:-1] if header.startswith("[") and header.endswith("]") else source
+
+
+_SHORT: Final = 256  # characters of a header that is remembered
+_known_origin = lru_cache(maxsize=1024)(_origin)
 
 
 def _time(seconds: float) -> float:
