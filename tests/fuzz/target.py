@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fuzz import launch, recording
+from fuzz import curve_login, launch, recording
 from fuzz.grammar import GRAMMARS, REFUSALS
 from monitors.test_shipped import CASES
 from peers.ros2.message.test_description import description_of
@@ -812,6 +812,8 @@ TARGETS = {
     "subscriptions zmq": Target(
         _hear(lambda: Pub(Route("/w", "/r", "zmq+pub"))), (_COMMANDS, b"\0\4\1cam\0\4\0cam")
     ),
+    "login curve": Target(curve_login.greet, curve_login.GREETINGS, refusals=(YarpError, Stalled)),
+    "boxes curve": Target(curve_login.unbox, curve_login.BOXES),
     "payload": Target(
         _payload, (b'[1, "two", {"a": [3.5]}]', b"\xff\0", jpeg.encode(Image(_PIXELS)))
     ),

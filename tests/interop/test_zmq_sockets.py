@@ -509,6 +509,7 @@ def test_sockets_with_a_key_dial_a_port(
     ours, secret = zmq.curve_keypair()
     monkeypatch.setenv("YARP_CONFIG_HOME", str(tmp_path))
     (tmp_path / "curve.key").write_text(z85.decode(secret).hex())
+    (tmp_path / "curve.key").chmod(0o600)
     public, own = zmq.curve_keypair()
     known = {"CURVE_SERVERKEY": ours, "CURVE_PUBLICKEY": public, "CURVE_SECRETKEY": own}
     rules = (

@@ -3,6 +3,7 @@ RFC 26; `interop/test_zmq_sockets.py` has libzmq's."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -163,6 +164,7 @@ def test_the_key_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         curve_server.own_key()
     for name, text in (("good", SECRET.hex() + "\n"), ("short", "abc"), ("strange", "\xe9")):
         (tmp_path / name).write_bytes(text.encode("latin-1"))
+        (tmp_path / name).chmod(0o600)
     found[0] = tmp_path / "good"
     assert curve_server.own_key() == SECRET
     for name, why in (("short", "64 hexadecimal"), ("strange", "cannot be read")):
@@ -172,3 +174,18 @@ def test_the_key_of_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     found[0] = tmp_path / "none"
     with pytest.raises(LocalProtocolError, match="cannot be read"):
         curve_server.own_key()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="files have no such rights there")
+@pytest.mark.parametrize("rights", [0o640, 0o604, 0o666])
+def test_a_key_that_others_may_read_is_refused(
+    rights: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "curve.key"
+    file.write_text(SECRET.hex())
+    file.chmod(rights)
+    monkeypatch.setattr(curve_server, "find_file", lambda name: file)
+    with pytest.raises(LocalProtocolError, match=r"others may read it: chmod 600 .*curve\.key"):
+        curve_server.own_key()
+    file.chmod(0o400)
+    assert curve_server.own_key() == SECRET

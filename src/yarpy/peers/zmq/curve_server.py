@@ -1,13 +1,15 @@
 """CURVE of a port that is dialled: it has the key of the file `curve.key`.
 
 Rules: the messages are those of `curve`. The file has the secret key in 64 hexadecimal digits, lies
-where `yarp.conf` does, and is read once. The public key of the side that dials is claimed once it
-has proven that it has the secret one: where `access.toml` names public keys it has to be one of
-them; where it names none all keys are taken, as by libzmq, and the rules are for the address.
+where `yarp.conf` does, and is read once; one that others of this computer may read is refused. The
+public key of the side that dials is claimed once it has proven that it has the secret one: where
+`access.toml` names public keys it has to be one of them; where it names none all keys are taken, as
+by libzmq, and the rules are for the address.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -22,6 +24,7 @@ from yarpy.wire.steps import Steps
 from yarpy.wire.stream import ByteStream
 
 FILE: Final = "curve.key"
+_OTHERS: Final = 0o077  # rights of the group and of everybody else
 _COOKIE: Final = 96  # bytes, by which a server knows a WELCOME of its own again
 _HELLO: Final = 194  # bytes of its content
 _INITIATE: Final = _COOKIE + 8 + 16 + 128  # and as many as the properties have
@@ -42,9 +45,15 @@ def own_key() -> bytes:
 @lru_cache(maxsize=8)
 def _read(path: Path) -> bytes:
     try:
+        others = path.stat().st_mode & _OTHERS if os.name == "posix" else 0
         text = path.read_text("ascii").strip()
     except (OSError, UnicodeDecodeError) as error:
         raise LocalProtocolError(f"{path} cannot be read: {error}") from error
+    if others:
+        raise LocalProtocolError(
+            f"{path} has a secret key, and others may read it: chmod 600 {path}, and make a new "
+            "key if somebody may have read it"
+        )
     curve.library()
     return curve.key_of(text, str(path))
 

@@ -2,6 +2,7 @@
 
     geometry                 points, poses, twists; transforms (tf, tf2); maps, paths, odometry
     control                  trajectories of joints, grippers, diagnostics, the clock and the log
+    moveit                   planning of motions, and the shapes and scenes that it speaks of
     action                   goals of actionlib, and the seven messages of an action
 
 Rules: declarations alone, as in `standard.py`: the checksums are those of ROS. A definition is one
@@ -12,15 +13,15 @@ from __future__ import annotations
 
 from typing import Final
 
-from yarpy.peers.ros.message.shipped import control, geometry
+from yarpy.peers.ros.message.shipped import control, geometry, moveit
 from yarpy.peers.ros.message.shipped.action import messages_of, spelled
 
-_ACTIONS: Final = {**geometry.ACTIONS, **control.ACTIONS}
+_ACTIONS: Final = {**geometry.ACTIONS, **control.ACTIONS, **moveit.ACTIONS}
 
 MESSAGES: Final = {
     **{
         name: spelled(text)
-        for part in (geometry.MESSAGES, control.MESSAGES)
+        for part in (geometry.MESSAGES, control.MESSAGES, moveit.MESSAGES)
         for name, text in part.items()
     },
     **{
@@ -32,6 +33,6 @@ MESSAGES: Final = {
 
 SERVICES: Final = {
     name: spelled(text)
-    for part in (geometry.SERVICES, control.SERVICES)
+    for part in (geometry.SERVICES, control.SERVICES, moveit.SERVICES)
     for name, text in part.items()
 }
