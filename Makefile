@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo lowest alone test peers pure links compiled wheel stress steady fuzz life rows chaos soak check bench pictures windows clean
+.PHONY: demo lowest alone test peers pure links compiled wheel stress steady fuzz life rows chaos soak check bench pictures macos windows clean
 .NOTPARALLEL:
 
 # Tests start many programs; each would compile all of yarpy anew.
@@ -105,6 +105,11 @@ fuzz: $(VENV)/.ready
 # Random programs that open, write, call, interrupt, cancel, fork and end. SEED=N begins with that one.
 life: $(VENV)/.ready
 	$(BIN)/python tests/life/property.py $(SECONDS) $(if $(SEED),--seed $(SEED))
+
+# Tests of bytes, links, ports and names that see macOS where Linux is.
+macos: $(VENV)/.ready
+	for stage in pure links; do YARPY_TESTS_AS=darwin PYTHONPATH=tests $(BIN)/python -m pytest \
+	    -p support.darwin -n $(WORKERS) --dist worksteal -m "not peer" --stage $$stage || exit; done
 
 # The README's program, and tests of bytes, links and names, with the Python of Windows, under wine;
 # PATHS="tests/port" runs others.

@@ -15,7 +15,7 @@ import hypothesis
 import pytest
 from support import multicast, peer
 from support.stage import STAGES, TESTS, stage_of
-from support.system import NO_UNIX_SOCKETS
+from support.system import NO_MEMFD, NO_UNIX_SOCKETS
 
 from yarpy import log
 
@@ -59,8 +59,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Give the marker `peer` to tests that need one by a fixture, and say of which rows a system
     has nothing."""
     for item in items:
+        row = getattr(getattr(item, "callspec", None), "params", {}).values()
         if NO_UNIX_SOCKETS and "unix_stream" in item.name:
             item.add_marker(pytest.mark.skip(NO_UNIX_SOCKETS))
+        if NO_MEMFD and any(isinstance(one, str) and one == "memory" for one in row):
+            item.add_marker(pytest.mark.skip(NO_MEMFD))
         names = peer.needed(item)
         if names:
             item.add_marker(pytest.mark.peer(*names))

@@ -7,6 +7,7 @@ import os
 import threading
 
 import pytest
+from support.system import NO_SCHEDULING
 
 from yarpy import qos
 from yarpy.errors import LocalProtocolError
@@ -76,6 +77,7 @@ def in_a_thread(work: object) -> object:
     return found[0]
 
 
+@pytest.mark.skipif(bool(NO_SCHEDULING), reason=NO_SCHEDULING)
 def test_thread_is_scheduled_or_the_reason_is_told() -> None:
     def fifo() -> Sched:
         schedule(0, Sched(1, 5))

@@ -10,6 +10,9 @@ from support.wait import HANG
 
 from yarpy.cli.signals import Interrupted, held
 
+if sys.platform == "win32":
+    pytest.skip("no other program sends signals on Windows", allow_module_level=True)
+
 ENDINGS = [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -50,8 +51,9 @@ def test_all_rules(access: Access) -> None:
 
 
 def test_without_a_file() -> None:
-    lines = defaults(Path("/home/me/.config/yarp/access.toml"), "this computer alone")
-    assert lines[0] == "There is no access.toml; it would be /home/me/.config/yarp/access.toml."
+    file = Path("/home/me/.config/yarp/access.toml")
+    lines = defaults(file, "this computer alone")
+    assert lines[0] == f"There is no access.toml; it would be {file}."
     assert lines[-1].endswith("now this computer alone.")
     assert max(map(len, lines)) <= WIDTH
     allowed, told = explained(None, "10.0.0.1", "attach", "/arm")
@@ -122,9 +124,10 @@ def test_what_may_be_missing(tmp_path: Path) -> None:
     file.write_text(rules)
     file.chmod(0o644)
     found = [*notes(parse(rules, file), authority=tmp_path / "ca.pem", has_key=False)]
-    for note, word in zip(
-        found, ("loopback", "ca.pem", "auth.conf", "token spare", "chmod 600"), strict=True
-    ):
+    words = ["loopback", "ca.pem", "auth.conf", "token spare", "chmod 600"]
+    if sys.platform == "win32":
+        del words[4]  # its files have no bits for others
+    for note, word in zip(found, words, strict=True):
         assert word in note
     file.chmod(0o600)
     (tmp_path / "ca.pem").touch()

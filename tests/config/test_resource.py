@@ -1,9 +1,11 @@
 """The resource search: the order of places was compared with C++ YARP's own debug output."""
 
+import os
 from pathlib import Path
 
 import pytest
 
+from yarpy.config.configuration import conf_directory
 from yarpy.config.resource import (
     Search,
     base_directories,
@@ -18,16 +20,16 @@ from yarpy.config.resource import (
 
 @pytest.fixture
 def environment(tmp_path: Path) -> dict[str, str]:
-    listing = tmp_path / "dd/config/path.d"
+    listing, top = tmp_path / "dd/config/path.d", tmp_path.as_posix()
     listing.mkdir(parents=True)
-    (listing / "b.ini").write_text(f"[search B]\npath {tmp_path}/b1 {tmp_path}/b2\n")
-    (listing / "a.ini").write_text(f'[search A]\npath "{tmp_path}/a"\n[search none]\n')
+    (listing / "b.ini").write_text(f"[search B]\npath {top}/b1 {top}/b2\n")
+    (listing / "a.ini").write_text(f'[search A]\npath "{top}/a"\n[search none]\n')
     (listing / "broken.ini").mkdir()
     (listing / "c.txt").write_text("[search C]\npath /c\n")
     return {
         "YARP_CONFIG_HOME": f"{tmp_path}/ch",
         "YARP_DATA_HOME": f"{tmp_path}/dh",
-        "YARP_CONFIG_DIRS": f"{tmp_path}/cd1:{tmp_path}/cd2",
+        "YARP_CONFIG_DIRS": f"{top}/cd1{os.pathsep}{top}/cd2",
         "YARP_DATA_DIRS": f"{tmp_path}/dd",
         "YARP_ROBOT_NAME": "rob",
     }
@@ -38,7 +40,7 @@ BASES = ["ch", "dh", "cd1", "cd2", "dd", "a", "b1", "b2"]
 
 def test_order(environment: dict[str, str], tmp_path: Path) -> None:
     places = Search(environment, tmp_path, ("ctx",)).candidates("x.ini")
-    assert [str(place.relative_to(tmp_path)) for place in places] == [
+    assert [place.relative_to(tmp_path).as_posix() for place in places] == [
         "x.ini",
         *(f"{base}/robots/rob/x.ini" for base in BASES),
         *(f"{base}/contexts/ctx/x.ini" for base in BASES),
@@ -50,7 +52,7 @@ def test_near_the_main_file_contexts_do_not_count(
     environment: dict[str, str], tmp_path: Path
 ) -> None:
     search = Search(environment, tmp_path, ("ctx",), near=tmp_path / "sub")
-    places = [str(place.relative_to(tmp_path)) for place in search.candidates("x.ini")]
+    places = [place.relative_to(tmp_path).as_posix() for place in search.candidates("x.ini")]
     assert places[:3] == ["x.ini", "sub/x.ini", "ch/robots/rob/x.ini"]
     assert not any("contexts" in place for place in places)
 
@@ -89,16 +91,16 @@ def test_an_option_redirects(environment: dict[str, str], tmp_path: Path) -> Non
 
 
 def test_robot(environment: dict[str, str], tmp_path: Path) -> None:
-    places = [str(place) for place in Search(environment, tmp_path, robot="r2").candidates("x")]
-    assert f"{tmp_path}/ch/robots/r2/x" in places
+    places = [*Search(environment, tmp_path, robot="r2").candidates("x")]
+    assert tmp_path / "ch/robots/r2/x" in places
     del environment["YARP_ROBOT_NAME"]
-    places = [str(place) for place in Search(environment, tmp_path).candidates("x")]
-    assert f"{tmp_path}/ch/robots/default/x" in places
+    places = [*Search(environment, tmp_path).candidates("x")]
+    assert tmp_path / "ch/robots/default/x" in places
 
 
 def test_defaults_and_xdg() -> None:
     assert base_directories({"HOME": "/h"})[:4] == [
-        Path("/h/.config/yarp"),
+        conf_directory({"HOME": "/h"}),
         Path("/h/.local/share/yarp"),
         Path("/etc/xdg/yarp"),
         Path("/usr/local/share/yarp"),
@@ -106,7 +108,7 @@ def test_defaults_and_xdg() -> None:
     xdg = {
         "XDG_CONFIG_HOME": "/c",
         "XDG_DATA_HOME": "/d",
-        "XDG_CONFIG_DIRS": "/e:/f:",
+        "XDG_CONFIG_DIRS": os.pathsep.join(("/e", "/f", "")),
         "XDG_DATA_DIRS": "/g",
     }
     assert base_directories(xdg) == [

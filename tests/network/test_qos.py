@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+from support.system import NO_SCHEDULING
 from support.wait import wait_until
 
 import yarpy
@@ -22,6 +23,7 @@ def names() -> Iterator[yarpy.LocalNames]:
         yield found
 
 
+@pytest.mark.skipif(bool(NO_SCHEDULING), reason=NO_SCHEDULING)
 def test_both_ends(names: yarpy.LocalNames) -> None:
     assert qos.granted("/out", "/in", names) == (
         Qos(packets="CS0"),
@@ -46,6 +48,7 @@ def test_no_such_port_or_connection(names: yarpy.LocalNames) -> None:
             qos.grant(source, target, sender=Qos(packets="HIGH"), names=names)
 
 
+@pytest.mark.skipif(bool(NO_SCHEDULING), reason=NO_SCHEDULING)
 def test_refusal_names_its_reason(names: yarpy.LocalNames, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise PermissionError

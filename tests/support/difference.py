@@ -121,7 +121,8 @@ DEADLOCK = "C++ deadlocks when a connection asks for its own end; we answer, end
 
 SELF = (
     r"\(sched \(\(policy -?\d+\) \(priority -?\d+\) \(tid \d+\)\)\) "
-    r'\(process \(\(arguments ".*"\) \(name .*\) \(pid \d+\) \(policy \d\) \(priority \d+\)\)\) '
+    r'\(process \(\(arguments ".*"\) \(name .*\) \(pid \d+\) '
+    r"\(policy -?\d\) \(priority -?\d+\)\)\) "
     r'\(platform \(\(hostname "127\.0\.0\.1"\) \(os \w+\)\)\) '
     r'\(port \(\(is_input 1\) \(is_output 1\) \(is_rpc 0\) \(type ""\)\)\)\r\n<ACK>\r\n'
 )

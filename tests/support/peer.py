@@ -29,7 +29,14 @@ from pathlib import Path
 from typing import Any, Final, TypeVar
 
 import pytest
-from support import cpp_venv, namespace, thrift_venv, wrapyfi_plugins_venv, wrapyfi_venv
+from support import (
+    cpp_venv,
+    namespace,
+    thrift_venv,
+    windows,
+    wrapyfi_plugins_venv,
+    wrapyfi_venv,
+)
 from support.file_lock import hold
 from support.peer_venv import MissingPeer
 
@@ -187,6 +194,7 @@ PEERS: dict[str, Callable[[], str]] = {
     "thrift": _made(thrift_venv.prepare),
     "torch": _torch,
     "tsc": _programs("tsc", package="node-typescript"),
+    "windows": _made(windows.prepare),
     "wrapyfi": _made(wrapyfi_venv.prepare),
     "wrapyfi_plugins": _made(wrapyfi_plugins_venv.ready),
     "wrk": _programs("wrk", package="wrk"),

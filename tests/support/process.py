@@ -12,14 +12,17 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import threading
 import time
 import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal, Self
+from typing import Final, Literal, Self
 
 from support.wait import HANG
+
+KILL: Final = signal.SIGTERM if sys.platform == "win32" else signal.SIGKILL  # none refuses it
 
 _running: weakref.WeakSet["Process"] = weakref.WeakSet()
 
@@ -139,9 +142,9 @@ class Process:
         self._popen.send_signal(number)
 
     def kill(self) -> None:
-        """End the program and all it started at once, as a crash would (SIGKILL)."""
+        """End the program and all it started at once, as a crash would."""
         for pid in (*descendants(self.pid), self.pid):
-            _send(pid, signal.SIGKILL)
+            _send(pid, KILL)
         self._popen.wait(10)
         self.end_input()
 
@@ -155,7 +158,7 @@ class Process:
                 self._popen.wait(grace)
         for pid in family:
             if pid != self.pid or self._popen.poll() is None:
-                _send(pid, signal.SIGKILL)
+                _send(pid, KILL)
         self._popen.wait(10)
         self.end_input()
         _running.discard(self)
@@ -188,7 +191,7 @@ class Process:
 
     def _last_words(self, waited: float) -> str:
         """What it said; and if it hangs, which ends it, where the threads of its Pythons were."""
-        if waited >= HANG:
+        if waited >= HANG and sys.platform != "win32":
             for pid in (*descendants(self.pid), self.pid):
                 with contextlib.suppress(OSError):
                     if (
@@ -207,8 +210,8 @@ class Process:
 
 
 def descendants(pid: int) -> list[int]:
-    """Process ids of the children, grandchildren ... of `pid`, the deepest first (Linux); also of
-    those that lost their parent, if they stayed in its session."""
+    """Process ids of the children, grandchildren ... of `pid`, the deepest first; also of those
+    that lost their parent, if they stayed in its session. None where Linux' /proc is not ours."""
     children: dict[int, list[int]] = {}
     companions = []
     for child, parent, session in _processes():
@@ -227,6 +230,8 @@ def descendants(pid: int) -> list[int]:
 
 def _processes() -> Iterator[tuple[int, int, int]]:
     """Each process, its parent, and its session."""
+    if sys.platform == "win32":  # wine shows Linux' /proc, whose numbers mean other processes
+        return
     for entry in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError):
             # The second field, the name in brackets, may itself hold blanks and brackets.
@@ -235,7 +240,7 @@ def _processes() -> Iterator[tuple[int, int, int]]:
 
 
 def _send(pid: int, number: int) -> None:
-    with contextlib.suppress(ProcessLookupError, PermissionError):
+    with contextlib.suppress(OSError):  # it has ended, or is another user's
         os.kill(pid, number)
 
 

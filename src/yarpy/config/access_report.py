@@ -5,6 +5,7 @@ Rules: lines of at most 79 characters where names are short; nothing is printed 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
 from ipaddress import ip_address
 from pathlib import Path
@@ -71,7 +72,8 @@ def notes(access: Access, *, authority: Path, has_key: bool) -> Iterator[str]:
     if unused:
         yield f"no rule is about the token {', '.join(unused)}"
     file = Path(access.path)
-    if access.tokens and file.is_file() and file.stat().st_mode & 0o077:
+    bits = 0o077 if sys.platform != "win32" else 0  # there a file has no bits for others
+    if access.tokens and file.is_file() and file.stat().st_mode & bits:
         yield f"others on this computer can read its tokens: chmod 600 {file}"
 
 

@@ -310,7 +310,7 @@ def _write(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     try:
-        draft.write_text(text, "utf-8", "surrogateescape")
+        draft.write_text(text, "utf-8", "surrogateescape", newline="\n")
         draft.replace(path)
     except OSError as error:
         draft.unlink(missing_ok=True)

@@ -15,6 +15,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Final
 
 from yarpy.errors import LocalProtocolError
 from yarpy.platform.user import user
@@ -22,6 +23,7 @@ from yarpy.transports.base import MSG_DONTWAIT, Address, Transport
 from yarpy.transports.opener import Elsewhere, Opener
 from yarpy.transports.tcp import TcpTransport
 
+_LONGEST: Final = 107 if sys.platform == "linux" else 103  # bytes of a path that a socket may have
 TIMEOUT = 5.0  # seconds for the two sides to meet
 _SIOCOUTQ = 0x5411  # of Linux: what was sent, and not read
 
@@ -65,8 +67,13 @@ def open_unix(listen: bool, local: Address, remote: Address) -> UnixTransport:
             f"unix_stream joins ports of one host, not {local[0]} and {remote[0]}; use tcp"
         )
     first, second = (local, remote) if listen else (remote, local)
-    directory = _made(runtime_directory())
-    return UnixTransport(str(directory / f"{first[1]}_{second[1]}.sock"), listen)
+    path = str(_made(runtime_directory()) / f"{first[1]}_{second[1]}.sock")
+    if len(os.fsencode(path)) > _LONGEST:
+        raise LocalProtocolError(
+            f"{path} is too long for a Unix socket: set XDG_RUNTIME_DIR to a directory with a "
+            "shorter path, or take the carrier tcp"
+        )
+    return UnixTransport(path, listen)
 
 
 class UnixTransport(TcpTransport):

@@ -2,7 +2,6 @@
 
 import json
 import os
-import pty
 import signal
 import subprocess
 import sys
@@ -53,6 +52,7 @@ def test_no_server(lone):
 
 def test_a_terminal(cli, ports):
     """Names are shown as they are; q ends it, and leaves the terminal as it was."""
+    pty = pytest.importorskip("pty", reason="Windows has no pseudo terminals of files")
     primary, secondary = pty.openpty()
     process = subprocess.Popen(
         [sys.executable, "-m", "yarpy", "top", "/top"],

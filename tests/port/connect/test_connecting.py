@@ -6,6 +6,7 @@ import socket
 import threading
 
 import pytest
+from support.system import NO_UNIX_SOCKETS
 from support.wait import wait_until
 
 import yarpy
@@ -198,6 +199,7 @@ def test_other_ports_may_be_connected_to_themselves(names: LocalNames) -> None:
         assert [both.read(timeout=5).value[0] for _ in range(600)] == [*range(600)]
 
 
+@pytest.mark.skipif(bool(NO_UNIX_SOCKETS), reason=NO_UNIX_SOCKETS)
 @pytest.mark.parametrize(
     ("answer", "words"),
     [
