@@ -109,7 +109,7 @@ def test_no_states(names):
 
 class FakeState:
     def to_wire(self):
-        return (State(1, {"encoders": [1.0]}).to_bottle().to_bytes(),)
+        return (State(1, {"encoders": [1.0]}).to_bytes(),)
 
 
 def test_nobody_there(names):

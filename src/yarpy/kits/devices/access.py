@@ -51,7 +51,7 @@ class Access:
         """The values of all joints. Raises Refused: missing, failed, or not as promised."""
 
         def check(found: Any) -> list[Any]:
-            values = [kind.check(value) for value in (found() if callable(found) else found)]
+            values = kind.check_all(found() if callable(found) else found)
             if len(values) != self.count:
                 raise ValueError(f"{len(values)} values for {self.count} joints")
             return values

@@ -24,7 +24,7 @@ def test_bytes_are_those_of_cpp():
     _, messages = messages_of(load_capture("mc_stateExt_o"))
     device = FakeBoard(3)
     device.where = [5.0, 0.0, 0.0]
-    ours = state_of(device).to_bottle()
+    ours = Bottle.from_bytes(state_of(device).to_bytes())
     assert ours[-2] == [Vocab("stif").code] * 3
     ours[-2] = Bottle([0, 0, 0])
     assert ours.to_bytes() == bytes(messages[0].payload)
@@ -48,15 +48,15 @@ def test_bytes_of_yarp_4():
     assert state.values["encoders"] == [5.5, 6.5, 7.5]
     assert state.values["motor_temperatures"] == [37.5, 38.5, 39.5]
     assert state.values["duty_cycles"] == [33.0, 34.0, 35.0]
-    ours = state.to_bottle(newer=True)
+    ours = Bottle.from_bytes(state.to_bytes(newer=True))
     ours[20] = Bottle([0, Vocab("comp").code, 0])  # two of its modes were no words
     assert to_yarp4(ours.to_bytes()) == data
-    assert len(state_of(Bare()).to_bottle(newer=True)) == 24
+    assert len(Bottle.from_bytes(state_of(Bare()).to_bytes(newer=True))) == 24
 
 
 def test_what_is_missing_has_its_place():
     state = state_of(Bare())
-    message = state.to_bottle()
+    message = Bottle.from_bytes(state.to_bytes())
     assert len(message) == 22
     assert message[:4] == [[1.5, -2.0], "ok", [0.0, 0.0], "fail"]
     assert message[18:] == [[Vocab("unkw").code] * 2, "fail"] * 2
@@ -70,14 +70,14 @@ def test_what_is_missing_has_its_place():
 
 @pytest.mark.parametrize("flag", [0, Vocab("fail"), False])
 def test_flags_that_mean_no(flag):
-    message = state_of(FakeBoard()).to_bottle()
+    message = Bottle.from_bytes(state_of(FakeBoard()).to_bytes())
     message[1] = flag
     assert "encoders" not in State.from_bottle(message).values
 
 
 @pytest.mark.parametrize("flag", [1, Vocab("ok"), True, 5])
 def test_flags_that_mean_yes(flag):
-    message = state_of(FakeBoard()).to_bottle()
+    message = Bottle.from_bytes(state_of(FakeBoard()).to_bytes())
     message[1] = flag
     assert "encoders" in State.from_bottle(message).values
 
@@ -87,14 +87,14 @@ def test_flags_that_mean_yes(flag):
     [(0, []), (0, 5), (2, [1.0]), (4, ["a", "b", "c"]), (18, ["x", "y", "z"]), (20, [1.5] * 3)],
 )
 def test_no_states(index, value):
-    message = state_of(FakeBoard()).to_bottle()
+    message = Bottle.from_bytes(state_of(FakeBoard()).to_bytes())
     message[index] = value
     with pytest.raises(DecodeError):
         State.from_bottle(message)
 
 
 def test_states_of_another_length():
-    message = state_of(FakeBoard()).to_bottle()
+    message = Bottle.from_bytes(state_of(FakeBoard()).to_bytes())
     for wrong in ([], message[:-1], [*message, 1]):
         with pytest.raises(DecodeError, match="22"):
             State.from_bottle(wrong)

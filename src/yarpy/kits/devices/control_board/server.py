@@ -123,11 +123,13 @@ class ControlBoardServer(Closeable):
         board = self._board
         state = State.of(board.count, board.values, newer=True)
         times = board.timestamps()
-        if any(abs(time - times[0]) > APART for time in times):
+        if max(max(times) - times[0], times[0] - min(times)) > APART:
             raise Refused(f"the encoders were read more than {APART:g} s apart: not published")
         self._stamp = self._stamp.next(sum(times) / len(times))
         self._state_ext_readers.write(
-            state.to_bottle, lambda: _newer(state.to_bottle(newer=True)), self._stamp
+            lambda: Encoded(state.to_bytes()),
+            lambda: Encoded(to_yarp4(state.to_bytes(newer=True))),
+            self._stamp,
         )
         positions = state.values.get("encoders")
         if positions is not None:

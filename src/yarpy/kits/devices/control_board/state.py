@@ -14,12 +14,13 @@ Source: the struct that controlBoard_nws_yarp sends, YARP 2.3.70 to 3.12, and 4.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from struct import pack
 from typing import Any, Final
 
-from yarpy.data.bottle import Bottle
-from yarpy.data.value import Float32, Vocab
+from yarpy.data.value import FLOAT32, FLOAT64, INT32, LIST, VOCAB32, Vocab
 from yarpy.errors import DecodeError
 from yarpy.kits.devices.kind import FLOAT, WORD, Kind
 from yarpy.kits.devices.refusal import Refused
@@ -46,7 +47,7 @@ _SHORT: Final = frozenset(("duty_cycles", "motor_temperatures"))
 _VALID: Final = Vocab("ok")
 _INVALID: Final = Vocab("fail")
 # Stands in for an unknown mode, to keep the length of the list.
-_BLANK_MODE: Final = Vocab("unkw").code
+_BLANK: Final = "unkw"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,22 +68,23 @@ class State:
                 continue
         return cls(count, values)
 
-    def to_bottle(self, newer: bool = False) -> Bottle:
-        """The 22 elements, or the 24 of YARP 4."""
-        message = Bottle()
-        for name, kind in NEWER if newer else FIELDS:
+    def to_bytes(self, newer: bool = False) -> bytes:
+        """The 22 elements of a message, or the 24 of YARP 4, which still has them to be spelled as
+        it does (`to_yarp4`)."""
+        fields = NEWER if newer else FIELDS
+        count, parts = self.count, [pack("<ii", LIST, 2 * len(fields))]
+        for name, kind in fields:
             values = self.values.get(name)
             if kind is WORD:
-                codes = [_BLANK_MODE] * self.count
-                if values is not None:
-                    codes = [Vocab(value).code for value in values]
-                message.append(Bottle(codes))
+                numbers: Iterable[float] = map(_code, values or [_BLANK] * count)
+                tag, form = INT32, "i"
             else:
-                numbers = [0.0] * self.count if values is None else values
                 short = newer and name in _SHORT
-                message.append(Bottle(map(Float32, numbers) if short else numbers))
-            message.append(_INVALID if values is None else _VALID)
-        return message
+                tag, form = (FLOAT32, "f") if short else (FLOAT64, "d")
+                numbers = values or [0.0] * count
+            parts.append(pack(f"<ii{count}{form}", LIST + tag, count, *numbers))
+            parts.append(pack("<ii", VOCAB32, (_INVALID if values is None else _VALID).code))
+        return b"".join(parts)
 
     @classmethod
     def from_bottle(cls, message: Sequence[Any]) -> State:
@@ -103,6 +105,12 @@ class State:
             read = _mode if kind is WORD else _number
             values[name] = [read(element) for element in found]
         return cls(count, values)
+
+
+@lru_cache(200)
+def _code(mode: str) -> int:
+    """Return the number of a mode."""
+    return Vocab(mode).code
 
 
 def _number(element: object) -> float:
