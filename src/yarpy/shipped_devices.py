@@ -1,7 +1,7 @@
 """The types of devices that ship with yarpy, by the names of C++: rows of `shipped.py`.
 
-Rules: a table, nothing else, as there. A type is without hardware, serves another device, or is the
-client of one in another program.
+Rules: a table, nothing else, as there. A type is without hardware, serves another device, is the
+client of one in another program, or hardware, whose types have names of their own.
 """
 
 from __future__ import annotations
@@ -42,6 +42,7 @@ _DEVICES: Final[dict[str, str]] = {
     "controlBoard_nws_yarp": "wrapper:ControlBoard",
     "controlboardremapper": "control_board.remapper:Remapper",
     "controlboardwrapper2": "wrapper:ControlBoard",
+    "dynamixelServos": "hardware.servo:dynamixel",
     "fakeAnalogSensor": "simulated.plugin:analog",
     "fakeDepthCamera": "simulated.plugin:depth_camera",
     "fakeFrameGrabber": "simulated.plugin:camera",
@@ -49,6 +50,7 @@ _DEVICES: Final[dict[str, str]] = {
     "fakeIMU": "simulated.plugin:imu",
     "fakeLaser": "simulated.plugin:laser",
     "fakeMotionControl": "simulated.plugin:joints",
+    "feetechServos": "hardware.servo:feetech",
     "frameGrabber_nws_yarp": "wrapper:FrameGrabber",
     "frameTransformClient": "remote:transforms",
     "frameTransformServer": "remote:transform_server",

@@ -63,6 +63,8 @@ _CLIENTS: Final = {
 }
 _OTHERS: Final = {
     "controlboardremapper": "the joints of the boards that are attached, as one board",
+    "dynamixelServos": "servos of Dynamixel on a line: served by controlBoard_nws_yarp",
+    "feetechServos": "servos of Feetech on a line: served by controlBoard_nws_yarp",
     "fakeAnalogSensor": "simulated sensor with channels: served by analogServer",
     "fakeFrameWriter": "a screen without hardware: served by frameWriter_nws_yarp",
     "fakeIMU": "simulated inertial unit: served by multipleanalogsensorsserver",

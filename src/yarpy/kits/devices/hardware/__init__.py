@@ -1,0 +1,1 @@
+"""Devices of hardware, without C++: a file for each kind."""
