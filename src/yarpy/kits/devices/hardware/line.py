@@ -24,12 +24,13 @@ class Line(Closeable):
     on Windows."""
 
     def __init__(self, path: str, speed: int) -> None:
+        self.path = path
+        self._file: int
         if sys.platform == "win32":
             raise UnknownPlugin("serial lines are files of Linux and macOS; Windows has none")
         import termios
         import tty
 
-        self.path = path
         rate = getattr(termios, f"B{speed}", None)
         if rate is None:
             raise ValueError(f"no serial line of this system has {speed} baud")

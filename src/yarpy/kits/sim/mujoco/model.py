@@ -101,6 +101,15 @@ class ModelJoint(Joint):
         data.ctrl[self._actuator] = control
 
 
+class _Views:
+    """The arrays of the data that joints read and write, looked up once: MuJoCo makes a new object
+    of Python for each look, several a joint and step."""
+
+    def __init__(self, data: Any) -> None:
+        self.qpos, self.qvel, self.qacc = data.qpos, data.qvel, data.qacc
+        self.qfrc_bias, self.ctrl = data.qfrc_bias, data.ctrl
+
+
 class Model(Body[ModelJoint]):
     """A running model; `joints` are those driven by an actuator."""
 
@@ -111,10 +120,11 @@ class Model(Body[ModelJoint]):
         if model.nkey:
             self._engine.mj_resetDataKeyframe(model, self.data, 0)
         self._engine.mj_forward(model, self.data)
+        self._views = _Views(self.data)
         self._behind = 0.0  # seconds not simulated yet
         super().__init__(self._actuated(), clock)
         for joint in self.joints:
-            joint.read(self.data)
+            joint.read(self._views)
             joint.reference.place(joint.position)
 
     def elapse(self, seconds: float) -> None:
@@ -122,11 +132,11 @@ class Model(Body[ModelJoint]):
         self._behind = min(self._behind + seconds, max(LONGEST, step))
         while self._behind >= step:
             for joint in self.joints:
-                joint.command(self.data, step)
+                joint.command(self._views, step)
             self._engine.mj_step(self.model, self.data)
             self._behind -= step
         for joint in self.joints:
-            joint.read(self.data)
+            joint.read(self._views)
 
     def name_of(self, kind: str, number: int) -> str:
         """The name of an object, or a generated one."""
