@@ -72,8 +72,11 @@ def test_everything_in_a_file() -> None:
 
 
 def test_a_name_and_programs_that_are_only_commands() -> None:
-    found = read(b"[programs]\na = 'sleep 1'\n", "/x/demo app.toml", {}).application
-    assert found.name == "demo_app" and found.modules[0].command == ["sleep", "1"]
+    found = read(
+        b"[programs]\na = 'sleep 1'\nb = ['echo', 'a b']\n", "/x/demo app.toml", {}
+    ).application
+    assert found.name == "demo_app"
+    assert [one.command for one in found.modules] == [["sleep", "1"], ["echo", "a b"]]
 
 
 @pytest.mark.parametrize(

@@ -152,7 +152,9 @@ def test_a_flag_that_is_none_and_a_name_that_is_missing(write: Write) -> None:
 
 
 def test_another_root_is_no_robot(write: Write) -> None:
-    with pytest.raises(BadFile, match="the root is <application>, not <robot>"):
+    with pytest.raises(BadFile, match=r"not <robot>: `yarpy up .*` starts its programs"):
         load(write("<application/>", whole=True))
+    with pytest.raises(BadFile, match='the root is <robbot>, not <robot>: did you mean "robot"'):
+        load(write("<robbot/>", whole=True))
     with pytest.raises(BadFile, match="cannot be read"):
         load(Path("/nowhere/robot.xml"))

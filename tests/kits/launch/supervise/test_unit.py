@@ -127,6 +127,7 @@ def test_one_that_cannot_be_started_is_not_tried_again() -> None:
     unit, states = started(runner, name="/missing")
     assert unit.join(HANG) and states == ["waiting", "failed"]
     assert unit.detail.startswith("it cannot be started: ") and len(runner.programs) == 1
+    assert "Errno" not in unit.detail
 
 
 class Silent(Fake):

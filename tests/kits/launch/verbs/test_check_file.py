@@ -46,6 +46,7 @@ def test_an_application_and_a_robot(tmp_path) -> None:
     [
         ("x.xml", "<application><name>a</nam></application>", ":1:23: error: this is no XML"),
         ("x.xml", "<module/>", ": error: the root of the file is no <application>"),
+        ("x.xml", "<aplication/>", ": error: the root of the file is no <application>: did you"),
         ("x.toml", "a = = 1", "error"),
         ("x.xml", "", "error: this is no XML: no element found"),
     ],

@@ -18,6 +18,7 @@ from yarpy.kits.launch.application import manager_file, toml_file
 from yarpy.kits.launch.application.application import Application, Connection, Module, circle
 from yarpy.kits.launch.application.manager_file import Document, Nested
 from yarpy.kits.launch.document.advice import advice
+from yarpy.kits.launch.document.element import parse
 from yarpy.kits.launch.document.problem import Problem, Where
 from yarpy.limit import (
     APPLICATION_DEPTH,
@@ -48,7 +49,7 @@ class _Loading:
     def whole(self, path: Path) -> Application:
         document = self._read(path)
         if document is None:
-            raise DecodeError(f"{path}: the root of the file is no <application>")
+            raise DecodeError(f"{path}: the root of the file is no <application>{_meant(path)}")
         result = document.application
         modules, connections = [*_prefixed(result, "")], [*_connections(result, "")]
         for part in self._parts(document, path, "", [_identity(path)], result):
@@ -230,3 +231,11 @@ def _check(found: Application) -> None:
             continue
         if base not in names:
             warn(one.where, f'no carrier is called "{base}" here{advice(base, names)}')
+
+
+def _meant(path: Path) -> str:
+    """Return what a file with another root is for, or may have meant."""
+    tag = parse(content(path), str(path)).tag
+    if tag == "robot":
+        return f": it is a robot, which `yarpy robot {path}` starts"
+    return advice(tag, ["application"])

@@ -117,7 +117,7 @@ class _Reading:
         found.needs = [*self._needs(told, "")]
         for label, program in self._table(told, "programs", "").items():
             table = f"programs.{label}"
-            if isinstance(program, str):
+            if isinstance(program, str | list):
                 program = {"command": program}
             if isinstance(program, dict):
                 self._program(label, program, table)

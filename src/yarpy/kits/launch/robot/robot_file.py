@@ -81,7 +81,9 @@ def load(
     merge = Merge(enabled, disabled)
     root = merge.tree(Path(path))
     if root.tag != "robot":
-        raise BadFile(root.where, f"the root is <{root.tag}>, not <robot>")
+        program = f": `yarpy up {path}` starts its programs" if root.tag == "application" else ""
+        more = program or advice(root.tag, ["robot"])
+        raise BadFile(root.where, f"the root is <{root.tag}>, not <robot>{more}")
     reading = _Reading(given if given is not None else Property(), portprefix)
     found = reading.robot(root)
     found.problems = [*dict.fromkeys([*merge.problems, *found.problems, *found.missing()])]

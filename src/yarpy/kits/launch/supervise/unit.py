@@ -207,7 +207,7 @@ class Unit:
             self._silent = f"it cannot be started: {error}"
             return True
         except (OSError, YarpError) as error:
-            self._enter("failed", f"it cannot be started: {error}")
+            self._enter("failed", f"it cannot be started: {_said(error)}")
             return False
         self.handle = handle
         self._enter("running")
@@ -248,3 +248,10 @@ def ending(code: int | None) -> str:
         return f"killed by {signal.Signals(-code).name}"
     except ValueError:
         return f"killed by signal {-code}"
+
+
+def _said(error: OSError | YarpError) -> str:
+    """Return an error without the number that the system has for it."""
+    if isinstance(error, OSError) and error.strerror and error.filename is not None:
+        return f'"{error.filename}": {error.strerror}'
+    return str(error)
