@@ -27,7 +27,7 @@ def test_what_was_found_once(path) -> None:  # type: ignore[no-untyped-def]
 @pytest.mark.parametrize("name", TARGETS)
 def test_changed_inputs(name: str) -> None:
     chance = random.Random(name)
-    for _ in range(300):
+    for _ in range(100):
         data = made(chance, TARGETS[name])
         problem, _ = tried(TARGETS[name], data)
         assert problem == "", data

@@ -235,7 +235,7 @@ def test_viewer_with_a_wrong_password_ends(tmp_path: Path) -> None:
     with yarpy.NameServer() as server, camera("MD5") as web:
         cli = CommandLine(tmp_path, server.environment)
         source = f"{CARRIER}+user.me+password.wr0ng:/{web.name}/"
-        said = cli.run("view", "--no-browser", "--connect", source, timeout=HANG)
+        said = cli.run("view", "--no-browser", "--connect", source)
         assert said.returncode == 1
         assert "does not accept this name and password" in said.stderr
         assert "wr0ng" not in said.stdout + said.stderr

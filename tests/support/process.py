@@ -16,9 +16,9 @@ import sys
 import threading
 import time
 import weakref
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Final, Literal, Self
+from typing import Any, Final, Literal, Self
 
 from support.wait import HANG
 
@@ -36,12 +36,13 @@ class Process:
         *,
         env: Mapping[str, str] | None = None,
         cwd: str | os.PathLike[str] | None = None,
+        start: Callable[..., Any] = subprocess.Popen,
     ) -> None:
         self.args = [os.fspath(arg) for arg in args]
         self.lines: list[tuple[str, str]] = []  # ("out" | "err", text without line end)
         self._changed = threading.Condition()
         self._open_streams = 2
-        self._popen = subprocess.Popen(
+        self._popen = start(
             self.args,
             env={**(os.environ if env is None else env), "PYTHONFAULTHANDLER": "1"},
             cwd=cwd,

@@ -124,7 +124,7 @@ def test_page(demo: Process):
 
 def test_it_ends_by_itself_beside_another(demo: Process, lonely: CommandLine):
     """The usual numbers are taken: it has others."""
-    said = lonely.run("demo", "--seconds", "0.5", timeout=HANG)
+    said = lonely.run("demo", "--seconds", "0.5")
     assert (said.returncode, said.stderr) == (0, "")
     assert said.stdout.endswith("The demo ends.\n")
     assert line(demo, "open this") not in said.stdout
@@ -138,7 +138,7 @@ def test_number_of_the_page_is_taken(lonely: CommandLine):
             other.listen()
         except OSError:
             pass  # somebody else has it: as good
-        said = lonely.run("demo", "--seconds", "0.2", timeout=HANG)
+        said = lonely.run("demo", "--seconds", "0.2")
     assert said.returncode == 0
     assert "127.0.0.1:10001/ " not in said.stdout
 
@@ -185,7 +185,7 @@ def test_it_is_a_node_where_a_ros_master_answers(tmp_path: Path):
 @pytest.mark.parametrize("uri", ["http://127.0.0.1:{}/", "http://nowhere.invalid:{}/", "nonsense"])
 def test_it_is_silent_without_a_ros_master(lonely: CommandLine, tmp_path: Path, uri: str):
     other = CommandLine(tmp_path, {"ROS_MASTER_URI": uri.format(free_port())})
-    said = other.run("demo", "--no-browser", "--seconds", "0.2", timeout=HANG)
+    said = other.run("demo", "--no-browser", "--seconds", "0.2")
     assert (said.returncode, said.stderr) == (0, "")
     assert "ROS" not in said.stdout
 

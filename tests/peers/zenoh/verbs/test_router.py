@@ -13,29 +13,29 @@ pytest.importorskip("zenoh", reason='Zenoh: pip install "yarpy[zenoh]"')
 def test_names_and_connections_without_a_server(lone: CommandLine) -> None:
     where = f"tcp/127.0.0.1:{free_port()}"
     lone.environment |= {"YARPY_SERVER": "zenoh", "YARPY_ZENOH": where}
-    said = lone.run("where")
+    said = lone.run_alone("where")
     assert said.returncode == 1 and "start one with `yarpy router`" in said.stdout
     with lone.start("router", where) as router:
         router.wait_line(f"Zenoh router at {where}")
         with lone.start("read", "/in") as reader:
-            assert lone.run("wait", "/in", "--timeout", "10").returncode == 0
+            assert lone.run_alone("wait", "/in", "--timeout", "10").returncode == 0
             with lone.start("rpcserver", "/answers"):
-                assert lone.run("wait", "/answers", "--timeout", "10").returncode == 0
-                listed = lone.run("name", "list").stdout.splitlines()
+                assert lone.run_alone("wait", "/answers", "--timeout", "10").returncode == 0
+                listed = lone.run_alone("name", "list").stdout.splitlines()
                 assert [line.split()[2] for line in listed[:-1]] == ["/answers", "/in"]
-            found = json.loads(lone.run("name", "query", "/in", "--json").stdout)
+            found = json.loads(lone.run_alone("name", "query", "/in", "--json").stdout)
             assert found["name"] == "/in" and found["carrier"] == "tcp"
-            assert "property process = " in lone.run("name", "get", "/in", "process").stdout
-            said = lone.run("name", "register", "/x", "tcp", "127.0.0.1", "1")
+            assert "property process = " in lone.run_alone("name", "get", "/in", "process").stdout
+            said = lone.run_alone("name", "register", "/x", "tcp", "127.0.0.1", "1")
             assert said.returncode == 1 and "there is no server" in said.stderr
-            lone.run("write", "/out", "/in", input="1 2 (a b)\n")
+            lone.run_alone("write", "/out", "/in", input="1 2 (a b)\n")
             reader.wait_line(r"1 2 \(a b\)")
-        said = lone.run("where")
+        said = lone.run_alone("where")
         assert (said.returncode, said.stdout) == (
             0,
             f"Names of /root: names on Zenoh, at {where}\nThere is no name server of YARP there.\n",
         )
-        twice = lone.run("router", where)
+        twice = lone.run_alone("router", where)
         assert twice.returncode == 1 and "another address" in twice.stderr
         router.signal(signal.SIGTERM)
         assert router.wait() == 0
@@ -49,6 +49,6 @@ def test_another_router_that_does_not_answer_is_named(lone: CommandLine) -> None
         with lone.start("router", there, "--connect", here) as other:
             other.wait_line("Zenoh router at")
             lone.environment |= {"YARPY_SERVER": "zenoh", "YARPY_ZENOH": there}
-            assert lone.run("name", "list").returncode == 0
+            assert lone.run_alone("name", "list").returncode == 0
             other.signal(signal.SIGTERM)
             assert other.wait() == 0

@@ -139,6 +139,10 @@ class Record:
             self.write("", [], away)
         else:
             self._path.unlink(missing_ok=True)
+        self.leave()
+
+    def leave(self) -> None:
+        """Give the place back, but not what is remembered there."""
         self._file.close()
 
 

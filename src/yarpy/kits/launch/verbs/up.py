@@ -209,6 +209,7 @@ def _run(application: Application, file: Path, wish: _Wish, told: str) -> int:
     record = Record(application.name)
     found = record.left()
     if found and not wish.replace:
+        record.leave()
         complain(
             "programs of an earlier `yarpy up`, which was killed, are still there: "
             f"{named(found)}; `yarpy down {application.name}` ends them, and so does --replace"
