@@ -5,6 +5,7 @@ needs a foreign program is no matter of lists: it says so itself, and gets the m
 test` is `pytest -m "not peer"`, `make peers` is `pytest -m peer`.
 """
 
+import gc
 import logging
 import os
 import signal
@@ -67,6 +68,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         names = peer.needed(item)
         if names:
             item.add_marker(pytest.mark.peer(*names))
+
+
+def pytest_collection_finish() -> None:
+    """Let the collector of garbage leave alone what all tests are made of, a million objects: tests
+    that call it, which are many, would go through them each time."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.hookimpl(tryfirst=True)
