@@ -55,6 +55,7 @@ _DEVICES: Final[dict[str, str]] = {
     "frameTransformClient": "remote:transforms",
     "frameTransformServer": "remote:transform_server",
     "frameWriter_nws_yarp": "wrapper:FrameWriter",
+    "gamepad": "hardware.gamepad:gamepad",
     "multipleanalogsensorsremapper": "multi_sensor.remapper:Remapper",
     "multipleanalogsensorsserver": "wrapper:MultiSensor",
     "rangefinder2D_nws_yarp": "wrapper:Laser",

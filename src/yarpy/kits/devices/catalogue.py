@@ -75,6 +75,7 @@ _OTHERS: Final = {
     "fakeSpeaker": "simulated loudspeaker: served by audioPlayerWrapper",
     "frameTransformServer": "knows where frames are, and tells who asks; serves itself",
     "map2DStorage": "maps and places, in memory: served by map2D_nws_yarp",
+    "gamepad": "a gamepad or joystick of Linux: served by joypadControl_nws_yarp",
     "multipleanalogsensorsremapper": "the sensors of what is attached, as one device",
     "remotecontrolboardremapper": "the joints of boards of other programs, as one board",
     "robotDescriptionStorage": "a list of devices: served by robotDescription_nws_yarp",
