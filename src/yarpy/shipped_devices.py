@@ -35,6 +35,9 @@ _CLIENTS: Final = (
     "remote_grabber",
 )
 
+#: What a type needs beside yarpy itself.
+_EXTRAS: Final = {"opencv_grabber": "vision"}
+
 #: Type -> where it is in the kit of devices.
 _DEVICES: Final[dict[str, str]] = {
     "analogServer": "wrapper:Analog",
@@ -58,6 +61,7 @@ _DEVICES: Final[dict[str, str]] = {
     "gamepad": "hardware.gamepad:gamepad",
     "multipleanalogsensorsremapper": "multi_sensor.remapper:Remapper",
     "multipleanalogsensorsserver": "wrapper:MultiSensor",
+    "opencv_grabber": "hardware.opencv:camera",
     "rangefinder2D_nws_yarp": "wrapper:Laser",
     "remotecontrolboardremapper": "control_board.remapper:remote_remapper",
     "test_grabber": "simulated.plugin:camera",
@@ -73,6 +77,9 @@ _SIM: Final = {
 }
 
 DEVICES: Final[Mapping[str, Row]] = {
-    **{name: Row(name, f"yarpy.kits.devices.{place}") for name, place in _DEVICES.items()},
+    **{
+        name: Row(name, f"yarpy.kits.devices.{place}", _EXTRAS.get(name, ""))
+        for name, place in _DEVICES.items()
+    },
     **{name: Row(name, f"yarpy.kits.sim.device:{place}") for name, place in _SIM.items()},
 }

@@ -77,6 +77,7 @@ _OTHERS: Final = {
     "map2DStorage": "maps and places, in memory: served by map2D_nws_yarp",
     "gamepad": "a gamepad or joystick of Linux: served by joypadControl_nws_yarp",
     "multipleanalogsensorsremapper": "the sensors of what is attached, as one device",
+    "opencv_grabber": "a camera or film of OpenCV: served by frameGrabber_nws_yarp",
     "remotecontrolboardremapper": "the joints of boards of other programs, as one board",
     "robotDescriptionStorage": "a list of devices: served by robotDescription_nws_yarp",
     "simulatedEye": "eye of the simulated iCub: attach simulatedHead",
